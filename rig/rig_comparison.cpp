@@ -49,8 +49,8 @@ std::string about(double value) {
 void compare_reach(const document::Document& document, const control::ChannelSettings& channel,
                    std::size_t index, const control::FreeMotion& motion, document::Problems& problems) {
   const control::LimitSettings& limits = channel.limits;
-  const double allowed_mm = limits.displacement_max_mm - motion.lowest_mm;
-  const double travel_mm = motion.highest_mm - motion.lowest_mm;
+  const double allowed_mm = limits.displacement_max_mm - motion.rest_mm;
+  const double travel_mm = motion.highest_mm - motion.rest_mm;
   if (!(allowed_mm > 0) || !(travel_mm > most_times_too_far * allowed_mm)) return;
   const double enough_kpa = control::FreeCurve(channel.model, limits).command_kpa(limits.displacement_max_mm);
   problems.warn(

@@ -31,6 +31,7 @@ struct ValveFacts {
   double range_min_kpa = 0;  ///< what the valve can control, whatever the limits allow
   double range_max_kpa = 0;
   PowerLoss on_power_loss = PowerLoss::vents;
+  double power_loss_kpa = 0;  ///< where a valve that vents goes when its power fails
 };
 
 /// A file that the rig depends on, as it was read: for hashes in the recording's provenance.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/numbers.h"
 #include "control/feedforward/invertibility.h"
 #include "rig/channel_defaults.h"
 
@@ -55,6 +56,20 @@ control::LimitSettings read_limits(Context& context, const Node& node, const std
   return limits;
 }
 
+/// The pressure of every safe state. Without the key it is 0 kPa, or the end of the limits nearest to it.
+void read_rest_pressure(MapReader& reader, const std::string& who, control::LimitSettings& limits) {
+  const bool limits_known = reader.good("limits") && limits.pressure_max_kpa > limits.pressure_min_kpa;
+  const auto rest_kpa = reader.optional_number("rest_kpa", any_pressure_kpa);
+  if (!rest_kpa) return;
+  limits.rest_kpa = *rest_kpa;
+  if (!reader.good("rest_kpa") || !limits_known || control::resting_kpa(limits) == *rest_kpa) return;
+  reader.report("rest_kpa",
+                "`rest_kpa` must be in [" + written(limits.pressure_min_kpa) + ", " +
+                    written(limits.pressure_max_kpa) + "], the pressure limits of " + who + ", found " +
+                    written(*rest_kpa),
+                "it is the pressure of every safe state");
+}
+
 /// Reads the name first: messages of all that follows carry it.
 std::string read_channel_name(Context& context, MapReader& reader) {
   std::string name = read_name(reader, "name");
@@ -78,7 +93,7 @@ void read_wiring(Context& context, MapReader& reader, const std::string& who,
   ValveFacts facts;
   wiring.name = channel.name;
   if (const Node* valve = reader.child("valve", true)) {
-    wiring.valve = read_valve(context, *valve, who, channel.limits, facts);
+    wiring.valve = read_valve(context, *valve, who, channel.limits, reader.has("rest_kpa"), facts);
   }
   if (const Node* sensor = reader.child("sensor", true)) {
     wiring.displacement = read_sensor(context, *sensor, who, channel.limits);
@@ -155,6 +170,7 @@ void read_channel(Context& context, const Node& node, const Shared& shared, Chan
   read_feedforward(context, reader, channel);
   if (const Node* pid = reader.child("pid", true)) channel.pid = read_pid(context, *pid, who);
   if (const Node* limits = reader.child("limits", true)) channel.limits = read_limits(context, *limits, who);
+  read_rest_pressure(reader, who, channel.limits);
   const bool motion_known = model && context.problems.size() == before && context.rate_known &&
                             reader.good("feedforward") && reader.good("pid") && reader.good("limits");
   read_wiring(context, reader, who, channel);

@@ -11,20 +11,28 @@ namespace softgrip::rig {
 
 namespace {
 
-/// Modbus: the safe value of each output in use is at or below the lowest pressure of its limits.
-bool vents(const Context& context, const drivers::ModbusSettings& board) {
+/// Modbus: what the watchdog of the board puts out for a channel; nothing if it has none.
+std::optional<double> safe_value_kpa(const drivers::OutputWiring& valve,
+                                     const drivers::ModbusSettings& board) {
+  if (valve.module >= board.modules.size()) return std::nullopt;
+  const drivers::BoardWatchdog& watchdog = board.modules[valve.module].map.watchdog;
+  if (watchdog.kind == drivers::BoardWatchdog::Kind::none) return std::nullopt;
+  if (valve.output >= watchdog.safe_electrical.size()) return std::nullopt;
+  return valve.scaling.y_at(watchdog.safe_electrical[valve.output]);
+}
+
+/// Modbus: why not every channel goes to its rest pressure by itself; nothing: each does. Empty: the board
+/// has no watchdog.
+std::optional<std::string> stays_away(const Context& context, const drivers::ModbusSettings& board) {
   for (std::size_t i = 0; i < context.wiring.size(); ++i) {
-    const drivers::OutputWiring& valve = context.wiring[i].valve;
-    if (valve.module >= board.modules.size()) return false;
-    const drivers::BoardWatchdog& watchdog = board.modules[valve.module].map.watchdog;
-    if (watchdog.kind == drivers::BoardWatchdog::Kind::none) return false;
-    if (valve.output >= watchdog.safe_electrical.size()) return false;
-    const double pressure = valve.scaling.y_at(watchdog.safe_electrical[valve.output]);
+    const std::optional<double> safe_kpa = safe_value_kpa(context.wiring[i].valve, board);
+    if (!safe_kpa) return "";
     const control::LimitSettings& limits = context.rig.settings.channels[i].limits;
-    const double slack = 0.01 * (limits.pressure_max_kpa - limits.pressure_min_kpa);
-    if (pressure > limits.pressure_min_kpa + slack) return false;
+    if (is_rest(limits, *safe_kpa)) continue;
+    return ": its watchdog puts channel `" + context.wiring[i].name + "` to " + written(*safe_kpa) +
+           " kPa, and the rest pressure of this channel is " + written(control::resting_kpa(limits)) + " kPa";
   }
-  return true;
+  return std::nullopt;
 }
 
 void check_watchdog(Context& context, MapReader& top) {
@@ -35,8 +43,11 @@ void check_watchdog(Context& context, MapReader& top) {
     return;
   }
   if (accepted) return;
+  const auto* const modbus = std::get_if<drivers::ModbusSettings>(&context.rig.board);
   top.report(
-      "board", "this board does not vent by itself when softgripd dies, and the rig does not accept that",
+      "board",
+      "this board does not vent by itself when softgripd dies, and the rig does not accept that" +
+          (modbus != nullptr ? stays_away(context, *modbus).value_or("") : ""),
       "to accept it, write under `safety`: accept_no_watchdog: \"" + std::string(no_watchdog_words) + "\"");
 }
 
@@ -115,7 +126,7 @@ bool board_vents_when_silent(const Context& context) {
     return simulated->watchdog_timeout_s > 0;
   }
   const auto* modbus = std::get_if<drivers::ModbusSettings>(&context.rig.board);
-  return modbus != nullptr && vents(context, *modbus);
+  return modbus != nullptr && !stays_away(context, *modbus);
 }
 
 void check_whole(Context& context, MapReader& top) {

@@ -97,10 +97,13 @@ void read_gpio(Context& context, MapReader& top);
 [[nodiscard]] control::PlausibilitySettings read_plausibility(Context& context, const document::Node& node);
 [[nodiscard]] control::ModelHealthSettings read_model_health(Context& context, const document::Node& node);
 
-/// How a channel is wired.
+/// True if a pressure is the rest pressure, within 1 % of the range; beyond the range its end counts.
+[[nodiscard]] bool is_rest(const control::LimitSettings& limits, double pressure_kpa);
+
+/// How a channel is wired. `rest_stated`: the file gives the channel's `rest_kpa`.
 [[nodiscard]] drivers::OutputWiring read_valve(Context& context, const document::Node& node,
                                                const std::string& who, const control::LimitSettings& limits,
-                                               ValveFacts& facts);
+                                               bool rest_stated, ValveFacts& facts);
 [[nodiscard]] drivers::InputWiring read_sensor(Context& context, const document::Node& node,
                                                const std::string& who, const control::LimitSettings& limits);
 [[nodiscard]] drivers::InputWiring read_pressure_monitor(Context& context, const document::Node& node,
@@ -112,7 +115,7 @@ void read_gpio(Context& context, MapReader& top);
 /// What only several parts of a rig show: the wiring, the watchdog, what control makes of the settings, the
 /// bus budget; each as soon as the parts that it takes are sound.
 void check_whole(Context& context, MapReader& top);
-/// Whether the board puts every channel to its lowest pressure by itself.
+/// Whether the board puts every channel to its rest pressure by itself.
 [[nodiscard]] bool board_vents_when_silent(const Context& context);
 
 }  // namespace softgrip::rig

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "base/numbers.h"
 #include "document/number.h"
@@ -186,6 +187,19 @@ void check_valve(Context& context, MapReader& reader, const ElectricalKey& at,
   }
 }
 
+/// Software does nothing for a rig without power: the valve alone decides where its finger goes.
+void check_power_loss(MapReader& reader, const std::string& who, const control::LimitSettings& limits,
+                      bool rest_stated, const ValveFacts& facts) {
+  const bool holds = facts.on_power_loss == PowerLoss::holds;
+  if (holds ? !rest_stated : is_rest(limits, facts.power_loss_kpa)) return;
+  reader.warn(
+      reader.has("on_power_loss_kpa") ? "on_power_loss_kpa" : "on_power_loss",
+      "without power the valve of " + who +
+          (holds ? " holds its last pressure" : " goes to " + written(facts.power_loss_kpa) + " kPa") +
+          ", and the rest pressure is " + written(control::resting_kpa(limits)) + " kPa",
+      "choose a valve that goes to the rest pressure by itself, or change `rest_kpa`");
+}
+
 void check_sensor(MapReader& reader, const drivers::InputWiring& wiring,
                   const control::LimitSettings& limits) {
   const double a = wiring.scaling.y_at(wiring.valid_min);
@@ -200,8 +214,13 @@ void check_sensor(MapReader& reader, const drivers::InputWiring& wiring,
 
 }  // namespace
 
+bool is_rest(const control::LimitSettings& limits, double pressure_kpa) {
+  const double slack_kpa = 0.01 * (limits.pressure_max_kpa - limits.pressure_min_kpa);
+  return std::abs(control::in_range(limits, pressure_kpa) - control::resting_kpa(limits)) <= slack_kpa;
+}
+
 drivers::OutputWiring read_valve(Context& context, const Node& node, const std::string& who,
-                                 const control::LimitSettings& limits, ValveFacts& facts) {
+                                 const control::LimitSettings& limits, bool rest_stated, ValveFacts& facts) {
   const std::size_t before = context.problems.size();
   MapReader reader(context.document, node, context.problems, "the valve of " + who);
   drivers::OutputWiring wiring;
@@ -218,10 +237,17 @@ drivers::OutputWiring read_valve(Context& context, const Node& node, const std::
     reader.report("range_kpa", "the first number of `range_kpa` must be the smaller one");
   }
   facts.on_power_loss = static_cast<PowerLoss>(reader.choice("on_power_loss", {"vents", "holds"}));
+  const auto power_loss_kpa = reader.optional_number("on_power_loss_kpa", {-200, 10'000});
+  facts.power_loss_kpa = power_loss_kpa.value_or(0);
+  if (power_loss_kpa && reader.good("on_power_loss") && facts.on_power_loss == PowerLoss::holds) {
+    reader.report("on_power_loss_kpa", "a valve that holds its pressure without power goes to no other",
+                  "leave `on_power_loss_kpa` out, or write `on_power_loss: vents`");
+  }
   reader.finish();
   const bool limits_known = limits.pressure_max_kpa > limits.pressure_min_kpa;
   if (context.problems.size() == before && limits_known) {
     check_valve(context, reader, at, wiring, limits, facts);
+    check_power_loss(reader, who, limits, rest_stated, facts);
   }
   return wiring;
 }

@@ -69,7 +69,7 @@ enum class RefusalCode : std::uint16_t {
   nothing_to_acknowledge = 8,
   cause_persists = 9,  ///< acknowledge while the cause of a latched fault is still there
   overtaken = 10,      ///< a start behind which a stop or a vent was asked for before the loop could take it
-  nothing_to_release = 11,       ///< no sequence runs, and every channel is at its lowest pressure
+  nothing_to_release = 11,       ///< no sequence runs, and every channel is at its rest pressure
   named_start_not_running = 12,  ///< a stop of one start, which does not run
 };
 /// "R01" ... and a name in snake_case.

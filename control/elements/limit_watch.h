@@ -8,7 +8,7 @@
 
 namespace softgrip::control {
 
-/// What keeps a command from what is wanted. The lowest pressure is not among them: a finger that is let go
+/// What keeps a command from what is wanted. The rest pressure is not among them: a finger that is let go
 /// stands at it.
 enum class BindingLimit : std::uint8_t {
   none,

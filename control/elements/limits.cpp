@@ -11,11 +11,13 @@ double in_range(const LimitSettings& limits, double pressure_kpa) noexcept {
 
 LimitedCommand limit(const LimitSettings& limits, double wanted_kpa, double last_kpa, double elapsed_s,
                      double ceiling_kpa) noexcept {
-  // Without a usable last command only the lowest pressure is known to do no harm.
-  const double last = std::isfinite(last_kpa) ? in_range(limits, last_kpa) : limits.pressure_min_kpa;
+  // Without a usable last command only the rest pressure is known to do no harm.
+  const double last = std::isfinite(last_kpa) ? in_range(limits, last_kpa) : resting_kpa(limits);
   if (std::isnan(wanted_kpa) || std::isnan(ceiling_kpa)) return {last, false, false, true, false};
-  const bool capped = wanted_kpa > ceiling_kpa;
-  const double inside = in_range(limits, capped ? ceiling_kpa : wanted_kpa);
+  // A bound from above must not evacuate a finger.
+  const double highest_kpa = std::max(ceiling_kpa, std::min(resting_kpa(limits), last));
+  const bool capped = wanted_kpa > highest_kpa;
+  const double inside = in_range(limits, capped ? highest_kpa : wanted_kpa);
   const double reached = std::clamp(inside, last - limits.slew_down_kpa_per_s * elapsed_s,
                                     last + limits.slew_up_kpa_per_s * elapsed_s);
   return {reached, in_range(limits, wanted_kpa) != wanted_kpa, reached != inside, false, capped};

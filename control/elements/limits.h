@@ -2,8 +2,10 @@
 // What a command may be. limit() is the only place where a pressure that a tick commands is kept within its
 // range and slowed down to the slew limits; a feedforward that plans ahead asks the same functions what they
 // would let through. One thing is not slowed down: the safe output (ChannelOutput::safe_kpa), which is
-// written when the loop leaves or falls silent, is the lowest pressure at once, or the last command.
+// written when the loop leaves or falls silent, is the rest pressure at once, or the last command.
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace softgrip::control {
@@ -17,6 +19,7 @@ struct LimitSettings {
   double displacement_min_mm = 0;     ///< references are kept at or above
   double displacement_max_mm = 0;     ///< > displacement_min_mm; references are kept at or below
   double displacement_margin_mm = 0;  ///< >= 0; a reading further out than this beyond the range is a fault
+  double rest_kpa = 0;  ///< the pressure of every safe state; use resting_kpa(), which is in range
 };
 
 /// A command within the limits, and what it took to get it there.
@@ -31,12 +34,33 @@ struct LimitedCommand {
 /// A pressure within the range.
 [[nodiscard]] double in_range(const LimitSettings& limits, double pressure_kpa) noexcept;
 
+/// Returns the pressure of every safe state: `rest_kpa`, or the end of the pressure range that is nearest to
+/// it.
+[[nodiscard]] inline double resting_kpa(const LimitSettings& limits) noexcept {
+  return std::max(limits.pressure_min_kpa, std::min(limits.rest_kpa, limits.pressure_max_kpa));
+}
+
+/// Returns the pressure between `rest_kpa` and `bound_kpa` that is nearest to `kpa`. The result is no further
+/// from rest than the bound, and on its side: a bound below rest allows nothing above rest. An infinite bound
+/// allows everything.
+[[nodiscard]] inline double no_further(double rest_kpa, double kpa, double bound_kpa) noexcept {
+  if (std::isinf(bound_kpa)) return kpa;
+  return std::clamp(kpa, std::min(rest_kpa, bound_kpa), std::max(rest_kpa, bound_kpa));
+}
+
+/// Returns the end of the pressure range that is further from rest: where a channel with one side goes.
+[[nodiscard]] inline double far_end_kpa(const LimitSettings& limits) noexcept {
+  const double rest_kpa = resting_kpa(limits);
+  const bool above = limits.pressure_max_kpa - rest_kpa >= rest_kpa - limits.pressure_min_kpa;
+  return above ? limits.pressure_max_kpa : limits.pressure_min_kpa;
+}
+
 /// No ceiling but the pressure range's.
 inline constexpr double no_ceiling = std::numeric_limits<double>::infinity();
 
 /// The command for `wanted_kpa` when `last_kpa` went out `elapsed_s` (>= 0) ago. It is always inside the
 /// pressure range, even when the last one was not; inside the range the slew limits hold as well. A ceiling
-/// below what stands is gone to as fast as they allow, and never below the range.
+/// below what stands is gone to as fast as they allow, but it takes no command further from rest.
 [[nodiscard]] LimitedCommand limit(const LimitSettings& limits, double wanted_kpa, double last_kpa,
                                    double elapsed_s, double ceiling_kpa = no_ceiling) noexcept;
 

@@ -25,7 +25,7 @@ constexpr std::array<RefusalText, 13> texts{{
     {"What caused a fault is still there.",
      "`softgrip status` says what to do about it; acknowledge again when it is gone."},
     {"A stop or a vent was asked for before the loop could take the start.", "Start again if it shall move."},
-    {"No sequence runs and every channel is at its lowest pressure.", "There is nothing to let go of."},
+    {"No sequence runs and every channel is at its rest pressure.", "There is nothing to let go of."},
     {"The start that this stop names does not run, and will not begin.",
      "There is nothing to do. `softgrip stop` stops any sequence."},
 }};

@@ -21,19 +21,20 @@ struct Level {
   double displacement_mm = 0;
 };
 
-/// From the lowest command up, each displacement above the one before.
+/// From the lowest command on, each reached from rest, each displacement above the one before.
 std::vector<Level> levels_of(const model::Model& model, const LimitSettings& limits) {
   model::Chain<double> valve(valve_of(model), {}, curve_step_s);
   model::Chain<double> body(body_of(model), {}, curve_step_s);
   const bool has_valve = valve.size() > 0;
   std::vector<Level> found;
+  const double rest_kpa = resting_kpa(limits);
   const long rest_steps = std::lround(rests_after_s / curve_step_s);
   for (int i = 0; i <= levels; ++i) {
     const double range_kpa = limits.pressure_max_kpa - limits.pressure_min_kpa;
     Level level{limits.pressure_min_kpa + range_kpa * i / levels, 0, 0};
-    valve.reset(limits.pressure_min_kpa);
+    valve.reset(rest_kpa);
     const auto pressure = [&] { return has_valve ? valve.pressure_kpa() : level.command_kpa; };
-    body.reset(has_valve ? valve.pressure_kpa() : limits.pressure_min_kpa);
+    body.reset(has_valve ? valve.pressure_kpa() : rest_kpa);
     valve.step(0, level.command_kpa);
     body.step(0, pressure());
     for (long k = 0; k < rest_steps; ++k) {

@@ -8,7 +8,7 @@
 
 namespace softgrip::control {
 
-/// Where the free finger of a model comes to rest under a command, the first time up from the lowest: the
+/// Where the free finger of a model comes to rest under a command, the first time away from rest: the
 /// displacement three seconds after a jump to it, when all but slow creep is over. Read the other way round
 /// it says which command a displacement needs. Beyond its ends it goes on with its mean slope. Construction
 /// steps the model a few thousand times; reading allocates nothing.

@@ -12,14 +12,14 @@ namespace {
 constexpr double finest_step_s = 0.002;
 constexpr int most_steps = 2000;
 
-/// A finger that starts at rest under the lowest pressure.
+/// A finger that starts at rest under the rest pressure.
 class Finger {
  public:
-  Finger(const model::Model& model, double lowest_kpa)
+  Finger(const model::Model& model, double rest_kpa)
       : valve_(valve_of(model)), body_(body_of(model)), has_valve_(valve_.size() > 0) {
-    valve_.reset(lowest_kpa);
-    body_.reset(has_valve_ ? valve_.pressure_kpa() : lowest_kpa);
-    step(0, lowest_kpa);
+    valve_.reset(rest_kpa);
+    body_.reset(has_valve_ ? valve_.pressure_kpa() : rest_kpa);
+    step(0, rest_kpa);
   }
 
   [[nodiscard]] double displacement_mm() const { return body_.reading_mm(); }
@@ -54,12 +54,20 @@ class Finger {
 }  // namespace
 
 FreeMotion free_motion(const model::Model& model, const LimitSettings& limits) {
-  Finger finger(model, limits.pressure_min_kpa);
+  const double rest_kpa = resting_kpa(limits);
+  Finger finger(model, rest_kpa);
   FreeMotion motion;
-  motion.lowest_mm = finger.displacement_mm();
-  finger.go(limits.pressure_min_kpa, limits.pressure_max_kpa, limits.slew_up_kpa_per_s);
-  motion.highest_mm = finger.displacement_mm();
-  finger.go(limits.pressure_max_kpa, limits.pressure_min_kpa, limits.slew_down_kpa_per_s);
+  motion.rest_mm = motion.lowest_mm = motion.highest_mm = finger.displacement_mm();
+  if (limits.pressure_max_kpa > rest_kpa) {
+    finger.go(rest_kpa, limits.pressure_max_kpa, limits.slew_up_kpa_per_s);
+    motion.highest_mm = finger.displacement_mm();
+    finger.go(limits.pressure_max_kpa, rest_kpa, limits.slew_down_kpa_per_s);
+  }
+  if (limits.pressure_min_kpa < rest_kpa) {
+    finger.go(rest_kpa, limits.pressure_min_kpa, limits.slew_down_kpa_per_s);
+    motion.lowest_mm = finger.displacement_mm();
+    finger.go(limits.pressure_min_kpa, rest_kpa, limits.slew_up_kpa_per_s);
+  }
   motion.fastest_mm_per_s = finger.fastest_mm_per_s();
   return motion;
 }

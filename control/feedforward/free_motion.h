@@ -7,8 +7,9 @@
 namespace softgrip::control {
 
 struct FreeMotion {
-  double lowest_mm = 0;         ///< at rest under the lowest pressure
-  double highest_mm = 0;        ///< three seconds after the highest pressure was reached
+  double rest_mm = 0;     ///< at rest under the rest pressure
+  double lowest_mm = 0;   ///< three seconds after the lowest pressure was reached; rest_mm if that is it
+  double highest_mm = 0;  ///< three seconds after the highest pressure was reached
   double fastest_mm_per_s = 0;  ///< on the way up and down, as fast as the slew limits allow
 };
 

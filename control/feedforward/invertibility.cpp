@@ -63,16 +63,17 @@ void look(const model::Chain<double>& chain, double pressure_kpa, double tick_s,
 /// Walks a chain through its working range and looks at every step. The outermost hysteresis states are met
 /// on the first loading and the full unloading after it, whatever came before being wiped out; inner loops
 /// and a slow pass, in which creep moves what depends on the displacement, fill in the rest.
-Worst worst_gain(const model::Model& model, double pressure_max_kpa, double tick_s) {
+/// Both sides of 0 kPa are walked, as far as the limits reach.
+Worst worst_gain(const model::Model& model, const LimitSettings& limits, double tick_s) {
   constexpr int steps = 200;
   constexpr std::array<double, 10> turns{1, 0, 1, 0.3, 0.8, 0.5, 0.6, 0, 0.4, 0};
   Worst worst;
-  for (const double step_s : {0.0, 0.5}) {
+  const auto walk = [&](double end_kpa, double step_s) {
     model::Chain<double> chain(model, {}, tick_s);
     chain.reset(0);
     double from = 0;
     for (const double turn : turns) {
-      const double to = turn * pressure_max_kpa;
+      const double to = turn * end_kpa;
       for (int i = 0; i < steps; ++i) {
         const double pressure = from + (to - from) * i / steps;
         chain.step(step_s, pressure);
@@ -80,6 +81,10 @@ Worst worst_gain(const model::Model& model, double pressure_max_kpa, double tick
       }
       from = to;
     }
+  };
+  for (const double step_s : {0.0, 0.5}) {
+    walk(limits.pressure_max_kpa, step_s);
+    if (limits.pressure_min_kpa < 0) walk(limits.pressure_min_kpa, step_s);
   }
   return worst;
 }
@@ -97,11 +102,11 @@ std::string wrong_way(const model::Chain<double>& chain, double stiff, std::stri
          std::string(wrong_way_first);
 }
 
-tl::expected<void, Refusal> check_gain(const model::Model& model, double pressure_max_kpa, double tick_s,
+tl::expected<void, Refusal> check_gain(const model::Model& model, const LimitSettings& limits, double tick_s,
                                        double stiff, std::string_view stiff_name) {
   std::string text = wrong_way(model::Chain<double>(model), stiff, stiff_name);
   if (!text.empty()) return tl::unexpected(Refusal{std::move(text), usual_cause});
-  const Worst worst = worst_gain(model, pressure_max_kpa, tick_s);
+  const Worst worst = worst_gain(model, limits, tick_s);
   if (worst.gain_mm_per_kpa >= least_gain_mm_per_kpa) return {};
   const bool backwards = !(worst.gain_mm_per_kpa >= 0);
   return tl::unexpected(Refusal{"the instantaneous gain is " + significant(worst.gain_mm_per_kpa) +
@@ -132,7 +137,7 @@ tl::expected<void, Refusal> check_bouc_wen(const model::Model& model, const Limi
         Refusal{"the model has no `bouc_wen` block, which this feedforward is the inverse of; `full_model` "
                 "is the inverse of the whole chain"});
   }
-  return check_gain(part, limits.pressure_max_kpa, tick_s, 0, "");
+  return check_gain(part, limits, tick_s, 0, "");
 }
 
 /// Any model can be planned for that moves the finger.
@@ -161,8 +166,7 @@ tl::expected<void, Refusal> check_full_model(const model::Model& model, const Li
     return tl::unexpected(Refusal{"the model has no element that moves the finger"});
   const model::Chain<double> chain(body);
   const auto* spring = chain.find<model::KelvinVoigt<double>>();
-  return check_gain(body, limits.pressure_max_kpa, tick_s,
-                    spring != nullptr ? spring->instantaneous_mm_per_kpa() : 0,
+  return check_gain(body, limits, tick_s, spring != nullptr ? spring->instantaneous_mm_per_kpa() : 0,
                     spring != nullptr ? " + 1/k0" : "");
 }
 

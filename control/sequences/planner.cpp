@@ -217,12 +217,12 @@ Planner::Planner(const model::Model& model, const LimitSettings& limits, double 
       settled_(settled_line(model, limits)) {}
 
 double Planner::command_kpa() const noexcept {
-  return past_kpa_.empty() ? limits_.pressure_min_kpa : past_kpa_.back();
+  return past_kpa_.empty() ? resting_kpa(limits_) : past_kpa_.back();
 }
 
 model::Chain<double> Planner::finger() const {
   model::Chain<double> chain(model_, {}, step_s_);
-  chain.reset(limits_.pressure_min_kpa);
+  chain.reset(resting_kpa(limits_));
   for (const double pressure : past_kpa_) chain.step(step_s_, pressure);
   return chain;
 }

@@ -186,7 +186,7 @@ class Fitting {
   void check_target(const Step& step, const ChannelSettings& channel) {
     if (step.target.quantity == Target::Quantity::displacement_mm) {
       check_displacement(step, channel, step.target.value, step.target.value);
-    } else if (!step.target.lowest) {
+    } else if (!step.target.at_rest) {
       check_pressure(step, channel, step.target.value, step.target.value);
     }
   }
@@ -255,10 +255,42 @@ class Fitting {
       if (!channel.pressure_measured) {
         report(step, "verifies by pressure, but channel '" + channel.name + "' does not measure it");
       }
-      check_pressure(step, channel, step.verify.pressure_min_kpa, step.verify.pressure_min_kpa);
+      check_pressure_bound(step, channel);
     } else if (!channel.displacement_used) {
       report(step, "channel '" + channel.name + "' does not use its displacement", "verify by: pressure");
     }
+    check_side(step, channel);
+  }
+
+  /// A bound that the rest pressure satisfies cannot verify a grip.
+  void check_pressure_bound(const Step& step, const ChannelSettings& channel) {
+    const bool below = std::isfinite(step.verify.pressure_max_kpa);
+    const double bound_kpa = below ? step.verify.pressure_max_kpa : step.verify.pressure_min_kpa;
+    check_pressure(step, channel, bound_kpa, bound_kpa);
+    const double rest_kpa = resting_kpa(channel.limits);
+    const bool rest_passes =
+        below ? rest_kpa <= bound_kpa : rest_kpa >= bound_kpa && channel.limits.pressure_min_kpa < rest_kpa;
+    if (!rest_passes) return;
+    report(step,
+           "verifies by a pressure that channel '" + channel.name + "' also has at rest (" +
+               significant(rest_kpa, 6) + " kPa)",
+           below ? "a lower pressure_max_kpa" : "pressure_max_kpa for a grip below the rest pressure");
+  }
+
+  /// Detection and squeeze compare a finger that goes away from rest upward with its free motion.
+  void check_side(const Step& step, const ChannelSettings& channel) {
+    const double rest_kpa = resting_kpa(channel.limits);
+    const bool compares = step.verify.by == VerifyBy::detection || step.squeeze.by_kpa > 0;
+    if (!compares || channel.limits.pressure_min_kpa >= rest_kpa) return;
+    const bool by_pressure = step.target.quantity == Target::Quantity::pressure_kpa;
+    const double target_kpa = by_pressure
+                                  ? step.target.value
+                                  : FreeCurve(channel.model, channel.limits).command_kpa(step.target.value);
+    if (target_kpa >= rest_kpa) return;
+    report(step,
+           "closes channel '" + channel.name + "' below its rest pressure (" + significant(rest_kpa, 6) +
+               " kPa), where neither detection nor squeeze_kpa sees a part",
+           "verify by: position or by: pressure with pressure_max_kpa, without squeeze_kpa");
   }
 
   void check_times(const Step& step) {

@@ -255,12 +255,26 @@ class FileReader {
         inner.choice("by", names({VerifyBy::detection, VerifyBy::position, VerifyBy::pressure})));
     result.window_s = inner.number("window_s", window_s);
     if (result.by == VerifyBy::pressure) {
-      result.pressure_min_kpa = inner.number("pressure_min_kpa", pressure_kpa);
+      pressure_bound(inner, result);
     } else {
       position_window(inner, result);
     }
     inner.finish();
     return result;
+  }
+
+  /// A grip above rest needs at least its pressure, a grip below rest at most.
+  void pressure_bound(MapReader& map, Verify& verify) {
+    const auto most = map.optional_number("pressure_max_kpa", pressure_kpa);
+    if (!most) {
+      verify.pressure_min_kpa = map.number("pressure_min_kpa", pressure_kpa);
+      return;
+    }
+    verify.pressure_max_kpa = *most;
+    verify.pressure_min_kpa = -std::numeric_limits<double>::infinity();
+    if (map.optional_number("pressure_min_kpa", pressure_kpa)) {
+      map.report("pressure_max_kpa", "pressure_min_kpa and pressure_max_kpa exclude each other");
+    }
   }
 
   void position_window(MapReader& map, Verify& verify) {
@@ -289,7 +303,7 @@ class FileReader {
   void release(MapReader& map, Step& step) {
     step.target.quantity = Target::Quantity::pressure_kpa;
     const auto level = map.optional_number("pressure_kpa", pressure_kpa);
-    step.target.lowest = !level;
+    step.target.at_rest = !level;
     step.target.value = level.value_or(0);
     ramp(map, step.target);
     step.purge_s = map.number("purge_s", short_time_s);

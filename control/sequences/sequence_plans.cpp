@@ -28,9 +28,9 @@ class Walk {
   /// `plans`: computes the plans; otherwise only how long they would be.
   Walk(const ChannelSettings& channel, double margin_mm, double tick_s, bool plans)
       : planned_(planned(channel)),
-        lowest_kpa_(channel.limits.pressure_min_kpa),
+        rest_kpa_(resting_kpa(channel.limits)),
         ahead_s_(planned_ ? plan_ahead_s(channel.model, channel.feedforward, tick_s) : 0),
-        player_({margin_mm, lowest_kpa_, planned_ ? ahead_s_ + plan_lead_s : 0}) {
+        player_({margin_mm, rest_kpa_, planned_ ? ahead_s_ + plan_lead_s : 0}) {
     if (planned_ && plans) planner_.emplace(channel.model, channel.limits, tick_s);
   }
 
@@ -43,7 +43,7 @@ class Walk {
     since_s_ = time_s;
     ChannelOutput seen;
     seen.validity = model::Validity::valid;
-    seen.command_kpa = planner_ ? planner_->command_kpa() : lowest_kpa_;
+    seen.command_kpa = planner_ ? planner_->command_kpa() : rest_kpa_;
     seen.displacement_mm = planner_ ? planner_->displacement_mm() : 0;
     player_.begin(step.step, nullptr, time_s, seen);
     const bool grips = step.step.kind == StepKind::grip;
@@ -74,7 +74,7 @@ class Walk {
         planner_->drive([&](double t) { return player_.pressure_at(since_s_ + t); },
                         std::min(time_s, vent_s()) - since_s_);
       }
-      planner_->drive([&](double) { return lowest_kpa_; }, time_s - vent_s());
+      planner_->drive([&](double) { return rest_kpa_; }, time_s - vent_s());
     }
     step_ = nullptr;
     return plan;
@@ -87,7 +87,7 @@ class Walk {
   }
 
   bool planned_;
-  double lowest_kpa_;
+  double rest_kpa_;
   double ahead_s_;
   ChannelPlayer player_;
   std::optional<Planner> planner_;
@@ -107,8 +107,9 @@ bool same_way(const RigSettings& settings, const PreparedSequence& sequence, std
   return planned(one) && planned(other) && one.model == other.model &&
          one.feedforward.extra_latency_s == other.feedforward.extra_latency_s &&
          x.pressure_min_kpa == y.pressure_min_kpa && x.pressure_max_kpa == y.pressure_max_kpa &&
-         x.slew_up_kpa_per_s == y.slew_up_kpa_per_s && x.slew_down_kpa_per_s == y.slew_down_kpa_per_s &&
-         x.displacement_min_mm == y.displacement_min_mm && x.displacement_max_mm == y.displacement_max_mm &&
+         resting_kpa(x) == resting_kpa(y) && x.slew_up_kpa_per_s == y.slew_up_kpa_per_s &&
+         x.slew_down_kpa_per_s == y.slew_down_kpa_per_s && x.displacement_min_mm == y.displacement_min_mm &&
+         x.displacement_max_mm == y.displacement_max_mm &&
          std::all_of(sequence.steps.begin(), sequence.steps.end(), together);
 }
 

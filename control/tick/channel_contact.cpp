@@ -44,7 +44,8 @@ void ChannelPlayer::look_for_contact(double time_s, const ChannelOutput& seen) n
     begin_squeeze(time_s, seen);
   } else if (contact_met_ != OnContact::ignore && contact_met_ != OnContact::close) {
     // What is on its way to the finger by now is taken back: only what it was touched with stays.
-    stay_at(std::min(seen.command_kpa, seen.free_kpa + std::max(0.0, seen.squeeze_kpa)), time_s);
+    const double touched_with_kpa = seen.free_kpa + std::max(0.0, seen.squeeze_kpa);
+    stay_at(no_further(traits_.rest_kpa, touched_with_kpa, seen.command_kpa), time_s);
     stopped_by_contact_ = true;
   }
 }

@@ -99,8 +99,11 @@ void ChannelController::weigh(double predicted_mm, ChannelOutput& channel) noexc
 void ChannelController::send(const ChannelDemand& demand, double wanted_kpa,
                              ChannelOutput& channel) noexcept {
   const bool bounded = std::isfinite(demand.squeeze_max_kpa);
-  const double squeezed_kpa = bounded ? channel.free_kpa + demand.squeeze_max_kpa : no_ceiling;
-  const double ceiling_kpa = std::min(squeezed_kpa, demand.pressure_max_kpa);
+  const bool vents = demand.mode == DemandMode::vent;  // whose way nothing bounds
+  const double least_kpa = std::min(resting_kpa(limits_), channel.command_kpa);
+  const double squeezed_kpa = bounded && !vents ? channel.free_kpa + demand.squeeze_max_kpa : no_ceiling;
+  const double bound_kpa = vents ? no_ceiling : std::min(squeezed_kpa, demand.pressure_max_kpa);
+  const double ceiling_kpa = std::max(bound_kpa, least_kpa);
   const LimitedCommand limited = limit(limits_, wanted_kpa, channel.command_kpa, tick_s_, ceiling_kpa);
   if (tracking()) pid_.sent(limited.command_kpa);
   channel.command_kpa = limited.command_kpa;
@@ -113,9 +116,9 @@ void ChannelController::send(const ChannelDemand& demand, double wanted_kpa,
                                                                  : BindingLimit::step_squeeze;
     return;
   }
-  // A vent is meant to go down at the slew limit.
+  // A vent is meant to go at the slew limit.
   const double behind_kpa = in_range(limits_, wanted_kpa) - limited.command_kpa;
-  const bool slewed = limited.slewing && demand.mode != DemandMode::vent;
+  const bool slewed = limited.slewing && !vents;
   channel.bound_by = !slewed || std::abs(behind_kpa) <= unnoticed_kpa ? BindingLimit::none
                      : behind_kpa > 0                                 ? BindingLimit::rig_slew_up
                                                                       : BindingLimit::rig_slew_down;
@@ -209,7 +212,7 @@ double ChannelController::request(const ChannelDemand& demand, std::int64_t tick
   channel.reference_clamped = channel.out_of_reach = false;
   switch (demand.mode) {
     case DemandMode::vent:
-      return limits_.pressure_min_kpa;
+      return resting_kpa(limits_);
     case DemandMode::pressure:
       return demand.pressure_kpa;
     case DemandMode::hold:

@@ -13,7 +13,7 @@ namespace softgrip::control {
 struct ChannelDemand {
   enum class Mode : std::uint8_t {
     hold,          ///< the command stays where it is
-    vent,          ///< down to the lowest command, at the slew limit
+    vent,          ///< to the rest pressure, at the slew limit
     pressure,      ///< the command is `pressure_kpa`, within the limits; no feedback
     displacement,  ///< feedforward and feedback follow `reference`
   };

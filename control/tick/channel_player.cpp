@@ -72,10 +72,11 @@ void ChannelPlayer::begin(const Step& step, const PressurePlan* plan, double tim
       stage_ = Stage::ramp;
       break;
     case StepKind::release:
-      // A release that is asked for early may find less than it would go down to.
+      // A release that is asked for early may find less than it would go back to.
       go_to(step.target,
-            step.target.lowest ? traits_.lowest_kpa : std::min(step.target.value, seen.command_kpa), time_s,
-            seen);
+            step.target.at_rest ? traits_.rest_kpa
+                                : no_further(traits_.rest_kpa, step.target.value, seen.command_kpa),
+            time_s, seen);
       closing_ = false;
       stage_ = Stage::ramp;
       break;
@@ -252,7 +253,9 @@ bool ChannelPlayer::usable(const Verify& verify, const ChannelOutput& seen) cons
 }
 
 bool ChannelPlayer::evident(const Verify& verify, const ChannelOutput& seen) const noexcept {
-  if (verify.by == VerifyBy::pressure) return seen.pressure_kpa >= verify.pressure_min_kpa;
+  if (verify.by == VerifyBy::pressure) {
+    return seen.pressure_kpa >= verify.pressure_min_kpa && seen.pressure_kpa <= verify.pressure_max_kpa;
+  }
   const bool inside = seen.displacement_mm >= verify.displacement_min_mm &&
                       seen.displacement_mm <= verify.displacement_max_mm;
   return inside && (verify.by == VerifyBy::position || deficit_mm_ >= traits_.margin_mm);
@@ -283,9 +286,10 @@ Progress ChannelPlayer::release(double time_s) noexcept {
 
 void ChannelPlayer::watch_from(double time_s, double interval_s) noexcept {
   const bool pressure = held_by_.by == VerifyBy::pressure;
+  const bool below = std::isfinite(held_by_.pressure_max_kpa);
   const bool position = held_by_.by == VerifyBy::position;
   hold_.start(time_s, interval_s,
-              pressure   ? held_by_.pressure_min_kpa
+              pressure   ? (below ? -held_by_.pressure_max_kpa : held_by_.pressure_min_kpa)
               : position ? 0.5
                          : 0.5 * traits_.margin_mm);
 }
@@ -296,7 +300,7 @@ bool ChannelPlayer::watch(double time_s, const ChannelOutput& seen) noexcept {
                       seen.displacement_mm <= held_by_.displacement_max_mm;
   double evidence = inside ? deficit_mm_ : 0;
   if (held_by_.by == VerifyBy::pressure) {
-    evidence = seen.pressure_kpa;
+    evidence = std::isfinite(held_by_.pressure_max_kpa) ? -seen.pressure_kpa : seen.pressure_kpa;
   } else if (held_by_.by == VerifyBy::position) {
     evidence = inside ? 1 : 0;
   }

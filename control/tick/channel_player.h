@@ -19,10 +19,10 @@ enum class Progress : std::uint8_t { pending, passed, failed };
 
 /// What does not change of a channel.
 struct ChannelTraits {
-  double margin_mm = 0;   ///< of grip detection
-  double lowest_kpa = 0;  ///< the lowest command
-  double preview_s = 0;   ///< how far ahead the feedforward uses the reference
-  bool sighted = true;    ///< the channel uses its displacement
+  double margin_mm = 0;  ///< of grip detection
+  double rest_kpa = 0;   ///< the rest pressure
+  double preview_s = 0;  ///< how far ahead the feedforward uses the reference
+  bool sighted = true;   ///< the channel uses its displacement
 };
 
 /// `seen` is everywhere what the last tick left behind.

@@ -51,7 +51,7 @@ FaultMonitor::FaultMonitor(const RigSettings& settings)
       settings.faults.pressure_cycles > 0 ? std::max(readback_window_, pressure_window_) : readback_window_;
   for (std::size_t i = 0; i < channels_.size(); ++i) {
     sighted_.push_back(settings.channels[i].displacement_used);
-    channels_[i].sent_kpa.assign(ring, settings.channels[i].limits.pressure_min_kpa);
+    channels_[i].sent_kpa.assign(ring, resting_kpa(settings.channels[i].limits));
   }
 }
 

@@ -14,11 +14,11 @@ namespace {
 constexpr std::array<std::string_view, 6> state_names{"starting", "idle",     "resynchronising",
                                                       "running",  "stopping", "faulted"};
 constexpr std::array<std::string_view, 4> end_names{"done", "failed", "stopped", "faulted"};
-/// Above the lowest command by less is no pressure to speak of.
+/// From the rest pressure by less is no pressure to speak of.
 constexpr double unpressed_kpa = 0.1;
 ChannelPlayer player_of(const RigSettings& rig, const ChannelSettings& channel, double preview_s) {
   return ChannelPlayer(
-      {rig.detection.margin_mm, channel.limits.pressure_min_kpa, preview_s, channel.displacement_used});
+      {rig.detection.margin_mm, resting_kpa(channel.limits), preview_s, channel.displacement_used});
 }
 }  // namespace
 
@@ -33,8 +33,9 @@ RigController::Channel::Channel(const RigSettings& rig, const ChannelSettings& s
     : controller(settings, 1 / rig.rate_hz),
       // Without sight a finger is at rest when its command has not been changed.
       rest(settings.displacement_used ? rig.rest_band_mm : 0, rig.rest_time_s),
-      lowest_kpa(settings.limits.pressure_min_kpa),
-      longest_fall_kpa(settings.limits.slew_down_kpa_per_s / rig.rate_hz),
+      within(settings.limits),
+      rest_kpa(resting_kpa(settings.limits)),
+      tick_s(1 / rig.rate_hz),
       longest_age(nanoseconds(settings.plausibility.max_age_s)),
       sighted(settings.displacement_used) {}
 
@@ -42,8 +43,8 @@ bool RigController::Channel::valid(const ChannelOutput& seen) const noexcept {
   return sighted && seen.validity == model::Validity::valid;
 }
 
-bool RigController::Channel::lowest(const ChannelOutput& seen) const noexcept {
-  return seen.command_kpa <= lowest_kpa;
+bool RigController::Channel::at_rest(const ChannelOutput& seen) const noexcept {
+  return seen.command_kpa == rest_kpa;
 }
 
 bool RigController::Channel::rests(double time_s, const ChannelOutput& seen) noexcept {
@@ -60,7 +61,7 @@ RigController::RigController(const RigSettings& settings)
   for (const ChannelSettings& channel : settings.channels) {
     channels_.emplace_back(settings, channel);
     ChannelController& controller = channels_.back().controller;
-    controller.start(channel.limits.pressure_min_kpa, output_.channels[output_.channel_count++]);
+    controller.start(resting_kpa(channel.limits), output_.channels[output_.channel_count++]);
     players.push_back(player_of(settings, channel, controller.preview_s()));
   }
   player_ = SequencePlayer(std::move(players));
@@ -76,7 +77,7 @@ const TickOutput& RigController::tick(const TickInput& input) noexcept {
   for (std::size_t i = 0; i < channels_.size(); ++i) {
     const double last_kpa = output_.channels[i].command_kpa;
     control(i, input, time_s);
-    stay_below_outputs(i, last_kpa, input);
+    stay_within_outputs(i, last_kpa, input);
   }
   conclude();
   output_.state = supervisor_.state();
@@ -86,16 +87,18 @@ const TickOutput& RigController::tick(const TickInput& input) noexcept {
   return output_;
 }
 
-/// Only a sequence may raise a pressure: a command that has not reached the board, or that the board has
-/// undone, is forgotten when it ends; at once where the outputs are known to be lower, else no faster than
-/// the slew allows, for what is on its way may still be written.
-void RigController::stay_below_outputs(std::size_t index, double last_kpa, const TickInput& input) noexcept {
+/// Only a sequence may move a pressure away from rest. When it ends, a command that the board does not have
+/// is forgotten. If the outputs are known to be nearer to rest, this happens at once. Otherwise it obeys the
+/// slew limits, because a command on its way may still be written.
+void RigController::stay_within_outputs(std::size_t index, double last_kpa, const TickInput& input) noexcept {
   if (may_rise(supervisor_.state()) || index >= input.outputs_kpa.size()) return;
+  const Channel& channel = channels_[index];
   double& command_kpa = output_.channels[index].command_kpa;
-  const double slewed_kpa = last_kpa - channels_[index].longest_fall_kpa;
-  const double outputs_kpa = input.outputs_kpa[index];
-  command_kpa =
-      std::min(command_kpa, inhibits(input.bus.fault) ? outputs_kpa : std::max(outputs_kpa, slewed_kpa));
+  double allowed_kpa = no_further(channel.rest_kpa, command_kpa, input.outputs_kpa[index]);
+  if (!inhibits(input.bus.fault)) {
+    allowed_kpa = limit(channel.within, allowed_kpa, last_kpa, channel.tick_s).command_kpa;
+  }
+  command_kpa = no_further(channel.rest_kpa, allowed_kpa, command_kpa);
 }
 
 /// What the tick before saw is what this one decides on. After a gap it says nothing any more, neither that a
@@ -120,7 +123,7 @@ Facts RigController::facts(const TickInput& input, double time_s) noexcept {
   for (std::size_t i = 0; i < channels_.size(); ++i) {
     const ChannelOutput& seen = output_.channels[i];
     facts.ready |= channels_[i].valid(seen) || !channels_[i].sighted ? channel_bit(i) : 0;
-    facts.lowest |= channels_[i].lowest(seen) ? channel_bit(i) : 0;
+    facts.at_rest |= channels_[i].at_rest(seen) ? channel_bit(i) : 0;
   }
   facts.answers = player_.has_answers();
   if (supervisor_.state() == State::resynchronising) {
@@ -140,7 +143,7 @@ Rest RigController::look_for_rest(const PreparedSequence& sequence, double time_
     channel.resynchronise = false;
     if ((sequence.channels & channel_bit(i)) == 0) continue;
     const bool still = channel.rests(time_s, seen);
-    const bool follows = channel.sighted && channel.lowest(seen);
+    const bool follows = channel.sighted && channel.at_rest(seen);
     channel.resynchronise = still && follows;
     const bool too_far = (sequence.needs_detection & channel_bit(i)) != 0 &&
                          std::abs(channel.controller.offset_mm()) > margin_mm_;
@@ -201,7 +204,7 @@ void RigController::control(std::size_t index, const TickInput& input, double ti
   Channel& channel = channels_[index];
   const State state = supervisor_.state();
   const bool free_motion = state != State::faulted && state != State::starting &&
-                           player_.free_motion(index, channel.lowest(output_.channels[index]));
+                           player_.free_motion(index, channel.at_rest(output_.channels[index]));
   channel.controller.tick(
       {input.now, input.readings[index], demand(index, time_s), channel.resynchronise, free_motion},
       output_.channels[index]);
@@ -254,7 +257,7 @@ void RigController::look_for_pressure() noexcept {
   output_.under_pressure = 0;
   if (moves(output_.state)) return;
   for (std::size_t i = 0; i < channels_.size(); ++i) {
-    const bool pressed = output_.channels[i].command_kpa > channels_[i].lowest_kpa + unpressed_kpa;
+    const bool pressed = std::abs(output_.channels[i].command_kpa - channels_[i].rest_kpa) > unpressed_kpa;
     output_.under_pressure |= pressed ? channel_bit(i) : 0;
   }
 }
@@ -268,7 +271,7 @@ void RigController::conclude() noexcept {
     channel.result = played.result();
     channel.evidence = played.evidence();
     channel.step = player_.step();
-    channel.safe_kpa = (venting & channel_bit(i)) != 0 ? channels_[i].lowest_kpa : channel.command_kpa;
+    channel.safe_kpa = (venting & channel_bit(i)) != 0 ? channels_[i].rest_kpa : channel.command_kpa;
   }
 }
 

@@ -29,7 +29,7 @@ class RigController {
   /// One period of 1/settings.rate_hz. The same as output() afterwards.
   const TickOutput& tick(const TickInput& input) noexcept;
 
-  /// Of the last tick; before the first the lowest commands.
+  /// The output of the last tick. Before the first tick the commands are the rest pressures.
   [[nodiscard]] const TickOutput& output() const noexcept { return output_; }
 
  private:
@@ -37,14 +37,15 @@ class RigController {
   struct Channel {
     Channel(const RigSettings& rig, const ChannelSettings& settings);
     [[nodiscard]] bool valid(const ChannelOutput& seen) const noexcept;
-    [[nodiscard]] bool lowest(const ChannelOutput& seen) const noexcept;
+    [[nodiscard]] bool at_rest(const ChannelOutput& seen) const noexcept;
     [[nodiscard]] bool rests(double time_s, const ChannelOutput& seen) noexcept;
 
     ChannelController controller;
     RestWatch rest;
     LimitWatch limits;
-    double lowest_kpa;
-    double longest_fall_kpa;  ///< in a tick
+    LimitSettings within;
+    double rest_kpa;
+    double tick_s;
     Nanoseconds longest_age;  ///< of a reading
     bool sighted;             ///< it uses its displacement
     bool valid_before = true;
@@ -61,7 +62,7 @@ class RigController {
   void release(double time_s) noexcept;
   void conclude_sequence(const SequencePlayer::Outcome& outcome, Phase phase) noexcept;
   void forget_old_readings(Nanoseconds now) noexcept;
-  void stay_below_outputs(std::size_t index, double last_kpa, const TickInput& input) noexcept;
+  void stay_within_outputs(std::size_t index, double last_kpa, const TickInput& input) noexcept;
   void control(std::size_t index, const TickInput& input, double time_s) noexcept;
   [[nodiscard]] ChannelDemand demand(std::size_t index, double time_s) const noexcept;
   void tell_changes(std::size_t index) noexcept;

@@ -35,6 +35,7 @@ std::uint64_t rig_key(const RigSettings& settings) noexcept {
     key.add(channel.name);
     key.add(channel.limits.pressure_min_kpa);
     key.add(channel.limits.pressure_max_kpa);
+    key.add(resting_kpa(channel.limits));
     key.add(channel.limits.displacement_min_mm);
     key.add(channel.limits.displacement_max_mm);
     key.add_bits((channel.pressure_measured ? 1U : 0U) | (channel.displacement_used ? 2U : 0U));

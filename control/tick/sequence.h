@@ -31,7 +31,7 @@ enum class StepKind : std::uint8_t {
   move,      ///< to a target, with a ramp
   grip,      ///< to a target, then verification: HOLDING or NO PART
   hold,      ///< stays and re-verifies: PART LOST when the object is gone
-  release,   ///< down, purge: RELEASED
+  release,   ///< to rest, purge: RELEASED
   track,     ///< a displacement over time, with feedback (studies)
   pressure,  ///< a pressure over time, without feedback (experiments)
 };
@@ -39,7 +39,7 @@ enum class StepKind : std::uint8_t {
 
 /// What happens when a step fails and no retries are left.
 enum class OnFail : std::uint8_t {
-  vent,      ///< the sequence ends, down to the lowest command
+  vent,      ///< the sequence ends, to the rest pressure
   hold,      ///< the sequence ends, the command stays
   abort,     ///< the sequence ends as the rig file's safe_action says for the phase
   release,   ///< on with the next release step; as vent where there is none
@@ -73,7 +73,7 @@ struct Target {
   enum class Quantity : std::uint8_t { displacement_mm, pressure_kpa };
   Quantity quantity = Quantity::pressure_kpa;
   double value = 0;
-  bool lowest = false;    ///< the lowest command of the channel instead of value
+  bool at_rest = false;   ///< the rest pressure of the channel instead of value
   double speed = 0;       ///< 0: duration_s counts
   double duration_s = 0;  ///< 0 with speed 0: as fast as the limits allow
 };
@@ -83,7 +83,8 @@ struct Verify {
   double window_s = 0.3;  ///< the evidence must hold for all of it
   double displacement_min_mm = -std::numeric_limits<double>::infinity();  ///< of position; with detection,
   double displacement_max_mm = std::numeric_limits<double>::infinity();   ///< both must agree
-  double pressure_min_kpa = 0;                                            ///< of pressure
+  double pressure_min_kpa = 0;                                        ///< of pressure, for grips above rest
+  double pressure_max_kpa = std::numeric_limits<double>::infinity();  ///< of pressure, for grips below rest
 };
 
 /// A point of a piecewise linear profile.
@@ -146,7 +147,7 @@ struct Step {
   Verify verify;                ///< of grip
   double hold_s = 0;            ///< infinite: until a release is asked for
   double reverify_every_s = 0;  ///< of hold
-  double purge_s = 0;           ///< of release: stays at the lowest command
+  double purge_s = 0;           ///< of release: stays at the rest pressure
   std::optional<double> timeout_s;
   std::uint32_t retries = 0;
   OnFail on_fail = OnFail::abort;

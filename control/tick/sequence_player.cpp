@@ -243,14 +243,14 @@ Phase SequencePlayer::phase() const noexcept {
   return play_ != Play::nothing ? Phase::closing : Phase::idle;
 }
 
-bool SequencePlayer::free_motion(std::size_t channel, bool lowest) const noexcept {
+bool SequencePlayer::free_motion(std::size_t channel, bool at_rest) const noexcept {
   const ChannelPlayer& player = channels_[channel];
   if (player.result() == GripResult::holding) return false;
   if (player.stopped_by_contact()) return false;
   // There nothing is expected in the way; what is, is a blocked line or a finger that has changed.
   if (plays(StepKind::track) || plays(StepKind::pressure)) return true;
   const bool may_touch = plays(StepKind::grip) || plays(StepKind::hold) || plays(StepKind::release);
-  return may_touch ? !player.touching() : lowest || !player.held_back();
+  return may_touch ? !player.touching() : at_rest || !player.held_back();
 }
 
 }  // namespace softgrip::control

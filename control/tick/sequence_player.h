@@ -53,8 +53,9 @@ class SequencePlayer {
   [[nodiscard]] std::uint16_t step() const noexcept { return step_; }
   /// What the rig is doing, for the choice of what is safe.
   [[nodiscard]] Phase phase() const noexcept;
-  /// The finger moves without touching anything, as far as is known. `lowest`: its command is the lowest.
-  [[nodiscard]] bool free_motion(std::size_t channel, bool lowest) const noexcept;
+  /// The finger moves without touching anything, as far as is known. `at_rest`: its command is the rest
+  /// pressure.
+  [[nodiscard]] bool free_motion(std::size_t channel, bool at_rest) const noexcept;
 
  private:
   template <class Do>

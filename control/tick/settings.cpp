@@ -24,6 +24,7 @@ void check_limits(const LimitSettings& limits, const std::string& who, Texts& pr
   require(std::isfinite(limits.pressure_min_kpa) && std::isfinite(limits.pressure_max_kpa) &&
               limits.pressure_min_kpa < limits.pressure_max_kpa,
           problems, who + ": pressure_max_kpa must be above pressure_min_kpa");
+  require(std::isfinite(limits.rest_kpa), problems, who + ": rest_kpa must be a number");
   require(positive(limits.slew_up_kpa_per_s) && positive(limits.slew_down_kpa_per_s), problems,
           who + ": both slew limits must be above 0");
   require(std::isfinite(limits.displacement_min_mm) && std::isfinite(limits.displacement_max_mm) &&

@@ -29,7 +29,7 @@ inline constexpr std::size_t phase_count = 4;
 
 /// What the outputs do when motion must end.
 enum class SafeAction : std::uint8_t {
-  vent,  ///< down to the lowest command: at the slew limit while the loop runs, at once when it leaves
+  vent,  ///< to the rest pressure: at the slew limit while the loop runs, at once when it leaves
   hold,  ///< stay at the last command
 };
 /// "vent", "hold"
@@ -50,7 +50,7 @@ struct SafetySettings {
   /// What an emergency stop does. `hold` only where its circuit does not vent by itself: a held command
   /// would fill the fingers again when the circuit is reset.
   SafeAction on_emergency_stop = SafeAction::vent;
-  /// The board puts its outputs to the lowest pressure by itself when nobody talks to it. Then faults of the
+  /// The board puts its outputs to the rest pressure by itself when nobody talks to it. Then faults of the
   /// bus vent in every phase: a held command would fill the fingers again on reconnection.
   bool board_vents_when_silent = true;
 };

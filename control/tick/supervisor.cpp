@@ -172,7 +172,7 @@ bool Supervisor::withdrawn(std::uint32_t start) const noexcept {
   return start != 0 && std::find(withdrawn_.begin(), withdrawn_.end(), start) != withdrawn_.end();
 }
 
-/// Everything down. Never refused: it is the way out of a hold, faulted or not.
+/// Everything to rest. Never refused: it is the way out of a hold, faulted or not.
 void Supervisor::answer_vent(const Request& request, Orders& orders, EventList& events) noexcept {
   venting_ = all_;
   if (state_ == State::faulted || state_ == State::starting) {
@@ -187,7 +187,7 @@ void Supervisor::answer_vent(const Request& request, Orders& orders, EventList& 
 }
 
 /// The gentle way out of a hold: a sequence releases as it says itself; what stays pressed without one goes
-/// down at the slew limit.
+/// to rest at the slew limit.
 void Supervisor::answer_release(const Facts& facts, const Request& request, Orders& orders,
                                 EventList& events) noexcept {
   const auto refuse = [&](RefusalCode code) { events.add(Event::Kind::request_refused, code, request.id); };
@@ -198,7 +198,7 @@ void Supervisor::answer_release(const Facts& facts, const Request& request, Orde
     refuse(RefusalCode::faulted);
   } else if (state_ == State::starting) {
     refuse(RefusalCode::no_valid_reading);
-  } else if (state_ == State::resynchronising || facts.lowest != all_) {
+  } else if (state_ == State::resynchronising || facts.at_rest != all_) {
     answer_vent(request, orders, events);
   } else {
     refuse(RefusalCode::nothing_to_release);
@@ -253,7 +253,7 @@ void Supervisor::end_sequence(SequenceEnd end, EventList& events) noexcept {
 void Supervisor::move_on(const Facts& facts, Orders& orders, EventList& events) noexcept {
   if (state_ == State::starting && facts.bus_good && facts.ready == all_) {
     go(State::idle, 0, events);
-  } else if (state_ == State::stopping && (venting_ & ~facts.lowest) == 0) {
+  } else if (state_ == State::stopping && (venting_ & ~facts.at_rest) == 0) {
     orders.vented = venting_;
     go(State::idle, 0, events);
   } else if (state_ == State::resynchronising && !orders.seek_rest && facts.rest == Rest::at_rest) {

@@ -27,7 +27,7 @@ struct Facts {
   Fault cause;  ///< what is there and is a fault or grows to one
   bool bus_good = false;
   std::uint32_t ready = 0;    ///< channels with a valid reading, or that use none
-  std::uint32_t lowest = 0;   ///< channels whose command is the lowest
+  std::uint32_t at_rest = 0;  ///< channels whose command is the rest pressure
   Phase phase = Phase::idle;  ///< of the player
   bool answers = false;       ///< there are grip results to acknowledge
   Rest rest = Rest::pending;
@@ -54,7 +54,7 @@ class Supervisor {
 
   [[nodiscard]] State state() const noexcept { return state_; }
   [[nodiscard]] const Fault& first_fault() const noexcept { return first_fault_; }
-  /// Outside `running`: the channels that go to their lowest command; the others stay where they are.
+  /// Outside `running`: the channels that go to their rest pressure; the others stay where they are.
   [[nodiscard]] std::uint32_t venting() const noexcept { return venting_; }
   /// The channels that must be vented when the loop is left now, in the given phase of the player.
   [[nodiscard]] std::uint32_t venting_on_leaving(Phase phase) const noexcept;

@@ -21,8 +21,8 @@ struct PreparedSequence;  // control/tick/sequence.h
 
 /// States of the supervisor, as status and recordings name them.
 enum class State : std::uint8_t {
-  starting,  ///< no valid reading from every channel yet; commands at the lowest, or where a fault left them
-  idle,      ///< ready; nothing moves
+  starting,         ///< no valid reading from every channel yet; commands at rest, or where a fault left them
+  idle,             ///< ready; nothing moves
   resynchronising,  ///< following the fingers to where they are before motion starts
   running,          ///< a sequence runs
   stopping,         ///< a sequence was stopped; the stop action is being carried out
@@ -34,7 +34,7 @@ enum class State : std::uint8_t {
   return state == State::resynchronising || state == State::running || state == State::stopping;
 }
 
-/// A pressure may rise: a sequence was started, and nothing has ended it.
+/// A pressure may move away from rest: a sequence was started, and nothing has ended it.
 [[nodiscard]] constexpr bool may_rise(State state) noexcept {
   return state == State::resynchronising || state == State::running;
 }
@@ -68,7 +68,8 @@ struct BusHealth {
   bool connected = false;             ///< a session is up
   FaultCode fault = FaultCode::none;  ///< what the last failed exchange means; none after a good one
   std::uint32_t consecutive_failures = 0;
-  /// Counts how often the bus has stopped obeying: since then it writes nothing above TickInput::outputs_kpa,
+  /// Counts how often the bus has stopped obeying: since then it writes nothing further from rest than
+  /// TickInput::outputs_kpa,
   /// and `fault` says why, until commands come from a tick that knew this number.
   std::uint32_t inhibit = 0;
 };
@@ -77,7 +78,8 @@ struct TickInput {
   Nanoseconds now = 0;
   std::span<const model::Reading> readings;  ///< one per channel
   BusHealth bus;
-  std::span<const double> outputs_kpa;  ///< what at least stands at the board's outputs; empty: not known
+  std::span<const double>
+      outputs_kpa;  ///< what stands at the board's outputs, or nearer to rest; empty: not known
   Request request;
   bool emergency_stop = false;       ///< the level of the input, true = stop
   bool interlock_open = false;       ///< a start is refused while true; opening it does not end a sequence
@@ -205,7 +207,7 @@ struct TickOutput {
   State state = State::starting;
   Fault first_fault;  ///< the first that latched
   Fault cause;        ///< what is there in this tick and is a fault or grows to one
-  /// Channels whose command stays above their lowest although nothing moves: behind a sequence that ended in
+  /// Channels whose command stays away from rest although nothing moves: behind a sequence that ended in
   /// a hold, after a stop or a fault that holds. Bit i is channel i.
   std::uint32_t under_pressure = 0;
   std::size_t channel_count = 0;

@@ -168,12 +168,12 @@ Tuned tune(const TuneTask& task) {
 void choose_reference(TuneTask& task) {
   model::Chain<double> body(body_of(task.finger));
   const LimitSettings& limits = task.channel.limits;
-  body.reset(limits.pressure_min_kpa);
-  const double lowest = body.after(model::Station::load);
-  body.reset(limits.pressure_max_kpa);
-  const double highest = std::min(body.after(model::Station::load), limits.displacement_max_mm);
-  task.mean_mm = lowest + 0.45 * (highest - lowest);
-  task.amplitude_mm = 0.22 * (highest - lowest);
+  body.reset(resting_kpa(limits));
+  const double rest_mm = body.after(model::Station::load);
+  body.reset(far_end_kpa(limits));
+  const double far_mm = std::min(body.after(model::Station::load), limits.displacement_max_mm);
+  task.mean_mm = rest_mm + 0.45 * (far_mm - rest_mm);
+  task.amplitude_mm = 0.22 * std::abs(far_mm - rest_mm);
 }
 
 }  // namespace softgrip::control

@@ -56,7 +56,7 @@ Bus::Bus(drivers::Board& board, const control::RigSettings& rig, const rig::Loop
       watchdog_margin_(rig::watchdog_margin(loop, board.watchdog_time()).count()),
       pause_(reconnect.first_pause.count()) {
   for (std::size_t i = 0; i < std::min(channels_, rig.channels.size()); ++i) {
-    lowest_kpa_[i] = rig.channels[i].limits.pressure_min_kpa;
+    rest_kpa_[i] = control::resting_kpa(rig.channels[i].limits);
   }
 }
 
@@ -111,7 +111,8 @@ void Bus::obey_if_heard() noexcept {
   if (inhibited_ == FaultCode::none || commands.inhibit != report_.health.inhibit || commands.may_rise)
     return;
   for (std::size_t i = 0; i < channels_; ++i) {
-    if (commands.command_kpa[i] > report_.outputs_kpa[i]) return;
+    const double command_kpa = commands.command_kpa[i];
+    if (no_further(i, command_kpa, report_.outputs_kpa[i]) != command_kpa) return;
   }
   if (inhibited_ == FaultCode::cycles_lost) tell(BusEvent::Kind::loop_back, BusStatus::ok);
   inhibited_ = FaultCode::none;
@@ -175,7 +176,7 @@ void Bus::choose_outputs() noexcept {
   written_kpa_ = silent() ? commands.safe_kpa : commands.command_kpa;
   if (commands.may_rise && inhibited_ == FaultCode::none) return;
   for (std::size_t i = 0; i < channels_; ++i) {
-    written_kpa_[i] = std::min(written_kpa_[i], report_.outputs_kpa[i]);
+    written_kpa_[i] = no_further(i, written_kpa_[i], report_.outputs_kpa[i]);
   }
 }
 
@@ -207,10 +208,10 @@ void Bus::note_clients() noexcept {
 void Bus::note_failure(BusStatus status) noexcept {
   // It may have been taken, or not.
   for (std::size_t i = 0; i < channels_; ++i) {
-    report_.outputs_kpa[i] = std::min(report_.outputs_kpa[i], written_kpa_[i]);
+    report_.outputs_kpa[i] = no_further(i, written_kpa_[i], report_.outputs_kpa[i]);
   }
   const bool others = status == BusStatus::overwritten;
-  if (others || status == BusStatus::watchdog_tripped) take_down_outputs();
+  if (others || status == BusStatus::watchdog_tripped) rest_outputs();
   // A watchdog that has acted has overwritten them, too.
   const bool known = others && inhibited_ == FaultCode::board_watchdog_tripped;
   if (control::inhibits(fault_of(status)) && !known) inhibit(fault_of(status));
@@ -225,7 +226,7 @@ void Bus::note_failure(BusStatus status) noexcept {
 /// A board that has not been fed for longer than it waits has put its own safe value out.
 void Bus::judge_gap(Nanoseconds now, Nanoseconds margin) noexcept {
   if (watchdog_ == 0 || !last_good_ || now - *last_good_ < watchdog_ - margin) return;
-  take_down_outputs();
+  rest_outputs();
   inhibit(FaultCode::board_watchdog_tripped);
   std::array<char, sizeof(BusEvent::detail)> detail{};
   std::snprintf(detail.data(), detail.size(),
@@ -233,13 +234,15 @@ void Bus::judge_gap(Nanoseconds now, Nanoseconds margin) noexcept {
                 seconds(now - *last_good_), seconds(watchdog_));
   tell(BusEvent::Kind::failed, BusStatus::watchdog_tripped, detail.data());
   told_failed_ = true;
-  last_good_.reset();  // once a gap: what is written until the next good exchange is no more than the lowest
+  last_good_.reset();  // once a gap: what is written until the next good exchange is the rest pressure
 }
 
-void Bus::take_down_outputs() noexcept {
-  for (std::size_t i = 0; i < channels_; ++i) {
-    report_.outputs_kpa[i] = std::min(report_.outputs_kpa[i], lowest_kpa_[i]);
-  }
+double Bus::no_further(std::size_t channel, double kpa, double bound_kpa) const noexcept {
+  return control::no_further(rest_kpa_[channel], kpa, bound_kpa);
+}
+
+void Bus::rest_outputs() noexcept {
+  std::copy_n(rest_kpa_.begin(), channels_, report_.outputs_kpa.begin());
 }
 
 void Bus::tell(BusEvent::Kind kind, BusStatus status, const char* detail) noexcept {

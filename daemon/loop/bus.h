@@ -24,15 +24,15 @@ namespace softgrip::daemon {
 /// The only one that talks to the board. It writes nothing before the loop has sent its first commands, which
 /// are safe ones.
 ///
-/// Outputs rise only while a sequence runs. When something has come between the loop's commands and the
-/// outputs, the bus is inhibited: it writes nothing above what stands there, reports why, and obeys again
-/// only when commands come from a tick that knew, in which no sequence runs, and that are not above the
-/// outputs. That is so when
+/// Outputs move away from rest only while a sequence runs. When something has come between the loop's
+/// commands and the outputs, the bus is inhibited: it writes nothing further from rest than what stands
+/// there, reports why, and obeys again only when commands come from a tick that knew, in which no sequence
+/// runs, and that are no further from rest than the outputs. That is so when
 /// - the loop falls silent: the safe outputs that came with its last commands are written (cycles_lost);
 /// - the board's watchdog must have acted, by the time since the last good exchange, or says that it has: the
-///   lowest pressures are written (board_watchdog_tripped);
+///   rest pressures are written (board_watchdog_tripped);
 /// - the board did not take a write (write_refused);
-/// - somebody else writes to the board: the lowest pressures are written (outputs_overwritten).
+/// - somebody else writes to the board: the rest pressures are written (outputs_overwritten).
 class Bus {
  public:
   /// All references outlive the bus. `rig`: one channel per channel of the board.
@@ -63,7 +63,8 @@ class Bus {
   void note_failure(drivers::BusStatus status) noexcept;
   void note_clients() noexcept;
   void judge_gap(Nanoseconds now, Nanoseconds margin) noexcept;
-  void take_down_outputs() noexcept;
+  [[nodiscard]] double no_further(std::size_t channel, double kpa, double bound_kpa) const noexcept;
+  void rest_outputs() noexcept;
   void tell(BusEvent::Kind kind, drivers::BusStatus status, const char* detail = "") noexcept;
   void publish() noexcept;
   [[nodiscard]] bool silent() const noexcept { return unheard_ >= loop_.max_missed_commands; }
@@ -75,7 +76,7 @@ class Bus {
   Wires& wires_;
   BusStatistics& statistics_;
   std::size_t channels_;
-  std::array<double, control::max_channels> lowest_kpa_{};
+  std::array<double, control::max_channels> rest_kpa_{};
   Nanoseconds watchdog_;         // the board's; 0: none
   Nanoseconds watchdog_margin_;  // what an exchange that begins now may take until the board sees it
 

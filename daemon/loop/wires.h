@@ -22,7 +22,7 @@ struct Commands {
   std::array<double, control::max_channels> command_kpa{};
   /// What to write instead when the loop stops sending.
   std::array<double, control::max_channels> safe_kpa{};
-  bool may_rise = false;      ///< a sequence runs; else what rises is an old command that came late
+  bool may_rise = false;      ///< a sequence runs; else what leaves rest is an old command that came late
   std::uint32_t inhibit = 0;  ///< control::BusHealth::inhibit, as this tick knew it
   bool last = false;          ///< the loop has ended; write these until the board confirms them
 };
@@ -35,8 +35,9 @@ struct BusReport {
     return outputs_kpa;
   }();
   std::array<model::Reading, control::max_channels> readings{};
-  /// At least this stands at the outputs: what was written last; the lower one where the board has not
-  /// confirmed it; the lowest where its watchdog has acted. Infinite before anything was written.
+  /// The outputs have these pressures, or pressures further from rest on the same side. It is the last write.
+  /// Where the board has not confirmed it, it is the nearer to rest of both writes, or rest between them.
+  /// Where the board's watchdog has acted, it is the rest pressure. It is infinite before the first write.
   std::array<double, control::max_channels> outputs_kpa = anything;
   control::BusHealth health;
 };

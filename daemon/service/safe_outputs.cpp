@@ -41,9 +41,9 @@ ExitCode exit_code_of(SafeOutputsEnd end) noexcept {
 SafeOutputsReport write_safe_outputs(const rig::RigFile& rig, drivers::Board& board, const Clock& clock,
                                      std::chrono::nanoseconds patience) {
   const std::size_t channels = std::min(board.channels(), rig.settings.channels.size());
-  std::array<double, control::max_channels> lowest_kpa{};
+  std::array<double, control::max_channels> rest_kpa{};
   for (std::size_t i = 0; i < channels; ++i) {
-    lowest_kpa[i] = rig.settings.channels[i].limits.pressure_min_kpa;
+    rest_kpa[i] = control::resting_kpa(rig.settings.channels[i].limits);
   }
   std::array<model::Reading, control::max_channels> readings{};
   const std::chrono::nanoseconds deadline(nanoseconds(rig.loop.exchange_deadline_s));
@@ -56,8 +56,8 @@ SafeOutputsReport write_safe_outputs(const rig::RigFile& rig, drivers::Board& bo
     if (!session) status = board.connect(rig.reconnect.connect_deadline);
     session = status == BusStatus::ok;
     if (session) {
-      status = board.exchange(std::span(lowest_kpa).first(channels), std::span(readings).first(channels),
-                              deadline);
+      status =
+          board.exchange(std::span(rest_kpa).first(channels), std::span(readings).first(channels), deadline);
     }
     if (status == BusStatus::watchdog_tripped) {
       return {SafeOutputsEnd::board_holds,

@@ -14,9 +14,9 @@ namespace softgrip::daemon {
 
 /// What became of it.
 enum class SafeOutputsEnd {
-  confirmed,    ///< the board took the lowest pressure of every channel, and the next exchange confirmed it
-  board_holds,  ///< the board's own watchdog has tripped and holds its safe values
-  not_needed,   ///< the service manager says that softgripd ended in order
+  confirmed,       ///< the board took the rest pressure of every channel, and the next exchange confirmed it
+  board_holds,     ///< the board's own watchdog has tripped and holds its safe values
+  not_needed,      ///< the service manager says that softgripd ended in order
   daemon_running,  ///< a daemon answers on the rig's socket, or another program drives the board: it would
                    ///< write something else in a moment
   board_silent,    ///< nothing confirmed within the time
@@ -30,7 +30,7 @@ struct SafeOutputsReport {
 /// 0, 4 or 5: see the exit codes of the manual.
 [[nodiscard]] ExitCode exit_code_of(SafeOutputsEnd end) noexcept;
 
-/// Connects and writes pressure_min_kpa of every channel until two exchanges in a row succeeded: in the
+/// Connects and writes the rest pressure of every channel until two exchanges in a row succeeded: in the
 /// second the board repeats what the first one wrote, where its map has a read-back. Tries again until
 /// `patience` is over. Which phase the daemon was in nobody knows any more, so a part that was to be held is
 /// let go, as the board's own watchdog would.

@@ -50,7 +50,7 @@ void declare(CLI::App& program, Arguments& arguments) {
                    "say what is wrong with the rig file and the sequence, start nothing");
   program.add_flag(
       "--safe-outputs", arguments.safe_outputs,
-      "vent: connect to the board, write the lowest pressure of every channel until the board confirms "
+      "vent: connect to the board, write the rest pressure of every channel until the board confirms "
       "it, and end. For ExecStopPost= of the unit: does nothing where $SERVICE_RESULT is success");
   program
       .add_option(

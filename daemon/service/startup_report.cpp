@@ -46,8 +46,11 @@ std::string watchdog_line(const rig::RigFile& rig, const drivers::Board& board, 
 
 std::string channel_line(const control::ChannelSettings& channel, const rig::ValveFacts& valve) {
   const bool planned = channel.feedforward.kind == control::FeedforwardKind::planned;
-  return fmt::format("channel {}: {:g} to {:g} kPa, feedforward {} accepted{}, valve {} on power loss\n",
+  const double rest_kpa = control::resting_kpa(channel.limits);
+  const bool rests_above = rest_kpa > channel.limits.pressure_min_kpa;
+  return fmt::format("channel {}: {:g} to {:g} kPa{}, feedforward {} accepted{}, valve {} on power loss\n",
                      channel.name, channel.limits.pressure_min_kpa, channel.limits.pressure_max_kpa,
+                     rests_above ? fmt::format(", rests at {:g} kPa", rest_kpa) : "",
                      name_of(channel.feedforward.kind),
                      planned ? " (a sequence is planned before it starts)" : "",
                      valve.on_power_loss == rig::PowerLoss::vents ? "vents" : "holds");

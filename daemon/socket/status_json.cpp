@@ -102,6 +102,7 @@ Json json_of_channel(const control::ChannelSettings& settings, const control::Ch
           {"limits",
            {{"pressure_min_kpa", settings.limits.pressure_min_kpa},
             {"pressure_max_kpa", settings.limits.pressure_max_kpa},
+            {"rest_kpa", control::resting_kpa(settings.limits)},
             {"displacement_min_mm", settings.limits.displacement_min_mm},
             {"displacement_max_mm", settings.limits.displacement_max_mm}}}};
 }

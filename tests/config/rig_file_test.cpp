@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <functional>
 #include <set>
@@ -104,7 +105,7 @@ TEST(RigFile, AVacuumIsSimulatedWithinTheValvesRange) {
   ASSERT_TRUE(rig.has_value()) << problems.format();
   const auto& board = std::get<simulation::SimulatedBoardSettings>(rig->board);
   EXPECT_EQ(board.channels[1].valve_min_kpa, -60);
-  EXPECT_EQ(board.channels[1].vented_kpa, -2);
+  EXPECT_EQ(board.channels[1].vented_kpa, 0) << "rest, and not the lowest pressure";
   VirtualClock clock;
   simulation::SimulatedBoard simulated(board, clock);
   std::vector<model::Reading> readings(2);
@@ -112,6 +113,106 @@ TEST(RigFile, AVacuumIsSimulatedWithinTheValvesRange) {
   EXPECT_EQ(simulated.exchange(std::vector<double>{-2, -2}, readings, std::chrono::seconds(1)),
             drivers::BusStatus::ok)
       << simulated.detail();
+}
+
+/// The text of a shipped rig with texts in the place of others, read as if it stood there.
+rig::RigReading edited(const std::string& name, const std::vector<std::pair<std::string, std::string>>& edits,
+                       Problems& problems) {
+  Problems parsing;
+  std::string text = document::parse_file(shipped(name), parsing).text;
+  for (const auto& [old, now] : edits) {
+    const std::size_t at = text.find(old);
+    EXPECT_NE(at, std::string::npos) << old;
+    if (at != std::string::npos) text.replace(at, old.size(), now);
+  }
+  return rig::read_rig_so_far(document::parse(shipped(name), text, problems), problems);
+}
+
+TEST(RestPressure, IsOfTheChannelAndZeroWithoutTheKey) {
+  for (const char* const name : {"rig.yaml", "vacuum/rig.yaml", "vacuum/rig_tcp.yaml"}) {
+    const rig::RigFile rig = loaded(name);
+    for (const control::ChannelSettings& channel : rig.settings.channels)
+      EXPECT_EQ(control::resting_kpa(channel.limits), 0) << name;
+    EXPECT_TRUE(rig.settings.safety.board_vents_when_silent) << name;
+  }
+  Problems problems;
+  const auto own =
+      edited("vacuum/rig.yaml", {{"  - name: right\n", "  - name: right\n    rest_kpa: -12\n"}}, problems);
+  ASSERT_TRUE(own.accepted) << problems.format();
+  EXPECT_EQ(control::resting_kpa(own.rig.settings.channels[0].limits), 0);
+  EXPECT_EQ(control::resting_kpa(own.rig.settings.channels[1].limits), -12);
+  const auto& board = std::get<simulation::SimulatedBoardSettings>(own.rig.board);
+  EXPECT_EQ(board.channels[0].vented_kpa, 0);
+  EXPECT_EQ(board.channels[1].vented_kpa, -12);
+}
+
+TEST(RestPressure, BeyondTheLimitsIsRefusedWithTheRange) {
+  for (const char* const beyond : {"-41", "60.5"}) {
+    Problems problems;
+    const auto rig =
+        edited("vacuum/rig.yaml", {{"rest_kpa: 0", std::string("rest_kpa: ") + beyond}}, problems);
+    EXPECT_FALSE(rig.accepted);
+    const std::string text = problems.format();
+    EXPECT_NE(
+        text.find("vacuum/rig.yaml:27:13: `rest_kpa` must be in [-40, 60], the pressure limits of channel "
+                  "`left`, found " +
+                  std::string(beyond)),
+        std::string::npos)
+        << text;
+  }
+}
+
+TEST(RestPressure, OfTheBoardsWatchdogIsThatOfTheChannel) {
+  const std::string asked = "this board does not vent by itself when softgripd dies";
+  for (const auto& [old, now, said] : std::vector<std::array<std::string, 3>>{
+           // 0 V is full vacuum
+           {"map: board.yaml", "map: ../boards/softgrip-sim.yaml",
+            "its watchdog puts channel `left` to -100 kPa, and the rest pressure of this channel is 0 kPa"},
+           {"rest_kpa: 0", "rest_kpa: 10",
+            "its watchdog puts channel `left` to 0 kPa, and the rest pressure of this channel is 10 kPa"}}) {
+    Problems problems;
+    EXPECT_FALSE(edited("vacuum/rig_tcp.yaml", {{old, now}}, problems).accepted);
+    EXPECT_NE(problems.format().find(asked), std::string::npos) << problems.format();
+    EXPECT_NE(problems.format().find(said), std::string::npos) << problems.format();
+  }
+  Problems problems;
+  EXPECT_TRUE(edited("vacuum/rig_tcp.yaml", {{"rest_kpa: 0", "rest_kpa: 0.9"}}, problems).accepted)
+      << "within 1 % of the range: " << problems.format();
+}
+
+TEST(RestPressure, IsComparedWithTheValveThatHasNoPower) {
+  const auto warning = [](const std::string& name,
+                          const std::vector<std::pair<std::string, std::string>>& edits) {
+    Problems problems;
+    EXPECT_TRUE(edited(name, edits, problems).accepted) << problems.format();
+    std::string text;
+    for (const document::Problem& problem : problems.warnings()) text += problem.message + "\n";
+    return text;
+  };
+  const std::pair<std::string, std::string> holds{"on_power_loss: vents", "on_power_loss: holds"};
+  EXPECT_EQ(warning("vacuum/rig.yaml", {}), "");
+  EXPECT_NE(
+      warning("vacuum/rig.yaml", {{"rest_kpa: 0", "rest_kpa: -20"}})
+          .find("without power the valve of channel `left` goes to 0 kPa, and the rest pressure is -20 kPa"),
+      std::string::npos);
+  EXPECT_NE(
+      warning("vacuum/rig.yaml", {{"on_power_loss: vents", "on_power_loss: vents, on_power_loss_kpa: -80"}})
+          .find("goes to -80 kPa, and the rest pressure is 0 kPa"),
+      std::string::npos);
+  EXPECT_EQ(
+      warning("vacuum/rig.yaml", {{"rest_kpa: 0", "rest_kpa: -40"},
+                                  {"on_power_loss: vents", "on_power_loss: vents, on_power_loss_kpa: -80"}}),
+      "")
+      << "beyond the limits their end counts";
+  EXPECT_NE(warning("vacuum/rig.yaml", {holds}).find("holds its last pressure"), std::string::npos);
+  EXPECT_EQ(warning("rig.yaml", {holds}), "") << "the file states no rest pressure";
+  Problems problems;
+  EXPECT_FALSE(
+      edited("rig.yaml", {{"on_power_loss: vents", "on_power_loss: holds, on_power_loss_kpa: 5"}}, problems)
+          .accepted);
+  EXPECT_NE(problems.format().find("a valve that holds its pressure without power goes to no other"),
+            std::string::npos)
+      << problems.format();
 }
 
 TEST(RigFile, PathsAreRelativeToTheFile) {

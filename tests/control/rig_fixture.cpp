@@ -36,7 +36,7 @@ void SimulatedRig::step_plants() {
     if (!wire_cut) {
       plant.board_kpa = output_.channels[i].command_kpa;
     } else if (tripped) {
-      plant.board_kpa = settings_.channels[i].limits.pressure_min_kpa;
+      plant.board_kpa = resting_kpa(settings_.channels[i].limits);
     }
     plant.chain.step(0, plant.board_kpa);
     plant.chain.step(1 / settings_.rate_hz, plant.board_kpa);
@@ -99,7 +99,8 @@ const TickOutput& SimulatedRig::tick() {
   return output_;
 }
 
-/// Always: inside the pressure range, inside the slew limits; never up when faulted.
+/// Always: inside the pressure range, inside the slew limits; away from rest only while a sequence may move
+/// it.
 void SimulatedRig::check_commands(const TickOutput& before) {
   constexpr double rounding = 1e-9;
   for (std::size_t i = 0; i < settings_.channels.size(); ++i) {
@@ -108,16 +109,19 @@ void SimulatedRig::check_commands(const TickOutput& before) {
     ASSERT_TRUE(std::isfinite(command)) << "at " << time_s();
     EXPECT_GE(command, limits.pressure_min_kpa);
     EXPECT_LE(command, limits.pressure_max_kpa);
-    const double from = first_ ? limits.pressure_min_kpa : before.channels[i].command_kpa;
-    EXPECT_LE(command - from, limits.slew_up_kpa_per_s / settings_.rate_hz + rounding) << "at " << time_s();
+    const double rest = resting_kpa(limits);
+    const double from = first_ ? rest : before.channels[i].command_kpa;
     // What is not there any more need not be let down.
-    if (!inhibits(bus_fault)) {
+    const bool toward_rest = no_further(rest, command, from) == command;
+    if (!inhibits(bus_fault) || !toward_rest) {
+      EXPECT_LE(command - from, limits.slew_up_kpa_per_s / settings_.rate_hz + rounding) << "at " << time_s();
       EXPECT_GE(command - from, -limits.slew_down_kpa_per_s / settings_.rate_hz - rounding)
           << "at " << time_s();
     }
     if (output_.state == State::faulted || output_.state == State::starting || output_.state == State::idle ||
         output_.state == State::stopping) {
-      EXPECT_LE(command, from + rounding) << "at " << time_s() << " in " << name_of(output_.state);
+      EXPECT_NEAR(command, no_further(rest, command, from), rounding)
+          << "at " << time_s() << " in " << name_of(output_.state);
     }
   }
 }

@@ -32,7 +32,7 @@ class SimulatedRig {
 
   // Faults; each stays until it is taken back.
   bool wire_cut = false;    ///< no exchange succeeds; the board vents after its watchdog time
-  bool board_vents = true;  ///< its watchdog puts the outputs to the lowest pressure
+  bool board_vents = true;  ///< its watchdog puts the outputs to the rest pressure
   bool emergency_stop = false;
   bool inputs_lost = false;
   bool interlock_open = false;

@@ -76,12 +76,15 @@ std::string names_of(const rig::RigFile& rig) {
   return with_commas(rig.settings.channels, &control::ChannelSettings::name);
 }
 
-/// Pressures of the two places: as given, or a sixth and two thirds of what the limits allow.
+/// Pressures of the two places: as given, or a sixth and two thirds of the way from rest to the further
+/// limit.
 std::optional<ExitCode> set_pressures(const CalibrateOptions& options, const control::LimitSettings& limits,
                                       calibrate::Settings& settings) {
-  const double span = limits.pressure_max_kpa - limits.pressure_min_kpa;
-  settings.low_kpa = options.at_kpa.empty() ? limits.pressure_min_kpa + span / 6 : options.at_kpa[0];
-  settings.high_kpa = options.at_kpa.empty() ? limits.pressure_min_kpa + 2 * span / 3 : options.at_kpa[1];
+  const double rest_kpa = control::resting_kpa(limits);
+  const double span = control::far_end_kpa(limits) - rest_kpa;
+  const auto [low_kpa, high_kpa] = std::minmax({rest_kpa + span / 6, rest_kpa + 2 * span / 3});
+  settings.low_kpa = options.at_kpa.empty() ? low_kpa : options.at_kpa[0];
+  settings.high_kpa = options.at_kpa.empty() ? high_kpa : options.at_kpa[1];
   const bool inside =
       settings.low_kpa >= limits.pressure_min_kpa && settings.high_kpa <= limits.pressure_max_kpa;
   if (inside && settings.low_kpa < settings.high_kpa) return std::nullopt;
@@ -228,7 +231,7 @@ tl::expected<calibrate::Settings, ExitCode> prepare(CalibrateOptions& options, c
   return settings;
 }
 
-/// Connected, measured, left at the lowest pressures.
+/// Connected, measured, left at the rest pressures.
 ExitCode carry_out(const rig::RigFile& rig, const CalibrateOptions& options,
                    const calibrate::Settings& settings) {
   const auto lock = daemon::BoardLock::take(rig);
@@ -244,8 +247,7 @@ ExitCode carry_out(const rig::RigFile& rig, const CalibrateOptions& options,
   calibrate::TerminalOperator terminal;
   const auto results = measure(rig, options, settings, session, terminal);
   const bool safe = session.leave();
-  if (!safe)
-    std::fprintf(stderr, "the board did NOT confirm the lowest pressures: look before you reach in\n");
+  if (!safe) std::fprintf(stderr, "the board did NOT confirm the rest pressures: look before you reach in\n");
   if (!results) return fail(results.error().code, results.error().text);
   ExitCode code = write_results(rig, *results, options);
   if (!accepted(rig, *results, options, terminal, clock, stop)) {

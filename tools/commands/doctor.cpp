@@ -188,7 +188,7 @@ void add_doctor(CLI::App& program, ExitCode& outcome) {
   command->add_option("--socket", options->socket, "Of a running daemon [the rig file's]");
   command->add_flag("--json", options->json, "The findings as JSON");
   command->footer(
-      "Without a daemon it writes the lowest pressures to the board and reads; a running daemon is asked "
+      "Without a daemon it writes the rest pressures to the board and reads; a running daemon is asked "
       "instead.\nExit codes: 0 fit, 6 not fit, 2 no rig is named and no daemon runs, 3 the rig file is "
       "refused, 4 it cannot be read, 5 --move "
       "while "

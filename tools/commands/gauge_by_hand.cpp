@@ -53,7 +53,7 @@ GaugeTaker gauge_by_hand(ExperimentRig rig, Consent consent) {
     if (!visits)
       return tl::unexpected(
           NotPlayed{visits.error().code == ExitCode::failed, visits.error().text, visits.error().code});
-    if (!safe) return failed("the board did not confirm the lowest pressures: look before you reach in");
+    if (!safe) return failed("the board did not confirm the rest pressures: look before you reach in");
     std::vector<sysid::GaugeReading> readings;
     for (const calibrate::GaugeVisit& visit : *visits)
       readings.push_back({visit.position_mm, visit.reading_mm, static_cast<double>(visit.count)});

@@ -14,7 +14,7 @@ namespace {
 
 using CrossingKind = Crossing::Kind;
 
-/// A monitor has followed a valve when it rose by at least this share of the step.
+/// A monitor has followed a valve when it went at least this share of the step.
 constexpr double share_of_step = 0.5;
 
 bool sensor_followed(const rig::RigFile& rig, const ChannelSample& rest, const Motion& motion,
@@ -28,8 +28,8 @@ bool monitor_followed(const rig::RigFile& rig, const ChannelSample& rest, const 
                       std::size_t moved, std::size_t monitor) {
   const Sample& seen = motion.up[monitor].pressure_kpa;
   if (seen.count == 0 || rest.pressure_kpa.count == 0) return false;
-  const double step_kpa = motion.command_kpa - rig.settings.channels[moved].limits.pressure_min_kpa;
-  return seen.mean - rest.pressure_kpa.mean >= share_of_step * step_kpa;
+  const double step_kpa = motion.command_kpa - control::resting_kpa(rig.settings.channels[moved].limits);
+  return (seen.mean - rest.pressure_kpa.mean) / step_kpa >= share_of_step;
 }
 
 /// Of each channel that was moved the one that showed it, if it was one alone.

@@ -32,13 +32,14 @@ void compare_lines(const std::string& what, const drivers::TwoPoints& before, co
       what, at, unit, at + worst, unit, 100 * share));
 }
 
-/// Where the free finger of the model is that went up from the lowest pressure and waited [mm].
+/// Where the free finger of the model is that went there from rest and waited [mm].
 double model_mm(const control::ChannelSettings& channel, double kpa, const Motion& motion) {
   control::RunningModel model(channel.model, step_s, 0, step_s);
-  double command_kpa = channel.limits.pressure_min_kpa;
+  double command_kpa = control::resting_kpa(channel.limits);
   model.reset(command_kpa);
-  while (command_kpa < kpa) {
-    command_kpa = std::min(kpa, command_kpa + motion.speed_kpa_per_s * step_s);
+  const double furthest_kpa = motion.speed_kpa_per_s * step_s;
+  while (command_kpa != kpa) {
+    command_kpa = std::clamp(kpa, command_kpa - furthest_kpa, command_kpa + furthest_kpa);
     model.advance(command_kpa);
   }
   for (long left = std::lround(motion.wait_s / step_s); left > 0; --left) model.advance(kpa);

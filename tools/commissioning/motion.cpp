@@ -29,7 +29,7 @@ class Beside {
       : model_(channel.model, tick_s, 0, tick_s),
         tick_s_(tick_s),
         rest_mm_(rest_mm),
-        held_kpa_(channel.limits.pressure_min_kpa) {
+        held_kpa_(control::resting_kpa(channel.limits)) {
     model_.reset(held_kpa_);
     origin_mm_ = model_.reading_mm(0);
   }
@@ -102,16 +102,16 @@ MotionSession::Expected<Motion> move_and_watch(const rig::RigFile& rig, MotionSe
                                                std::size_t channel, const ChannelSample& rest,
                                                const MoveSettings& settings) {
   const control::ChannelSettings& of = rig.settings.channels[channel];
-  const double lowest = of.limits.pressure_min_kpa;
-  const double step = settings.share * (of.limits.pressure_max_kpa - lowest);
-  const double speed = step / settings.duration_s;
+  const double rest_kpa = control::resting_kpa(of.limits);
+  const double step = settings.share * (control::far_end_kpa(of.limits) - rest_kpa);
+  const double speed = std::abs(step) / settings.duration_s;
   Beside beside(of, seconds(session.period()), rest.displacement_mm.mean);
   const MotionSession::Watch watch = [&](const std::vector<double>& commands,
                                          const std::vector<model::Reading>& readings) {
     beside.take(readings[channel], commands[channel]);
   };
   Motion motion;
-  motion.command_kpa = lowest + step;
+  motion.command_kpa = rest_kpa + step;
   if (const auto up = session.ramp(channel, motion.command_kpa, speed, watch); !up)
     return tl::unexpected(up.error());
   const auto settling = session.sample(settings.settle_s / 2, watch);
@@ -121,7 +121,7 @@ MotionSession::Expected<Motion> move_and_watch(const rig::RigFile& rig, MotionSe
   if (!there) return tl::unexpected(there.error());
   motion.up = *there;
   motion.model_mm = beside.mean_mm();
-  if (const auto down = session.ramp(channel, lowest, speed, watch); !down)
+  if (const auto down = session.ramp(channel, rest_kpa, speed, watch); !down)
     return tl::unexpected(down.error());
   const auto after = session.sample(settings.settle_s, watch);
   if (!after) return tl::unexpected(after.error());
@@ -139,7 +139,7 @@ namespace {
 /// False if the pressure does not come: then nothing that hangs on it is judged.
 bool judge_valve(const control::ChannelSettings& of, const Sample& monitor, double command_kpa,
                  Findings& findings) {
-  const double step_kpa = command_kpa - of.limits.pressure_min_kpa;
+  const double step_kpa = std::abs(command_kpa - control::resting_kpa(of.limits));
   const std::string text =
       fmt::format("{:.2f} kPa were asked for, the monitor shows {:.2f}", command_kpa, monitor.mean);
   const double allowed_kpa = std::max(allowed_share_of_step * step_kpa, pressure_floor_kpa);

@@ -5,9 +5,9 @@
 
 namespace softgrip::tools::doctor {
 
-/// What was seen while one finger went up a little and came back.
+/// What was seen while one finger went a little away from rest and came back.
 struct Motion {
-  double command_kpa = 0;         ///< how far up
+  double command_kpa = 0;         ///< how far
   std::vector<ChannelSample> up;  ///< of all channels, while this one stood there; empty: it was not moved
   double model_mm = 0;            ///< how far the model moved, up there
   double residual_rms_mm = 0;     ///< of reading minus model, less what it was at rest; over the whole motion

@@ -19,7 +19,7 @@ namespace {
 
 using FailureKind = MotionFailure::Kind;
 
-/// How long the board may take to confirm that everything is down, beyond the way there.
+/// How long the board may take to confirm that everything is at rest, beyond the way there.
 constexpr double confirmation_s = 1;
 
 /// Mean and spread while it goes (Welford, Technometrics 4, 1962).
@@ -105,9 +105,9 @@ MotionSession::MotionSession(const rig::RigFile& rig, drivers::Board& board, con
       grid_(clock.now(), period_of(rig, board)),
       readings_(board.channels()) {
   for (const control::ChannelSettings& channel : rig.settings.channels) {
-    lowest_.push_back(channel.limits.pressure_min_kpa);
+    rest_.push_back(control::resting_kpa(channel.limits));
   }
-  commands_ = targets_ = lowest_;
+  commands_ = targets_ = rest_;
 }
 
 MotionSession::~MotionSession() {
@@ -133,7 +133,7 @@ void MotionSession::exchange(bool may_rise, bool last) noexcept {
   commands = {};
   commands.at = clock_.now();
   std::copy(commands_.begin(), commands_.end(), commands.command_kpa.begin());
-  std::copy(lowest_.begin(), lowest_.end(), commands.safe_kpa.begin());
+  std::copy(rest_.begin(), rest_.end(), commands.safe_kpa.begin());
   commands.may_rise = may_rise;
   commands.inhibit = line_->report().health.inhibit;
   commands.last = last;
@@ -150,7 +150,7 @@ void MotionSession::take_report(std::uint64_t skipped_cycles) noexcept {
   silent_cycles_ = report.health.consecutive_failures == 0 ? 0 : silent_cycles_ + 1 + skipped_cycles;
   std::copy_n(report.readings.begin(), readings_.size(), readings_.begin());
   for (std::size_t i = 0; i < commands_.size(); ++i) {
-    commands_[i] = std::min(commands_[i], report.outputs_kpa[i]);
+    commands_[i] = control::no_further(rest_[i], commands_[i], report.outputs_kpa[i]);
   }
 }
 
@@ -282,19 +282,19 @@ MotionSession::Expected<void> MotionSession::wait(const std::function<bool()>& d
 
 bool MotionSession::leave() noexcept {
   if (!ended_) ended_ = MotionFailure{FailureKind::stopped, "the motion has ended"};
-  targets_ = lowest_;
+  targets_ = rest_;
   double fastest = 0;
   for (const control::ChannelSettings& channel : rig_.settings.channels) {
-    fastest = std::max(fastest, channel.limits.slew_down_kpa_per_s);
+    fastest = std::max({fastest, channel.limits.slew_down_kpa_per_s, channel.limits.slew_up_kpa_per_s});
   }
   Nanoseconds give_up = 0;
-  // Down in any case: a board that comes back late gets the end of the way, which is what is wanted of it.
+  // To rest in any case: a board that comes back late gets the end of the way, which is what is wanted of it.
   while (!line_->wires.left_safely.load(std::memory_order_relaxed)) {
     follow_targets(fastest);
-    const bool down = commands_ == targets_;
-    if (down && give_up == 0) give_up = clock_.now() + nanoseconds(confirmation_s);
+    const bool rested = commands_ == targets_;
+    if (rested && give_up == 0) give_up = clock_.now() + nanoseconds(confirmation_s);
     if (give_up != 0 && clock_.now() > give_up) return false;
-    exchange(false, down);
+    exchange(false, rested);
   }
   moved_ = false;
   return true;

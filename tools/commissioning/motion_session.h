@@ -65,17 +65,17 @@ struct Sight {
 
 /// Drives a board by the daemon's own bus (daemon/loop/bus.h), in the place of the loop, with the same rule
 /// for gaps. After a gap as long as the board's watchdog time the board has vented. Then the bus writes the
-/// lowest pressures.
+/// rest pressures.
 ///
-/// - Outputs rise only in ramp(), from what the board has confirmed, and no faster than the slew limits.
+/// - Outputs move away from rest only in ramp(), from what the board has confirmed, within the slew limits.
 ///   A gap does not make the next step larger.
 /// - The session ends if a gap reaches the watchdog time.
 /// - It ends if the board reports a trip, refuses a write or is written by another client.
 /// - It ends if the board does not answer for `bus_down_cycles`.
 /// - A session that has ended moves nothing. Every later call returns the same failure. Only leave() writes,
-///   and nothing above the present outputs.
-/// - It writes the lowest pressures from the first exchange on. On destruction everything is at its lowest
-///   again, or leave() returned false.
+///   and nothing further from rest than the present outputs.
+/// - It writes the rest pressures from the first exchange on. On destruction everything is at rest again, or
+///   leave() returned false.
 class MotionSession {
  public:
   template <class T>
@@ -94,7 +94,7 @@ class MotionSession {
   ~MotionSession();
 
   [[nodiscard]] Expected<void> connect();
-  /// From now on nothing rises before these sensors have given a valid reading. After
+  /// From now on nothing moves away from rest before these sensors have given a valid reading. After
   /// `invalid_reading_cycles` readings in a row that are not valid the session ends.
   void require(Sight sight);
   /// Keeps the commands for so long; what was read of every channel meanwhile.
@@ -106,7 +106,7 @@ class MotionSession {
   /// Keeps everything as it is and talks to the board until `done` says so: while a person is asked
   /// something.
   [[nodiscard]] Expected<void> wait(const std::function<bool()>& done);
-  /// Everything down to its lowest pressure, at the limits' slew, and the end of the session. True if the
+  /// Everything to its rest pressure, at the limits' slew, and the end of the session. True if the
   /// board confirmed it.
   bool leave() noexcept;
 
@@ -139,7 +139,7 @@ class MotionSession {
   std::optional<MotionFailure> ended_;
   std::vector<double> commands_;  // the present outputs, then the next write
   std::vector<double> targets_;
-  std::vector<double> lowest_;
+  std::vector<double> rest_;
   std::vector<model::Reading> readings_;
   std::uint64_t silent_cycles_ = 0;  // since the last good exchange
   std::optional<Sight> required_;

@@ -139,8 +139,8 @@ Expected<Visit> visit_sensor(const rig::RigFile& rig, MotionSession& session, Op
                              const Settings& settings, bool upper) {
   const drivers::InputWiring& wiring = rig.wiring[settings.channel].displacement;
   if (settings.may_move) {
-    // Always from below: the hysteresis of the finger must not become one of the sensor.
-    for (const double kpa : {rig.settings.channels[settings.channel].limits.pressure_min_kpa,
+    // Always from rest: the hysteresis of the finger must not become one of the sensor.
+    for (const double kpa : {control::resting_kpa(rig.settings.channels[settings.channel].limits),
                              upper ? settings.high_kpa : settings.low_kpa}) {
       if (const auto moved = move_to(rig, session, person, settings, kpa); !moved)
         return tl::unexpected(moved.error());
@@ -183,8 +183,8 @@ struct ValveVisit {
 Expected<ValveVisit> visit_valve(const rig::RigFile& rig, MotionSession& session, Operator& person,
                                  const Settings& settings, bool by_monitor, bool upper) {
   const drivers::ChannelWiring& wiring = rig.wiring[settings.channel];
-  const double lowest = rig.settings.channels[settings.channel].limits.pressure_min_kpa;
-  for (const double kpa : {lowest, upper ? settings.high_kpa : settings.low_kpa}) {
+  const double rest_kpa = control::resting_kpa(rig.settings.channels[settings.channel].limits);
+  for (const double kpa : {rest_kpa, upper ? settings.high_kpa : settings.low_kpa}) {
     if (const auto moved = move_to(rig, session, person, settings, kpa); !moved)
       return tl::unexpected(moved.error());
   }
@@ -317,13 +317,15 @@ Expected<ValveResult> calibrate_valve(const rig::RigFile& rig, MotionSession& se
 Expected<DeadZoneResult> search_dead_zone(const rig::RigFile& rig, MotionSession& session, Operator& person,
                                           const Settings& settings) {
   const control::ChannelSettings& channel = rig.settings.channels[settings.channel];
-  const double lowest = channel.limits.pressure_min_kpa;
+  const double rest_kpa = control::resting_kpa(channel.limits);
+  const double span_kpa = control::far_end_kpa(channel.limits) - rest_kpa;
+  const double side = std::copysign(1.0, span_kpa);  // -1: the ramp evacuates
   session.require({settings.channel, channel.displacement_used, channel.pressure_measured});
-  if (const auto moved = move_to(rig, session, person, settings, lowest); !moved)
+  if (const auto moved = move_to(rig, session, person, settings, rest_kpa); !moved)
     return tl::unexpected(moved.error());
   DeadZoneResult result;
   result.by_pressure = channel.pressure_measured;
-  result.highest_kpa = lowest + ramp_share * (channel.limits.pressure_max_kpa - lowest);
+  result.highest_kpa = rest_kpa + ramp_share * span_kpa;
   person.tell(fmt::format("a slow ramp to {:.4g} kPa, {:g} s", result.highest_kpa, settings.ramp_s));
   std::vector<double> command;
   std::vector<double> response;
@@ -332,10 +334,10 @@ Expected<DeadZoneResult> search_dead_zone(const rig::RigFile& rig, MotionSession
     const double value = result.by_pressure ? reading.pressure_kpa : reading.displacement_mm;
     const bool good = result.by_pressure || reading.validity == model::Validity::valid;
     if (!good || !std::isfinite(value)) return;
-    command.push_back(commands[settings.channel]);
-    response.push_back(value);
+    command.push_back(side * commands[settings.channel]);
+    response.push_back(side * value);
   };
-  const double speed = (result.highest_kpa - lowest) / settings.ramp_s;
+  const double speed = std::abs(result.highest_kpa - rest_kpa) / settings.ramp_s;
   if (const auto up = session.ramp(settings.channel, result.highest_kpa, speed, watch); !up) {
     return tl::unexpected(refusal_of(up.error()));
   }
@@ -347,6 +349,7 @@ Expected<DeadZoneResult> search_dead_zone(const rig::RigFile& rig, MotionSession
   }
   if (!result.zone)
     return tl::unexpected(nonsense("dead zone: nothing followed the ramp: supply, line, sensor?"));
+  result.zone->end *= side;
   return result;
 }
 

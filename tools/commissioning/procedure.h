@@ -93,7 +93,7 @@ struct DeadZoneResult {
   bool by_pressure = false;      ///< judged by the pressure monitor; else by the finger, which is weaker
   double highest_kpa = 0;        ///< how far the ramp went
 };
-/// A slow ramp up from the lowest command.
+/// A slow ramp from the rest pressure, on the larger side of it.
 [[nodiscard]] Expected<DeadZoneResult> search_dead_zone(const rig::RigFile& rig, MotionSession& session,
                                                         Operator& person, const Settings& settings);
 

@@ -26,7 +26,7 @@ std::string advice_for_silence(const rig::RigFile& rig) {
                "holds it";
 }
 
-/// True if a look at the sensors, which writes the lowest pressures, could drop a part that is still held.
+/// True if a look at the sensors, which writes the rest pressures, could drop a part that is still held.
 bool may_hold_a_part(const rig::RigFile& rig) {
   const auto& safety = rig.settings.safety;
   const bool holds =
@@ -261,8 +261,7 @@ void examine_rig(const rig::RigFile& rig, drivers::Board& board, const Clock& cl
   }
   if (!move && may_hold_a_part(rig)) {
     findings.ok("board", board.describe() + " answers");
-    return findings.warn("sensors",
-                         "not read: that writes the lowest pressures, and a part may still be held",
+    return findings.warn("sensors", "not read: that writes the rest pressures, and a part may still be held",
                          "take the part out, then run it with --move");
   }
   const auto rest = session.sample(settings.look_s);
@@ -279,10 +278,10 @@ void examine_rig(const rig::RigFile& rig, drivers::Board& board, const Clock& cl
   }
   if (move) move_all(rig, session, *rest, settings, findings);
   if (!session.leave()) {
-    findings.fail("safe state", "the board did not confirm the lowest pressures",
+    findings.fail("safe state", "the board did not confirm the rest pressures",
                   "look at the fingers before you reach in; vent by hand");
   } else if (move) {
-    findings.ok("safe state", "all channels at their lowest pressure, confirmed by the board");
+    findings.ok("safe state", "all channels at their rest pressure, confirmed by the board");
   }
 }
 

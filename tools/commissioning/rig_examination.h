@@ -12,14 +12,14 @@ namespace softgrip::tools::doctor {
 
 /// The shares of the limits that the examination by motion uses.
 struct MoveSettings {
-  double share = 0.25;    ///< of the pressure range, up from the lowest
+  double share = 0.25;    ///< of the pressure range on the larger side of rest
   double duration_s = 1;  ///< of the way up, if the limits allow it, and of the way down
   double settle_s = 1;    ///< up there, and down again
   double look_s = 1;      ///< at rest, before anything moves
 };
 
 /// Board, watchdog, bus budget, sensors; with `move` each finger is moved a little and must follow, as its
-/// model does. Leaves the lowest pressures. What the user stopped is a failure.
+/// model does. Leaves the rest pressures. What the user stopped is a failure.
 void examine_rig(const rig::RigFile& rig, drivers::Board& board, const Clock& clock, StopRequest stop,
                  bool move, const MoveSettings& settings, Findings& findings);
 

@@ -63,14 +63,16 @@ std::string findings(const std::string& what, const Line& line, const std::strin
 std::string valve_line(const rig::RigFile& rig, std::size_t channel, const drivers::TwoPoints& points) {
   const drivers::OutputWiring& wiring = rig.wiring[channel].valve;
   const rig::ValveFacts& facts = rig.valves[channel];
-  return fmt::format("valve: {{{}output: {}, {}, range_kpa: {}, on_power_loss: {}}}\n",
-                     module_of(rig, wiring.module), wiring.output,
-                     scaling(points, suffix_of(wiring.unit), "kpa"),
-                     pair(facts.range_min_kpa, facts.range_max_kpa, 4),
-                     facts.on_power_loss == rig::PowerLoss::vents ? "vents" : "holds");
+  return fmt::format(
+      "valve: {{{}output: {}, {}, range_kpa: {}, on_power_loss: {}}}\n", module_of(rig, wiring.module),
+      wiring.output, scaling(points, suffix_of(wiring.unit), "kpa"),
+      pair(facts.range_min_kpa, facts.range_max_kpa, 4),
+      facts.on_power_loss == rig::PowerLoss::holds ? "holds"
+      : facts.power_loss_kpa == 0                  ? "vents"
+                                  : fmt::format("vents, on_power_loss_kpa: {:g}", facts.power_loss_kpa));
 }
 
-std::string dead_zone_lines(const DeadZoneResult& result, double lowest_kpa) {
+std::string dead_zone_lines(const DeadZoneResult& result, double rest_kpa) {
   const DeadZone& zone = *result.zone;
   const std::string by =
       result.by_pressure ? "the pressure monitor" : "the finger (weaker: its own hysteresis counts)";
@@ -78,8 +80,8 @@ std::string dead_zone_lines(const DeadZoneResult& result, double lowest_kpa) {
     return fmt::format("# dead zone: none to be seen up to {} kPa, by {}\n", rounded(result.highest_kpa, 3),
                        by);
   }
-  return fmt::format("# dead zone: nothing follows below a command of {} kPa ({} above the lowest), by {}\n",
-                     rounded(zone.end, 2), rounded(zone.end - lowest_kpa, 2), by);
+  return fmt::format("# dead zone: nothing follows from rest to a command of {} kPa ({} from rest), by {}\n",
+                     rounded(zone.end, 2), rounded(std::abs(zone.end - rest_kpa), 2), by);
 }
 
 }  // namespace
@@ -127,7 +129,7 @@ std::string snippet(const rig::RigFile& rig, const Results& results) {
       text += input(rig, "pressure_monitor", *wiring.pressure, results.valve->monitor->points, "kpa");
     }
   }
-  if (results.dead_zone) text += dead_zone_lines(*results.dead_zone, settings.limits.pressure_min_kpa);
+  if (results.dead_zone) text += dead_zone_lines(*results.dead_zone, control::resting_kpa(settings.limits));
   const double share = share_of_valve(rig, channel);
   text += fmt::format("# the limits use {:.0f} % of the valve's range{}\n", 100 * share,
                       share < least_share_of_valve

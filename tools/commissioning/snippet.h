@@ -14,7 +14,7 @@ struct Motion {
   double low_kpa = 0;
   double high_kpa = 0;
   double wait_s = 0;           ///< at each, until the middle of the average
-  double speed_kpa_per_s = 1;  ///< of the ramps to them, each from the lowest pressure
+  double speed_kpa_per_s = 1;  ///< of the ramps to them, each from the rest pressure
 };
 
 struct Results {

@@ -118,9 +118,11 @@ tl::expected<ExperimentRig, std::string> experiment_rig(rig::RigFile rig, const 
     if (at == channels.end()) return tl::unexpected("the rig has no channel '" + channel + "'");
     result.channel = static_cast<std::size_t>(at - channels.begin());
   }
-  if (channels[result.channel].limits.pressure_min_kpa > 0) {
-    return tl::unexpected("channel '" + result.channel_name() +
-                          "' never goes down to 0 kPa: experiments begin and end there");
+  const control::LimitSettings& limits = channels[result.channel].limits;
+  if (control::resting_kpa(limits) != 0) {
+    return tl::unexpected("channel '" + result.channel_name() + "' never " +
+                          (limits.pressure_min_kpa > 0 ? "goes down to" : "rests at") +
+                          " 0 kPa: experiments begin and end there");
   }
   result.simulated = std::holds_alternative<simulation::SimulatedBoardSettings>(result.rig.board);
   return result;

@@ -70,6 +70,44 @@ TEST(Limits, ReferenceAndReading) {
   EXPECT_TRUE(displacement_beyond(typical, nan));
 }
 
+constexpr LimitSettings vacuum{-40, 60, 200, 400, -30, 25, 0.5, 0};
+
+TEST(Limits, RestIsZeroOrTheNearestEndOfTheRange) {
+  LimitSettings limits = typical;
+  EXPECT_EQ(resting_kpa(limits), 0);
+  EXPECT_EQ(resting_kpa(vacuum), 0) << "not full vacuum";
+  limits.pressure_min_kpa = 5;
+  EXPECT_EQ(resting_kpa(limits), 5);
+  limits.pressure_min_kpa = -80;
+  limits.pressure_max_kpa = -10;
+  EXPECT_EQ(resting_kpa(limits), -10);
+  EXPECT_EQ(far_end_kpa(limits), -80);
+  EXPECT_EQ(far_end_kpa(vacuum), 60);
+}
+
+TEST(Limits, NoFurtherFromRestThanABoundAndOnItsSide) {
+  EXPECT_EQ(no_further(0, 20, 12), 12);
+  EXPECT_EQ(no_further(0, 5, 12), 5);
+  EXPECT_EQ(no_further(0, -5, 12), 0) << "a bound above rest allows nothing below";
+  EXPECT_EQ(no_further(0, -20, -12), -12);
+  EXPECT_EQ(no_further(0, -5, -12), -5);
+  EXPECT_EQ(no_further(0, 5, -12), 0) << "and the other way round";
+  EXPECT_EQ(no_further(10, 4, 0), 4);
+  EXPECT_EQ(no_further(10, 12, 0), 10);
+  EXPECT_EQ(no_further(0, -20, infinity), -20);
+}
+
+TEST(Limits, WithoutAUsableLastCommandItBeginsAtRest) {
+  EXPECT_EQ(limit(vacuum, nan, nan, 0.005).command_kpa, 0);
+  EXPECT_EQ(limit(vacuum, -40, nan, 0.005).command_kpa, -2);
+}
+
+TEST(Limits, ACeilingDoesNotEvacuate) {
+  EXPECT_EQ(limit(vacuum, 30, 1, 1, -20).command_kpa, 0) << "down to rest, not further";
+  EXPECT_EQ(limit(vacuum, 30, -10, 1, -20).command_kpa, -10) << "no further from rest than it is";
+  EXPECT_EQ(limit(vacuum, 30, -30, 1, -20).command_kpa, -20);
+}
+
 // Neither range nor slew is ever exceeded, whatever is asked for.
 TEST(Limits, NeverExceededUnderRandomRequests) {
   const unsigned seed = 4711;
@@ -78,13 +116,14 @@ TEST(Limits, NeverExceededUnderRandomRequests) {
   std::uniform_real_distribution<double> anything(-200, 300);
   const double wild[] = {nan, infinity, -infinity, 1e300, -1e300, 0, -0.0, 60};
   for (int rig = 0; rig < 50; ++rig) {
-    std::uniform_real_distribution<double> low(0, 10), span(1, 100), slew(1, 2000);
+    std::uniform_real_distribution<double> low(rig % 2 == 0 ? 0 : -60, 10), span(1, 100), slew(1, 2000);
     LimitSettings limits = typical;
     limits.pressure_min_kpa = low(random);
     limits.pressure_max_kpa = limits.pressure_min_kpa + span(random);
     limits.slew_up_kpa_per_s = slew(random);
     limits.slew_down_kpa_per_s = slew(random);
-    double last = limits.pressure_min_kpa;
+    limits.rest_kpa = anything(random);
+    double last = resting_kpa(limits);
     for (int i = 0; i < 2000; ++i) {
       const double elapsed = 0.001 + 0.01 * static_cast<double>(random() % 10);
       const double wanted = random() % 10 == 0 ? wild[random() % 8] : anything(random);

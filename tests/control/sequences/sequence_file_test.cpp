@@ -108,7 +108,7 @@ steps:
   EXPECT_EQ(grip.on_fail, OnFail::hold);
   EXPECT_EQ(sequence->steps[2].reverify_every_s, 0.5);
   EXPECT_EQ(sequence->steps[3].target.value, 3);
-  EXPECT_FALSE(sequence->steps[3].target.lowest);
+  EXPECT_FALSE(sequence->steps[3].target.at_rest);
   EXPECT_EQ(sequence->steps[3].purge_s, 0.7);
   EXPECT_EQ(sequence->steps[4].sine.cycles, 5U);
   EXPECT_EQ(sequence->steps[5].profile.signal, model::SignalName::sp2);

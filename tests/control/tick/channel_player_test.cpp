@@ -9,7 +9,7 @@
 namespace softgrip::control::channel_player_test {
 namespace {
 
-constexpr ChannelTraits traits{.margin_mm = 1, .lowest_kpa = 0, .preview_s = 0.1, .sighted = true};
+constexpr ChannelTraits traits{.margin_mm = 1, .rest_kpa = 0, .preview_s = 0.1, .sighted = true};
 
 Step step_of(StepKind kind) {
   Step step;

@@ -24,7 +24,7 @@ struct Tick {
   bool cause_present = false;
   bool bus_good = true;
   bool all_ready = true;
-  bool all_lowest = false;
+  bool all_at_rest = false;
   bool interlock_open = false;
   Phase phase = Phase::idle;
   Rest rest = Rest::pending;
@@ -87,7 +87,7 @@ class SupervisorSearch : public testing::Test {
     if (tick.cause_present) facts.cause.code = FaultCode::sensor_error;
     facts.bus_good = tick.bus_good;
     facts.ready = tick.all_ready ? all : 1;
-    facts.lowest = tick.all_lowest ? all : 0;
+    facts.at_rest = tick.all_at_rest ? all : 0;
     facts.phase = tick.phase;
     facts.rest = tick.rest;
     EventList events;

@@ -208,6 +208,69 @@ TEST_F(WatchedBusTest, AnExchangeThatWasStoppedOnItsWayIsFoundOutAfterwards) {
   EXPECT_EQ(last_written(), 1);
 }
 
+/// From -40 to 60 kPa, at rest at 0 kPa.
+class VacuumBusTest : public WatchedBusTest {
+ protected:
+  VacuumBusTest() {
+    for (control::ChannelSettings& channel : rig_.channels) {
+      channel.limits.pressure_min_kpa = -40;
+      channel.limits.pressure_max_kpa = 60;
+    }
+  }
+};
+
+TEST_F(VacuumBusTest, OutputsLeaveRestOnEitherSideOnlyWhileASequenceRuns) {
+  Bus bus = make_bus();
+  command(-12, 0, true);
+  step(bus);
+  EXPECT_EQ(last_written(), -12);
+  command(-13, 0, false);  // it was on its way when the sequence ended
+  step(bus);
+  EXPECT_EQ(last_written(), -12);
+  command(-11, 0, false);
+  step(bus);
+  EXPECT_EQ(last_written(), -11);
+  command(5, 0, false);  // the other side is further from rest, too
+  step(bus);
+  EXPECT_EQ(last_written(), 0);
+}
+
+TEST_F(VacuumBusTest, AWatchdogThatHasActedLeavesRestAndNotFullVacuum) {
+  for (const double before_kpa : {35.0, -35.0}) {
+    Bus bus = make_bus();
+    command(before_kpa, before_kpa, true);
+    step(bus);
+    clock_.advance(watchdog);
+    command(before_kpa, before_kpa, true);
+    step(bus);
+    EXPECT_EQ(last_written(), 0);
+    EXPECT_EQ(fault(), FaultCode::board_watchdog_tripped);
+    command(-1, -1, false, wires_.bus.value().health.inhibit);  // it knows, and is not at rest
+    step(bus);
+    EXPECT_EQ(last_written(), 0);
+    EXPECT_EQ(fault(), FaultCode::board_watchdog_tripped);
+    command(0, 0, false, wires_.bus.value().health.inhibit);
+    step(bus);
+    EXPECT_EQ(fault(), FaultCode::none);
+  }
+}
+
+TEST_F(VacuumBusTest, OutputsThatTheBoardDidNotConfirmAreTheNearerToRest) {
+  Bus bus = make_bus();
+  command(-12, 0, true);
+  step(bus);
+  board_.next_exchange = BusStatus::exception;
+  command(-13, 0, true);
+  step(bus);
+  EXPECT_EQ(wires_.bus.value().outputs_kpa[0], -12);
+  command(-11, 0, true);
+  step(bus);
+  EXPECT_EQ(wires_.bus.value().outputs_kpa[0], -11);
+  command(3, 0, true);
+  step(bus);
+  EXPECT_EQ(wires_.bus.value().outputs_kpa[0], 0) << "on two sides of rest: nothing else is safe";
+}
+
 /// A client that comes and goes does not fill the log.
 TEST_F(BusTest, AnotherClientThatFeedsTheWatchdogIsToldOnceASession) {
   const std::vector<BusEvent::Kind> none;

@@ -61,6 +61,14 @@ TEST_F(SafeOutputsTest, WritesTheLowestPressureOfEachChannelAndNothingElse) {
   for (const auto& written : board_.written) EXPECT_EQ(written, (std::vector<double>{0, 2}));
 }
 
+TEST_F(SafeOutputsTest, WritesRestWhereThatIsNotTheLowestPressure) {
+  rig_.settings.channels[0].limits = {-40, 60};
+  rig_.settings.channels[1].limits = {-40, 60};
+  rig_.settings.channels[1].limits.rest_kpa = -10;
+  EXPECT_EQ(write(board_).end, SafeOutputsEnd::confirmed);
+  for (const auto& written : board_.written) EXPECT_EQ(written, (std::vector<double>{0, -10}));
+}
+
 TEST_F(SafeOutputsTest, ReconnectsUntilTheBoardConfirms) {
   RecoveringBoard board(board_, 3, 2);
   EXPECT_EQ(write(board).end, SafeOutputsEnd::confirmed);

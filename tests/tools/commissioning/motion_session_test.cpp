@@ -161,6 +161,35 @@ TEST_F(MotionSessionTest, MovesWithinTheSlewAndLeavesTheLowestPressures) {
   EXPECT_EQ(board_.outputs_kpa[0], 0) << "on destruction";
 }
 
+TEST_F(MotionSessionTest, AFingerBelowRestIsBroughtUpToItWithinTheSlew) {
+  rig_ = daemon::testing::example_rig("vacuum/rig.yaml");
+  MotionSession session(rig_, board_, clock_, stop());
+  ASSERT_TRUE(session.connect());
+  ASSERT_TRUE(session.sample(0.1));
+  EXPECT_EQ(board_.outputs_kpa[0], 0) << "the first write is the rest pressure";
+  ASSERT_TRUE(session.ramp(0, -30, 1e9));
+  EXPECT_DOUBLE_EQ(board_.outputs_kpa[0], -30);
+  board_.largest_rise_kpa = 0;
+  EXPECT_TRUE(session.leave());
+  EXPECT_EQ(board_.outputs_kpa[0], 0);
+  const control::LimitSettings& limits = rig_.settings.channels[0].limits;
+  EXPECT_LE(board_.largest_rise_kpa, limits.slew_up_kpa_per_s / rig_.settings.rate_hz + equal_kpa);
+}
+
+TEST_F(MotionSessionTest, APauseOverAVacuumEndsTheMotionAtRest) {
+  rig_ = daemon::testing::example_rig("vacuum/rig.yaml");
+  rig_.settings.faults.bus_down_cycles = 80;
+  MotionSession session(rig_, board_, clock_, stop());
+  ASSERT_TRUE(session.connect());
+  ASSERT_TRUE(session.ramp(0, -30, speed_kpa_per_s));
+  clock_.pass(2 * watchdog);
+  const auto after = session.sample(1);
+  ASSERT_FALSE(after);
+  EXPECT_EQ(after.error().kind, Kind::bus);
+  EXPECT_TRUE(session.leave());
+  EXPECT_EQ(board_.outputs_kpa[0], 0);
+}
+
 /// At any time of the motion, and for any duration from the watchdog's time on.
 TEST_F(MotionSessionTest, APauseAsLongAsTheWatchdogEndsTheMotionAndNothingRisesBehindIt) {
   const Nanoseconds begin = clock_.now();
