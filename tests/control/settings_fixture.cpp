@@ -39,6 +39,17 @@ RigSettings two_finger_settings() {
   return settings;
 }
 
+RigSettings vacuum_settings() {
+  RigSettings settings = two_finger_settings();
+  for (ChannelSettings& channel : settings.channels) channel.limits = {-40, 60, 300, 600, -30, 35, 2, 0};
+  EXPECT_EQ(settings_problems(settings), std::vector<std::string>{});
+  return settings;
+}
+
+PreparedSequence vacuum_grip(const RigSettings& settings) {
+  return example_sequence("../vacuum/sequences/vacuum_grip", settings);
+}
+
 PreparedSequence sequence_of(const std::string& yaml, const RigSettings& settings) {
   document::Problems problems;
   const auto sequence = read_sequence(document::parse("test.yaml", yaml, problems), problems);

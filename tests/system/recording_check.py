@@ -14,7 +14,7 @@ import sys
 
 import yaml
 
-# In which a command may rise: control/tick/tick.h, may_rise().
+# In which a command may move away from rest: control/tick/tick.h, may_rise().
 MAY_RISE = ("resynchronising", "running")
 # state -> what may follow it: control/tick/supervisor.h
 NEXT = {
@@ -37,6 +37,7 @@ class Recording:
         with open(folder / "run.csv", newline="") as file:
             self.rows = [row for row in csv.DictReader(file) if None not in row.values()]
         self.names = self.channel_names()
+        self.rest_kpa = {}
         self.limits = self.rig_limits()
 
     def channel_names(self):
@@ -52,9 +53,16 @@ class Recording:
             data = path.read_bytes()
             if hashlib.sha256(data).hexdigest() == file["sha256"]:
                 rig = yaml.safe_load(data)
-                shared = rig.get("channel_defaults", {}).get("limits", {})
-                return {c["name"]: {**shared, **c.get("limits", {})} for c in rig["channels"]}
+                shared = rig.get("channel_defaults", {})
+                self.rest_kpa = {c["name"]: {**shared, **c}.get("rest_kpa", 0) for c in rig["channels"]}
+                return {c["name"]: {**shared.get("limits", {}), **c.get("limits", {})} for c in rig["channels"]}
         return {}
+
+    def rest(self, name):
+        """Of a channel: rest_kpa, or the end of its limits that is nearest to it."""
+        limits = self.limits.get(name)
+        rest = self.rest_kpa.get(name, 0)
+        return rest if limits is None else max(limits["pressure_min_kpa"], min(rest, limits["pressure_max_kpa"]))
 
     def says(self, row, sentence):
         self.wrong.append(f"{self.folder.name}: {float(row['time_s']):.6f} s, {row['channel']}: {sentence}")
@@ -66,7 +74,7 @@ class Recording:
             self.check_range(name, rows)
             for before, row in zip(rows, rows[1:]):
                 self.check_step(name, before, row)
-                self.check_fall(name, before, row, last=row is rows[-1])
+                self.check_return(name, before, row, last=row is rows[-1])
             self.check_results(rows)
         self.check_events()
         return self.wrong
@@ -99,30 +107,36 @@ class Recording:
                 self.says(row, f"{command} kPa is out of the range of its limits")
 
     def check_step(self, name, before, row):
-        """From one tick to the next: states as drawn, rises only in a sequence and within the slew."""
+        """From one tick to the next: states as drawn, away from rest only in a sequence and within the slew."""
         if row["state"] != before["state"] and row["state"] not in NEXT[before["state"]]:
             self.says(row, f"{before['state']} is followed by {row['state']}")
-        change = float(row["pressure_command_kpa"]) - float(before["pressure_command_kpa"])
-        if change <= CELL:
-            return
-        if row["state"] not in MAY_RISE:
-            self.says(row, f"the command rises by {change:.6f} kPa while {row['state']}")
-        limits = self.limits.get(name)
-        if limits is not None:
-            # Ticks that the loop lost do not add to what it may do in one.
-            allowed = limits["slew_up_kpa_per_s"] * self.about["decimation"] / self.about["rate_hz"]
-            if change > allowed + CELL:
-                self.says(row, f"the command rises by {change:.6f} kPa in a tick, {allowed:.6f} are its slew")
+        for side, slew in ((1, "slew_up_kpa_per_s"), (-1, "slew_down_kpa_per_s")):
+            change = self.away(name, row, side) - self.away(name, before, side)
+            if change <= CELL:
+                continue
+            if row["state"] not in MAY_RISE:
+                self.says(row, f"the command moves away from rest by {change:.6f} kPa while {row['state']}")
+            if name in self.limits and change > self.allowed(name, slew) + CELL:
+                self.says(row, f"the command leaves rest by {change:.6f} kPa in a tick, "
+                               f"{self.allowed(name, slew):.6f} are its slew")
 
-    def check_fall(self, name, before, row, last):
+    def check_return(self, name, before, row, last):
         """Within the slew, but for what is written in one step: under a fault, and as the last of all."""
-        limits = self.limits.get(name)
-        if limits is None or row["state"] == "faulted" or last:
+        if name not in self.limits or row["state"] == "faulted" or last:
             return
-        fall = float(before["pressure_command_kpa"]) - float(row["pressure_command_kpa"])
-        allowed = limits["slew_down_kpa_per_s"] * self.about["decimation"] / self.about["rate_hz"]
-        if fall > allowed + CELL:
-            self.says(row, f"the command falls by {fall:.6f} kPa in a tick, {allowed:.6f} are its slew")
+        for side, slew in ((1, "slew_down_kpa_per_s"), (-1, "slew_up_kpa_per_s")):
+            change = self.away(name, before, side) - self.away(name, row, side)
+            if change > self.allowed(name, slew) + CELL:
+                self.says(row, f"the command returns to rest by {change:.6f} kPa in a tick, "
+                               f"{self.allowed(name, slew):.6f} are its slew")
+
+    def away(self, name, row, side):
+        """How far a command is above rest, or below it with side -1."""
+        return max(0.0, side * (float(row["pressure_command_kpa"]) - self.rest(name)))
+
+    def allowed(self, name, slew):
+        """In a tick. Ticks that the loop lost do not add to what it may do in one."""
+        return self.limits[name][slew] * self.about["decimation"] / self.about["rate_hz"]
 
     # --- answers
 

@@ -81,8 +81,8 @@ class Recordings(bench.BenchTest):
         def go_on_under_a_fault(rows):
             rows[-1]["state"] = rows[-2]["state"] = "running"
 
-        for change, sentence in ((rise, "while faulted"), (leave_range, "out of the range"), (jump, "the command rises by 1"),
-                                 (fall, "the command falls by"),
+        for change, sentence in ((rise, "while faulted"), (leave_range, "out of the range"), (jump, "the command leaves rest by 1"),
+                                 (fall, "the command returns to rest by"),
                                  (lose_a_row, "out of order"), (lose_a_tick, "run.json says"), (swap, "its time follows"),
                                  (hold_blindly, "HOLDING from a reading that is stale"),
                                  (go_on_under_a_fault, "faulted is followed by running")):

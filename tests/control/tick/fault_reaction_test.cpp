@@ -26,15 +26,16 @@ std::function<void(SimulatedRig&)> validity(std::optional<model::Validity> value
   return [value](SimulatedRig& rig) { rig.fault[1].validity = value; };
 }
 
+RigSettings that_watches_all(RigSettings rig) {
+  rig.faults.slipped_cycles = 10;
+  rig.faults.pressure_cycles = 10;
+  rig.faults.pressure_tolerance_kpa = 5;
+  rig.faults.pressure_delay_s = 0.3;
+  return rig;
+}
+
 const RigSettings& base() {
-  static const RigSettings settings = [] {
-    RigSettings rig = two_finger_settings();
-    rig.faults.slipped_cycles = 10;
-    rig.faults.pressure_cycles = 10;
-    rig.faults.pressure_tolerance_kpa = 5;
-    rig.faults.pressure_delay_s = 0.3;
-    return rig;
-  }();
+  static const RigSettings settings = that_watches_all(two_finger_settings());
   return settings;
 }
 
@@ -88,7 +89,14 @@ const std::vector<PhaseCase> phase_cases{{"idle", Phase::idle, -1, 0.5},
                                          {"holding", Phase::holding, 2, 1.0},
                                          {"releasing", Phase::releasing, 3, 0.2}};
 
-using Parameters = std::tuple<std::size_t, std::size_t, SafeAction>;
+/// Below its rest pressure the rig plays vacuum_grip, which has no approach.
+const std::vector<PhaseCase> vacuum_phases{{"idle", Phase::idle, -1, 0.5},
+                                           {"evacuating", Phase::closing, 0, 0.4},
+                                           {"gripping", Phase::closing, 0, 1.2},
+                                           {"holding", Phase::holding, 1, 1.0},
+                                           {"releasing", Phase::releasing, 2, 0.2}};
+
+using Parameters = std::tuple<std::size_t, std::size_t, SafeAction, bool>;
 
 class FaultReaction : public testing::TestWithParam<Parameters> {
  protected:
@@ -105,14 +113,15 @@ class FaultReaction : public testing::TestWithParam<Parameters> {
     ASSERT_NE(rig.output().state, State::faulted);
   }
 
-  RigSettings settings = base();
-  PreparedSequence pick = example_sequence("pick_stone", settings);
+  const bool vacuum = std::get<3>(GetParam());
+  RigSettings settings = vacuum ? that_watches_all(vacuum_settings()) : base();
+  PreparedSequence pick = vacuum ? vacuum_grip(settings) : example_sequence("pick_stone", settings);
 };
 
 TEST_P(FaultReaction, LatchesActsAndStaysUntilAcknowledged) {
-  const auto [which, when, action] = GetParam();
+  const auto [which, when, action, evacuates] = GetParam();
   const FaultCase fault = fault_cases()[which];
-  const PhaseCase& phase = phase_cases[when];
+  const PhaseCase& phase = (evacuates ? vacuum_phases : phase_cases)[when];
   settings.safety.safe_action.fill(action == SafeAction::vent ? SafeAction::hold : SafeAction::vent);
   settings.safety.safe_action[static_cast<std::size_t>(phase.phase)] = action;
   SimulatedRig rig(settings);
@@ -133,7 +142,7 @@ TEST_P(FaultReaction, LatchesActsAndStaysUntilAcknowledged) {
     EXPECT_EQ(rig.result(0), GripResult::error);
   }
 
-  rig.run(1);  // SimulatedRig checks that no command rises meanwhile
+  rig.run(1);  // SimulatedRig checks that no command moves away from rest meanwhile
   const bool vents = fault.always_vents || action == SafeAction::vent;
   for (std::size_t i = 0; i < 2; ++i) {
     EXPECT_NEAR(rig.board_kpa(i), vents ? 0 : at_latch_kpa, 1.5);
@@ -160,7 +169,7 @@ TEST_P(FaultReaction, LatchesActsAndStaysUntilAcknowledged) {
   EXPECT_EQ(rig.output().channels[0].command_kpa, rest_kpa) << "acknowledging moves nothing";
   EXPECT_EQ(rig.result(0), GripResult::none);
 
-  if (rest_kpa > 0) {  // a held finger: what it holds is unknown, so it is vented before it grips anew
+  if (rest_kpa != 0) {  // a held finger: what it holds is unknown, so it is vented before it grips anew
     rig.request(Request::Kind::vent);
     ASSERT_TRUE(rig.run_until(State::idle, 2));
   }
@@ -172,14 +181,17 @@ TEST_P(FaultReaction, LatchesActsAndStaysUntilAcknowledged) {
 }
 
 std::string case_name(const testing::TestParamInfo<Parameters>& test) {
+  const bool vacuum = std::get<3>(test.param);
   return std::string(fault_cases()[std::get<0>(test.param)].name) + "_while_" +
-         phase_cases[std::get<1>(test.param)].name + "_" + std::string(name_of(std::get<2>(test.param)));
+         (vacuum ? vacuum_phases : phase_cases)[std::get<1>(test.param)].name + "_" +
+         std::string(name_of(std::get<2>(test.param))) + (vacuum ? "_below_rest" : "");
 }
 
 INSTANTIATE_TEST_SUITE_P(AllFaultsInAllPhases, FaultReaction,
                          testing::Combine(testing::Range<std::size_t>(0, fault_cases().size()),
                                           testing::Range<std::size_t>(0, phase_cases.size()),
-                                          testing::Values(SafeAction::vent, SafeAction::hold)),
+                                          testing::Values(SafeAction::vent, SafeAction::hold),
+                                          testing::Bool()),
                          case_name);
 
 class SingleFault : public testing::Test {

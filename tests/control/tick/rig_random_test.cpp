@@ -14,11 +14,12 @@ namespace {
 
 class Chaos {
  public:
-  explicit Chaos(std::uint64_t seed) : random_(seed), settings_(make_settings()), rig_(settings_, seed) {
+  explicit Chaos(std::uint64_t seed) : random_(seed), settings_(make_settings(seed)), rig_(settings_, seed) {
     for (const char* name :
          {"pick_stone", "pick_screw", "empty_grip", "track_sine", "pressure_staircase", "hand_over"}) {
       sequences_.push_back(example_sequence(name, settings_));
     }
+    if (settings_.channels[0].limits.pressure_min_kpa < 0) sequences_.push_back(vacuum_grip(settings_));
   }
 
   void run(int ticks) {
@@ -40,8 +41,12 @@ class Chaos {
     return std::uniform_int_distribution<Number>(lowest, highest)(random_);
   }
 
-  RigSettings make_settings() {
-    RigSettings settings = two_finger_settings();
+  /// Every third rig goes to both sides of its rest pressure, every sixth rests at 10 kPa.
+  RigSettings make_settings(std::uint64_t seed) {
+    RigSettings settings = seed % 3 == 0 ? vacuum_settings() : two_finger_settings();
+    if (seed % 6 == 0) {
+      for (ChannelSettings& channel : settings.channels) channel.limits.rest_kpa = 10;
+    }
     for (SafeAction& action : settings.safety.safe_action) {
       action = chance(0.5) ? SafeAction::vent : SafeAction::hold;
     }

@@ -1,0 +1,193 @@
+// A rig from -40 to 60 kPa that rests at 0 kPa: every way back ends at rest, from either side of it.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "control/sequences/prepare_sequence.h"
+#include "control/sequences/sequence_file.h"
+#include "tests/control/rig_fixture.h"
+
+namespace softgrip::control::vacuum_rig_test {
+namespace {
+
+class VacuumRig : public testing::Test {
+ protected:
+  /// Holds -30 kPa.
+  void hold_vacuum(SimulatedRig& rig) {
+    ASSERT_TRUE(rig.run_until(State::idle, 1));
+    rig.request(Request::Kind::start, &grip);
+    ASSERT_TRUE(rig.run_until_step(1, 20));
+    ASSERT_EQ(rig.result(0), GripResult::holding);
+    ASSERT_NEAR(rig.board_kpa(0), -30, 1e-9);
+  }
+  static double command(const SimulatedRig& rig) { return rig.output().channels[0].command_kpa; }
+  /// What is wrong with a sequence for this rig.
+  std::string refusal(const std::string& steps) const {
+    document::Problems problems;
+    const auto sequence =
+        read_sequence(document::parse("test.yaml", "name: x\nsteps:\n" + steps, problems), problems);
+    if (sequence) static_cast<void>(prepare(*sequence, settings, problems));
+    return problems.format();
+  }
+
+  RigSettings settings = vacuum_settings();
+  PreparedSequence grip = vacuum_grip(settings);
+};
+
+TEST_F(VacuumRig, StartsAndIdlesAtRest) {
+  SimulatedRig rig(settings);
+  EXPECT_EQ(rig.output().channels[0].command_kpa, 0);
+  ASSERT_TRUE(rig.run_until(State::idle, 1));
+  rig.run(2);
+  EXPECT_EQ(rig.board_kpa(0), 0);
+  EXPECT_EQ(rig.output().channels[0].safe_kpa, 0);
+  EXPECT_EQ(rig.output().under_pressure, 0U);
+}
+
+TEST_F(VacuumRig, AVacuumIsGrippedHeldAndReleasedToRest) {
+  SimulatedRig rig(settings);
+  hold_vacuum(rig);
+  EXPECT_EQ(rig.output().channels[0].evidence, GripEvidence::pressure);
+  ASSERT_TRUE(rig.run_until_step(2, 10));
+  ASSERT_TRUE(rig.run_until(State::idle, 10));
+  EXPECT_EQ(rig.result(0), GripResult::released);
+  EXPECT_EQ(rig.board_kpa(0), 0);
+  EXPECT_EQ(rig.count(Event::Kind::fault_latched), 0U);
+}
+
+TEST_F(VacuumRig, AVentAndAReleaseComeUpToRestWithinTheSlew) {
+  for (const Request::Kind kind : {Request::Kind::vent, Request::Kind::release}) {
+    SimulatedRig rig(settings);  // it checks the slew
+    hold_vacuum(rig);
+    rig.request(kind);
+    ASSERT_TRUE(rig.run_until(State::idle, 10));
+    EXPECT_EQ(rig.board_kpa(0), 0);
+    EXPECT_EQ(rig.result(0), GripResult::released);
+  }
+}
+
+TEST_F(VacuumRig, AVacuumThatStaysIsSaid) {
+  settings.safety.safe_action.fill(SafeAction::hold);
+  const PreparedSequence held = vacuum_grip(settings);
+  SimulatedRig rig(settings);
+  ASSERT_TRUE(rig.run_until(State::idle, 1));
+  rig.request(Request::Kind::start, &held);
+  ASSERT_TRUE(rig.run_until_step(1, 20));
+  rig.request(Request::Kind::stop);
+  ASSERT_TRUE(rig.run_until(State::idle, 2));
+  EXPECT_EQ(rig.output().under_pressure, 3U);
+  EXPECT_NEAR(command(rig), -30, 1e-9);
+  rig.request(Request::Kind::release);
+  ASSERT_TRUE(rig.run_until(State::stopping, 1));
+  ASSERT_TRUE(rig.run_until(State::idle, 2));
+  EXPECT_EQ(rig.output().under_pressure, 0U);
+  EXPECT_EQ(command(rig), 0);
+}
+
+TEST_F(VacuumRig, AVacuumThatIsLostIsAPartLost) {
+  SimulatedRig rig(settings);
+  hold_vacuum(rig);
+  rig.fault[0].pressure_offset_kpa = 10;
+  ASSERT_TRUE(rig.run_until(State::idle, 10));
+  EXPECT_EQ(rig.result(0), GripResult::part_lost);
+  EXPECT_EQ(rig.board_kpa(0), 0);
+}
+
+TEST_F(VacuumRig, AVacuumThatDoesNotComeIsNoPart) {
+  SimulatedRig rig(settings);
+  rig.fault[0].pressure_offset_kpa = rig.fault[1].pressure_offset_kpa = 10;
+  ASSERT_TRUE(rig.run_until(State::idle, 1));
+  rig.request(Request::Kind::start, &grip);
+  ASSERT_TRUE(rig.run_until(State::running, 12));
+  ASSERT_TRUE(rig.run_until(State::idle, 20));
+  EXPECT_EQ(rig.result(0), GripResult::no_part);
+}
+
+TEST_F(VacuumRig, ACommandBelowRestThatTheBoardDoesNotHaveIsForgotten) {
+  settings.safety.safe_action.fill(SafeAction::hold);
+  const PreparedSequence held = vacuum_grip(settings);
+  for (const double outputs_kpa : {-4.0, 0.0, 25.0}) {
+    SimulatedRig rig(settings);
+    ASSERT_TRUE(rig.run_until(State::idle, 1));
+    rig.request(Request::Kind::start, &held);
+    ASSERT_TRUE(rig.run_until_step(1, 20));
+    rig.outputs_kpa = {outputs_kpa, outputs_kpa};
+    rig.request(Request::Kind::stop);
+    rig.tick();
+    const double rise_kpa = settings.channels[0].limits.slew_up_kpa_per_s / settings.rate_hz;
+    EXPECT_LE(command(rig), -30 + rise_kpa + 1e-9) << "what is on its way may be written";
+    rig.run(1);
+    EXPECT_EQ(command(rig), std::min(outputs_kpa, 0.0)) << "never past rest";
+  }
+}
+
+TEST_F(VacuumRig, WhatTheBoardHasVentedIsGoneAtOnce) {
+  SimulatedRig rig(settings);
+  hold_vacuum(rig);
+  rig.bus_fault = FaultCode::board_watchdog_tripped;
+  rig.outputs_kpa = {0, 0};
+  rig.tick();
+  EXPECT_EQ(rig.output().state, State::faulted);
+  EXPECT_EQ(command(rig), 0);
+  EXPECT_EQ(rig.output().channels[0].safe_kpa, 0);
+}
+
+TEST_F(VacuumRig, AReleaseToAPressureGoesNoFurtherThanRest) {
+  const PreparedSequence release = sequence_of(
+      "name: x\nsteps:\n"
+      "  - move: {pressure_kpa: -20, duration_s: 0.2}\n"
+      "  - release: {pressure_kpa: 15, duration_s: 0.2, purge_s: 0.1, timeout_s: 5, on_fail: vent}\n",
+      settings);
+  SimulatedRig rig(settings);
+  ASSERT_TRUE(rig.run_until(State::idle, 1));
+  rig.request(Request::Kind::start, &release);
+  ASSERT_TRUE(rig.run_until_step(1, 20));
+  while (rig.output().state == State::running) {
+    rig.tick();
+    ASSERT_LE(command(rig), 0) << "the other side of rest is not on the way";
+  }
+  EXPECT_EQ(command(rig), 0);
+}
+
+TEST_F(VacuumRig, DetectionBelowRestIsRefused) {
+  const std::string rest = ", settle_s: 0.2, timeout_s: 5, on_fail: vent}\n";
+  const std::string detection = ", verify: {by: detection, window_s: 0.2}" + rest;
+  EXPECT_NE(
+      refusal("  - grip: {pressure_kpa: -20, duration_s: 1" + detection).find("below its rest pressure"),
+      std::string::npos);
+  EXPECT_NE(
+      refusal("  - grip: {displacement_mm: -6, duration_s: 1" + detection).find("below its rest pressure"),
+      std::string::npos);
+  EXPECT_EQ(refusal("  - grip: {pressure_kpa: 20, duration_s: 1" + detection), "");
+}
+
+TEST_F(VacuumRig, ABoundThatRestSatisfiesIsRefused) {
+  const auto verified_by = [&](const std::string& bound) {
+    return refusal("  - grip: {pressure_kpa: -20, duration_s: 1, verify: {by: pressure, window_s: 0.2, " +
+                   bound + "}, settle_s: 0.2, timeout_s: 5, on_fail: vent}\n");
+  };
+  EXPECT_NE(verified_by("pressure_min_kpa: -25").find("also has at rest (0 kPa)"), std::string::npos);
+  EXPECT_NE(verified_by("pressure_max_kpa: 5").find("also has at rest (0 kPa)"), std::string::npos);
+  EXPECT_NE(verified_by("pressure_min_kpa: -25, pressure_max_kpa: -5").find("exclude each other"),
+            std::string::npos);
+  EXPECT_EQ(verified_by("pressure_max_kpa: -15"), "");
+}
+
+/// The published steps go up from rest; a ceiling must not evacuate.
+TEST_F(VacuumRig, StepsAboveRestWorkAsOnARigWithoutVacuum) {
+  const PreparedSequence pick = example_sequence("pick_stone", settings);
+  SimulatedRig rig(settings);
+  rig.stone(12);
+  ASSERT_TRUE(rig.run_until(State::idle, 1));
+  rig.request(Request::Kind::start, &pick);
+  ASSERT_TRUE(rig.run_until_step(2, 20));
+  EXPECT_EQ(rig.result(0), GripResult::holding);
+  ASSERT_TRUE(rig.run_until(State::idle, 30));
+  EXPECT_EQ(rig.result(0), GripResult::released);
+  EXPECT_EQ(rig.board_kpa(0), 0);
+}
+
+}  // namespace
+}  // namespace softgrip::control::vacuum_rig_test
