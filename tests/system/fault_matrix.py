@@ -1,6 +1,7 @@
 """Runs cells of fault_matrix.yaml: a real softgripd, a real softgrip-rig, real sockets, and a spoiled wire between.
 
 scripts/fault_matrix.sh runs all of them and publishes docs/reference/fault-matrix.md; test_fault_matrix.py has a few.
+With --vacuum the same faults meet the rig of config/vacuum, whose outputs are below their rest pressure.
 """
 
 import argparse
@@ -45,6 +46,22 @@ steps:
   - hold: {{hold_s: {hold_s}, reverify_every_s: 0.25, on_fail: release}}
   - release: {{duration_s: 3, purge_s: 0.5, timeout_s: 8, on_fail: vent}}
 """
+
+# Below rest, as slow as the other one.
+VACUUM_SEQUENCE = """name: matrix
+steps:
+  - grip:
+      pressure_kpa: -25
+      speed_kpa_per_s: 10
+      settle_s: 0.3
+      verify: {{by: pressure, window_s: 0.2, pressure_max_kpa: -20}}
+      timeout_s: 8
+      on_fail: release
+  - hold: {{hold_s: {hold_s}, reverify_every_s: 0.25, on_fail: release}}
+  - release: {{duration_s: 3, purge_s: 0.5, timeout_s: 8, on_fail: vent}}
+"""
+# What the 12 bits of an output say at its rest pressure: 0 kPa is 0 V on the shipped rig, 5 V on the vacuum rig.
+REST_RAW = {False: 0, True: 2047.5}
 
 
 class Wrong(AssertionError):
@@ -104,7 +121,8 @@ def shipped_rig():
 class Cell:
     """One fault in one phase."""
 
-    def __init__(self, table, name, phase):
+    def __init__(self, table, name, phase, vacuum=False):
+        self.vacuum = vacuum
         self.table = table
         self.name = name
         self.phase = phase
@@ -121,7 +139,7 @@ class Cell:
     # --- what runs
 
     def rig_file(self, port):
-        text = (self.folder / "config" / "rig_tcp.yaml").read_text()
+        text = self.vacuum_rig() if self.vacuum else (self.folder / "config" / "rig_tcp.yaml").read_text()
         changes = {"port": port, **self.table.rig}
         for key, value in changes.items():
             text, count = re.subn(rf"\b{key}: [-\d.]+", f"{key}: {value}", text)
@@ -133,6 +151,15 @@ class Cell:
         path = self.folder / "config" / "matrix.yaml"
         path.write_text(text + (digital_lines.SECTION if self.has_lines() else ""))
         return path
+
+    def vacuum_rig(self):
+        """The vacuum rig on the board that the wire knows, with the middle of its range as the safe value."""
+        boards = self.folder / "config" / "boards"
+        board, count = re.subn(r"safe_v: \[0, 0\]", "safe_v: [5, 5]", (boards / "adam-6024.yaml").read_text())
+        require(count == 1, "adam-6024.yaml has no safe_v")
+        (boards / "adam-6024-vacuum.yaml").write_text(board)
+        text = (self.folder / "config" / "vacuum" / "rig_tcp.yaml").read_text()
+        return text.replace("map: board.yaml", "map: boards/adam-6024-vacuum.yaml").replace("../", "")
 
     def has_lines(self):
         return self.fault.get("rig") == "lines"
@@ -149,7 +176,10 @@ class Cell:
             self.processes.append(self.emulator)
             self.proxy = serial_rig.Watcher(self.emulator)
             return
-        self.emulator = bench.Emulator(self.folder, *arguments)
+        if self.vacuum:
+            self.emulator = bench.Emulator(self.folder, "--rig", self.rig_file(1502), *arguments, board=None)
+        else:
+            self.emulator = bench.Emulator(self.folder, *arguments)
         self.processes.append(self.emulator)
         self.proxy = wire_proxy.Proxy(self.emulator.port)
         self.rig_path = self.rig_file(self.proxy.port)
@@ -226,7 +256,7 @@ class Cell:
         if self.phase in ("connect", "idle"):
             time.sleep(0.2)
             return
-        text = SEQUENCE.format(hold_s=0.2 if self.phase == "venting" else 6)
+        text = (VACUUM_SEQUENCE if self.vacuum else SEQUENCE).format(hold_s=0.2 if self.phase == "venting" else 6)
         def accepted():
             reply = self.daemon.ask("start", sequence="matrix", sequence_text=text)
             require(reply["ok"] or "refusal" in reply["error"], f"start: {reply}")
@@ -253,11 +283,15 @@ class Cell:
     def outputs_kpa(self):
         return self.emulator.commands_kpa()
 
+    def away_kpa(self):
+        """How far the outputs are from their rest pressure, which is 0 kPa."""
+        return [abs(kpa) for kpa in self.outputs_kpa()]
+
     def check_waits(self):
         self.observe()
         status = self.daemon.status()
         require(status["state"] == "starting" and not self.latched(), f"{status['state']}, {self.latched()}")
-        require(max(self.outputs_kpa()) < SETTLED_KPA, f"outputs {self.outputs_kpa()}")
+        require(max(self.away_kpa()) < SETTLED_KPA, f"outputs {self.outputs_kpa()}")
         self.clear_fault()
         self.daemon.wait_for_state("idle")
 
@@ -300,18 +334,20 @@ class Cell:
         action = self.action(code)
         self.measured["outputs"] = action
         if action == "vent":
-            bench.wait_for("vented outputs", lambda: max(self.outputs_kpa()) <= SETTLED_KPA, 10)
+            bench.wait_for("vented outputs", lambda: max(self.away_kpa()) <= SETTLED_KPA, 10)
             self.measured["by"] = "board" if self.emulator.status()["watchdog_tripped"] else "daemon"
             return
         held = self.outputs_kpa()
-        require(min(held) > 5, f"held outputs {held}")
+        require(min(self.away_kpa()) > 5, f"held outputs {held}")
         self.observe(30)
         require(all(abs(a - b) <= SETTLED_KPA for a, b in zip(held, self.outputs_kpa())), f"{held} became {self.outputs_kpa()}")
 
     def check_no_motion(self, since):
+        rest = REST_RAW[self.vacuum]
         writes = [words for _, words in self.proxy.writes[since:]]
         for before, after in zip(writes, writes[1:]):
-            require(all(b <= a for a, b in zip(before, after)), f"an output rose after the fault: {before} to {after}")
+            require(all(abs(b - rest) <= abs(a - rest) for a, b in zip(before, after)),
+                    f"an output moved away from rest after the fault: {before} to {after}")
 
     def acknowledge(self):
         """The cause is gone: it is accepted, the rig becomes idle, and nothing moves."""
@@ -336,7 +372,7 @@ class Cell:
             require(self.daemon.results() == ["HOLDING"] * 2, f"{self.daemon.results()}")
         elif self.phase == "venting":
             self.daemon.wait_for_event("sequence_finished", code="done")
-            require(max(self.outputs_kpa()) <= SETTLED_KPA, f"outputs {self.outputs_kpa()}")
+            require(max(self.away_kpa()) <= SETTLED_KPA, f"outputs {self.outputs_kpa()}")
         self.clear_fault()
         require(not self.latched(), "a fault at the end")
 
@@ -402,7 +438,7 @@ class Cell:
         loop = self.daemon.result("statistics")["loop"]
         slips = loop["slips_woken_late"] + loop["slips_took_long"]
         require(self.daemon.end() == 0, "softgripd did not end with 0")
-        require(max(self.outputs_kpa()) <= SETTLED_KPA or self.expected.get("outputs") == "spoiled",
+        require(max(self.away_kpa()) <= SETTLED_KPA or self.expected.get("outputs") == "spoiled",
                 f"outputs at the end {self.outputs_kpa()}")
         self.check_recordings(slips)
         if fault and "within" in self.expected:
@@ -432,9 +468,9 @@ def hurry(yes):
         os.sched_setscheduler(0, os.SCHED_FIFO if yes else os.SCHED_OTHER, os.sched_param(30 if yes else 0))
 
 
-def run_once(name, phase):
+def run_once(name, phase, vacuum=False):
     hurry(False)
-    cell = Cell(Table(), name, phase)
+    cell = Cell(Table(), name, phase, vacuum)
     wrong = log = skipped = None
     try:
         shutil.copytree(bench.SOURCE / "config", cell.folder / "config")
@@ -452,10 +488,10 @@ def run_once(name, phase):
             "skipped": skipped}
 
 
-def run_cell(name, phase, attempts=2):
+def run_cell(name, phase, attempts=2, vacuum=False):
     """Once more if it went wrong: the machine may have stood still. How often is told and published."""
     for attempt in range(1, attempts + 1):
-        result = run_once(name, phase)
+        result = run_once(name, phase, vacuum)
         result["attempts"] = attempt
         if not result["wrong"]:
             break
@@ -479,11 +515,14 @@ def main():
     parser.add_argument("--attempts", type=int, default=2)
     parser.add_argument("--out", type=pathlib.Path, help="keep the results as JSON")
     parser.add_argument("--keep", type=pathlib.Path, help="results of an earlier --out, for the cells that are not run now")
+    parser.add_argument("--vacuum", action="store_true", help="on the rig of config/vacuum, but for cells of a serial rig")
     parser.add_argument("--page", action="store_true", help=f"write {PAGE.relative_to(bench.SOURCE)}")
     arguments = parser.parse_args()
     table = Table()
 
     def wanted(name, phase):
+        if arguments.vacuum and table.faults[name].get("rig") == "serial":
+            return False
         return not arguments.cells or any(c in (name, f"{name}/{phase}", f"/{phase}") for c in arguments.cells)
 
     cells = [cell for cell in table.cells() if wanted(*cell)]
@@ -492,7 +531,7 @@ def main():
     began = time.monotonic()
     results = []
     with concurrent.futures.ProcessPoolExecutor(arguments.jobs) as pool:
-        futures = [pool.submit(run_cell, *cell, arguments.attempts) for cell in cells]
+        futures = [pool.submit(run_cell, *cell, arguments.attempts, arguments.vacuum) for cell in cells]
         for future in concurrent.futures.as_completed(futures):
             results.append(future.result())
             show(results[-1])

@@ -15,13 +15,13 @@ is marked **WRONG** here and fails the command. A part of it runs with every tes
 - **F103 20/22 vent**: this fault latched 20 cycles after its first effect, where 22 are allowed by the thresholds below;
   then the outputs were vented. *board* says that the board's own watchdog did it because nothing could be written.
   Counted are ticks in the recording, from the first message that was touched to the tick that latched.
-- **waits**: the daemon stays in `starting`, outputs at their lowest, and becomes idle when the cause is gone.
+- **waits**: the daemon stays in `starting`, outputs at rest, and becomes idle when the cause is gone.
 - **ridden**: no fault, and the grip's result is what it would have been.
 - **unseen**: something is wrong and the software cannot know. The note says why, and what is the guard instead.
 - *spoiled*: what is written does not arrive as it was written, so no safe action of the daemon helps, only the means of
   board and bench (relief valve, dump valve in the emergency-stop circuit).
 
-With every cell it was checked that no output rose after the fault, that a fault is acknowledged once its cause is gone
+With every cell it was checked that no output moved away from rest after the fault, that a fault is acknowledged once its cause is gone
 and moves nothing, that recordings are complete, no row missing between the first and the last but for ticks that the
 loop itself lost, and that the fault stands in `run.json`.
 """

@@ -10,13 +10,13 @@ import fault_matrix
 
 
 class FaultMatrix(unittest.TestCase):
-    def check(self, *cells):
+    def check(self, *cells, vacuum=False):
         table = fault_matrix.Table()
         for cell in cells:
             name, phase = cell.split("/")
             self.assertIn((name, phase), table.cells())
             with self.subTest(cell):
-                result = fault_matrix.run_cell(name, phase, attempts=3)
+                result = fault_matrix.run_cell(name, phase, attempts=3, vacuum=vacuum)
                 if result["skipped"]:
                     self.skipTest(result["skipped"])
                 self.assertIsNone(result["wrong"], f"{result['wrong']}\n{result['log']}")
@@ -41,6 +41,15 @@ class FaultMatrix(unittest.TestCase):
 
     def test_pauses(self):
         self.check("process_above/holding", "loop_above/closing", "serial_loop_above/closing")
+
+    def test_below_rest_the_wire(self):
+        self.check("silent/idle", "loss_of_requests/closing", "loss_of_replies/holding", "delay/venting", vacuum=True)
+
+    def test_below_rest_the_board_and_the_line(self):
+        self.check("sensor_out_of_range/holding", "line_burst/closing", "supply_lost/holding", vacuum=True)
+
+    def test_below_rest_pauses(self):
+        self.check("process_above/holding", "loop_above/closing", vacuum=True)
 
     @unittest.skipUnless(digital_lines.PRELOADED.exists(), "not built: a sanitizer's runtime must be loaded first")
     def test_digital_lines(self):

@@ -16,7 +16,8 @@ constexpr unsigned looks_first_every = 8;
 
 Hardware::Hardware(HardwareSettings settings) : settings_(std::move(settings)) {
   for (const simulation::PlantSettings& plant : settings_.plants) plants_.emplace_back(plant);
-  outputs_kpa_.assign(plants_.size(), 0);
+  outputs_kpa_ = settings_.safe_kpa;
+  put_out();
 }
 
 void Hardware::put_out() {
@@ -40,7 +41,7 @@ void Hardware::move_to(Nanoseconds now) {
   if (settings_.watchdog > 0 && !tripped_ && fed_at_ > 0 && fed_at_ + settings_.watchdog < now) {
     advance_plants(fed_at_ + settings_.watchdog);
     tripped_ = true;
-    std::fill(outputs_kpa_.begin(), outputs_kpa_.end(), 0.0);
+    outputs_kpa_ = settings_.safe_kpa;
     put_out();
     if (settings_.on_trip) settings_.on_trip();
   }

@@ -15,9 +15,10 @@ namespace softgrip::world {
 
 struct HardwareSettings {
   std::vector<simulation::PlantSettings> plants;
-  Nanoseconds watchdog = 0;    ///< outputs go to 0 after so long without a request; 0: none
-  bool trip_latches = true;    ///< writes are refused until the next connection; else the next one is taken
-  Nanoseconds plant_step = 0;  ///< how often outputs reach the air
+  std::vector<double> safe_kpa;  ///< one per plant: what the board puts out at first, and its watchdog
+  Nanoseconds watchdog = 0;      ///< outputs go to safe_kpa after so long without a request; 0: none
+  bool trip_latches = true;      ///< writes are refused until the next connection; else the next one is taken
+  Nanoseconds plant_step = 0;    ///< how often outputs reach the air
   std::function<void()> on_trip;  ///< the watchdog has vented
 };
 

@@ -1,6 +1,7 @@
 #include "tests/world/monitor.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include <fmt/format.h>
@@ -20,8 +21,13 @@ constexpr Nanoseconds trip_bound = ns_per_s / 2;
 /// of ours.
 constexpr Nanoseconds foreign_bound = ns_per_s / 2;
 
-double lowest(const control::RigSettings& rig, std::size_t channel) {
-  return rig.channels[channel].limits.pressure_min_kpa;
+double rest_of(const control::RigSettings& rig, std::size_t channel) {
+  return control::resting_kpa(rig.channels[channel].limits);
+}
+
+/// How far a pressure is on one side of rest: above it, or below it with `side` -1 [kPa].
+double away_kpa(double rest_kpa, double kpa, double side) {
+  return std::max(0.0, side * (kpa - rest_kpa));
 }
 
 bool may_follow(State before, State after) {
@@ -57,7 +63,8 @@ void Monitor::boots() {
   armed_ = armed_at_entry_ = false;
   last_began_ = 0;
   state_ = State::starting;
-  safe_kpa_.assign(rig_.channels.size(), 0);
+  safe_kpa_.clear();
+  for (std::size_t i = 0; i < rig_.channels.size(); ++i) safe_kpa_.push_back(rest_of(rig_, i));
   last_kpa_ = safe_kpa_;
   halted_by_ = 0;
   seen_by_ = {};
@@ -157,21 +164,15 @@ void Monitor::write(Nanoseconds began, Nanoseconds now, std::span<const double> 
   const double elapsed_s = last_began_ == 0 ? period_s : seconds(began - last_began_) + 2 * period_s;
   last_began_ = began;
   for (std::size_t i = 0; i < commands_kpa.size(); ++i) {
-    const control::LimitSettings& limits = rig_.channels[i].limits;
-    const double rise_kpa = commands_kpa[i] - outputs_kpa[i];
-    if (!foreign_ && rise_kpa > equal_kpa && !armed_at_entry_)
-      violate(now, "nothing rises unasked",
+    const double rest_kpa = rest_of(rig_, i);
+    const double allowed_kpa = control::no_further(rest_kpa, commands_kpa[i], outputs_kpa[i]);
+    if (!foreign_ && std::abs(commands_kpa[i] - allowed_kpa) > equal_kpa && !armed_at_entry_)
+      violate(now, "nothing moves away from rest unasked",
               fmt::format("channel {}: {:.3f} -> {:.3f} kPa in an exchange that began {:.4f} s ago", i,
                           outputs_kpa[i], commands_kpa[i], seconds(now - began)));
-    if (!foreign_ && rise_kpa > limits.slew_up_kpa_per_s * elapsed_s + equal_kpa)
-      violate(now, "outputs rise within their slew",
-              fmt::format("channel {}: {:.3f} -> {:.3f} kPa", i, outputs_kpa[i], commands_kpa[i]));
-    // From what was written last: a board that refuses writes stays behind.
-    const double fall_kpa = last_kpa_[i] - commands_kpa[i];
-    if (!safe_outputs && fall_kpa > limits.slew_down_kpa_per_s * elapsed_s + equal_kpa)
-      violate(now, "outputs fall within their slew, but for safe ones that no loop shapes",
-              fmt::format("channel {}: {:.3f} -> {:.3f} kPa", i, last_kpa_[i], commands_kpa[i]));
+    watch_way(now, i, outputs_kpa[i], commands_kpa[i], elapsed_s, safe_outputs);
     last_kpa_[i] = commands_kpa[i];
+    const control::LimitSettings& limits = rig_.channels[i].limits;
     if (commands_kpa[i] < limits.pressure_min_kpa - equal_kpa ||
         commands_kpa[i] > limits.pressure_max_kpa + equal_kpa)
       violate(now, "outputs stay in range", fmt::format("channel {}: {} kPa is written", i, commands_kpa[i]));
@@ -179,10 +180,30 @@ void Monitor::write(Nanoseconds began, Nanoseconds now, std::span<const double> 
   foreign_ = false;
 }
 
+/// On either side of rest, a channel leaves it and comes back to it within the slew limits.
+void Monitor::watch_way(Nanoseconds now, std::size_t channel, double output_kpa, double command_kpa,
+                        double elapsed_s, bool safe_outputs) {
+  const control::LimitSettings& limits = rig_.channels[channel].limits;
+  const double rest_kpa = rest_of(rig_, channel);
+  for (const double side : {1.0, -1.0}) {
+    const double leaving = side > 0 ? limits.slew_up_kpa_per_s : limits.slew_down_kpa_per_s;
+    const double returning = side > 0 ? limits.slew_down_kpa_per_s : limits.slew_up_kpa_per_s;
+    const double there_kpa = away_kpa(rest_kpa, command_kpa, side);
+    if (!foreign_ && there_kpa - away_kpa(rest_kpa, output_kpa, side) > leaving * elapsed_s + equal_kpa)
+      violate(now, "outputs leave rest within their slew",
+              fmt::format("channel {}: {:.3f} -> {:.3f} kPa", channel, output_kpa, command_kpa));
+    // From what was written last: a board that refuses writes stays behind.
+    const double last_kpa = last_kpa_[channel];
+    if (!safe_outputs && away_kpa(rest_kpa, last_kpa, side) - there_kpa > returning * elapsed_s + equal_kpa)
+      violate(now, "outputs return to rest within their slew, but for safe ones that no loop shapes",
+              fmt::format("channel {}: {:.3f} -> {:.3f} kPa", channel, last_kpa, command_kpa));
+  }
+}
+
 void Monitor::tripped(bool has_spoken) {
   armed_ = armed_at_entry_ = false;
   // What is written next begins there.
-  last_kpa_.assign(last_kpa_.size(), 0);
+  for (std::size_t i = 0; i < last_kpa_.size(); ++i) last_kpa_[i] = rest_of(rig_, i);
   // A daemon that has never spoken with the board cannot know.
   if (!trip_untold_ && has_spoken) trip_untold_ = 0;
 }
@@ -195,29 +216,30 @@ void Monitor::asked(control::Request::Kind kind) {
 void Monitor::passed(Nanoseconds now, const Excuse& excuse, std::span<const double> outputs_kpa) {
   const Nanoseconds duration = seen_ == 0 ? 0 : now - seen_;
   seen_ = now;
-  bool down = true;
+  bool rested = true;
   double slowest_s = 0;
   for (std::size_t i = 0; i < outputs_kpa.size(); ++i) {
-    down = down && outputs_kpa[i] <= lowest(rig_, i) + equal_kpa;
+    const double rest_kpa = rest_of(rig_, i);
+    rested = rested && std::abs(outputs_kpa[i] - rest_kpa) <= equal_kpa;
     const control::LimitSettings& limits = rig_.channels[i].limits;
-    slowest_s =
-        std::max(slowest_s, (limits.pressure_max_kpa - limits.pressure_min_kpa) / limits.slew_down_kpa_per_s);
+    slowest_s = std::max({slowest_s, (limits.pressure_max_kpa - rest_kpa) / limits.slew_down_kpa_per_s,
+                          (rest_kpa - limits.pressure_min_kpa) / limits.slew_up_kpa_per_s});
   }
   if (excuse.no_daemon) {
     dead_ = dead_.value_or(0) + duration;
-    if (watchdog_ > 0 && *dead_ > watchdog_ + 2 * duration && !down && !foreign_)
-      violate(now, "a board with a watchdog vents when the daemon is gone", "outputs are still up");
+    if (watchdog_ > 0 && *dead_ > watchdog_ + 2 * duration && !rested && !foreign_)
+      violate(now, "a board with a watchdog vents when the daemon is gone", "outputs are not at rest");
     return;
   }
   watch_foreign(now, excuse, duration);
   if (excuse.paused || excuse.no_line) return;
   if (vent_waits_) {
     *vent_waits_ += duration;
-    if (down) vent_waits_.reset();
+    if (rested) vent_waits_.reset();
   }
   if (vent_waits_ && *vent_waits_ > vent_bound + nanoseconds(slowest_s))
     violate(now, "a vent is carried out in time",
-            fmt::format("outputs are still up {:.3f} s of undisturbed time after it was asked",
+            fmt::format("outputs are not at rest {:.3f} s of undisturbed time after it was asked",
                         seconds(*vent_waits_)));
   if (trip_untold_) *trip_untold_ += duration;
   if (trip_untold_ && *trip_untold_ > trip_bound)
@@ -238,7 +260,7 @@ void Monitor::foreign_wrote(std::span<const double> outputs_kpa) noexcept {
 
 void Monitor::watch_foreign(Nanoseconds now, const Excuse& excuse, Nanoseconds duration) {
   if (!foreign_unseen_ || excuse.paused || excuse.line_but_for_foreign) return;
-  // Who is faulted already, or has not begun, writes the lowest pressures, and so may the other.
+  // Who is faulted already, or has not begun, writes the rest pressures, and so may the other.
   const bool answered = state_ == State::faulted || state_ == State::starting;
   foreign_unseen_ = answered ? 0 : *foreign_unseen_ + duration;
   if (*foreign_unseen_ > foreign_bound)
@@ -248,7 +270,8 @@ void Monitor::watch_foreign(Nanoseconds now, const Excuse& excuse, Nanoseconds d
 
 void Monitor::left(Nanoseconds now, std::span<const double> outputs_kpa) {
   for (std::size_t i = 0; i < outputs_kpa.size(); ++i) {
-    if (!foreign_ && outputs_kpa[i] > safe_kpa_[i] + equal_kpa)
+    const double allowed_kpa = control::no_further(rest_of(rig_, i), outputs_kpa[i], safe_kpa_[i]);
+    if (!foreign_ && std::abs(outputs_kpa[i] - allowed_kpa) > equal_kpa)
       violate(now, "the last outputs are the safe ones",
               fmt::format("channel {}: {} kPa, safe were {}", i, outputs_kpa[i], safe_kpa_[i]));
   }

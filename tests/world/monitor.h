@@ -40,7 +40,7 @@ class Monitor {
              std::span<const double> commands_kpa, bool safe_outputs);
   /// The daemon looked at its permission to move when this exchange began.
   void exchange_begins() noexcept { armed_at_entry_ = armed_; }
-  /// For a program without a loop: it may raise pressures, or may not any more.
+  /// For a program without a loop: it may move pressures away from rest, or may not any more.
   void may_rise(bool allowed) noexcept { armed_ = allowed; }
   /// Another master has written these.
   void foreign_wrote(std::span<const double> outputs_kpa) noexcept;
@@ -76,12 +76,14 @@ class Monitor {
   void watch_events(Nanoseconds now, const control::TickOutput& output);
   void watch_state(Nanoseconds now, const control::TickOutput& output);
   void watch_grips(Nanoseconds now, const control::TickOutput& output);
+  void watch_way(Nanoseconds now, std::size_t channel, double output_kpa, double command_kpa,
+                 double elapsed_s, bool safe_outputs);
   void watch_foreign(Nanoseconds now, const Excuse& excuse, Nanoseconds duration);
 
   const control::RigSettings& rig_;
   Nanoseconds watchdog_;
   std::optional<Violation> violation_;
-  bool armed_ = false;  // a start was accepted, and nothing since forbids to rise
+  bool armed_ = false;  // a start was accepted, and nothing since forbids to leave rest
   bool armed_at_entry_ = false;
   bool foreign_ = false;        // another master has written since our last write
   Nanoseconds last_began_ = 0;  // an exchange

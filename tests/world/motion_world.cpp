@@ -135,9 +135,10 @@ class MotionWorld {
     settings.channel = static_cast<std::size_t>(drawn() * static_cast<double>(around_.hardware.channels()));
     settings.may_move = true;
     const control::LimitSettings& limits = rig.settings.channels[settings.channel].limits;
-    const double span_kpa = limits.pressure_max_kpa - limits.pressure_min_kpa;
-    settings.low_kpa = limits.pressure_min_kpa + span_kpa / 6;
-    settings.high_kpa = limits.pressure_min_kpa + 2 * span_kpa / 3;
+    const double rest_kpa = control::resting_kpa(limits);
+    const double span_kpa = control::far_end_kpa(limits) - rest_kpa;
+    settings.low_kpa = rest_kpa + span_kpa / 6;
+    settings.high_kpa = rest_kpa + 2 * span_kpa / 3;
     settings.settle_s = settings.average_s = 0.5;
     settings.ramp_s = 4;
     PersonInWorld person(around_, settings.channel, derived_seed(seed_, result_.met.calls));
@@ -188,7 +189,7 @@ class MotionWorld {
                                      "the command ended with a result");
   }
 
-  /// The command reports that the board has confirmed the lowest pressures.
+  /// The command reports that the board has confirmed the rest pressures.
   void left() { around_.monitor.left(around_.scheduler.now(), around_.hardware.outputs_kpa()); }
 
   void tripped() {
@@ -205,7 +206,7 @@ class MotionWorld {
     written_.assign(commands.begin(), commands.end());
     up_ = false;
     for (std::size_t i = 0; i < commands.size(); ++i)
-      up_ = up_ || commands[i] > around_.shape.rig.settings.channels[i].limits.pressure_min_kpa;
+      up_ = up_ || commands[i] != control::resting_kpa(around_.shape.rig.settings.channels[i].limits);
     // After a lost exchange or a gap the pressure may fall in one step.
     const bool safe_outputs = !up_ || around_.excuse().no_line;
     around_.monitor.write(began, around_.scheduler.now(), outputs, commands, safe_outputs);

@@ -47,6 +47,11 @@ RigShape draw_shape(const rig::RigFile& example, std::uint64_t seed) {
       watchdog_s, shape.trip_latches ? ", latching" : ", cleared by a write", settings.faults.bus_down_cycles,
       shape.rig.loop.max_missed_commands, slew, 2 * slew,
       control::name_of(settings.safety.safe_action[static_cast<std::size_t>(control::Phase::holding)]));
+  const control::LimitSettings& limits = settings.channels.front().limits;
+  const double rest_kpa = control::resting_kpa(limits);
+  if (rest_kpa > limits.pressure_min_kpa)
+    shape.text +=
+        fmt::format(", {} to {} kPa, rest {}", limits.pressure_min_kpa, limits.pressure_max_kpa, rest_kpa);
   return shape;
 }
 

@@ -54,6 +54,8 @@ HardwareSettings Surroundings::hardware_settings() {
     settings.plants.back().sample_time_s = 0.005;
     settings.plants.back().seed = derived_seed(channel.plant.seed, shape.seed);
   }
+  for (const control::ChannelSettings& channel : shape.rig.settings.channels)
+    settings.safe_kpa.push_back(control::resting_kpa(channel.limits));
   settings.plant_step = ns_per_s / 200;
   settings.watchdog = shape.watchdog;
   settings.trip_latches = shape.trip_latches;

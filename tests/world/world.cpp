@@ -422,11 +422,20 @@ void World::pause(const Incident& incident) {
   }
 }
 
+/// The rig of a seed. Experiments begin and end at 0 kPa, so those have a rig that rests there.
+const Library& library_for(const Library& library, std::uint64_t seed, Tool tool) {
+  const Library& drawn = library.of(seed);
+  const bool experiments = tool == Tool::baseline || tool == Tool::experiment;
+  const control::LimitSettings& limits = drawn.rig.settings.channels.front().limits;
+  return experiments && control::resting_kpa(limits) != 0 ? library.others.front() : drawn;
+}
+
 }  // namespace
 
 WorldResult run_world(const Library& library, std::uint64_t seed, const WorldOptions& options) {
   const bool by_hand = options.tool == Tool::calibrate || options.tool == Tool::doctor;
-  return by_hand ? run_motion_world(library, seed, options) : World(library, seed, options).run();
+  const Library& drawn = library_for(library, seed, options.tool);
+  return by_hand ? run_motion_world(drawn, seed, options) : World(drawn, seed, options).run();
 }
 
 std::vector<Incident> shrink(const Library& library, std::uint64_t seed, const WorldResult& failed,

@@ -20,6 +20,12 @@ namespace softgrip::world {
 struct Library {
   rig::RigFile rig;
   std::vector<std::shared_ptr<const daemon::LoadedSequence>> sequences;
+  std::vector<Library> others;  ///< rigs that go to both sides of their rest pressure
+
+  /// One seed in four has such a rig.
+  [[nodiscard]] const Library& of(std::uint64_t seed) const {
+    return seed % 4 == 3 && !others.empty() ? others[seed / 4 % others.size()] : *this;
+  }
 };
 /// From the project's own example files. Throws std::runtime_error if these are refused.
 [[nodiscard]] Library load_library();
