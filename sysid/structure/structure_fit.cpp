@@ -136,7 +136,8 @@ class Search {
     if (structure_.delay) add_driving(straight(&N::delay_s, 0.2, 0, 0, 5));
     if (structure_.lag) {
       if (structure_.two_way) {
-        add_two_ways();
+        add_driving(logarithmic(&N::filling_s, 1.5, 0.1, 1e-4, 10));
+        add_driving(logarithmic(&N::venting_s, 1.5, 0.1, 1e-4, 10));
       } else {
         Coordinate both = logarithmic(&N::filling_s, 1.5, 0.1, 1e-4, 10);
         const auto set = both.set;
@@ -177,24 +178,6 @@ class Search {
                               [=](N& n, double t) { n.peak_before_kpa[r] = t * width; }, first / width,
                               first / width, 1});
     }
-  }
-
-  /// Filling, and how much slower than it is the venting: where no log shows that, they are alike.
-  void add_two_ways() {
-    using N = NonlinearNumbers;
-    const auto valid_s = [](double time_constant_s) { return std::clamp(time_constant_s, 1e-4, 10.0); };
-    Coordinate filling = logarithmic(&N::filling_s, 1.5, 0.1, 1e-4, 10);
-    const auto set = filling.set;
-    filling.set = [=](N& n, double t) {
-      const double slower = n.venting_s / n.filling_s;
-      set(n, t);
-      n.venting_s = valid_s(slower * n.filling_s);
-    };
-    add_driving(std::move(filling));
-    const double width = 1.5, widest = std::log(1e4) / width;
-    add_driving({[=](const N& n) { return std::log(n.venting_s / n.filling_s) / width; },
-                 [=](N& n, double t) { n.venting_s = valid_s(n.filling_s * std::exp(t * width)); }, 0,
-                 -widest, widest});
   }
 
   Normal normal_at(const State& state) {

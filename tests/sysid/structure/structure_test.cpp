@@ -5,7 +5,6 @@
 #include <random>
 
 #include "base/thread_budget.h"
-#include "model/blocks/asymmetric_valve_lag.h"
 #include "model/blocks/characteristic.h"
 #include "model/blocks/inertia.h"
 #include "model/blocks/kelvin_voigt.h"
@@ -332,29 +331,6 @@ TEST(SimplestStart, WhatTheCallerStatesAndWhatRestDoesNotExplainStays) {
   RecordOptions stated;
   stated.start = Start::unknown;
   EXPECT_TRUE(with_simplest_start(make_records({whole}, stated), {})[0].start_unknown) << "as stated";
-}
-
-/// What no log shows is as usual: a finger vents as fast as it fills.
-TEST(StructureFit, AVentingThatNoLogShowsIsAsFastAsTheFilling) {
-  model::Model finger = play_finger();
-  for (model::BlockSpec& block : finger.blocks) {
-    if (block.type == model::block_type<model::AsymmetricValveLag>()) block.values = {0.6, 0.2};
-  }
-  Log log;
-  log.name = "a rise";
-  model::Chain<double> chain(finger, {}, 0.02);
-  chain.rest(0.0);
-  for (int i = 0; i < 500; ++i) {
-    const double command_kpa = i > 0 ? 60 : 0;
-    log.time_s.push_back(0.02 * i);
-    log.pressure_command_kpa.push_back(command_kpa);
-    log.displacement_mm.push_back(i == 0 ? chain.reading_mm() : chain.step(0.02, command_kpa));
-  }
-  const std::vector<Record> records = make_records({log}, {});
-  const FittedStructure fit =
-      fit_form(records, {.creep = false, .characteristic = false}, grid_for(records), {});
-  EXPECT_GT(fit.numbers.filling_s, 0.2);
-  EXPECT_NEAR(fit.numbers.venting_s, fit.numbers.filling_s, 0.05 * fit.numbers.filling_s);
 }
 
 TEST(IdentifyStructure, TheAnswerDoesNotDependOnTheUnit) {
