@@ -252,40 +252,27 @@ std::size_t simplest_of_the_best(const std::vector<StructureTrial>& trials, std:
   return best;
 }
 
-/// The chosen structure with another lag in front of its own.
-void try_second_lag(const Judge& judge, StructureChoice& choice) {
-  const StructureTrial& chosen = choice.trials[choice.chosen];
-  BaseStructure structure = chosen.structure;
-  structure.second_lag = true;
-  StructureTrial slower = judge.judge_near(structure, chosen.ridge, chosen.numbers);
-  if (!may_be_chosen(slower) || !is_clearly_less(slower.block_losses_mm2, chosen.block_losses_mm2)) return;
+/// Takes the trial if it loses clearly less than the chosen one.
+void offer(StructureTrial trial, StructureChoice& choice) {
+  if (!may_be_chosen(trial) ||
+      !is_clearly_less(trial.block_losses_mm2, choice.trials[choice.chosen].block_losses_mm2))
+    return;
   choice.chosen = choice.trials.size();
-  choice.trials.push_back(std::move(slower));
+  choice.trials.push_back(std::move(trial));
 }
 
-/// The chosen structure with a resonance.
-void try_resonance(const Judge& judge, StructureChoice& choice) {
-  const StructureTrial& chosen = choice.trials[choice.chosen];
-  StructureTrial ringing = judge.judge_resonant(chosen);
-  if (!may_be_chosen(ringing) || !is_clearly_less(ringing.block_losses_mm2, chosen.block_losses_mm2)) return;
-  choice.chosen = choice.trials.size();
-  choice.trials.push_back(std::move(ringing));
-}
-
-/// The chosen structure with a regulator, and, since creep may have made up for one, with simpler creep.
-void try_regulators(const Judge& judge, unsigned threads, StructureChoice& choice) {
+/// Offers the chosen structure as `judged` extends it and, since creep may have made up for what it adds,
+/// with simpler creep.
+void offer_extended(const std::function<StructureTrial(const BaseStructure&, const StructureTrial&)>& judged,
+                    unsigned threads, StructureChoice& choice) {
   const StructureTrial chosen = choice.trials[choice.chosen];
   std::vector<BaseStructure> structures{chosen.structure};
   if (chosen.structure.hinged_creep)
     structures.insert(structures.begin(), without(chosen.structure, Ingredient::pressure_dependent_creep));
-  std::vector<StructureTrial> regulated(structures.size());
+  std::vector<StructureTrial> extended(structures.size());
   parallel_for(structures.size(), threads,
-               [&](std::size_t i) { regulated[i] = judge.judge_regulated(structures[i], chosen); });
-  StructureTrial& simplest = regulated[simplest_of_the_best(regulated)];
-  if (!may_be_chosen(simplest) || !is_clearly_less(simplest.block_losses_mm2, chosen.block_losses_mm2))
-    return;
-  choice.chosen = choice.trials.size();
-  choice.trials.push_back(std::move(simplest));
+               [&](std::size_t i) { extended[i] = judged(structures[i], chosen); });
+  offer(std::move(extended[simplest_of_the_best(extended)]), choice);
 }
 
 /// @param near  where the nonlinear numbers begin; nullptr: at every start.
@@ -372,17 +359,24 @@ StructureChoice choose_structure(const std::vector<Record>& records, const Struc
                                           options.published_yields_below * simplest.heldout_rmse_mm)
     choice.chosen = simplest_of_the_best(choice.trials, choice.chosen + 1);
   if (choice.trials[choice.chosen].structure.published) return choice;
+  const auto slower = [&](BaseStructure structure, const StructureTrial& chosen) {
+    structure.second_lag = true;
+    return judge.judge_near(structure, chosen.ridge, chosen.numbers);
+  };
+  const auto regulated = [&](const BaseStructure& structure, const StructureTrial& chosen) {
+    return judge.judge_regulated(structure, chosen);
+  };
+  if (options.drive == Drive::command && options.dynamics) {
+    say("a second lag");
+    offer_extended(slower, options.threads, choice);
+  }
   if (options.drive == Drive::command) {
-    if (options.dynamics) {
-      say("a second lag");
-      try_second_lag(judge, choice);
-    }
     say("a regulator instead of the lag");
-    try_regulators(judge, options.threads, choice);
+    offer_extended(regulated, options.threads, choice);
   }
   if (options.dynamics) {
     say("a resonance");
-    try_resonance(judge, choice);
+    offer(judge.judge_resonant(choice.trials[choice.chosen]), choice);
   }
   return choice;
 }
