@@ -65,7 +65,7 @@ softgrip_room(daemon/service
 softgrip_room(sysid/logs USES base document model)
 softgrip_room(sysid/import USES base document sysid/logs)
 # Nobody else is to be compiled against them.
-target_link_libraries(${softgrip_room_target} PRIVATE ZLIB::ZLIB PkgConfig::matio PkgConfig::hdf5)
+target_link_libraries(${softgrip_room_target} PRIVATE ZLIB::ZLIB PkgConfig::matio PkgConfig::hdf5 PkgConfig::libzip PkgConfig::pugixml)
 softgrip_room(sysid/pages USES base model model/file sysid/logs)
 softgrip_room(sysid/fitting USES base model sysid/logs LIBRARIES Eigen3::Eigen Ceres::ceres)
 softgrip_room(sysid/identification

@@ -132,7 +132,8 @@ class Converter {
     for (const BadCell& cell : column.bad) {
       problems_.add(
           {table_.file, cell.at, cell.line_text,
-           std::string(spec.word) + ": '" + document::shown(cell.text, 40) + "' is no number",
+           std::string(spec.word) + ": " + (cell.cell.empty() ? "" : "cell " + cell.cell + ": ") + "'" +
+               document::shown(cell.text, 40) + "' is no number",
            "--missing says what stands where nothing was read; --skip-bad-lines leaves such lines out"});
     }
     if (column.bad_count > column.bad.size())
@@ -429,7 +430,10 @@ class Converter {
              !why.empty() ? why : "times count from the first sample");
     }
     name_idle_words();
-    if (mapping_.separator != 0 && !table_.is_text) idle("--separator", "the file is no text");
+    if (mapping_.separator != 0 && !table_.has_separators)
+      idle("--separator",
+           table_.is_text ? "the file itself says where its cells end" : "the file is no text");
+    if (!mapping_.sheet.empty() && table_.sheet.empty()) idle("--sheet", "the file is no workbook");
     if (mapping_.skip_bad_lines &&
         remarks_.account.left_out[static_cast<std::size_t>(LeftOut::bad_line)] == 0)
       remarks_.notes.emplace_back("--skip-bad-lines: no line was bad");

@@ -14,6 +14,7 @@
 #include "sysid/import/mat_table.h"
 #include "sysid/import/text_encoding.h"
 #include "sysid/import/text_table.h"
+#include "sysid/import/xlsx_table.h"
 
 namespace softgrip::sysid {
 namespace {
@@ -46,8 +47,10 @@ bool is_matlab_4(std::string_view bytes) {
 
 /// What is surely something else, in words.
 std::string_view known_but_unread(std::string_view bytes) {
-  if (bytes.starts_with("PK\x03\x04")) return "a spreadsheet (.xlsx, .ods) or an archive";
-  if (bytes.starts_with("\xd0\xcf\x11\xe0")) return "an old spreadsheet (.xls)";
+  constexpr std::string_view encrypted{"E\0n\0c\0r\0y\0p\0t\0e\0d\0P\0a\0c\0k\0a\0g\0e", 31};
+  if (bytes.starts_with("\xd0\xcf\x11\xe0"))
+    return bytes.find(encrypted) == std::string_view::npos ? "an old spreadsheet (.xls)"
+                                                           : "a workbook with a password";
   if (bytes.starts_with("PAR1")) return "a Parquet file";
   if (bytes.starts_with("TDSm")) return "a LabVIEW file (.tdms)";
   if (bytes.starts_with("BZh")) return "packed by bzip2";
@@ -87,6 +90,8 @@ std::optional<ForeignTable> read_bytes(const std::string& path, const std::strin
   }
   if (is_hdf5(bytes)) return read_hdf5_table(path, opened, bytes.starts_with("MATLAB 7.3"), problems);
   if (is_matlab_4(bytes)) return read_mat_table(path, opened, problems);
+  if (bytes.starts_with("PK\x03\x04") || bytes.starts_with("PK\x05\x06"))
+    return read_xlsx_table(path, bytes, options, problems);
   if (const std::string_view known = known_but_unread(bytes); !known.empty()) {
     problems.add({path, {1, 1}, {}, "this is " + std::string(known), "export it as CSV"});
     return std::nullopt;

@@ -41,6 +41,7 @@ std::string options_of(const Mapping& mapping) {
   if (mapping.separator != 0) say("separator", word_of_separator(mapping.separator));
   for (const std::string& word : mapping.missing) say("missing", word);
   if (!mapping.channel.empty()) say("channel", mapping.channel);
+  if (!mapping.sheet.empty()) say("sheet", mapping.sheet);
   if (mapping.skip_bad_lines) text += text.empty() ? "--skip-bad-lines" : " --skip-bad-lines";
   if (mapping.from_s > 0) say("from-s", shortest(mapping.from_s));
   if (std::isfinite(mapping.to_s)) say("to-s", shortest(mapping.to_s));

@@ -59,6 +59,7 @@ struct Mapping {
   char separator = 0;             ///< 0: found
   std::vector<std::string> missing;
   std::string channel;
+  std::string sheet;            ///< of a workbook
   bool skip_bad_lines = false;  ///< lines that cannot be read are left out and counted
   double from_s = 0;            ///< samples used, counted from the first one's time
   double to_s = std::numeric_limits<double>::infinity();

@@ -63,6 +63,7 @@ class MappingReader {
     mapping.from_s = map.optional_number("from_s", {0, longest_s}).value_or(0);
     mapping.to_s = map.optional_number("to_s", {0, longest_s}).value_or(mapping.to_s);
     mapping.channel = map.optional_text("channel").value_or("");
+    mapping.sheet = map.optional_text("sheet").value_or("");
     if (const auto word = map.optional_text("separator")) {
       mapping.separator = separator_named(*word);
       if (mapping.separator == 0)
@@ -124,6 +125,7 @@ std::string mapping_yaml(const Mapping& mapping, const ImportSource& source, con
     text += "separator: " + std::string(word_of_separator(mapping.separator)) + "\n";
   if (!mapping.missing.empty()) text += "missing: " + list_of(mapping.missing) + "\n";
   if (!mapping.channel.empty()) text += "channel: " + in_quotes(mapping.channel) + "\n";
+  if (!mapping.sheet.empty()) text += "sheet: " + in_quotes(mapping.sheet) + "\n";
   if (mapping.skip_bad_lines) text += "skip_bad_lines: true\n";
   if (mapping.from_s > 0) text += "from_s: " + shortest(mapping.from_s) + "\n";
   if (std::isfinite(mapping.to_s)) text += "to_s: " + shortest(mapping.to_s) + "\n";

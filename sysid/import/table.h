@@ -24,6 +24,7 @@ struct BadCell {
   document::Location at;
   std::string line_text;
   std::string text;
+  std::string cell{};  ///< its name in a workbook ("B7"); empty elsewhere
 };
 
 struct TableColumn {
@@ -51,6 +52,8 @@ struct ForeignTable {
   std::vector<std::string> notes;     ///< what was passed over
   RowAccount account;                 ///< of the rows that the reader has seen
   bool is_text = false;
+  bool has_separators = false;             ///< characters between the columns
+  std::string sheet;                       ///< of a workbook, the one that was read
   std::vector<std::size_t> missing_cells;  ///< for each word of TableOptions::missing: the cells that say it
 
   [[nodiscard]] std::size_t rows() const noexcept {
@@ -65,6 +68,7 @@ struct TableOptions {
       missing;          ///< what stands where nothing was read, besides empty cells, NaN, NA and the like
   std::string channel;  ///< only rows whose column "channel" says this; empty: all
   bool skip_bad_lines = false;  ///< leave out lines of another width, and count them
+  std::string sheet{};          ///< of a workbook; empty: the only one with numbers
 };
 
 /// The column that a word names: its name, or its number counted from 1 where no name is that. Its index, or

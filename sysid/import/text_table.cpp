@@ -191,7 +191,7 @@ std::optional<ForeignTable> parse_text_table(const std::string& file, std::strin
     return refused_with(std::to_string(most_values) + " values");
   ForeignTable table;
   table.file = file;
-  table.is_text = true;
+  table.is_text = table.has_separators = true;
   if (nul_bytes > 0)
     table.notes.push_back(std::to_string(nul_bytes) + " NUL bytes at the end of the file are left out");
   LogReporter report(file, problems);

@@ -19,7 +19,10 @@ import struct
 import subprocess
 import sys
 import tempfile
+import zipfile
 import zlib
+
+import workbooks
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 BUILD = pathlib.Path(os.environ.get("SOFTGRIP_BUILD", ROOT / "build" / "release"))
@@ -217,6 +220,50 @@ class File:
         else:
             path.write_bytes(self.content if isinstance(self.content, bytes) else self.content.encode())
         return path
+
+
+def spreadsheets():
+    """Workbooks, and what looks like them."""
+    names = ["Time (s)", "P set (kPa)", "Tip (mm)"]
+    rows = [list(row) for row in zip(T, COMMAND, TIP)]
+    days = [["Time", *names[1:]]] + [[workbooks.date(45443.999 + t / 86400), *row] for t, *row in rows]
+    clocks = [["Time", *names[1:]]] + [[workbooks.date((0.99999 + t / 86400) % 1, 2), *row] for t, *row in rows]
+    odd = [["Bench 3"], None, ["Operator", "me"], ["Time", workbooks.inline("P set"), "Tip", "valid"], ["s", "kPa", "mm"]]
+    odd += [[t, workbooks.formula("B7*2", command), tip, True] for t, command, tip in rows]
+    odd[15][2], odd[25][2], odd[35][2] = workbooks.error("#DIV/0!"), workbooks.formula("NOW()"), None
+    holes = [math.nan if i in (10, 20, 30) else tip for i, tip in enumerate(TIP)]
+    stuck = [names] + [row[:] for row in rows]
+    stuck[101][2] = "stuck"
+    strings = []
+    days_of_work = {"Monday": workbooks.sheet([names] + [[t, c, -d] for t, c, d in rows], strings),
+                    "Tuesday": workbooks.sheet([names] + rows, strings), "Notes": workbooks.sheet([["mass", 2]], strings)}
+    several = workbooks.package(days_of_work, strings)
+    return [
+        File("plain.xlsx", "a workbook", workbooks.book([names] + rows)),
+        File("dates.xlsx", "dates in a workbook, across midnight", workbooks.book(days)),
+        File("clocks.xlsx", "times of day in a workbook, across midnight", workbooks.book(clocks)),
+        File("dates_1904.xlsx", "dates that count from 1904", workbooks.package(
+            {"Run": workbooks.sheet(days, strings)}, strings, from_1904=True), says="counted from 1904"),
+        File("odd.xlsx", "titles, formulas, errors, booleans, merged cells, not from A1 on", workbooks.book(
+            odd, first_row=2, first_column=1, below='<mergeCells><mergeCell ref="B2:E2"/></mergeCells>'),
+             columns=BASIC_OF | {"displacement_mm": holes}, says="D17 (#DIV/0!)"),
+        File("two_sheets.xlsx", "two sheets with numbers", several, refused="2 sheets have rows of numbers: 'Monday', 'Tuesday'"),
+        File("sheet_chosen.xlsx", "the same, and one of them", several, "--sheet Tuesday", says="sheet 'Monday' is not used"),
+        File("idle_sheet.csv", "a sheet of a file without sheets", PLAIN, "--sheet Run", says="--sheet has no effect"),
+        File("word.xlsx", "a word among the numbers of a sheet", workbooks.book(stuck),
+             refused="sheet 'Run':102:10: displacement: cell C102: 'stuck' is no number"),
+        File("cut_off.xlsx", "a workbook, cut off", workbooks.book([names] + rows)[:3000], refused="broken or cut off"),
+        File("spreadsheet.ods", "an OpenDocument spreadsheet", opendocument, refused="an OpenDocument spreadsheet (.ods)"),
+        File("old.xls", "an old spreadsheet", b"\xd0\xcf\x11\xe0" + bytes(508), refused="this is an old spreadsheet (.xls)"),
+        File("locked.xlsx", "a workbook with a password", b"\xd0\xcf\x11\xe0" + bytes(508) + "EncryptedPackage".encode("utf-16-le"),
+             refused="this is a workbook with a password"),
+    ]
+
+
+def opendocument(path):
+    with zipfile.ZipFile(path, "w") as archive:
+        archive.writestr("mimetype", "application/vnd.oasis.opendocument.spreadsheet")
+        archive.writestr("content.xml", "<office/>")
 
 
 BASIC = ("time_s", "pressure_command_kpa", "displacement_mm")
@@ -465,7 +512,7 @@ def files():
         File("recording", "a recording of softgripd, one of its channels", recording, "--channel left",
              columns=MEASURED),
         File("recording_both", "the same without saying which", recording, refused="2 channels"),
-        File("book.xlsx", "a spreadsheet", b"PK\x03\x04" + bytes(200), refused="this is a spreadsheet"),
+        *spreadsheets(),
         File("noise.bin", "random bytes", bytes((i * i * 31 + 7 * i) % 251 for i in range(3000)),
              refused="no text, nor a format that is known"),
     ]

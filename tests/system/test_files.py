@@ -12,6 +12,7 @@ import zlib
 import bench
 import bench_files
 import web
+import workbooks
 from bench_files import TWIN
 
 
@@ -171,6 +172,20 @@ class Bombs(bench_files.Files):
         with open(self.folder / "plain.csv", "wb") as text:
             text.write(b"time_s,pressure_command_kpa,displacement_mm\n" + b"0,1,2\n" * 20_000_000)
         self.assertIn("16777216 lines", self.limited("import", "plain.csv", "--yes", "--out", "x.csv", code=3))
+
+    def test_workbooks(self):
+        """A sheet of 600 MB, one with more cells than memory, and strings that many cells repeat."""
+        cells = "<c><v>1</v></c>" * 4
+        huge = f"<worksheet><sheetData><row>{cells}{' ' * (600 << 20)}</row></sheetData></worksheet>"
+        many = f"<worksheet><sheetData>{'<row/>' * 20_000_000}</sheetData></worksheet>"
+        repeated = "<worksheet><sheetData>" + "<row><c t='s'><v>0</v></c></row>" * 500_000 + "</sheetData></worksheet>"
+        for sheet, strings, reason in ((huge, [], "after decompression the workbook has more than 536870912 bytes"),
+                                       (many, [], "it has too many cells"),
+                                       (repeated, ["x" * 30_000], "its text has more than 536870912 bytes")):
+            packed = workbooks.package({"Run": sheet}, strings)
+            self.assertLess(len(packed), 4 << 20)
+            (self.folder / "bomb.xlsx").write_bytes(packed)
+            self.assertIn(reason, self.limited("import", "bomb.xlsx", "--yes", "--out", "x.csv", code=3))
 
     def test_matlab_variables(self):
         zeros = [bytes(8 << 20)] * 100

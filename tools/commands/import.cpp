@@ -11,9 +11,9 @@ namespace softgrip::tools {
 
 void add_import(CLI::App& program, ExitCode& outcome) {
   auto options = std::make_shared<ImportOptions>();
-  CLI::App* command = program.add_subcommand(
-      "import",
-      "Logs out of other people's files: CSV in any dialect (.gz too), LabVIEW, MATLAB, HDF5, recordings");
+  CLI::App* command = program.add_subcommand("import",
+                                             "Logs out of other people's files: CSV in any dialect (.gz "
+                                             "too), XLSX, LabVIEW, MATLAB, HDF5, recordings");
   command->add_option("FILE", options->files, "Files, or recordings' folders")->required();
   command
       ->add_option(
@@ -46,6 +46,7 @@ void add_import(CLI::App& program, ExitCode& outcome) {
       ->allow_extra_args(false);
   command->add_option("--separator", options->separator, "comma, semicolon, tab, space or bar [found]");
   command->add_option("--channel", options->channel, "Only the rows, or the columns, of this channel");
+  command->add_option("--sheet", options->sheet, "Sheet of a workbook, where several have numbers");
   command->add_flag("--skip-bad-lines", options->skip_bad_lines,
                     "Leave out lines that cannot be read, and count them");
   command->add_option("--from-s", options->from_s, "Only samples from here on, counted from the first one")

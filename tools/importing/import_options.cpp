@@ -108,6 +108,7 @@ tl::expected<sysid::Mapping, std::string> mapping_of(const ImportOptions& option
       return tl::unexpected("--separator " + options.separator + ": comma, semicolon, tab, space or bar");
   }
   if (!options.channel.empty()) mapping.channel = options.channel;
+  if (!options.sheet.empty()) mapping.sheet = options.sheet;
   mapping.skip_bad_lines = mapping.skip_bad_lines || options.skip_bad_lines;
   if (options.from_s) mapping.from_s = *options.from_s;
   if (options.to_s) mapping.to_s = *options.to_s;

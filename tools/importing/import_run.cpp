@@ -72,7 +72,8 @@ bool says_columns(const sysid::Mapping& mapping) {
     if (column != sysid::ColumnMapping{}) return true;
   }
   return mapping.rate_hz.has_value() || !mapping.missing.empty() || mapping.separator != 0 ||
-         mapping.skip_bad_lines || mapping.from_s > 0 || std::isfinite(mapping.to_s);
+         mapping.skip_bad_lines || !mapping.sheet.empty() || mapping.from_s > 0 ||
+         std::isfinite(mapping.to_s);
 }
 
 /// Words that a reader takes for missing; numbers are compared as values, by convert().
@@ -99,8 +100,8 @@ bool has_codes(const sysid::ForeignTable& table) {
 bool prepare(Job& job, const sysid::Mapping& given, document::Problems& problems, bool& unreadable) {
   job.mapping = given;
   auto table = sysid::read_foreign_file(
-      job.file, {given.separator, missing_words(given), given.channel, given.skip_bad_lines}, problems,
-      unreadable);
+      job.file, {given.separator, missing_words(given), given.channel, given.skip_bad_lines, given.sheet},
+      problems, unreadable);
   if (!table) return false;
   job.table = std::move(*table);
   if (!says_columns(given) && !has_codes(job.table) && take_as_it_is(job)) return true;

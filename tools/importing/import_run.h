@@ -25,6 +25,7 @@ struct ImportOptions {
   std::vector<std::string> missing;
   std::string separator;
   std::string channel;
+  std::string sheet;
   bool skip_bad_lines = false;
   std::optional<double> from_s;
   std::optional<double> to_s;

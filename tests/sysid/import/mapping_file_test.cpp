@@ -13,6 +13,7 @@ Mapping full() {
   mapping.separator = '\t';
   mapping.missing = {"-999", "lost"};
   mapping.channel = "left: 1";
+  mapping.sheet = "Run \"1\"";
   mapping.skip_bad_lines = true;
   mapping.from_s = 1.5;
   mapping.to_s = 20;

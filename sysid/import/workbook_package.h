@@ -1,0 +1,34 @@
+#pragma once
+// The parts of an .xlsx workbook, which is a ZIP archive; through libzip.
+
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include <tl/expected.hpp>
+
+struct zip;
+
+namespace softgrip::sysid {
+
+/// Reads parts of an archive in memory. `bytes` must outlive it. All parts together have at most
+/// `most_text_bytes` (table.h), whatever the archive says about their sizes.
+class WorkbookPackage {
+ public:
+  /// The error is a sentence.
+  [[nodiscard]] static tl::expected<WorkbookPackage, std::string> open(std::string_view bytes);
+
+  [[nodiscard]] bool has(const std::string& part) const;
+  /// The content of a part. The error is a sentence.
+  [[nodiscard]] tl::expected<std::string, std::string> read(const std::string& part);
+
+ private:
+  using Archive = std::unique_ptr<zip, void (*)(zip*)>;
+  explicit WorkbookPackage(Archive archive);
+
+  Archive archive_;
+  std::size_t left_;  ///< bytes that may still be read
+};
+
+}  // namespace softgrip::sysid

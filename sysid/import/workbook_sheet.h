@@ -1,0 +1,52 @@
+#pragma once
+// A sheet of a workbook as rows of text.
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <pugixml.hpp>
+#include <tl/expected.hpp>
+
+#include "document/problem.h"
+
+namespace softgrip::sysid {
+
+/// What the cells of all sheets refer to.
+struct WorkbookTexts {
+  std::vector<std::string> strings;  ///< shared strings
+  std::vector<bool> date_styles;     ///< by style: its numbers are dates or times of day
+  bool from_1904 = false;            ///< dates count from 1904
+};
+
+struct SheetText {
+  std::string text;              ///< line N is row N of the sheet; commas between the cells
+  std::size_t first_column = 0;  ///< counted from 0
+  std::size_t first_row = 0;     ///< counted from 1; 0: the sheet is empty
+  std::size_t last_row = 0;
+  std::size_t rows_of_numbers = 0;  ///< rows with 2 numbers or more
+  std::vector<std::string> notes;
+};
+
+/// Why a sheet is not read.
+struct SheetProblem {
+  document::Location at;  ///< row and column, both from 1
+  std::string message;
+};
+
+/// True if numbers in this format are dates or times of day: "yyyy-mm-dd", "[h]:mm:ss.000".
+[[nodiscard]] bool is_date_format(std::string_view code);
+[[nodiscard]] bool is_date_format(int builtin);
+
+/// "B7" of a row and a column that count from 1 and 0.
+[[nodiscard]] std::string cell_name(std::size_t row, std::size_t column);
+
+/// The cells in lines of CSV. Rows above the first one with 3 of 4 columns have only their own cells;
+/// below it each row with a cell has all columns. Booleans are 1 and 0. Dates are ISO 8601; a column of times
+/// within one day has times of day. Of formulas the stored value is taken. Errors and formulas without a
+/// stored value are empty, and a note names them.
+[[nodiscard]] tl::expected<SheetText, SheetProblem> sheet_text(const pugi::xml_document& sheet,
+                                                               const WorkbookTexts& texts);
+
+}  // namespace softgrip::sysid

@@ -1,0 +1,64 @@
+#include "sysid/import/workbook_xml.h"
+
+#include <cstddef>
+
+namespace softgrip::sysid {
+namespace {
+
+constexpr std::size_t most_tree_bytes = std::size_t{1} << 30U;
+// Of pugixml on a machine of 64 bits.
+constexpr std::size_t node_bytes = 64;
+constexpr std::size_t attribute_bytes = 40;
+
+/// An upper bound of the memory that the tree needs.
+std::size_t tree_bytes(std::string_view text) {
+  std::size_t bytes = 0;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] == '=') bytes += attribute_bytes;
+    if (text[i] == '<' && i + 1 < text.size() && text[i + 1] != '/') bytes += node_bytes;
+  }
+  return bytes;
+}
+
+}  // namespace
+
+tl::expected<void, std::string> load_xml(std::string& text, pugi::xml_document& document) {
+  if (tree_bytes(text) > most_tree_bytes) return tl::unexpected(std::string("it has too many cells"));
+  constexpr unsigned options = pugi::parse_default | pugi::parse_embed_pcdata;
+  const pugi::xml_parse_result result = document.load_buffer_inplace(text.data(), text.size(), options);
+  if (!result)
+    return tl::unexpected("byte " + std::to_string(result.offset) +
+                          " of its XML: " + std::string(result.description()));
+  return {};
+}
+
+std::string_view local_name(std::string_view name) {
+  const std::size_t colon = name.find(':');
+  return colon == std::string_view::npos ? name : name.substr(colon + 1);
+}
+
+pugi::xml_node child_of(const pugi::xml_node& node, std::string_view name) {
+  for (const pugi::xml_node& child : node.children()) {
+    if (local_name(child.name()) == name) return child;
+  }
+  return {};
+}
+
+std::string_view attribute_of(const pugi::xml_node& node, std::string_view name) {
+  for (const pugi::xml_attribute& attribute : node.attributes()) {
+    if (local_name(attribute.name()) == name) return attribute.value();
+  }
+  return {};
+}
+
+std::string string_in(const pugi::xml_node& node) {
+  std::string text;
+  for (const pugi::xml_node& child : node.children()) {
+    const std::string_view name = local_name(child.name());
+    if (name == "t") text += child.child_value();
+    if (name == "r") text += child_of(child, "t").child_value();
+  }
+  return text;
+}
+
+}  // namespace softgrip::sysid
