@@ -62,6 +62,8 @@ steps:
 """
 # What the 12 bits of an output say at its rest pressure: 0 kPa is 0 V on the shipped rig, 5 V on the vacuum rig.
 REST_RAW = {False: 0, True: 2047.5}
+# A vacuum is held by a command that does not change, so old contents are true until the release.
+NOT_BELOW_REST = {("repetition_of_contents", "holding")}
 
 
 class Wrong(AssertionError):
@@ -521,7 +523,7 @@ def main():
     table = Table()
 
     def wanted(name, phase):
-        if arguments.vacuum and table.faults[name].get("rig") == "serial":
+        if arguments.vacuum and (table.faults[name].get("rig") == "serial" or (name, phase) in NOT_BELOW_REST):
             return False
         return not arguments.cells or any(c in (name, f"{name}/{phase}", f"/{phase}") for c in arguments.cells)
 
