@@ -12,6 +12,7 @@
 #include "sysid/import/lvm_text.h"
 #include "sysid/import/mat_elements.h"
 #include "sysid/import/mat_table.h"
+#include "sysid/import/tdms_table.h"
 #include "sysid/import/text_encoding.h"
 #include "sysid/import/text_table.h"
 #include "sysid/import/xlsx_table.h"
@@ -52,7 +53,6 @@ std::string_view known_but_unread(std::string_view bytes) {
     return bytes.find(encrypted) == std::string_view::npos ? "an old spreadsheet (.xls)"
                                                            : "a workbook with a password";
   if (bytes.starts_with("PAR1")) return "a Parquet file";
-  if (bytes.starts_with("TDSm")) return "a LabVIEW file (.tdms)";
   if (bytes.starts_with("BZh")) return "packed by bzip2";
   if (bytes.starts_with("\xfd"
                         "7zXZ"))
@@ -90,6 +90,7 @@ std::optional<ForeignTable> read_bytes(const std::string& path, const std::strin
   }
   if (is_hdf5(bytes)) return read_hdf5_table(path, opened, bytes.starts_with("MATLAB 7.3"), problems);
   if (is_matlab_4(bytes)) return read_mat_table(path, opened, problems);
+  if (bytes.starts_with("TDSm")) return read_tdms_table(path, bytes, problems);
   if (bytes.starts_with("PK\x03\x04") || bytes.starts_with("PK\x05\x06"))
     return read_xlsx_table(path, bytes, options, problems);
   if (const std::string_view known = known_but_unread(bytes); !known.empty()) {

@@ -22,6 +22,7 @@ import tempfile
 import zipfile
 import zlib
 
+import tdms
 import workbooks
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -257,6 +258,31 @@ def spreadsheets():
         File("old.xls", "an old spreadsheet", b"\xd0\xcf\x11\xe0" + bytes(508), refused="this is an old spreadsheet (.xls)"),
         File("locked.xlsx", "a workbook with a password", b"\xd0\xcf\x11\xe0" + bytes(508) + "EncryptedPackage".encode("utf-16-le"),
              refused="this is a workbook with a password"),
+    ]
+
+
+def measurements():
+    """LabVIEW's .tdms files."""
+    times = {"t": tdms.Channel(T, {"unit_string": "s"}), "set": tdms.Channel(COMMAND, {"unit_string": "kPa"}),
+             "tip": tdms.Channel(TIP, {"unit_string": "mm"})}
+    ramp = [k - 150 for k in range(COUNT)]
+    stamps = times | {"t": tdms.Channel([3.8e9 + t for t in T], kind="time"), "comment": tdms.Channel(["ok"], kind="text"),
+                      "valid": tdms.Channel(ramp, kind="i16")}
+    steps = {name: tdms.Channel(channel.values, channel.properties | {"wf_increment": 0.01, "wf_start_offset": 0.0})
+             for name, channel in times.items() if name != "t"}
+    whole = tdms.file([tdms.segment("log", times, pieces=3)])
+    return [
+        File("blocks.tdms", "LabVIEW TDMS: each channel in a block, 3 chunks", whole),
+        File("interleaved.tdms", "LabVIEW TDMS: interleaved channels", tdms.file([tdms.segment("log", times, interleaved=True)])),
+        File("segments.tdms", "LabVIEW TDMS: segments that repeat the metadata", tdms.file(tdms.in_segments("log", times, 50))),
+        File("stamps.tdms", "LabVIEW TDMS: time stamps, a text, integers", tdms.file([tdms.segment("log", stamps)]),
+             says="'log/comment' is passed over: a text", tolerance=1e-6),
+        File("waveform.tdms", "LabVIEW TDMS: waveforms", tdms.file([tdms.segment("log", steps)]),
+             says="'wf_time' counts from wf_start_offset in steps of wf_increment"),
+        File("cut_off.tdms", "LabVIEW TDMS, interleaved and cut off", tdms.file([tdms.segment("log", times, interleaved=True)])[:-100 * 24 - 5],
+             columns={key: TRUTH[key][:199] for key in BASIC}, says="the file is cut off"),
+        File("daqmx.tdms", "LabVIEW TDMS: raw values of DAQmx", whole[:4] + bytes([whole[4] | 128]) + whole[5:],
+             refused="raw values of DAQmx"),
     ]
 
 
@@ -513,6 +539,7 @@ def files():
              columns=MEASURED),
         File("recording_both", "the same without saying which", recording, refused="2 channels"),
         *spreadsheets(),
+        *measurements(),
         File("noise.bin", "random bytes", bytes((i * i * 31 + 7 * i) % 251 for i in range(3000)),
              refused="no text, nor a format that is known"),
     ]

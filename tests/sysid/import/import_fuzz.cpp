@@ -1,5 +1,6 @@
-// Fuzz target of the foreign text tables and workbooks: any bytes are a table or a refusal, what is proposed
-// for it can be said by options and a mapping file, and what is converted is a log that can be read.
+// Fuzz target of the foreign text tables, workbooks and LabVIEW files: any bytes are a table or a refusal,
+// what is proposed for it can be said by options and a mapping file, and what is converted is a log that can
+// be read.
 //
 //   scripts/fuzz.sh import_fuzz 30
 
@@ -11,6 +12,7 @@
 #include "sysid/import/conversion.h"
 #include "sysid/import/mapping_file.h"
 #include "sysid/import/proposal.h"
+#include "sysid/import/tdms_table.h"
 #include "sysid/import/text_table.h"
 #include "sysid/import/xlsx_table.h"
 #include "sysid/logs/doubts.h"
@@ -29,8 +31,9 @@ void require(bool holds) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view text(reinterpret_cast<const char*>(data), size);
   document::Problems problems;
-  const auto table = text.starts_with("PK") ? sysid::read_xlsx_table("fuzz.xlsx", text, {}, problems)
-                                            : sysid::parse_text_table("fuzz.csv", text, {}, problems);
+  const auto table = text.starts_with("PK")     ? sysid::read_xlsx_table("fuzz.xlsx", text, {}, problems)
+                     : text.starts_with("TDSm") ? sysid::read_tdms_table("fuzz.tdms", text, problems)
+                                                : sysid::parse_text_table("fuzz.csv", text, {}, problems);
   require(table.has_value() == problems.empty());
   (void)problems.format();
   if (!table) return 0;

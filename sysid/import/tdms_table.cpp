@@ -1,0 +1,433 @@
+#include "sysid/import/tdms_table.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <map>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "sysid/import/array_table.h"
+
+namespace softgrip::sysid {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "the values are copied as they are in the file");
+
+constexpr std::size_t lead_in_bytes = 28;
+constexpr std::size_t most_channels = 10'000;
+/// Of all segments together; a segment of 28 bytes can repeat a list of channels.
+constexpr std::size_t most_steps = 100'000'000;
+constexpr std::size_t longest_label = 1000;
+/// Instead of the length of a segment that was not finished.
+constexpr std::uint64_t no_length = ~std::uint64_t{0};
+
+// Flags of a segment.
+constexpr std::uint32_t has_metadata = 2;
+constexpr std::uint32_t has_new_list = 4;
+constexpr std::uint32_t has_raw_data = 8;
+constexpr std::uint32_t is_interleaved = 32;
+constexpr std::uint32_t is_big_endian = 64;
+constexpr std::uint32_t is_daqmx = 128;
+
+enum class TdmsType : std::uint32_t {
+  i8 = 1,
+  i16,
+  i32,
+  i64,
+  u8,
+  u16,
+  u32,
+  u64,
+  f32,
+  f64,
+  f32_unit = 0x19,
+  f64_unit = 0x1a,
+  string = 0x20,
+  boolean = 0x21,
+  time = 0x44
+};
+
+/// Bytes of a value; 0 of a text, and of what is not known.
+std::size_t size_of(TdmsType type) {
+  switch (type) {
+    case TdmsType::i8:
+    case TdmsType::u8:
+    case TdmsType::boolean:
+      return 1;
+    case TdmsType::i16:
+    case TdmsType::u16:
+      return 2;
+    case TdmsType::i32:
+    case TdmsType::u32:
+    case TdmsType::f32:
+    case TdmsType::f32_unit:
+      return 4;
+    case TdmsType::i64:
+    case TdmsType::u64:
+    case TdmsType::f64:
+    case TdmsType::f64_unit:
+      return 8;
+    case TdmsType::time:
+      return 16;
+    default:
+      return 0;
+  }
+}
+
+template <class T>
+T copied(const char* at) {
+  T value{};
+  std::memcpy(&value, at, sizeof(T));
+  return value;
+}
+
+/// A time stamp since 1904, in two parts: seconds as a double would lose digits.
+struct Stamp {
+  std::int64_t seconds = 0;
+  double fraction = 0;
+};
+Stamp stamp_at(const char* at) {
+  return {copied<std::int64_t>(at + 8), std::ldexp(static_cast<double>(copied<std::uint64_t>(at)), -64)};
+}
+double between(const Stamp& from, const Stamp& to) {
+  // Seconds of a broken file may be any; as doubles they do not overflow.
+  return (static_cast<double>(to.seconds) - static_cast<double>(from.seconds)) +
+         (to.fraction - from.fraction);
+}
+
+/// A number; time stamps are not among these.
+double number_at(TdmsType type, const char* at) {
+  switch (type) {
+    case TdmsType::i8:
+      return copied<std::int8_t>(at);
+    case TdmsType::i16:
+      return copied<std::int16_t>(at);
+    case TdmsType::i32:
+      return copied<std::int32_t>(at);
+    case TdmsType::i64:
+      return static_cast<double>(copied<std::int64_t>(at));
+    case TdmsType::u8:
+      return copied<std::uint8_t>(at);
+    case TdmsType::boolean:
+      return copied<std::uint8_t>(at) != 0 ? 1 : 0;
+    case TdmsType::u16:
+      return copied<std::uint16_t>(at);
+    case TdmsType::u32:
+      return copied<std::uint32_t>(at);
+    case TdmsType::u64:
+      return static_cast<double>(copied<std::uint64_t>(at));
+    case TdmsType::f32:
+    case TdmsType::f32_unit:
+      return static_cast<double>(copied<float>(at));
+    default:
+      return copied<double>(at);
+  }
+}
+
+struct TdmsChannel {
+  std::string name;
+  std::string unit;
+  TdmsType type = TdmsType::f64;
+  bool has_index = false;   ///< a segment has said how its values are stored
+  std::uint64_t count = 0;  ///< values in a chunk
+  std::uint64_t bytes = 0;  ///< in a chunk
+  std::vector<double> values;
+  std::optional<Stamp> first;  ///< of a channel of time stamps
+  double increment_s = 0;      ///< 0: no waveform
+  double start_offset_s = 0;
+  std::optional<Stamp> start;
+  bool needs_scale = false;
+};
+
+/// "/'group'/'channel'" as "group/channel".
+std::string name_in(std::string_view path) {
+  std::string name;
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    if (path[i] == '/' && !name.empty()) name += '/';
+    if (path[i] != '\'') continue;
+    for (++i; i < path.size(); ++i) {
+      if (path[i] == '\'' && (i + 1 == path.size() || path[i + 1] != '\'')) break;
+      if (path[i] == '\'') ++i;
+      name += path[i];
+    }
+  }
+  return name;
+}
+
+/// Reads a part of the file from its begin to its end; what lies behind the end is 0 or empty, and `good` is
+/// false afterwards.
+class TdmsScanner {
+ public:
+  explicit TdmsScanner(std::string_view bytes) : bytes_(bytes) {}
+
+  template <class T>
+  T value() {
+    const char* const at = skip(sizeof(T));
+    return at == nullptr ? T{} : copied<T>(at);
+  }
+  std::string_view text() {
+    const auto size = value<std::uint32_t>();
+    const char* const at = skip(size);
+    return at == nullptr ? std::string_view{} : std::string_view(at, size);
+  }
+  const char* skip(std::uint64_t size) {
+    good_ = good_ && size <= bytes_.size();
+    if (!good_) return nullptr;
+    const char* const at = bytes_.data();
+    bytes_.remove_prefix(size);
+    return at;
+  }
+  [[nodiscard]] bool good() const { return good_; }
+
+ private:
+  std::string_view bytes_;
+  bool good_ = true;
+};
+
+class TdmsReader {
+ public:
+  TdmsReader(std::string_view bytes, ArrayCollector& arrays) : bytes_(bytes), arrays_(arrays) {}
+
+  /// False where the file is refused, with a sentence in `refused`.
+  bool read() {
+    std::size_t at = 0;
+    while (at < bytes_.size() && refused.empty()) {
+      if (bytes_.size() - at < lead_in_bytes) {
+        arrays_.note("the last segment is cut off and left out");
+        break;
+      }
+      at = segment(at);
+    }
+    if (refused.empty()) deliver();
+    return refused.empty();
+  }
+
+  std::string refused;
+
+ private:
+  /// The place of the next segment.
+  std::size_t segment(std::size_t at) {
+    TdmsScanner lead(bytes_.substr(at, lead_in_bytes));
+    const bool signed_so = std::string_view(lead.skip(4), 4) == "TDSm";
+    const auto flags = lead.value<std::uint32_t>();
+    lead.skip(4);
+    const auto next = lead.value<std::uint64_t>();
+    const auto raw = lead.value<std::uint64_t>();
+    const std::string_view rest = bytes_.substr(at + lead_in_bytes);
+    // A recording that was interrupted has no length, or less than it says.
+    const std::uint64_t size = std::min<std::uint64_t>(next, rest.size());
+    if (!signed_so) refuse(at, "does not begin with TDSm");
+    if ((flags & is_big_endian) != 0) refuse(at, "is big-endian");
+    if ((flags & is_daqmx) != 0) refuse(at, "has raw values of DAQmx, which need its scales");
+    if (raw > size) refuse(at, "is cut off in its metadata");
+    if (!refused.empty()) return at;
+    if ((flags & has_metadata) != 0 && !metadata(rest.substr(0, raw), (flags & has_new_list) != 0)) {
+      refuse(at, "has broken metadata");
+      return at;
+    }
+    if ((flags & has_raw_data) != 0)
+      raw_data(rest.substr(raw, size - raw), (flags & is_interleaved) != 0, size < next && next != no_length);
+    return at + lead_in_bytes + size;
+  }
+
+  void refuse(std::size_t at, const std::string& why) {
+    if (refused.empty()) refused = "the segment at byte " + std::to_string(at) + " " + why;
+  }
+
+  bool metadata(std::string_view bytes, bool new_list) {
+    TdmsScanner scan(bytes);
+    if (new_list) listed_.clear();
+    const auto objects = scan.value<std::uint32_t>();
+    for (std::uint32_t i = 0; i < objects && scan.good(); ++i) {
+      if (!object(scan)) return false;
+    }
+    return scan.good();
+  }
+
+  bool object(TdmsScanner& scan) {
+    const std::string path(scan.text());
+    const auto found = by_path_.try_emplace(path, channels_.size());
+    if (found.second) {
+      if (channels_.size() == most_channels) return false;
+      channels_.emplace_back();
+      channels_.back().name = name_in(path);
+    }
+    TdmsChannel& channel = channels_[found.first->second];
+    const auto length = scan.value<std::uint32_t>();
+    constexpr std::uint32_t no_values = 0xffffffff;
+    steps_ += listed_.size() + 1;
+    if (steps_ > most_steps) return false;
+    const bool is_listed = std::find(listed_.begin(), listed_.end(), found.first->second) != listed_.end();
+    if (length == no_values) {
+      listed_.erase(std::remove(listed_.begin(), listed_.end(), found.first->second), listed_.end());
+    } else {
+      if (length != 0 && !index(scan, channel)) return false;
+      if (length == 0 && !channel.has_index) return false;
+      if (!is_listed) listed_.push_back(found.first->second);
+    }
+    return properties(scan, channel);
+  }
+
+  static bool index(TdmsScanner& scan, TdmsChannel& channel) {
+    const auto type = static_cast<TdmsType>(scan.value<std::uint32_t>());
+    const auto dimension = scan.value<std::uint32_t>();
+    channel.count = scan.value<std::uint64_t>();
+    const std::size_t size = size_of(type);
+    if (size == 0 && type != TdmsType::string) return false;
+    if (channel.has_index && channel.type != type) return false;
+    if (size > 0 && channel.count > (std::uint64_t{1} << 40U)) return false;
+    channel.bytes = size == 0 ? scan.value<std::uint64_t>() : channel.count * size;
+    channel.type = type;
+    channel.has_index = true;
+    return scan.good() && dimension == 1 && channel.bytes <= (std::uint64_t{1} << 44U);
+  }
+
+  static bool properties(TdmsScanner& scan, TdmsChannel& channel) {
+    const auto count = scan.value<std::uint32_t>();
+    for (std::uint32_t i = 0; i < count && scan.good(); ++i) {
+      const std::string_view name = scan.text();
+      const auto type = static_cast<TdmsType>(scan.value<std::uint32_t>());
+      if (type == TdmsType::string) {
+        const std::string_view text = scan.text();
+        if (name == "unit_string") channel.unit = text.substr(0, longest_label);
+        if (name == "NI_Scaling_Status" && text == "unscaled") channel.needs_scale = true;
+        continue;
+      }
+      const std::size_t size = size_of(type);
+      const char* const at = scan.skip(size);
+      if (size == 0 || at == nullptr) return false;
+      if (type == TdmsType::time && name == "wf_start_time") channel.start = stamp_at(at);
+      if (type == TdmsType::time) continue;
+      if (name == "wf_increment") channel.increment_s = number_at(type, at);
+      if (name == "wf_start_offset") channel.start_offset_s = number_at(type, at);
+    }
+    return scan.good();
+  }
+
+  void raw_data(std::string_view bytes, bool interleaved, bool cut_off) {
+    std::uint64_t chunk = 0;
+    std::uint64_t row = 0;
+    for (const std::size_t i : listed_) {
+      chunk += channels_[i].bytes;
+      row += size_of(channels_[i].type);
+      if (interleaved &&
+          (channels_[i].type == TdmsType::string || channels_[i].count != channels_[listed_[0]].count))
+        refused = "its interleaved channels have texts, or are not equally long";
+    }
+    if (!refused.empty() || chunk == 0) return;
+    steps_ += listed_.size() * (bytes.size() / chunk + 1);
+    if (steps_ > most_steps)
+      refused = "it has more than " + std::to_string(most_steps) + " pieces of channels";
+    while (!bytes.empty() && refused.empty()) {
+      const std::string_view piece = bytes.substr(0, chunk);
+      cut_off_ = cut_off_ || cut_off || piece.size() < chunk;
+      // Of blocks, the first channels would have more values than the others.
+      if (!interleaved && piece.size() < chunk) return;
+      if (interleaved)
+        rows(piece, row);
+      else
+        blocks(piece);
+      bytes.remove_prefix(piece.size());
+    }
+  }
+
+  /// A value of each channel, then the next of each.
+  void rows(std::string_view piece, std::uint64_t row) {
+    std::size_t offset = 0;
+    for (const std::size_t i : listed_) {
+      TdmsChannel& channel = channels_[i];
+      for (std::uint64_t k = 0; k < channel.count && (k + 1) * row <= piece.size(); ++k)
+        take(channel, piece.data() + k * row + offset);
+      offset += size_of(channel.type);
+    }
+  }
+
+  /// All values of a channel, then those of the next.
+  void blocks(std::string_view piece) {
+    for (const std::size_t i : listed_) {
+      TdmsChannel& channel = channels_[i];
+      const std::string_view block = piece.substr(0, channel.bytes);
+      const std::size_t size = size_of(channel.type);
+      for (std::size_t at = 0; size > 0 && at + size <= block.size(); at += size)
+        take(channel, block.data() + at);
+      piece.remove_prefix(block.size());
+    }
+  }
+
+  void take(TdmsChannel& channel, const char* at) {
+    if (++values_ > most_values) {
+      refused = "it has more than " + std::to_string(most_values) + " values";
+      return;
+    }
+    if (channel.type != TdmsType::time) return channel.values.push_back(number_at(channel.type, at));
+    const Stamp stamp = stamp_at(at);
+    if (!channel.first) channel.first = stamp;
+    channel.values.push_back(between(*channel.first, stamp));
+  }
+
+  void deliver() {
+    if (cut_off_) arrays_.note("the file is cut off: its incomplete last values are left out");
+    std::map<std::tuple<double, double, std::size_t>, std::string> times;
+    std::optional<Stamp> first_start;
+    for (TdmsChannel& channel : channels_) {
+      if (channel.type == TdmsType::string && channel.has_index) arrays_.pass_over(channel.name, "a text");
+      if (channel.values.empty()) continue;
+      if (channel.needs_scale) {
+        arrays_.pass_over(channel.name, "its values are not scaled");
+        continue;
+      }
+      const std::size_t count = channel.values.size();
+      if (channel.first) {
+        arrays_.note("'" + document::shown(channel.name) + "' has time stamps: seconds after the first");
+        channel.unit = "s";
+      }
+      if (channel.increment_s > 0 && std::isfinite(channel.increment_s)) {
+        if (channel.start && !first_start) first_start = channel.start;
+        const double start =
+            channel.start_offset_s + (channel.start ? between(*first_start, *channel.start) : 0);
+        std::string& time = times[{channel.increment_s, start, count}];
+        if (time.empty()) {
+          time = times.size() == 1 ? "wf_time" : "wf_time " + std::to_string(times.size());
+          add_time(time, channel, start);
+        }
+      }
+      arrays_.add(channel.name, channel.unit, count, 1, channel.values);
+    }
+  }
+
+  void add_time(const std::string& name, const TdmsChannel& channel, double start) {
+    std::vector<double> time_s(channel.values.size());
+    for (std::size_t i = 0; i < time_s.size(); ++i)
+      time_s[i] = start + static_cast<double>(i) * channel.increment_s;
+    arrays_.note("'" + name + "' counts from wf_start_offset in steps of wf_increment");
+    arrays_.add(name, "s", time_s.size(), 1, time_s);
+  }
+
+  std::string_view bytes_;
+  ArrayCollector& arrays_;
+  std::vector<TdmsChannel> channels_;
+  std::map<std::string, std::size_t> by_path_;
+  std::vector<std::size_t> listed_;  ///< the channels with values in this segment
+  std::size_t steps_ = 0;
+  std::size_t values_ = 0;
+  bool cut_off_ = false;
+};
+
+}  // namespace
+
+std::optional<ForeignTable> read_tdms_table(const std::string& file, std::string_view bytes,
+                                            document::Problems& problems) {
+  ArrayCollector arrays(file);
+  TdmsReader reader(bytes, arrays);
+  if (reader.read()) return arrays.table("LabVIEW TDMS", problems);
+  problems.add(
+      {file, {1, 1}, {}, "a LabVIEW file (.tdms) that is not read: " + reader.refused, "export it as CSV"});
+  return std::nullopt;
+}
+
+}  // namespace softgrip::sysid

@@ -1,0 +1,116 @@
+#include "sysid/import/tdms_table.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <random>
+#include <string>
+#include <vector>
+
+// Whole files in the layouts of the format: tests/system/foreign_files.py.
+namespace softgrip::sysid::tdms_table_test {
+namespace {
+
+template <class T>
+std::string bytes_of(T value) {
+  std::string bytes(sizeof(T), '\0');
+  std::memcpy(bytes.data(), &value, sizeof(T));
+  return bytes;
+}
+
+std::string text_of(const std::string& text) {
+  return bytes_of(static_cast<std::uint32_t>(text.size())) + text;
+}
+
+std::string segment(std::uint32_t flags, const std::string& metadata, const std::string& raw) {
+  return "TDSm" + bytes_of(flags) + bytes_of(std::uint32_t{4713}) +
+         bytes_of(static_cast<std::uint64_t>(metadata.size() + raw.size())) +
+         bytes_of(static_cast<std::uint64_t>(metadata.size())) + metadata + raw;
+}
+
+/// The metadata of a channel with `count` values and without properties.
+std::string channel(const std::string& path, std::uint32_t type, std::uint64_t count) {
+  return text_of(path) + bytes_of(std::uint32_t{20}) + bytes_of(type) + bytes_of(std::uint32_t{1}) +
+         bytes_of(count) + bytes_of(std::uint32_t{0});
+}
+
+std::string number_of_objects(std::uint32_t count) {
+  return bytes_of(count);
+}
+
+std::string two_channels() {
+  const std::string metadata =
+      number_of_objects(2) + channel("/'g'/'it''s'", 10, 2) + channel("/'g'/'b'", 3, 2);
+  return segment(2 | 4 | 8, metadata,
+                 bytes_of(1.5) + bytes_of(2.5) + bytes_of(std::int32_t{-7}) + bytes_of(std::int32_t{8}));
+}
+
+std::string refusal(const std::string& bytes) {
+  document::Problems problems;
+  EXPECT_FALSE(read_tdms_table("m.tdms", bytes, problems));
+  return problems.format();
+}
+
+ForeignTable table_of(const std::string& bytes) {
+  document::Problems problems;
+  auto table = read_tdms_table("m.tdms", bytes, problems);
+  EXPECT_TRUE(table) << problems.format();
+  return table ? *table : ForeignTable{};
+}
+
+TEST(TdmsTable, ReadsNumbersByTheirTypes) {
+  const ForeignTable table = table_of(two_channels());
+  ASSERT_EQ(table.columns.size(), 2U);
+  EXPECT_EQ(table.columns[0].name, "g/it's");
+  EXPECT_EQ(table.columns[0].values, (std::vector<double>{1.5, 2.5}));
+  EXPECT_EQ(table.columns[1].values, (std::vector<double>{-7, 8}));
+}
+
+TEST(TdmsTable, MetadataHoldsUntilItChanges) {
+  // The second segment has no metadata; in the third only the count of one channel changes.
+  const std::string values =
+      bytes_of(3.5) + bytes_of(4.5) + bytes_of(std::int32_t{9}) + bytes_of(std::int32_t{10});
+  const std::string change =
+      number_of_objects(2) + channel("/'g'/'it''s'", 10, 1) + channel("/'g'/'b'", 3, 1);
+  const ForeignTable table =
+      table_of(two_channels() + segment(8, "", values) +
+               segment(2 | 8 | 32, change, bytes_of(5.5) + bytes_of(std::int32_t{11})));
+  ASSERT_EQ(table.columns.size(), 2U);
+  EXPECT_EQ(table.columns[0].values, (std::vector<double>{1.5, 2.5, 3.5, 4.5, 5.5}));
+  EXPECT_EQ(table.columns[1].values, (std::vector<double>{-7, 8, 9, 10, 11}));
+}
+
+TEST(TdmsTable, RefusesWhatItCannotRead) {
+  std::string bytes = two_channels();
+  bytes[4] = static_cast<char>(bytes[4] | 64);
+  EXPECT_NE(refusal(bytes).find("the segment at byte 0 is big-endian"), std::string::npos);
+  EXPECT_NE(refusal(two_channels() + std::string(40, 'x')).find("does not begin with TDSm"),
+            std::string::npos);
+  EXPECT_NE(refusal(segment(2 | 4, number_of_objects(5), "")).find("broken metadata"), std::string::npos);
+}
+
+/// Bytes that are cut off or changed are a table or a refusal, and never much work.
+TEST(TdmsTable, SurvivesDamage) {
+  const std::string good = two_channels() + two_channels();
+  std::mt19937 random(5);
+  for (std::size_t i = 0; i < 20 * good.size(); ++i) {
+    std::string bytes = i < good.size() ? good.substr(0, i) : good;
+    if (i >= good.size()) bytes[i % good.size()] = static_cast<char>(random());
+    document::Problems problems;
+    const auto table = read_tdms_table("m.tdms", bytes, problems);
+    ASSERT_EQ(table.has_value(), problems.empty()) << i;
+  }
+}
+
+TEST(TdmsTable, BoundsTheWorkOfSmallFiles) {
+  std::string metadata = number_of_objects(5000);
+  for (int i = 0; i < 5000; ++i) metadata += channel("/'g'/'" + std::to_string(i) + "'", 1, 0);
+  metadata.replace(0, 4, number_of_objects(5001));
+  metadata += channel("/'g'/'last'", 1, 1);
+  std::string bytes = segment(2 | 4 | 8, metadata, "x");
+  for (int i = 0; i < 30'000; ++i) bytes += segment(8, "", "x");
+  EXPECT_NE(refusal(bytes).find("pieces of channels"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace softgrip::sysid::tdms_table_test
