@@ -29,7 +29,7 @@ std::size_t stands_for(const Log& log, double range_kpa) {
 constexpr double step_share = 0.2;
 /// Readings at either end of the first command: their median is no outlier.
 constexpr std::size_t at_an_end = 5;
-constexpr std::size_t fewest_samples = 4 * at_an_end;
+constexpr std::size_t fewest_standing = 4 * at_an_end;
 
 /// Median of the readings in [first, last); NaN without one.
 double median_mm(const Log& log, std::size_t first, std::size_t last) {
@@ -53,7 +53,7 @@ std::optional<double> by_pressure(const Log& log, double range_kpa) {
 std::optional<double> by_displacement(const Log& log, double least_kpa, double most_kpa) {
   const double range_kpa = most_kpa - least_kpa;
   const std::size_t standing = stands_for(log, range_kpa);
-  if (standing < fewest_samples || standing == log.size()) return {};
+  if (standing < fewest_standing || standing == log.size()) return {};
   const double motion_mm = median_mm(log, standing - at_an_end, standing) - median_mm(log, 0, at_an_end);
   if (!(std::abs(motion_mm) > step_share * span_mm(log))) return {};
   const double before_kpa = motion_mm > 0 ? least_kpa : most_kpa;
