@@ -80,6 +80,20 @@ TEST(TdmsTable, MetadataHoldsUntilItChanges) {
   EXPECT_EQ(table.columns[1].values, (std::vector<double>{-7, 8, 9, 10, 11}));
 }
 
+/// Metadata without a new list changes the channels that it names and keeps the others.
+TEST(TdmsTable, ChangedMetadataKeepsTheOtherChannels) {
+  const auto more = [](std::uint64_t count, double first, std::int32_t second) {
+    std::string values;
+    for (std::uint64_t i = 0; i < count; ++i) values += bytes_of(first + static_cast<double>(i));
+    return segment(2 | 8, number_of_objects(1) + channel("/'g'/'it''s'", 10, count),
+                   values + bytes_of(second) + bytes_of(second + 1));
+  };
+  const ForeignTable table = table_of(two_channels() + more(1, 3.5, 9) + more(3, 4.5, 11));
+  ASSERT_EQ(table.columns.size(), 2U);
+  EXPECT_EQ(table.columns[0].values, (std::vector<double>{1.5, 2.5, 3.5, 4.5, 5.5, 6.5}));
+  EXPECT_EQ(table.columns[1].values, (std::vector<double>{-7, 8, 9, 10, 11, 12}));
+}
+
 TEST(TdmsTable, RefusesWhatItCannotRead) {
   std::string bytes = two_channels();
   bytes[4] = static_cast<char>(bytes[4] | 64);
