@@ -78,8 +78,8 @@ struct TickInput {
   Nanoseconds now = 0;
   std::span<const model::Reading> readings;  ///< one per channel
   BusHealth bus;
-  std::span<const double>
-      outputs_kpa;  ///< what stands at the board's outputs, or nearer to rest; empty: not known
+  /// One per channel: the pressure at the board's output, or one nearer to rest; empty: not known.
+  std::span<const double> outputs_kpa;
   Request request;
   bool emergency_stop = false;       ///< the level of the input, true = stop
   bool interlock_open = false;       ///< a start is refused while true; opening it does not end a sequence

@@ -35,9 +35,9 @@ struct BusReport {
     return outputs_kpa;
   }();
   std::array<model::Reading, control::max_channels> readings{};
-  /// The outputs have these pressures, or pressures further from rest on the same side. It is the last write.
-  /// Where the board has not confirmed it, it is the nearer to rest of both writes, or rest between them.
-  /// Where the board's watchdog has acted, it is the rest pressure. It is infinite before the first write.
+  /// No output is nearer to rest than this; if it may have either of two sides of rest, this is rest. It is
+  /// the last write. If the board has not confirmed it, it is the nearer to rest of both writes. If the
+  /// board's watchdog has acted, it is the rest pressure. It is infinite before the first write.
   std::array<double, control::max_channels> outputs_kpa = anything;
   control::BusHealth health;
 };

@@ -14,7 +14,7 @@ namespace {
 constexpr double day_s = 86400;
 /// A step across an overflow that is longer than this many usual steps may hide lost rows.
 constexpr double longest_step = 3;
-/// Clocks of different origins show one time if they wander by less than this share of the usual step.
+/// Clocks of different origins show one time if they drift by less than this share of the usual step.
 constexpr double wandering_share = 0.5;
 /// Clocks of one origin show one time if they differ by less than this share of the usual step.
 constexpr double equal_share = 0.05;

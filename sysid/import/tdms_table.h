@@ -12,7 +12,7 @@ namespace softgrip::sysid {
 
 /// Channels of numbers, booleans and time stamps, named "group/channel", with the property `unit_string` as
 /// their unit. Waveforms get a column "wf_time" from wf_increment, wf_start_offset and wf_start_time.
-/// Channels of text and channels that need a scale of NI are passed over and named, and so are values that
+/// Channels of text and channels that need a scale of NI are skipped and named, and so are values that
 /// are cut off. Big-endian files and the raw values of DAQmx are refused.
 [[nodiscard]] std::optional<ForeignTable> read_tdms_table(const std::string& file, std::string_view bytes,
                                                           document::Problems& problems);

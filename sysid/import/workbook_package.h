@@ -13,7 +13,7 @@ struct zip;
 namespace softgrip::sysid {
 
 /// Reads parts of an archive in memory. `bytes` must outlive it. All parts together have at most
-/// `most_text_bytes` (table.h), whatever the archive says about their sizes.
+/// `most_text_bytes` (table.h), regardless of the sizes that the archive states.
 class WorkbookPackage {
  public:
   /// The error is a sentence.

@@ -13,7 +13,7 @@
 
 namespace softgrip::sysid {
 
-/// What the cells of all sheets refer to.
+/// Texts and formats to which the cells of all sheets refer.
 struct WorkbookTexts {
   std::vector<std::string> strings;  ///< shared strings
   std::vector<bool> date_styles;     ///< by style: its numbers are dates or times of day

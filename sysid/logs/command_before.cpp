@@ -25,7 +25,7 @@ std::size_t stands_for(const Log& log, double range_kpa) {
   return count;
 }
 
-/// Of the displacement's range: creep under a steady pressure moves less.
+/// Share of the displacement's range: creep under a steady pressure moves less.
 constexpr double step_share = 0.2;
 /// Readings at either end of the first command: their median is no outlier.
 constexpr std::size_t at_an_end = 5;

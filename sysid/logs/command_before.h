@@ -13,7 +13,7 @@ namespace softgrip::sysid {
 ///
 /// Without a measured pressure the displacement shows it: it moves by a fifth of its range and more while the
 /// first command stands. The pressure then was at the lowest command if the displacement rises, otherwise at
-/// the highest. Nothing if the first command is that one itself, or stands for less than 20 samples.
+/// the highest. Nothing if the first command is that one itself, or lasts for less than 20 samples.
 [[nodiscard]] std::optional<double> pressure_before_kpa(const Log& log);
 
 /// The log with one sample more before its first, without readings, at the command `before_kpa`. Times still

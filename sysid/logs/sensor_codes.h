@@ -1,5 +1,5 @@
 #pragma once
-// Numbers that stand where a sensor read nothing.
+// Numbers that a sensor writes in place of a reading.
 
 #include <span>
 #include <vector>

@@ -20,7 +20,7 @@ namespace {
 
 constexpr int periods = 8;
 constexpr std::array damping_ratios{0.1, 0.5};
-/// The shortest period that is looked for, in sampling intervals.
+/// The shortest period that is looked for, in sampling intervals: fewer do not show a sine's amplitude.
 constexpr double shortest_in_intervals = 6;
 /// The longest one, as a share of the longest record.
 constexpr double longest_share = 0.1;

@@ -95,7 +95,7 @@ void append(std::vector<std::string>& list, std::vector<std::string> more) {
   for (std::string& one : more) list.push_back(std::move(one));
 }
 
-/// What is wrong with the logs before it is with the fit: a unit explains a number out of its range.
+/// The error of a fit with the plausibility warnings of its logs: a unit explains a number out of its range.
 std::string refusal_of(const std::string& error, const std::vector<sysid::Log>& logs) {
   std::string text = error;
   for (const std::string& doubt : sysid::doubts_among(logs)) text += "; " + doubt;
@@ -106,7 +106,7 @@ bool any_diverges(const std::vector<sysid::Score>& scores) {
   return std::any_of(scores.begin(), scores.end(), [](const sysid::Score& s) { return s.diverges; });
 }
 
-/// Of the data and of predictions: what puts the numbers of a fit in doubt is said before them.
+/// Warnings about the data and the predictions: they come before the numbers that they concern.
 std::vector<std::string> warnings_of_data(const sysid::Identification& result,
                                           const std::vector<sysid::Log>& logs,
                                           std::vector<std::string> wrong_readings) {

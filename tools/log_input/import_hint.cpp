@@ -20,7 +20,7 @@ std::string import_hint(const std::string& path) {
   const std::string end = "--out " + shell_word(file.stem().stem().string() + "_log.csv");
   if (proposal.missing.empty() && sysid::convert(*table, proposal.mapping, problems))
     return path + " as a log: " + begin + sysid::options_of(proposal.mapping) + " " + end + "\n";
-  // A log of our own that import cannot mend either has been told what is wrong.
+  // The errors of a log of our own are already printed, and import could not correct them either.
   const bool own = sysid::column_index(*table, "pressure_command_kpa") < table->columns.size();
   return own ? std::string() : "the columns of " + path + ": " + begin + end + "\n";
 }

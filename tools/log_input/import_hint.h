@@ -1,5 +1,5 @@
 #pragma once
-// What would make a log of a file that is refused as one.
+// The command that would make a log of a file that was refused as a log.
 
 #include <string>
 

@@ -26,7 +26,7 @@ struct OutlierEvidence {
 
 /// Finds readings that differ from both neighbours' line by more than noise can and hides them (NaN). Before
 /// any model is fitted: what a motion might hide, or make, is let pass. Sensor codes
-/// (sysid/logs/sensor_codes.h) are hidden wherever they stand, and so is one of the first or last 2 readings
+/// (sysid/logs/sensor_codes.h) are hidden at any place, and so is one of the first or last 2 readings
 /// that is far outside of all others and of 0.
 [[nodiscard]] OutlierEvidence hide_outliers(std::vector<Record>& records, double noise_mm);
 

@@ -15,7 +15,7 @@ namespace softgrip::sysid {
 namespace {
 
 constexpr std::size_t named_readings = 3;
-/// Readings without noise have no outliers that are smaller than so much of their span.
+/// Least noise, as a share of the span: readings without noise have no smaller outliers.
 constexpr double least_noise_share = 1e-3;
 
 /// Between the lowest and the highest twentieth: wrong readings do not count.

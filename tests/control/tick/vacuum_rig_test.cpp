@@ -23,7 +23,7 @@ class VacuumRig : public testing::Test {
     ASSERT_NEAR(rig.board_kpa(0), -30, 1e-9);
   }
   static double command(const SimulatedRig& rig) { return rig.output().channels[0].command_kpa; }
-  /// What is wrong with a sequence for this rig.
+  /// The reason why this rig refuses a sequence; empty: none.
   std::string refusal(const std::string& steps) const {
     document::Problems problems;
     const auto sequence =
