@@ -103,7 +103,7 @@ TEST(TdmsTable, RefusesWhatItCannotRead) {
   EXPECT_NE(refusal(segment(2 | 4, number_of_objects(5), "")).find("broken metadata"), std::string::npos);
 }
 
-/// Bytes that are cut off or changed are a table or a refusal, and never much work.
+/// Bytes that are cut off or changed are a table or a refusal.
 TEST(TdmsTable, SurvivesDamage) {
   const std::string good = two_channels() + two_channels();
   std::mt19937 random(5);
