@@ -112,7 +112,7 @@ void Bus::obey_if_heard() noexcept {
     return;
   for (std::size_t i = 0; i < channels_; ++i) {
     const double command_kpa = commands.command_kpa[i];
-    if (no_further(i, command_kpa, report_.outputs_kpa[i]) != command_kpa) return;
+    if (control::no_further(rest_kpa_[i], command_kpa, report_.outputs_kpa[i]) != command_kpa) return;
   }
   if (inhibited_ == FaultCode::cycles_lost) tell(BusEvent::Kind::loop_back, BusStatus::ok);
   inhibited_ = FaultCode::none;
@@ -176,7 +176,7 @@ void Bus::choose_outputs() noexcept {
   written_kpa_ = silent() ? commands.safe_kpa : commands.command_kpa;
   if (commands.may_rise && inhibited_ == FaultCode::none) return;
   for (std::size_t i = 0; i < channels_; ++i) {
-    written_kpa_[i] = no_further(i, written_kpa_[i], report_.outputs_kpa[i]);
+    written_kpa_[i] = control::no_further(rest_kpa_[i], written_kpa_[i], report_.outputs_kpa[i]);
   }
 }
 
@@ -208,7 +208,7 @@ void Bus::note_clients() noexcept {
 void Bus::note_failure(BusStatus status) noexcept {
   // It may have been taken, or not.
   for (std::size_t i = 0; i < channels_; ++i) {
-    report_.outputs_kpa[i] = no_further(i, written_kpa_[i], report_.outputs_kpa[i]);
+    report_.outputs_kpa[i] = control::no_further(rest_kpa_[i], written_kpa_[i], report_.outputs_kpa[i]);
   }
   const bool others = status == BusStatus::overwritten;
   if (others || status == BusStatus::watchdog_tripped) rest_outputs();
@@ -235,10 +235,6 @@ void Bus::judge_gap(Nanoseconds now, Nanoseconds margin) noexcept {
   tell(BusEvent::Kind::failed, BusStatus::watchdog_tripped, detail.data());
   told_failed_ = true;
   last_good_.reset();  // once a gap: what is written until the next good exchange is the rest pressure
-}
-
-double Bus::no_further(std::size_t channel, double kpa, double bound_kpa) const noexcept {
-  return control::no_further(rest_kpa_[channel], kpa, bound_kpa);
 }
 
 void Bus::rest_outputs() noexcept {

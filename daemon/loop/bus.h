@@ -63,7 +63,6 @@ class Bus {
   void note_failure(drivers::BusStatus status) noexcept;
   void note_clients() noexcept;
   void judge_gap(Nanoseconds now, Nanoseconds margin) noexcept;
-  [[nodiscard]] double no_further(std::size_t channel, double kpa, double bound_kpa) const noexcept;
   void rest_outputs() noexcept;
   void tell(BusEvent::Kind kind, drivers::BusStatus status, const char* detail = "") noexcept;
   void publish() noexcept;

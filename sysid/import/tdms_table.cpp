@@ -1,7 +1,6 @@
 #include "sysid/import/tdms_table.h"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>

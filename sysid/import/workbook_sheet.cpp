@@ -134,9 +134,10 @@ class SheetReader {
       if (const std::string_view number = attribute_of(node, "r"); !number.empty()) {
         const auto at = place_of("A" + std::string(number));
         if (!at || at->row <= before)
-          return fail({static_cast<int>(before + 1), 1}, "a row has the number '" + document::shown(number) +
-                                                             "', above " + std::to_string(before) +
-                                                             " and at most 1048576 is expected");
+          return fail({static_cast<int>(before + 1), 1},
+                      "a row has the number '" + document::shown(number) + "', above " +
+                          std::to_string(before) + " and at most " + std::to_string(most_sheet_rows) +
+                          " is expected");
         row = at->row;
       }
       walk_row(node, row, take);
@@ -160,8 +161,8 @@ class SheetReader {
         cell.column = at->column;
       }
       if (cell.column >= most_sheet_columns)
-        return fail({static_cast<int>(row), 1},
-                    "row " + std::to_string(row) + " has more than 16384 columns");
+        return fail({static_cast<int>(row), 1}, "row " + std::to_string(row) + " has more than " +
+                                                    std::to_string(most_sheet_columns) + " columns");
       next = cell.column + 1;
       fill(child, cell);
       if (problem_) return;
@@ -247,7 +248,7 @@ class SheetReader {
     return index;
   }
 
-  /// What must be known of all cells before the first is written.
+  /// Finds the first and the last row and column of a sheet, before a cell is written.
   void survey(const SheetCell& cell) {
     if (result_.first_row == 0) {
       result_.first_row = cell.row;
@@ -355,7 +356,7 @@ class SheetReader {
       std::size_t hidden = 0;
       for (const pugi::xml_node& child : parent.children()) {
         const std::string_view said = attribute_of(child, "hidden");
-        if (said == "1" || said == "true") ++hidden;
+        if (is_true(said)) ++hidden;
       }
       return hidden;
     };

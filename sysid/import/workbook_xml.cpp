@@ -6,7 +6,7 @@ namespace softgrip::sysid {
 namespace {
 
 constexpr std::size_t most_tree_bytes = std::size_t{1} << 30U;
-// Of pugixml on a machine of 64 bits.
+// Size of a node of pugixml on a machine of 64 bits.
 constexpr std::size_t node_bytes = 64;
 constexpr std::size_t attribute_bytes = 40;
 
@@ -49,6 +49,10 @@ std::string_view attribute_of(const pugi::xml_node& node, std::string_view name)
     if (local_name(attribute.name()) == name) return attribute.value();
   }
   return {};
+}
+
+bool is_true(std::string_view word) {
+  return word == "1" || word == "true";
 }
 
 std::string string_in(const pugi::xml_node& node) {

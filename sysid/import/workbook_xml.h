@@ -19,6 +19,9 @@ namespace softgrip::sysid {
 [[nodiscard]] pugi::xml_node child_of(const pugi::xml_node& node, std::string_view name);
 [[nodiscard]] std::string_view attribute_of(const pugi::xml_node& node, std::string_view name);
 
+/// Returns true for the two words that XML has for it: "1" and "true".
+[[nodiscard]] bool is_true(std::string_view word);
+
 /// The text of a shared or an inline string: its `t` elements, also those in runs.
 [[nodiscard]] std::string string_in(const pugi::xml_node& node);
 

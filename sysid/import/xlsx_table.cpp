@@ -20,7 +20,7 @@ namespace {
 constexpr std::size_t most_sheets = 1000;
 constexpr const char* as_csv = "export the sheet as CSV";
 
-/// What a part of the package refers to, by its id.
+/// A reference of one part of the package to another, by its id.
 struct Relation {
   std::string type;  ///< the last word of the address that names it: "worksheet"
   std::string part;
@@ -43,10 +43,6 @@ std::string listed(const std::vector<std::string>& names) {
   const std::vector<std::string> first(
       names.begin(), names.begin() + static_cast<std::ptrdiff_t>(std::min(names.size(), most_named)));
   return with_commas(first, quoted_name) + (names.size() > most_named ? ", ..." : "");
-}
-
-bool is_true(std::string_view word) {
-  return word == "1" || word == "true";
 }
 
 class WorkbookReader {

@@ -11,6 +11,8 @@ constexpr double unloaded_share = 0.2;
 constexpr double no_pressure_share = 0.02;
 constexpr double long_enough_s = 3;
 constexpr double same_amplitude_share = 0.05;
+/// Commands in files have six decimals at most.
+constexpr double same_command_kpa = 1e-6;
 
 std::vector<double> sizes_of(const Log& log) {
   std::vector<double> sizes = log.pressure_command_kpa;
@@ -79,7 +81,8 @@ bool contains_rest(const std::vector<Log>& logs) {
     const std::vector<double>& u = log.pressure_command_kpa;
     double still_s = 0;
     for (std::size_t i = 1; i < u.size(); ++i) {
-      const bool still = std::abs(u[i]) < no_pressure_share * largest_kpa && std::abs(u[i] - u[i - 1]) < 1e-6;
+      const bool still =
+          std::abs(u[i]) < no_pressure_share * largest_kpa && std::abs(u[i] - u[i - 1]) < same_command_kpa;
       still_s = still ? still_s + log.time_s[i] - log.time_s[i - 1] : 0;
       if (still_s > long_enough_s) return true;
     }

@@ -1,5 +1,5 @@
 #pragma once
-// What the commands of logs do not contain, so that no fit can find it in the readings.
+// Motions that the commands of logs do not contain, so that no fit can find their effects in the readings.
 
 #include <cstdint>
 #include <string>
@@ -9,13 +9,14 @@
 
 namespace softgrip::sysid {
 
+/// Motions that a log should contain.
 enum class Excitation : std::uint8_t {
   unloading,   ///< the pressure falls back by a fifth of the largest one
   rest,        ///< more than 3 s at no pressure (2 % of the largest)
-  amplitudes,  ///< the peaks differ by 5 % of the largest
+  amplitudes,  ///< peaks of two heights, 5 % of the largest apart
 };
 
-/// What none of the logs contains. Sizes count, so a vacuum rig is loaded towards its lowest pressure.
+/// Motions that no log contains. Sizes count, so a vacuum rig is loaded towards its lowest pressure.
 [[nodiscard]] std::vector<Excitation> missing_excitation(const std::vector<Log>& logs);
 
 /// "unloading never seen: hysteresis cannot be judged"

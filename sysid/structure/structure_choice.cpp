@@ -4,6 +4,7 @@
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <utility>
 
 #include "base/parallel.h"
 #include "sysid/fitting/held_out.h"
@@ -280,10 +281,7 @@ FitPoint fit_from(const NonlinearNumbers* near, const StructureTrial& trial,
                   const std::vector<Record>& records, Drive drive) {
   if (trial.structure.published) return refit_published(records, trial.point);
   const StructureFitOptions options{.ridge = trial.ridge};
-  BaseStructure still = trial.structure;
-  still.resonance = false;
-  FitPoint point = point_of(fit_form(records, still, grid_for(records), options, near), records, drive);
-  return trial.structure.resonance ? with_resonance_of(trial.point, std::move(point), records) : point;
+  return point_of(fit_form(records, trial.structure, grid_for(records), options, near), records, drive);
 }
 
 }  // namespace
@@ -309,13 +307,10 @@ std::string_view name_of(Ingredient ingredient) {
 
 std::vector<Record> with_simplest_start(const std::vector<Record>& records,
                                         const StructureChoiceOptions& options) {
+  const auto is_open = [](const Record& r) { return r.start == Start::automatic && r.start_unknown; };
+  if (std::none_of(records.begin(), records.end(), is_open)) return records;
   std::vector<Record> resting = records;
-  for (Record& record : resting) {
-    if (record.start == Start::automatic) record.start_unknown = false;
-  }
-  if (std::equal(records.begin(), records.end(), resting.begin(),
-                 [](const Record& a, const Record& b) { return a.start_unknown == b.start_unknown; }))
-    return records;
+  for (Record& record : resting) record.start_unknown = record.start_unknown && !is_open(record);
   if (options.progress) options.progress("does each log begin at rest?");
   const BaseStructure structure = candidates(options).back();
   std::array<std::vector<double>, 2> losses;
@@ -399,10 +394,10 @@ std::vector<WithoutIngredient> ablation_of(const std::vector<Record>& records, c
     // A branch of the finger's own between two rungs is made up for by both; the upper one may be slow creep.
     const Judge& fair = ablation[i].ingredient == Ingredient::slow_creep ? among_more_rungs : judge;
     BaseStructure still = ablation[i].trial.structure;
-    still.resonance = false;
+    const bool rings = std::exchange(still.resonance, false);
     StructureTrial trial = still.lag && still.regulator ? fair.judge_near(still, choice.ridge, chosen.numbers)
                                                         : fair.judge(still, choice.ridge);
-    ablation[i].trial = ablation[i].trial.structure.resonance ? fair.judge_resonant(trial) : std::move(trial);
+    ablation[i].trial = rings ? fair.judge_resonant(trial) : std::move(trial);
   });
   return ablation;
 }

@@ -94,8 +94,8 @@ struct WithoutIngredient {
   StructureTrial trial;
 };
 
-/// The records with a start at rest at the first pressure, unless an unknown start leaves clearly less in
-/// held-out blocks. A start that the caller states is kept.
+/// The records with a start at rest at the first pressure, all of them or none: none if unknown starts leave
+/// clearly less in held-out blocks. A start that the caller states is kept.
 [[nodiscard]] std::vector<Record> with_simplest_start(const std::vector<Record>& records,
                                                       const StructureChoiceOptions& options);
 
@@ -114,6 +114,7 @@ struct WithoutIngredient {
     std::span<const Ingredient> ingredients = all_ingredients);
 
 /// The same structure with the same ridge fitted to other readings of the same records.
+/// @param trial  without a resonance: of a choice without `dynamics`.
 [[nodiscard]] FitPoint fit_again(const StructureTrial& trial, const std::vector<Record>& records,
                                  Drive drive);
 /// From the trial's own numbers alone, where what has changed of the readings is little.

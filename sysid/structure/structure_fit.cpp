@@ -250,24 +250,16 @@ std::vector<NonlinearNumbers> starts_for(const std::vector<Record>& records, con
   std::vector<double> peaks;
   peaks.reserve(records.size());
   for (const Record& record : records) peaks.push_back(record.start_unknown ? record.drive_kpa.front() : 0);
-  const NonlinearNumbers quick{.delay_s = 0.02,
-                               .filling_s = 0.15,
-                               .venting_s = 0.15,
-                               .growing_per_kpa = 2 / grid.largest_kpa,
-                               .peak_before_kpa = peaks};
-  const NonlinearNumbers late{.delay_s = 0.15,
-                              .filling_s = 0.05,
-                              .venting_s = 0.05,
-                              .growing_per_kpa = 6 / grid.largest_kpa,
-                              .trained_kpa = 1.2 * grid.largest_kpa,
-                              .peak_before_kpa = peaks};
-  const NonlinearNumbers slow{.delay_s = 0.1,
-                              .filling_s = 0.5,
-                              .venting_s = 1.5,
-                              .growing_per_kpa = 3 / grid.largest_kpa,
-                              .trained_kpa = 0.5 * grid.largest_kpa,
-                              .peak_before_kpa = peaks};
-  return {quick, late, slow};
+  const auto start = [&](double delay_s, double filling_s, double venting_s, double growing, double trained) {
+    return NonlinearNumbers{.delay_s = delay_s,
+                            .filling_s = filling_s,
+                            .venting_s = venting_s,
+                            .growing_per_kpa = growing / grid.largest_kpa,
+                            .trained_kpa = trained * grid.largest_kpa,
+                            .peak_before_kpa = peaks};
+  };
+  // A quick valve, dead time in its place, and a slow one.
+  return {start(0.02, 0.15, 0.15, 2, 0), start(0.15, 0.05, 0.05, 6, 1.2), start(0.1, 0.5, 1.5, 3, 0.5)};
 }
 
 }  // namespace

@@ -7,14 +7,15 @@
 #include "document/problem.h"
 #include "sysid/logs/command_before.h"
 #include "tools/command_line/command.h"
+#include "tools/command_line/read_input.h"
 #include "tools/log_input/import_hint.h"
 
 namespace softgrip::tools {
 namespace {
 
-void begin_before_the_first_command(std::vector<sysid::Log>& logs, bool measured_too) {
+void begin_before_the_first_command(std::vector<sysid::Log>& logs, const LogInput& input) {
   for (sysid::Log& log : logs) {
-    if (!measured_too && !log.pressure_kpa.empty()) continue;
+    if (input.begins_at_measured_pressure && !log.pressure_kpa.empty()) continue;
     if (const auto before_kpa = sysid::pressure_before_kpa(log))
       log = sysid::with_command_before(log, *before_kpa);
   }
@@ -59,11 +60,12 @@ tl::expected<std::vector<sysid::Log>, ExitCode> read_logs(const std::vector<std:
       problems.add({log.path, {1, 1}, {}, "no column 'pressure_kpa', which --drive measured needs", {}});
     }
   }
-  if (input.drive == "command")
-    begin_before_the_first_command(campaign.logs, !input.begins_at_measured_pressure);
-  if (problems.empty()) return std::move(campaign.logs);
-  const ExitCode refused = refuse_logs(problems);
-  return tl::unexpected(campaign.unreadable ? ExitCode::io : refused);
+  if (!problems.empty()) {
+    const ExitCode refused = refuse_logs(problems);
+    return tl::unexpected(campaign.unreadable ? ExitCode::io : refused);
+  }
+  if (input.drive == "command") begin_before_the_first_command(campaign.logs, input);
+  return std::move(campaign.logs);
 }
 
 ExitCode refuse_logs(const document::Problems& problems) {
@@ -76,11 +78,7 @@ ExitCode refuse_logs(const document::Problems& problems) {
 }
 
 tl::expected<sysid::GaugeFile, ExitCode> read_gauge(const std::string& path) {
-  if (const auto code = unreadable(path)) return tl::unexpected(*code);
-  document::Problems problems;
-  auto gauge = sysid::read_gauge(path, problems);
-  if (!gauge) return tl::unexpected(refuse(problems));
-  return std::move(*gauge);
+  return read_input(path, sysid::read_gauge);
 }
 
 }  // namespace softgrip::tools
