@@ -1,5 +1,6 @@
 // What only the whole rig shows.
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 
@@ -11,21 +12,23 @@ namespace softgrip::rig {
 
 namespace {
 
-/// Modbus: what the watchdog of the board puts out for a channel; nothing if it has none.
-std::optional<double> safe_value_kpa(const drivers::OutputWiring& valve,
+/// Modbus: what the watchdog of the board makes a channel's valve control; nothing if it has none.
+std::optional<double> safe_value_kpa(const drivers::OutputWiring& valve, const ValveFacts& facts,
                                      const drivers::ModbusSettings& board) {
   if (valve.module >= board.modules.size()) return std::nullopt;
   const drivers::BoardWatchdog& watchdog = board.modules[valve.module].map.watchdog;
   if (watchdog.kind == drivers::BoardWatchdog::Kind::none) return std::nullopt;
   if (valve.output >= watchdog.safe_electrical.size()) return std::nullopt;
-  return valve.scaling.y_at(watchdog.safe_electrical[valve.output]);
+  const double asked_kpa = valve.scaling.y_at(watchdog.safe_electrical[valve.output]);
+  return std::clamp(asked_kpa, facts.range_min_kpa, facts.range_max_kpa);
 }
 
 /// Modbus: why not every channel goes to its rest pressure by itself; nothing: each does. Empty: the board
 /// has no watchdog.
 std::optional<std::string> stays_away(const Context& context, const drivers::ModbusSettings& board) {
   for (std::size_t i = 0; i < context.wiring.size(); ++i) {
-    const std::optional<double> safe_kpa = safe_value_kpa(context.wiring[i].valve, board);
+    const std::optional<double> safe_kpa =
+        safe_value_kpa(context.wiring[i].valve, context.rig.valves[i], board);
     if (!safe_kpa) return "";
     const control::LimitSettings& limits = context.rig.settings.channels[i].limits;
     if (is_rest(limits, *safe_kpa)) continue;

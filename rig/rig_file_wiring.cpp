@@ -216,7 +216,10 @@ void check_sensor(MapReader& reader, const drivers::InputWiring& wiring,
 
 bool is_rest(const control::LimitSettings& limits, double pressure_kpa) {
   const double slack_kpa = 0.01 * (limits.pressure_max_kpa - limits.pressure_min_kpa);
-  return std::abs(control::in_range(limits, pressure_kpa) - control::resting_kpa(limits)) <= slack_kpa;
+  const double rest_kpa = control::resting_kpa(limits);
+  const bool nearest_to_air = control::in_range(limits, 0) == rest_kpa;
+  const double inside_kpa = control::no_further(rest_kpa, pressure_kpa, nearest_to_air ? 0 : rest_kpa);
+  return std::abs(pressure_kpa - inside_kpa) <= slack_kpa;
 }
 
 drivers::OutputWiring read_valve(Context& context, const Node& node, const std::string& who,

@@ -180,6 +180,31 @@ TEST(RestPressure, OfTheBoardsWatchdogIsThatOfTheChannel) {
       << "within 1 % of the range: " << problems.format();
 }
 
+// The limits bind the daemon only: a board that writes more gives more, as far as its valve goes.
+TEST(RestPressure, OfTheBoardsWatchdogIsNotBeyondTheLimits) {
+  using Edits = std::vector<std::pair<std::string, std::string>>;
+  const auto with = [](Edits edits, const Edits& more) {
+    edits.insert(edits.end(), more.begin(), more.end());
+    return edits;
+  };
+  const Edits vacuum{{"pressure_min_kpa: -40", "pressure_min_kpa: -80"},
+                     {"pressure_max_kpa: 60", "pressure_max_kpa: -10"},
+                     {"  rest_kpa: 0 ", "  rest_kpa: -10 "}};
+  const Edits inflates{{"valve: {at_v: [0, 10]", "valve: {at_v: [0, 5]"}};  // 5 V are 100 kPa
+  const Edits no_pressure{{"range_kpa: [-100, 100]", "range_kpa: [-100, 0]"}};
+  for (const Edits& edits : {with(vacuum, inflates), with({{"rest_kpa: 0", "rest_kpa: 60"}}, inflates)}) {
+    Problems problems;
+    EXPECT_FALSE(edited("vacuum/rig_tcp.yaml", edits, problems).accepted);
+    EXPECT_NE(problems.format().find("its watchdog puts channel `left` to 100 kPa"), std::string::npos)
+        << problems.format();
+  }
+  for (const Edits& edits : {vacuum, with(with(vacuum, inflates), no_pressure)}) {
+    Problems problems;
+    EXPECT_TRUE(edited("vacuum/rig_tcp.yaml", edits, problems).accepted)
+        << "nothing is nearer to 0 kPa: " << problems.format();
+  }
+}
+
 TEST(RestPressure, IsComparedWithTheValveThatHasNoPower) {
   const auto warning = [](const std::string& name,
                           const std::vector<std::pair<std::string, std::string>>& edits) {
@@ -199,11 +224,12 @@ TEST(RestPressure, IsComparedWithTheValveThatHasNoPower) {
       warning("vacuum/rig.yaml", {{"on_power_loss: vents", "on_power_loss: vents, on_power_loss_kpa: -80"}})
           .find("goes to -80 kPa, and the rest pressure is 0 kPa"),
       std::string::npos);
-  EXPECT_EQ(
+  EXPECT_NE(
       warning("vacuum/rig.yaml", {{"rest_kpa: 0", "rest_kpa: -40"},
-                                  {"on_power_loss: vents", "on_power_loss: vents, on_power_loss_kpa: -80"}}),
-      "")
-      << "beyond the limits their end counts";
+                                  {"on_power_loss: vents", "on_power_loss: vents, on_power_loss_kpa: -80"}})
+          .find("goes to -80 kPa, and the rest pressure is -40 kPa"),
+      std::string::npos)
+      << "no limit binds a valve without power";
   EXPECT_NE(warning("vacuum/rig.yaml", {holds}).find("holds its last pressure"), std::string::npos);
   EXPECT_EQ(warning("rig.yaml", {holds}), "") << "the file states no rest pressure";
   Problems problems;
