@@ -14,8 +14,8 @@ LimitedCommand limit(const LimitSettings& limits, double wanted_kpa, double last
   // Without a usable last command only the rest pressure is known to do no harm.
   const double last = std::isfinite(last_kpa) ? in_range(limits, last_kpa) : resting_kpa(limits);
   if (std::isnan(wanted_kpa) || std::isnan(ceiling_kpa)) return {last, false, false, true, false};
-  // A bound from above must not evacuate a finger.
-  const double highest_kpa = std::max(ceiling_kpa, std::min(resting_kpa(limits), last));
+  // A bound from above evacuates no finger, and stops none on its way back to rest.
+  const double highest_kpa = std::max(ceiling_kpa, resting_kpa(limits));
   const bool capped = wanted_kpa > highest_kpa;
   const double inside = in_range(limits, capped ? highest_kpa : wanted_kpa);
   const double reached = std::clamp(inside, last - limits.slew_down_kpa_per_s * elapsed_s,

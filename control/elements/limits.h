@@ -60,7 +60,7 @@ inline constexpr double no_ceiling = std::numeric_limits<double>::infinity();
 
 /// The command for `wanted_kpa` when `last_kpa` went out `elapsed_s` (>= 0) ago. It is always inside the
 /// pressure range, even when the last one was not; inside the range the slew limits hold as well. A ceiling
-/// below what stands is gone to as fast as they allow, but it takes no command further from rest.
+/// below what stands is gone to as fast as they allow. A ceiling below rest is one at rest.
 [[nodiscard]] LimitedCommand limit(const LimitSettings& limits, double wanted_kpa, double last_kpa,
                                    double elapsed_s, double ceiling_kpa = no_ceiling) noexcept;
 

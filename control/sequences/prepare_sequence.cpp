@@ -151,6 +151,11 @@ class Fitting {
     const double most_kpa = step.bounds.pressure_max_kpa;
     if (std::isfinite(most_kpa)) {
       check_pressure(step, channel, most_kpa, most_kpa);
+      const double rest_kpa = resting_kpa(channel.limits);
+      if (most_kpa < rest_kpa) {
+        report(step, "its pressure_max_kpa is below the rest pressure of channel '" + channel.name + "' (" +
+                         significant(rest_kpa, 6) + " kPa), which a command may always return to");
+      }
       const bool by_pressure = step.target.quantity == Target::Quantity::pressure_kpa &&
                                (step.kind == StepKind::move || step.kind == StepKind::grip);
       if (by_pressure && step.target.value > most_kpa) {

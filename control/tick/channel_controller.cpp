@@ -99,18 +99,16 @@ void ChannelController::weigh(double predicted_mm, ChannelOutput& channel) noexc
 void ChannelController::send(const ChannelDemand& demand, double wanted_kpa,
                              ChannelOutput& channel) noexcept {
   const bool bounded = std::isfinite(demand.squeeze_max_kpa);
-  const bool vents = demand.mode == DemandMode::vent;  // whose way nothing bounds
-  const double least_kpa = std::min(resting_kpa(limits_), channel.command_kpa);
-  const double squeezed_kpa = bounded && !vents ? channel.free_kpa + demand.squeeze_max_kpa : no_ceiling;
-  const double bound_kpa = vents ? no_ceiling : std::min(squeezed_kpa, demand.pressure_max_kpa);
-  const double ceiling_kpa = std::max(bound_kpa, least_kpa);
+  const double squeezed_kpa = bounded ? channel.free_kpa + demand.squeeze_max_kpa : no_ceiling;
+  const double ceiling_kpa = std::min(squeezed_kpa, demand.pressure_max_kpa);
   const LimitedCommand limited = limit(limits_, wanted_kpa, channel.command_kpa, tick_s_, ceiling_kpa);
   if (tracking()) pid_.sent(limited.command_kpa);
   channel.command_kpa = limited.command_kpa;
   channel.saturated = limited.saturated;
   channel.slewing = limited.slewing;
   channel.request_invalid = limited.invalid;
-  if (wanted_kpa > std::min(ceiling_kpa, limits_.pressure_max_kpa) + unnoticed_kpa) {
+  const bool bound = limited.capped || wanted_kpa > limits_.pressure_max_kpa;
+  if (bound && wanted_kpa > std::min(ceiling_kpa, limits_.pressure_max_kpa) + unnoticed_kpa) {
     channel.bound_by = limits_.pressure_max_kpa <= ceiling_kpa   ? BindingLimit::rig_pressure
                        : demand.pressure_max_kpa <= squeezed_kpa ? BindingLimit::step_pressure
                                                                  : BindingLimit::step_squeeze;
@@ -118,7 +116,7 @@ void ChannelController::send(const ChannelDemand& demand, double wanted_kpa,
   }
   // A vent is meant to go at the slew limit.
   const double behind_kpa = in_range(limits_, wanted_kpa) - limited.command_kpa;
-  const bool slewed = limited.slewing && !vents;
+  const bool slewed = limited.slewing && demand.mode != DemandMode::vent;
   channel.bound_by = !slewed || std::abs(behind_kpa) <= unnoticed_kpa ? BindingLimit::none
                      : behind_kpa > 0                                 ? BindingLimit::rig_slew_up
                                                                       : BindingLimit::rig_slew_down;

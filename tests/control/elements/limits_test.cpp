@@ -104,8 +104,9 @@ TEST(Limits, WithoutAUsableLastCommandItBeginsAtRest) {
 
 TEST(Limits, ACeilingDoesNotEvacuate) {
   EXPECT_EQ(limit(vacuum, 30, 1, 1, -20).command_kpa, 0) << "down to rest, not further";
-  EXPECT_EQ(limit(vacuum, 30, -10, 1, -20).command_kpa, -10) << "no further from rest than it is";
-  EXPECT_EQ(limit(vacuum, 30, -30, 1, -20).command_kpa, -20);
+  EXPECT_EQ(limit(vacuum, 30, -10, 1, -20).command_kpa, 0) << "and the way back to rest is free";
+  EXPECT_EQ(limit(vacuum, 0, -30, 1, -20).command_kpa, 0);
+  EXPECT_FALSE(limit(vacuum, 0, -30, 1, -20).capped);
 }
 
 // Neither range nor slew is ever exceeded, whatever is asked for.

@@ -176,6 +176,29 @@ TEST(ChannelController, VentGoesDownAtTheSlewLimit) {
   EXPECT_EQ(rig.last.command_kpa, 0);
 }
 
+TEST(ChannelController, NoCeilingStopsTheWayUpToRest) {
+  ChannelSettings settings = twin_settings();
+  settings.limits.pressure_min_kpa = -40;
+  Rig rig(settings);
+  for (const Mode mode : {Mode::vent, Mode::pressure}) {
+    rig.input.demand = {};
+    rig.press(-30);
+    rig.run(1);
+    ASSERT_EQ(rig.last.command_kpa, -30);
+    rig.press(0);
+    rig.input.demand.mode = mode;
+    rig.input.demand.pressure_max_kpa = -20;
+    rig.input.demand.squeeze_max_kpa = 1;
+    bool bound = false;
+    rig.run(1, [&] {
+      bound = bound || rig.last.bound_by == BindingLimit::step_pressure ||
+              rig.last.bound_by == BindingLimit::step_squeeze;
+    });
+    EXPECT_FALSE(bound);
+    EXPECT_EQ(rig.last.command_kpa, 0);
+  }
+}
+
 TEST(ChannelController, ADisplacementWithoutAReferenceHolds) {
   Rig rig(twin_settings());
   rig.press(10);

@@ -175,6 +175,14 @@ TEST_F(VacuumRig, ABoundThatRestSatisfiesIsRefused) {
   EXPECT_EQ(verified_by("pressure_max_kpa: -15"), "");
 }
 
+TEST_F(VacuumRig, ABoundBelowRestIsRefused) {
+  const auto bounded_by = [&](const std::string& bound) {
+    return refusal("  - move: {pressure_kpa: -30, duration_s: 1, pressure_max_kpa: " + bound + "}\n");
+  };
+  EXPECT_NE(bounded_by("-20").find("below the rest pressure of channel 'left' (0 kPa)"), std::string::npos);
+  EXPECT_EQ(bounded_by("0"), "");
+}
+
 /// The published steps go up from rest; a ceiling must not evacuate.
 TEST_F(VacuumRig, StepsAboveRestWorkAsOnARigWithoutVacuum) {
   const PreparedSequence pick = example_sequence("pick_stone", settings);
