@@ -138,6 +138,7 @@ class Fitting {
         break;
     }
     if (step.kind == StepKind::grip) check_verify(step, channel);
+    check_side(step, channel);
     check_bounds(step, channel, index);
   }
 
@@ -238,21 +239,28 @@ class Fitting {
     follows = start;
   }
 
-  void check_profile(const Step& step, const ChannelSettings& channel) {
+  struct ProfileRange {
     double lowest = infinite;
     double highest = -infinite;
+  };
+
+  static ProfileRange range_of(const Profile& profile) {
+    ProfileRange range;
     const auto see = [&](double value) {
-      lowest = std::min(lowest, value);
-      highest = std::max(highest, value);
+      range.lowest = std::min(range.lowest, value);
+      range.highest = std::max(range.highest, value);
     };
-    if (step.profile.signal) {
+    if (profile.signal) {
       constexpr int samples = 2000;
-      for (int i = 0; i <= samples; ++i) {
-        see(value_at(step.profile, cycle_s(step.profile) * i / samples));
-      }
+      for (int i = 0; i <= samples; ++i) see(value_at(profile, cycle_s(profile) * i / samples));
     }
-    for (const Point& point : step.profile.points) see(point.pressure_kpa);
-    check_pressure(step, channel, lowest, highest);
+    for (const Point& point : profile.points) see(point.pressure_kpa);
+    return range;
+  }
+
+  void check_profile(const Step& step, const ChannelSettings& channel) {
+    const ProfileRange range = range_of(step.profile);
+    check_pressure(step, channel, range.lowest, range.highest);
   }
 
   void check_verify(const Step& step, const ChannelSettings& channel) {
@@ -264,7 +272,6 @@ class Fitting {
     } else if (!channel.displacement_used) {
       report(step, "channel '" + channel.name + "' does not use its displacement", "verify by: pressure");
     }
-    check_side(step, channel);
   }
 
   /// A bound that the rest pressure satisfies cannot verify a grip.
@@ -282,20 +289,30 @@ class Fitting {
            below ? "a lower pressure_max_kpa" : "pressure_max_kpa for a grip below the rest pressure");
   }
 
-  /// Detection and squeeze compare a finger that goes away from rest upward with its free motion.
+  /// Detection, touch and squeeze compare a finger that goes away from rest upward with its free motion.
   void check_side(const Step& step, const ChannelSettings& channel) {
     const double rest_kpa = resting_kpa(channel.limits);
-    const bool compares = step.verify.by == VerifyBy::detection || step.squeeze.by_kpa > 0;
-    if (!compares || channel.limits.pressure_min_kpa >= rest_kpa) return;
-    const bool by_pressure = step.target.quantity == Target::Quantity::pressure_kpa;
-    const double target_kpa = by_pressure
-                                  ? step.target.value
-                                  : FreeCurve(channel.model, channel.limits).command_kpa(step.target.value);
-    if (target_kpa >= rest_kpa) return;
+    const bool detects = step.kind == StepKind::grip && step.verify.by == VerifyBy::detection;
+    const bool touches = step.on_contact_stated && step.on_contact != OnContact::ignore;
+    const bool compares = detects || touches || step.squeeze.by_kpa > 0;
+    if (!compares || channel.limits.pressure_min_kpa >= rest_kpa || highest_kpa(step, channel) >= rest_kpa) {
+      return;
+    }
     report(step,
-           "closes channel '" + channel.name + "' below its rest pressure (" + significant(rest_kpa, 6) +
-               " kPa), where neither detection nor squeeze_kpa sees a part",
-           "verify by: position or by: pressure with pressure_max_kpa, without squeeze_kpa");
+           "moves channel '" + channel.name + "' below its rest pressure (" + significant(rest_kpa, 6) +
+               " kPa), where neither detection nor on_contact nor squeeze_kpa sees a part",
+           step.kind == StepKind::grip
+               ? "verify by: position or by: pressure with pressure_max_kpa, without squeeze_kpa"
+               : "on_contact: ignore");
+  }
+
+  /// The highest pressure that a step asks for, as far as the free finger's curve tells it.
+  static double highest_kpa(const Step& step, const ChannelSettings& channel) {
+    if (step.kind == StepKind::pressure) return range_of(step.profile).highest;
+    const bool track = step.kind == StepKind::track;
+    if (!track && step.target.quantity == Target::Quantity::pressure_kpa) return step.target.value;
+    return FreeCurve(channel.model, channel.limits)
+        .command_kpa(track ? step.sine.mean_mm + step.sine.amplitude_mm : step.target.value);
   }
 
   void check_times(const Step& step) {

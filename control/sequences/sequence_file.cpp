@@ -215,6 +215,7 @@ class FileReader {
   void on_contact(MapReader& map, Step& step, OnContact otherwise) {
     const auto choice = map.optional_choice(
         "on_contact", names({OnContact::hold, OnContact::grip, OnContact::fail, OnContact::ignore}));
+    step.on_contact_stated = choice.has_value();
     step.on_contact = choice ? static_cast<OnContact>(*choice) : otherwise;
     const bool says_how = step.tolerance_mm.has_value();
     if (step.on_contact != OnContact::fail || says_how) return;

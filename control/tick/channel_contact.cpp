@@ -32,7 +32,8 @@ bool ChannelPlayer::under_way() const noexcept {
 }
 
 void ChannelPlayer::look_for_contact(double time_s, const ChannelOutput& seen) noexcept {
-  if (!contact_.touching()) {
+  // Below rest a deficit tells nothing of a touch.
+  if (!contact_.touching() || seen.command_kpa < traits_.rest_kpa) {
     touching_since_s_.reset();
     return;
   }
@@ -77,7 +78,7 @@ double ChannelPlayer::squeezing_kpa(double time_s, const ChannelOutput& seen) co
   const Squeeze& squeeze = step_->squeeze;
   const double ramp_kpa = squeeze_from_kpa_ + squeeze.speed_kpa_per_s * (time_s - squeeze_from_s_);
   const bool by_pressure = step_->target.quantity == Target::Quantity::pressure_kpa;
-  return std::min(seen.free_kpa + std::min(squeeze.by_kpa, ramp_kpa),
+  return std::min(std::max(seen.free_kpa + std::min(squeeze.by_kpa, ramp_kpa), traits_.rest_kpa),
                   by_pressure ? step_->target.value : infinite);
 }
 

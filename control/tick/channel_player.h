@@ -134,7 +134,7 @@ class ChannelPlayer {
   Bounds bounds_;         ///< of the step, or of the one before a hold
   bool profile_ = false;  ///< the pressure is that of the step's profile
   bool closing_ = false;  ///< the motion of the step goes up
-  /// Since when it touches something without a break.
+  /// Since when it touches something without a break, its command at or above rest.
   std::optional<double> touching_since_s_;
   bool met_ = false;                      ///< something, in this attempt
   std::optional<OnContact> contact_met_;  ///< not taken yet

@@ -143,11 +143,12 @@ struct Step {
   std::optional<double> tolerance_mm;  ///< of move: within it for settle_s, or the step fails at timeout_s
   Bounds bounds;                       ///< of all but release; of hold where it has its own
   OnContact on_contact = OnContact::ignore;
-  Squeeze squeeze;              ///< of grip
-  Verify verify;                ///< of grip
-  double hold_s = 0;            ///< infinite: until a release is asked for
-  double reverify_every_s = 0;  ///< of hold
-  double purge_s = 0;           ///< of release: stays at the rest pressure
+  bool on_contact_stated = false;  ///< the file says it
+  Squeeze squeeze;                 ///< of grip
+  Verify verify;                   ///< of grip
+  double hold_s = 0;               ///< infinite: until a release is asked for
+  double reverify_every_s = 0;     ///< of hold
+  double purge_s = 0;              ///< of release: stays at the rest pressure
   std::optional<double> timeout_s;
   std::uint32_t retries = 0;
   OnFail on_fail = OnFail::abort;

@@ -78,5 +78,43 @@ TEST(ChannelPlayer, FeedbackIsHeldByATouchOnlyWhileSomethingIsGrippedOrHeld) {
   }
 }
 
+/// A finger that touches, by its deficit, under a command.
+ChannelOutput touching_under(double command_kpa, double free_kpa) {
+  ChannelOutput seen = short_by(2);
+  seen.command_kpa = command_kpa;
+  seen.free_kpa = free_kpa;
+  return seen;
+}
+
+TEST(ChannelPlayer, ATouchCountsFromRestUpward) {
+  Step move = step_of(StepKind::move);
+  move.target = {Target::Quantity::pressure_kpa, 30, false, 0, 2};
+  move.on_contact = OnContact::hold;
+  ChannelPlayer player(traits);
+  player.reset();
+  player.begin(move, nullptr, 0, touching_under(-20, -25));
+  for (int i = 1; i <= 20; ++i) (void)player.tick(0.01 * i, touching_under(-20 + i, -25));
+  EXPECT_FALSE(player.stopped_by_contact()) << "on its way up to rest";
+  EXPECT_EQ(player.take_contact(), std::nullopt);
+  for (int i = 21; i <= 24; ++i) (void)player.tick(0.01 * i, touching_under(-20 + i, 1));
+  EXPECT_TRUE(player.stopped_by_contact()) << "above rest";
+  EXPECT_EQ(player.take_contact(), OnContact::hold);
+}
+
+TEST(ChannelPlayer, ASqueezeDoesNotEvacuate) {
+  Step grip = step_of(StepKind::grip);
+  grip.target = {Target::Quantity::pressure_kpa, 40, false, 0, 2};
+  grip.squeeze = {5, 10};
+  ChannelPlayer player(traits);
+  player.reset();
+  player.begin(grip, nullptr, 0, touching_under(10, 8));
+  for (int i = 1; i <= 5; ++i) (void)player.tick(0.01 * i, touching_under(10, 8));
+  ASSERT_EQ(player.take_contact(), OnContact::squeeze);
+  (void)player.tick(0.06, touching_under(10, 8));
+  EXPECT_NEAR(player.demand(0.06).pressure_kpa, 10.3, 0.2);
+  (void)player.tick(0.07, touching_under(10, -20));  // something pushes the finger back beyond rest
+  EXPECT_EQ(player.demand(0.07).pressure_kpa, 0);
+}
+
 }  // namespace
 }  // namespace softgrip::control::channel_player_test

@@ -163,6 +163,31 @@ TEST_F(VacuumRig, DetectionBelowRestIsRefused) {
   EXPECT_EQ(refusal("  - grip: {pressure_kpa: 20, duration_s: 1" + detection), "");
 }
 
+TEST_F(VacuumRig, TouchAndSqueezeBelowRestAreRefused) {
+  const auto below = [&](const std::string& step) {
+    return refusal("  - " + step + "}\n").find("moves channel 'left' below its rest pressure (0 kPa)") !=
+           std::string::npos;
+  };
+  const std::string squeeze =
+      ", duration_s: 1, squeeze_kpa: 5, squeeze_speed_kpa_per_s: 5, settle_s: 0.2, timeout_s: 5, on_fail: "
+      "vent, "
+      "verify: {by: position, window_s: 0.2, displacement_min_mm: -20, displacement_max_mm: 20}";
+  EXPECT_TRUE(below("grip: {pressure_kpa: -20" + squeeze));
+  EXPECT_FALSE(below("grip: {pressure_kpa: 20" + squeeze));
+  for (const auto& [step, highest_kpa] : std::vector<std::pair<std::string, double>>{
+           {"move: {pressure_kpa: -20, duration_s: 1", -20},
+           {"move: {pressure_kpa: 20, duration_s: 1", 20},
+           {"move: {displacement_mm: -6, duration_s: 1", -20},
+           {"track: {mean_mm: -6, amplitude_mm: 2, frequency_hz: 0.1, cycles: 1", -10},
+           {"track: {mean_mm: -1, amplitude_mm: 8, frequency_hz: 0.1, cycles: 1", 20},
+           {"pressure: {points: [{time_s: 0, pressure_kpa: -20}, {time_s: 1, pressure_kpa: -5}]", -5},
+           {"pressure: {points: [{time_s: 0, pressure_kpa: -20}, {time_s: 1, pressure_kpa: 5}]", 5}}) {
+    EXPECT_EQ(below(step + ", on_contact: hold"), highest_kpa < 0) << step;
+    EXPECT_FALSE(below(step + ", on_contact: ignore")) << step;
+    EXPECT_FALSE(below(step)) << step << ": the file does not ask for it";
+  }
+}
+
 TEST_F(VacuumRig, ABoundThatRestSatisfiesIsRefused) {
   const auto verified_by = [&](const std::string& bound) {
     return refusal("  - grip: {pressure_kpa: -20, duration_s: 1, verify: {by: pressure, window_s: 0.2, " +
