@@ -306,7 +306,7 @@ class Fitting {
                : "on_contact: ignore");
   }
 
-  /// The highest pressure that a step asks for, as far as the free finger's curve tells it.
+  /// The highest pressure of a step. That of a displacement comes from the free curve.
   static double highest_kpa(const Step& step, const ChannelSettings& channel) {
     if (step.kind == StepKind::pressure) return range_of(step.profile).highest;
     const bool track = step.kind == StepKind::track;

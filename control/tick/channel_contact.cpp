@@ -32,7 +32,7 @@ bool ChannelPlayer::under_way() const noexcept {
 }
 
 void ChannelPlayer::look_for_contact(double time_s, const ChannelOutput& seen) noexcept {
-  // Below rest a deficit tells nothing of a touch.
+  // Detection is only valid from rest upward.
   if (!contact_.touching() || seen.command_kpa < traits_.rest_kpa) {
     touching_since_s_.reset();
     return;

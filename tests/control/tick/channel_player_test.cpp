@@ -78,7 +78,7 @@ TEST(ChannelPlayer, FeedbackIsHeldByATouchOnlyWhileSomethingIsGrippedOrHeld) {
   }
 }
 
-/// A finger that touches, by its deficit, under a command.
+/// A finger that touches something under a command.
 ChannelOutput touching_under(double command_kpa, double free_kpa) {
   ChannelOutput seen = short_by(2);
   seen.command_kpa = command_kpa;

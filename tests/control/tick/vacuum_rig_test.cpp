@@ -184,7 +184,7 @@ TEST_F(VacuumRig, TouchAndSqueezeBelowRestAreRefused) {
            {"pressure: {points: [{time_s: 0, pressure_kpa: -20}, {time_s: 1, pressure_kpa: 5}]", 5}}) {
     EXPECT_EQ(below(step + ", on_contact: hold"), highest_kpa < 0) << step;
     EXPECT_FALSE(below(step + ", on_contact: ignore")) << step;
-    EXPECT_FALSE(below(step)) << step << ": the file does not ask for it";
+    EXPECT_FALSE(below(step)) << step << ": it is the default";
   }
 }
 
