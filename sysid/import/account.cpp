@@ -15,7 +15,7 @@ constexpr std::array<Reason, left_out_count> reasons{{
     {"outside_stretch", "outside of --from-s and --to-s", false},
     {"empty", "without content", false},
     {"bad_line", "in lines that cannot be read", true},
-    {"cut_off_line", "in a last line that is cut off", true},
+    {"cut_off_line", "in the incomplete end of the file", true},
     {"no_time", "without a time", true},
     {"repeated_time", "at the time of the row before", true},
     {"before_command", "before the first command", true},

@@ -213,7 +213,7 @@ class Converter {
   }
 
   ForeignSamples samples_of_table() {
-    if (!table_.is_text) remarks_.account.rows = table_.rows();
+    if (!table_.is_text) remarks_.account.rows += table_.rows();
     std::vector<std::size_t> rows;
     for (std::size_t i = 0; i < table_.rows(); ++i) {
       if (bad_rows_.count(i) == 0) rows.push_back(i);

@@ -50,7 +50,7 @@ struct ForeignTable {
   std::vector<int> line;              ///< of each row in the text; empty of a binary file
   std::vector<std::string> channels;  ///< texts of a column named "channel", in the order of their first rows
   std::vector<std::string> notes;     ///< what was passed over
-  RowAccount account;                 ///< of the rows that the reader has seen
+  RowAccount account;                 ///< of a text's rows, but of a binary file's only those left out
   bool is_text = false;
   bool has_separators = false;             ///< characters between the columns
   std::string sheet;                       ///< of a workbook, the one that was read

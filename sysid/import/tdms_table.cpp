@@ -22,6 +22,7 @@ constexpr std::size_t most_channels = 10'000;
 /// Of all segments together; a segment of 28 bytes can repeat a list of channels.
 constexpr std::size_t most_steps = 100'000'000;
 constexpr std::size_t longest_label = 1000;
+constexpr const char* has_daqmx = "has raw values of DAQmx, which need its scales";
 /// Instead of the length of a segment that was not finished.
 constexpr std::uint64_t no_length = ~std::uint64_t{0};
 
@@ -141,6 +142,7 @@ struct TdmsChannel {
   double start_offset_s = 0;
   std::optional<Stamp> start;
   bool needs_scale = false;
+  std::size_t cut_off = 0;  ///< values in the incomplete end of the file
 };
 
 /// "/'group'/'channel'" as "group/channel".
@@ -197,13 +199,22 @@ class TdmsReader {
     std::size_t at = 0;
     while (at < bytes_.size() && refused.empty()) {
       if (bytes_.size() - at < lead_in_bytes) {
-        arrays_.note("the last segment is cut off and left out");
+        leave_out_segment(at, "in its first bytes");
         break;
       }
       at = segment(at);
     }
     if (refused.empty()) deliver();
     return refused.empty();
+  }
+
+  /// Rows of the table of which the file has a value in its incomplete end.
+  [[nodiscard]] std::size_t cut_off_rows(const ForeignTable& table) const {
+    std::size_t rows = 0;
+    for (const TdmsChannel& channel : channels_) {
+      if (column_index(table, channel.name) < table.columns.size()) rows = std::max(rows, channel.cut_off);
+    }
+    return rows;
   }
 
   std::string refused;
@@ -222,20 +233,41 @@ class TdmsReader {
     const std::uint64_t size = std::min<std::uint64_t>(next, rest.size());
     if (!signed_so) refuse(at, "does not begin with TDSm");
     if ((flags & is_big_endian) != 0) refuse(at, "is big-endian");
-    if ((flags & is_daqmx) != 0) refuse(at, "has raw values of DAQmx, which need its scales");
-    if (raw > size) refuse(at, "is cut off in its metadata");
+    if ((flags & is_daqmx) != 0) refuse(at, has_daqmx);
+    if (raw > next) refuse(at, "has more metadata than bytes");
+    if (raw > size && at == 0) refuse(at, "is cut off in its metadata");
     if (!refused.empty()) return at;
+    if (raw > size) {
+      leave_out_segment(at, "in its metadata");
+      return bytes_.size();
+    }
     if ((flags & has_metadata) != 0 && !metadata(rest.substr(0, raw), (flags & has_new_list) != 0)) {
-      refuse(at, "has broken metadata");
+      refuse(at, unread_.empty() ? "has broken metadata" : unread_);
       return at;
     }
-    if ((flags & has_raw_data) != 0)
-      raw_data(rest.substr(raw, size - raw), (flags & is_interleaved) != 0, size < next && next != no_length);
+    if (size < next && next != no_length) missing_bytes_ = next - size;
+    if ((flags & has_raw_data) != 0) raw_data(rest.substr(raw, size - raw), (flags & is_interleaved) != 0);
     return at + lead_in_bytes + size;
   }
 
   void refuse(std::size_t at, const std::string& why) {
     if (refused.empty()) refused = "the segment at byte " + std::to_string(at) + " " + why;
+  }
+  static std::string quoted(std::string_view name) { return "'" + document::shown(name, 40) + "'"; }
+  /// Metadata that is valid and not read. Returns false.
+  bool unread(const std::string& why) {
+    if (unread_.empty()) unread_ = why;
+    return false;
+  }
+  bool unread_type(TdmsType type, const std::string& of) {
+    return unread("has " + of + " of type " + std::to_string(static_cast<std::uint32_t>(type)) +
+                  ", which is not read");
+  }
+
+  /// The number of rows in the segment is unknown.
+  void leave_out_segment(std::size_t at, const std::string& where) {
+    arrays_.note("the segment at byte " + std::to_string(at) + " is cut off " + where + ": its " +
+                 std::to_string(bytes_.size() - at) + " bytes are left out");
   }
 
   bool metadata(std::string_view bytes, bool new_list) {
@@ -252,15 +284,19 @@ class TdmsReader {
     const std::string path(scan.text());
     const auto found = by_path_.try_emplace(path, channels_.size());
     if (found.second) {
-      if (channels_.size() == most_channels) return false;
+      if (channels_.size() == most_channels)
+        return unread("exceeds the limit of " + std::to_string(most_channels) + " channels");
       channels_.emplace_back();
       channels_.back().name = name_in(path);
     }
     TdmsChannel& channel = channels_[found.first->second];
     const auto length = scan.value<std::uint32_t>();
     constexpr std::uint32_t no_values = 0xffffffff;
+    constexpr std::uint32_t daqmx_formats = 0x1269;
+    constexpr std::uint32_t daqmx_lines = 0x1369;
+    if (length == daqmx_formats || length == daqmx_lines) return unread(has_daqmx);
     steps_ += listed_.size() + 1;
-    if (steps_ > most_steps) return false;
+    if (steps_ > most_steps) return unread("exceeds the limit of " + std::to_string(most_steps) + " pieces");
     const bool is_listed = std::find(listed_.begin(), listed_.end(), found.first->second) != listed_.end();
     if (length == no_values) {
       listed_.erase(std::remove(listed_.begin(), listed_.end(), found.first->second), listed_.end());
@@ -272,13 +308,15 @@ class TdmsReader {
     return properties(scan, channel);
   }
 
-  static bool index(TdmsScanner& scan, TdmsChannel& channel) {
+  bool index(TdmsScanner& scan, TdmsChannel& channel) {
     const auto type = static_cast<TdmsType>(scan.value<std::uint32_t>());
     const auto dimension = scan.value<std::uint32_t>();
     channel.count = scan.value<std::uint64_t>();
     const std::size_t size = size_of(type);
-    if (size == 0 && type != TdmsType::string) return false;
-    if (channel.has_index && channel.type != type) return false;
+    if (!scan.good()) return false;
+    if (size == 0 && type != TdmsType::string) return unread_type(type, "values in " + quoted(channel.name));
+    if (channel.has_index && channel.type != type)
+      return unread("changes the type of the values in " + quoted(channel.name));
     if (size > 0 && channel.count > (std::uint64_t{1} << 40U)) return false;
     channel.bytes = size == 0 ? scan.value<std::uint64_t>() : channel.count * size;
     channel.type = type;
@@ -286,7 +324,7 @@ class TdmsReader {
     return scan.good() && dimension == 1 && channel.bytes <= (std::uint64_t{1} << 44U);
   }
 
-  static bool properties(TdmsScanner& scan, TdmsChannel& channel) {
+  bool properties(TdmsScanner& scan, TdmsChannel& channel) {
     const auto count = scan.value<std::uint32_t>();
     for (std::uint32_t i = 0; i < count && scan.good(); ++i) {
       const std::string_view name = scan.text();
@@ -299,7 +337,8 @@ class TdmsReader {
       }
       const std::size_t size = size_of(type);
       const char* const at = scan.skip(size);
-      if (size == 0 || at == nullptr) return false;
+      if (at == nullptr) return false;
+      if (size == 0) return unread_type(type, "a property " + quoted(name));
       if (type == TdmsType::time && name == "wf_start_time") channel.start = stamp_at(at);
       if (type == TdmsType::time) continue;
       if (name == "wf_increment") channel.increment_s = number_at(type, at);
@@ -308,14 +347,16 @@ class TdmsReader {
     return scan.good();
   }
 
-  void raw_data(std::string_view bytes, bool interleaved, bool cut_off) {
+  void raw_data(std::string_view bytes, bool interleaved) {
     std::uint64_t chunk = 0;
     std::uint64_t row = 0;
+    std::uint64_t values = 0;
     for (const std::size_t i : listed_) {
+      const std::size_t size = size_of(channels_[i].type);
       chunk += channels_[i].bytes;
-      row += size_of(channels_[i].type);
-      if (interleaved &&
-          (channels_[i].type == TdmsType::string || channels_[i].count != channels_[listed_[0]].count))
+      row += size;
+      values += size > 0 ? channels_[i].count : 0;
+      if (interleaved && (size == 0 || channels_[i].count != channels_[listed_[0]].count))
         refused = "its interleaved channels have texts, or are not equally long";
     }
     if (!refused.empty() || chunk == 0) return;
@@ -324,26 +365,31 @@ class TdmsReader {
       refused = "it has more than " + std::to_string(most_steps) + " pieces of channels";
     while (!bytes.empty() && refused.empty()) {
       const std::string_view piece = bytes.substr(0, chunk);
-      cut_off_ = cut_off_ || cut_off || piece.size() < chunk;
-      // Of blocks, the first channels would have more values than the others.
-      if (!interleaved && piece.size() < chunk) return;
-      if (interleaved)
-        rows(piece, row);
-      else
-        blocks(piece);
+      if (interleaved && has_room(piece.size() / row * listed_.size())) rows(piece, row);
+      if (!interleaved && piece.size() == chunk && has_room(values)) blocks(piece);
+      if (!interleaved && piece.size() < chunk) leave_out_blocks(piece);
       bytes.remove_prefix(piece.size());
     }
   }
 
+  bool has_room(std::uint64_t values) {
+    values_ += values;
+    if (values_ > most_values) refused = "it has more than " + std::to_string(most_values) + " values";
+    return refused.empty();
+  }
+
   /// A value of each channel, then the next of each.
   void rows(std::string_view piece, std::uint64_t row) {
+    const std::size_t complete = piece.size() / row;
+    const std::size_t rest = piece.size() % row;
     std::size_t offset = 0;
     for (const std::size_t i : listed_) {
       TdmsChannel& channel = channels_[i];
-      for (std::uint64_t k = 0; k < channel.count && (k + 1) * row <= piece.size(); ++k)
-        take(channel, piece.data() + k * row + offset);
+      for (std::size_t k = 0; k < complete; ++k) take(channel, piece.data() + k * row + offset);
+      channel.cut_off += rest > 0 ? 1 : 0;
       offset += size_of(channel.type);
     }
+    cut_off_bytes_ += rest;
   }
 
   /// All values of a channel, then those of the next.
@@ -358,11 +404,19 @@ class TdmsReader {
     }
   }
 
-  void take(TdmsChannel& channel, const char* at) {
-    if (++values_ > most_values) {
-      refused = "it has more than " + std::to_string(most_values) + " values";
-      return;
+  /// With them the first channels would have more values than the others.
+  void leave_out_blocks(std::string_view piece) {
+    cut_off_bytes_ += piece.size();
+    for (const std::size_t i : listed_) {
+      TdmsChannel& channel = channels_[i];
+      const std::string_view block = piece.substr(0, channel.bytes);
+      const std::size_t size = size_of(channel.type);
+      channel.cut_off += size > 0 ? (block.size() + size - 1) / size : 0;
+      piece.remove_prefix(block.size());
     }
+  }
+
+  static void take(TdmsChannel& channel, const char* at) {
     if (channel.type != TdmsType::time) return channel.values.push_back(number_at(channel.type, at));
     const Stamp stamp = stamp_at(at);
     if (!channel.first) channel.first = stamp;
@@ -370,7 +424,11 @@ class TdmsReader {
   }
 
   void deliver() {
-    if (cut_off_) arrays_.note("the file is cut off: its incomplete last values are left out");
+    if (missing_bytes_ > 0)
+      arrays_.note("the file is cut off: the last " + std::to_string(missing_bytes_) + " bytes are missing");
+    if (cut_off_bytes_ > 0)
+      arrays_.note("incomplete rows or blocks of values are left out: " + std::to_string(cut_off_bytes_) +
+                   " bytes");
     std::map<std::tuple<double, double, std::size_t>, std::string> times;
     std::optional<Stamp> first_start;
     for (TdmsChannel& channel : channels_) {
@@ -414,7 +472,9 @@ class TdmsReader {
   std::vector<std::size_t> listed_;  ///< the channels with values in this segment
   std::size_t steps_ = 0;
   std::size_t values_ = 0;
-  bool cut_off_ = false;
+  std::uint64_t missing_bytes_ = 0;  ///< behind the end of the file
+  std::size_t cut_off_bytes_ = 0;
+  std::string unread_;  ///< why valid metadata is refused
 };
 
 }  // namespace
@@ -423,7 +483,13 @@ std::optional<ForeignTable> read_tdms_table(const std::string& file, std::string
                                             document::Problems& problems) {
   ArrayCollector arrays(file);
   TdmsReader reader(bytes, arrays);
-  if (reader.read()) return arrays.table("LabVIEW TDMS", problems);
+  if (reader.read()) {
+    auto table = arrays.table("LabVIEW TDMS", problems);
+    if (!table) return std::nullopt;
+    table->account.rows = reader.cut_off_rows(*table);
+    table->account.leave_out(LeftOut::cut_off_line, table->account.rows);
+    return table;
+  }
   problems.add(
       {file, {1, 1}, {}, "a LabVIEW file (.tdms) that is not read: " + reader.refused, "export it as CSV"});
   return std::nullopt;

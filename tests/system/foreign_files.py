@@ -583,11 +583,11 @@ def outcome(file, folder):
     if done.returncode != 0:
         return f"exit code {done.returncode}: {said}", "refused", ""
     told = json.loads(done.stdout)["logs"][0]
+    remarks = "; ".join(told["warnings"] + told["notes"] + ["doubt: " + doubt for doubt in told["doubts"]])
     rows = told["rows"]
     if rows["file"] != rows["used"] + rows["joined"] + sum(rows["left_out"].values()) or rows["used"] != told["samples"]:
         return f"{rows} does not account for every row", "values", remarks
     worst, why = furthest(read_csv(out), file.columns)
-    remarks = "; ".join(told["warnings"] + told["notes"] + ["doubt: " + doubt for doubt in told["doubts"]])
     if why or worst > file.tolerance:
         return why or f"off by {worst:.2g}", "values", remarks
     if file.says and file.says not in remarks:

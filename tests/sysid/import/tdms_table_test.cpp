@@ -103,6 +103,59 @@ TEST(TdmsTable, RefusesWhatItCannotRead) {
   EXPECT_NE(refusal(segment(2 | 4, number_of_objects(5), "")).find("broken metadata"), std::string::npos);
 }
 
+/// A program that is stopped leaves an incomplete last segment; the segments before it are complete.
+TEST(TdmsTable, KeepsTheCompleteSegmentsOfAFileThatIsCutOff) {
+  const std::string good = two_channels();
+  const std::string metadata =
+      number_of_objects(2) + channel("/'g'/'it''s'", 10, 2) + channel("/'g'/'b'", 3, 2);
+  const auto cut_at = [&](std::size_t bytes_of_second) {
+    return table_of(good + two_channels().substr(0, bytes_of_second));
+  };
+  const auto notes = [](const ForeignTable& table) { return table.notes.empty() ? "" : table.notes.back(); };
+  for (const std::size_t bytes : {std::size_t{20}, std::size_t{28}, std::size_t{40}, 27 + metadata.size()}) {
+    const ForeignTable table = cut_at(bytes);
+    EXPECT_EQ(table.columns[0].values, (std::vector<double>{1.5, 2.5})) << bytes;
+    EXPECT_EQ(notes(table), "the segment at byte " + std::to_string(good.size()) + " is cut off in its " +
+                                (bytes < 28 ? "first bytes" : "metadata") + ": its " + std::to_string(bytes) +
+                                " bytes are left out");
+  }
+  // 1 of 2 values of the first channel, and a part of the second: 2 rows are lost.
+  const ForeignTable blocks = cut_at(28 + metadata.size() + 12);
+  EXPECT_EQ(blocks.columns[1].values, (std::vector<double>{-7, 8}));
+  EXPECT_EQ(notes(blocks), "incomplete rows or blocks of values are left out: 12 bytes");
+  EXPECT_EQ(blocks.account.rows, 2U);
+  EXPECT_EQ(blocks.account.left_out[static_cast<std::size_t>(LeftOut::cut_off_line)], 2U);
+  EXPECT_NE(refusal(good.substr(0, 60)).find("the segment at byte 0 is cut off in its metadata"),
+            std::string::npos);
+}
+
+TEST(TdmsTable, NamesWhatItDoesNotSupport) {
+  const auto said = [](std::uint32_t objects, const std::string& inside) {
+    return refusal(segment(2 | 4 | 8, number_of_objects(objects) + inside, "x"));
+  };
+  const std::string complex = said(1, channel("/'g'/'z'", 0x10000d, 2));
+  EXPECT_NE(complex.find("has values in 'g/z' of type 1048589, which is not read"), std::string::npos)
+      << complex;
+  const std::string changed = said(2, channel("/'g'/'z'", 10, 2) + channel("/'g'/'z'", 3, 2));
+  EXPECT_NE(changed.find("changes the type of the values in 'g/z'"), std::string::npos) << changed;
+  std::string fixed_point = channel("/'g'/'z'", 10, 2);
+  fixed_point.replace(fixed_point.size() - 4, 4,
+                      bytes_of(std::uint32_t{1}) + text_of("gain") + bytes_of(std::uint32_t{0x4f}));
+  EXPECT_NE(said(1, fixed_point).find("has a property 'gain' of type 79"), std::string::npos);
+  const std::string daqmx = said(1, text_of("/'g'/'z'") + bytes_of(std::uint32_t{0x1269}));
+  EXPECT_NE(daqmx.find("has raw values of DAQmx"), std::string::npos) << daqmx;
+  std::string many;
+  for (int i = 0; i <= 10'000; ++i) many += channel("/'g'/'" + std::to_string(i) + "'", 1, 1);
+  EXPECT_NE(said(10'001, many).find("exceeds the limit of 10000 channels"), std::string::npos);
+}
+
+TEST(TdmsTable, RefusesMoreValuesThanTheLimit) {
+  const std::size_t count = most_values + 1;
+  const std::string metadata = number_of_objects(1) + channel("/'g'/'z'", 1, count);
+  EXPECT_NE(refusal(segment(2 | 4 | 8, metadata, std::string(count, 'x'))).find("more than 134217728 values"),
+            std::string::npos);
+}
+
 /// Bytes that are cut off or changed are a table or a refusal.
 TEST(TdmsTable, SurvivesDamage) {
   const std::string good = two_channels() + two_channels();
