@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstddef>
 
+#include "sysid/logs/turning_points.h"
+
 namespace softgrip::sysid {
 namespace {
 
@@ -28,17 +30,24 @@ double largest_size_kpa(const std::vector<Log>& logs) {
   return largest;
 }
 
-bool unloads(const std::vector<double>& sizes, double by_kpa) {
-  double top = sizes.empty() ? 0 : sizes.front();
-  return std::any_of(sizes.begin(), sizes.end(), [&](double size) {
-    top = std::max(top, size);
-    return size < top - by_kpa;
-  });
+/// The sizes at the turning points of a command.
+std::vector<double> turns_of(const std::vector<double>& sizes, double least_kpa) {
+  std::vector<double> turns;
+  if (sizes.empty()) return turns;
+  for (const std::size_t i : turning_points(sizes, least_kpa)) turns.push_back(sizes[i]);
+  return turns;
 }
 
-void add_peaks(const std::vector<double>& sizes, std::vector<double>& peaks) {
-  for (std::size_t i = 1; i + 1 < sizes.size(); ++i) {
-    if (sizes[i] > sizes[i - 1] && sizes[i] >= sizes[i + 1]) peaks.push_back(sizes[i]);
+bool unloads(const std::vector<double>& sizes, double by_kpa) {
+  const std::vector<double> turns = turns_of(sizes, by_kpa);
+  return std::adjacent_find(turns.begin(), turns.end(),
+                            [&](double size, double next) { return next < size - by_kpa; }) != turns.end();
+}
+
+void add_peaks(const std::vector<double>& sizes, double least_kpa, std::vector<double>& peaks) {
+  const std::vector<double> turns = turns_of(sizes, least_kpa);
+  for (std::size_t i = 1; i + 1 < turns.size(); ++i) {
+    if (turns[i] > turns[i - 1] && turns[i] > turns[i + 1]) peaks.push_back(turns[i]);
   }
 }
 
@@ -51,7 +60,7 @@ std::vector<Excitation> missing_excitation(const std::vector<Log>& logs) {
   for (const Log& log : logs) {
     const std::vector<double> sizes = sizes_of(log);
     unloaded = unloaded || unloads(sizes, unloaded_share * largest_kpa);
-    add_peaks(sizes, peaks);
+    add_peaks(sizes, same_amplitude_share * largest_kpa, peaks);
   }
   std::vector<Excitation> missing;
   if (!unloaded) missing.push_back(Excitation::unloading);

@@ -13,7 +13,7 @@ namespace softgrip::sysid {
 enum class Excitation : std::uint8_t {
   unloading,   ///< the pressure falls back by a fifth of the largest one
   rest,        ///< more than 3 s at no pressure (2 % of the largest)
-  amplitudes,  ///< peaks of two heights, 5 % of the largest apart
+  amplitudes,  ///< peaks of two heights; both 5 % of the largest apart and above the next turn
 };
 
 /// Motions that no log contains. Sizes count, so a vacuum rig is loaded towards its lowest pressure.

@@ -43,6 +43,15 @@ TEST(MissingExcitation, OfOneAmplitude) {
             Missing{Excitation::amplitudes});
 }
 
+/// The steps of a staircase are no peaks: the pressure does not fall behind them.
+TEST(MissingExcitation, OfAStaircaseWithOnePeak) {
+  const auto stairs = [](double t) { return 8 * std::floor(std::max(0.0, 20 - std::abs(t - 20)) / 4); };
+  EXPECT_EQ(missing_excitation({commanded(stairs)}), Missing{Excitation::amplitudes});
+  const auto jitter = [&](double t) { return stairs(t) + 0.5 * std::sin(40 * t); };
+  const std::vector<Excitation> missing = missing_excitation({commanded(jitter)});
+  EXPECT_EQ(std::count(missing.begin(), missing.end(), Excitation::amplitudes), 1);
+}
+
 TEST(MissingExcitation, OtherLogsMayContainIt) {
   const Log ramp = commanded([](double t) { return t < 4 ? 0 : t - 4; });
   const Log triangles = commanded([](double t) { return triangle(t, t < 10 ? 20 : 40); });
