@@ -2,18 +2,18 @@
 
 #include <matio.h>
 #include <sys/mman.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cctype>
 #include <cstring>
+#include <limits>
 #include <memory>
 #include <set>
 #include <utility>
 
 #include "base/descriptor.h"
+#include "base/files.h"
 
 namespace softgrip::tools {
 namespace {
@@ -75,20 +75,6 @@ bool holds(const std::string& path, const std::vector<Column>& columns) {
   return MatVariable{Mat_VarReadNext(file.get()), Mat_VarFree} == nullptr;
 }
 
-/// All bytes of a file in memory; empty if they cannot be read.
-std::string bytes_of(int file) {
-  struct ::stat about {};
-  if (::fstat(file, &about) != 0) return {};
-  std::string bytes(static_cast<std::size_t>(about.st_size), '\0');
-  std::size_t done = 0;
-  while (done < bytes.size()) {
-    const ssize_t count = ::pread(file, bytes.data() + done, bytes.size() - done, static_cast<::off_t>(done));
-    if (count <= 0) return {};
-    done += static_cast<std::size_t>(count);
-  }
-  return bytes;
-}
-
 }  // namespace
 
 std::string matlab_name(const std::string& name) {
@@ -105,7 +91,9 @@ tl::expected<MatBytes, std::string> mat_bytes(const SignalGroup& group) {
   // libmatio writes only to a path, and does not check its writes: it gets a file in memory.
   const Descriptor memory(::memfd_create("softgrip-export", MFD_CLOEXEC));
   const std::string path = "/proc/self/fd/" + std::to_string(memory.get());
-  if (memory && put_all(path, columns) && holds(path, columns)) mat.bytes = bytes_of(memory.get());
+  constexpr std::size_t unbounded = std::numeric_limits<std::size_t>::max() - 1;
+  if (memory && put_all(path, columns) && holds(path, columns))
+    mat.bytes = read_file(path, unbounded).value_or("");
   if (mat.bytes.empty()) return tl::unexpected(std::string("libmatio cannot make the .mat file in memory"));
   return mat;
 }
