@@ -144,6 +144,12 @@ class Import(bench.BenchTest):
                        stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
         self.softgrip("plot", "names_psi_log.csv", "--out", "o.svg")
 
+    def test_other_commands_ask_for_one_of_several_sheets(self):
+        path = self.foreign("two_sheets.xlsx")
+        done = self.softgrip("identify", "--out", "o", "--data", path, expect=3)
+        self.assertIn(f"{path}: 2 sheets have rows of numbers: 'Monday', 'Tuesday': softgrip import {path} --sheet NAME "
+                      "--out two_sheets_log.csv", done.stderr)
+
     def test_what_was_imported_can_be_identified(self):
         self.softgrip("simulate", "--model", "config/models/bench_twin.yaml", "--input", "tp1", "--out", "own.csv",
                       "--rate-hz", "50")

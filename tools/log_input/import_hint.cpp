@@ -13,11 +13,15 @@ std::string import_hint(const std::string& path) {
   document::Problems problems;
   bool unreadable = false;
   const auto table = sysid::read_foreign_file(path, {}, problems, unreadable);
-  if (!table) return {};
-  const sysid::Proposal proposal = sysid::propose(*table, {}, true);
   const std::filesystem::path file(path);
   const std::string begin = "softgrip import " + shell_word(path) + " ";
   const std::string end = "--out " + shell_word(file.stem().stem().string() + "_log.csv");
+  if (!table) {
+    const document::Problem& problem = problems.list().front();
+    const bool needs_sheet = problem.hint.starts_with("--sheet");
+    return needs_sheet ? path + ": " + problem.message + ": " + begin + "--sheet NAME " + end + "\n" : "";
+  }
+  const sysid::Proposal proposal = sysid::propose(*table, {}, true);
   if (proposal.missing.empty() && sysid::convert(*table, proposal.mapping, problems))
     return path + " as a log: " + begin + sysid::options_of(proposal.mapping) + " " + end + "\n";
   // The errors of a log of our own are already printed, and import could not correct them either.
