@@ -13,7 +13,6 @@
 #include "sysid/import/mat_elements.h"
 #include "sysid/import/mat_table.h"
 #include "sysid/import/tdms_table.h"
-#include "sysid/import/text_encoding.h"
 #include "sysid/import/text_table.h"
 #include "sysid/import/xlsx_table.h"
 
@@ -64,12 +63,8 @@ std::string_view known_but_unread(std::string_view bytes) {
 /// A text: a LabVIEW measurement, or a table in any dialect.
 std::optional<ForeignTable> read_text(const std::string& path, std::string_view bytes,
                                       const TableOptions& options, document::Problems& problems) {
-  if (!is_lvm(bytes) || bytes.size() > most_text_bytes)
-    return parse_text_table(path, bytes, options, problems);
-  const auto text = utf8_of(bytes);
-  if (text) return read_lvm(path, *text, options, problems);
-  problems.add({path, {1, 1}, {}, text.error(), "export it as CSV"});
-  return std::nullopt;
+  return is_lvm(bytes) ? read_lvm(path, bytes, options, problems)
+                       : parse_text_table(path, bytes, options, problems);
 }
 
 /// `opened`: a path to the file that `bytes` were read from, whatever has replaced it meanwhile.

@@ -10,6 +10,7 @@
 #include "base/numbers.h"
 #include "sysid/import/cell_value.h"
 #include "sysid/import/moments.h"
+#include "sysid/import/text_encoding.h"
 #include "sysid/import/units.h"
 #include "sysid/logs/csv_text.h"
 
@@ -39,8 +40,10 @@ class LvmReader {
     table_.missing_cells.resize(options.missing.size());
   }
 
-  std::optional<ForeignTable> read(std::string_view text) {
-    const std::vector<std::string_view> lines = lines_of(text);
+  std::optional<ForeignTable> read(const ForeignText& text) {
+    const std::vector<std::string_view> lines = lines_of(text.text);
+    lines_ = lines.size();
+    table_.notes = text.notes;
     std::size_t at = 0;
     const Header file_header = header(lines, at);
     x_columns_ = lower_case(first_of(file_header, "X_Columns"));
@@ -150,6 +153,10 @@ class LvmReader {
       if (!same) refuse(line, "the columns of this section differ from those of the first");
       return same;
     }
+    if (names.size() > most_values / lines_) {
+      refuse(line, "the text has more than " + std::to_string(most_values) + " values");
+      return false;
+    }
     const auto units = section.find("Y_Unit_Label");
     for (std::size_t i = 0; i < names.size(); ++i) {
       TableColumn column;
@@ -203,6 +210,7 @@ class LvmReader {
   char separator_ = '\t';
   char decimal_ = '.';
   Nanoseconds first_moment_ = 0;
+  std::size_t lines_ = 1;       ///< of the file
   std::size_t short_line_ = 0;  ///< the first line with too few cells
   bool good_ = true;
 };
@@ -214,9 +222,10 @@ bool is_lvm(std::string_view text) {
          text.find("\nX_Columns") != std::string_view::npos;
 }
 
-std::optional<ForeignTable> read_lvm(const std::string& file, std::string_view text,
+std::optional<ForeignTable> read_lvm(const std::string& file, std::string_view bytes,
                                      const TableOptions& options, document::Problems& problems) {
-  return LvmReader(file, options, problems).read(text);
+  const auto text = foreign_text(file, bytes, problems);
+  return text ? LvmReader(file, options, problems).read(*text) : std::nullopt;
 }
 
 }  // namespace softgrip::sysid

@@ -1,6 +1,11 @@
 #include "sysid/import/text_encoding.h"
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
+#include <utility>
+
+#include "sysid/import/table.h"
 
 namespace softgrip::sysid {
 namespace {
@@ -67,6 +72,13 @@ void normalise_line_ends(std::string& text) {
   for (char& c : text) c = c == '\r' ? '\n' : c;
 }
 
+/// NUL bytes at the end of a text that is not UTF-16.
+std::size_t nul_tail(std::string_view bytes) {
+  if (bytes.starts_with("\xff\xfe") || bytes.starts_with("\xfe\xff")) return 0;
+  const std::size_t last = bytes.find_last_not_of('\0');
+  return last == std::string_view::npos ? 0 : bytes.size() - last - 1;
+}
+
 }  // namespace
 
 tl::expected<std::string, std::string> utf8_of(std::string_view bytes) {
@@ -83,6 +95,27 @@ tl::expected<std::string, std::string> utf8_of(std::string_view bytes) {
   }
   normalise_line_ends(text);
   return text;
+}
+
+std::optional<ForeignText> foreign_text(const std::string& file, std::string_view bytes,
+                                        document::Problems& problems) {
+  const auto refused = [&](const std::string& message, const char* hint) {
+    problems.add({file, {1, 1}, {}, message, hint});
+    return std::nullopt;
+  };
+  const auto too_long = [&](std::size_t most, const char* what) {
+    return refused("the text has more than " + std::to_string(most) + what, "split it into several files");
+  };
+  if (bytes.size() > most_text_bytes) return too_long(most_text_bytes, " bytes");
+  const std::size_t nul_bytes = nul_tail(bytes);
+  auto text = utf8_of(bytes.substr(0, bytes.size() - nul_bytes));
+  if (!text) return refused(text.error(), "export it as CSV");
+  if (static_cast<std::size_t>(std::count(text->begin(), text->end(), '\n')) > most_rows)
+    return too_long(most_rows, " lines");
+  ForeignText foreign{std::move(*text), {}};
+  if (nul_bytes > 0)
+    foreign.notes.push_back(std::to_string(nul_bytes) + " NUL bytes at the end of the file are left out");
+  return foreign;
 }
 
 }  // namespace softgrip::sysid

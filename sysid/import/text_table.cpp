@@ -24,13 +24,6 @@ std::string name_of_separator(char separator) {
   return std::string("'") + separator + "'";
 }
 
-/// NUL bytes at the end, as a logger leaves them that lost its power; none of UTF-16.
-std::size_t nul_tail(std::string_view bytes) {
-  if (bytes.starts_with("\xff\xfe") || bytes.starts_with("\xfe\xff")) return 0;
-  const std::size_t last = bytes.find_last_not_of('\0');
-  return last == std::string_view::npos ? 0 : bytes.size() - last - 1;
-}
-
 /// The rows of numbers, read into columns.
 class RowReader {
  public:
@@ -171,29 +164,23 @@ class RowReader {
 
 std::optional<ForeignTable> parse_text_table(const std::string& file, std::string_view bytes,
                                              const TableOptions& options, document::Problems& problems) {
-  const auto refused_with = [&](const std::string& what) {
-    problems.add({file, {1, 1}, {}, "the text has more than " + what, "split it into several files"});
-    return std::nullopt;
-  };
-  if (bytes.size() > most_text_bytes) return refused_with(std::to_string(most_text_bytes) + " bytes");
-  const std::size_t nul_bytes = nul_tail(bytes);
-  const auto text = utf8_of(bytes.substr(0, bytes.size() - nul_bytes));
-  if (!text) {
-    problems.add({file, {1, 1}, {}, text.error(), "export it as CSV"});
-    return std::nullopt;
-  }
-  if (static_cast<std::size_t>(std::count(text->begin(), text->end(), '\n')) > most_rows)
-    return refused_with(std::to_string(most_rows) + " lines");
-  const TextLines lines = text_lines(*text);
+  const auto text = foreign_text(file, bytes, problems);
+  if (!text) return std::nullopt;
+  const TextLines lines = text_lines(text->text);
   const auto dialect = dialect_of(file, lines, options, problems);
   if (!dialect) return std::nullopt;
-  if (lines.content.size() > most_values / std::max<std::size_t>(dialect->width, 1))
-    return refused_with(std::to_string(most_values) + " values");
+  if (lines.content.size() > most_values / std::max<std::size_t>(dialect->width, 1)) {
+    problems.add({file,
+                  {1, 1},
+                  {},
+                  "the text has more than " + std::to_string(most_values) + " values",
+                  "split it into several files"});
+    return std::nullopt;
+  }
   ForeignTable table;
   table.file = file;
   table.is_text = table.has_separators = true;
-  if (nul_bytes > 0)
-    table.notes.push_back(std::to_string(nul_bytes) + " NUL bytes at the end of the file are left out");
+  table.notes = text->notes;
   LogReporter report(file, problems);
   RowReader rows(*dialect, options, table, report);
   for (std::size_t i = dialect->first_row; i < lines.content.size(); ++i)

@@ -75,5 +75,26 @@ TEST(Lvm, WhatDiffersOrIsCutOffIsNamed) {
   EXPECT_FALSE(is_lvm("LabVIEW Measurement\nx\n"));
 }
 
+/// Like every other text.
+TEST(Lvm, HasTheBoundsOfAText) {
+  document::Problems problems;
+  const std::string bytes = header("One") + section("12:00:00,0", "0\t1\t2\n1\t3\t4\n");
+  EXPECT_FALSE(read_lvm("t.lvm", bytes + std::string(most_rows, '\n'), {}, problems));
+  EXPECT_EQ(problems.list().front().message, "the text has more than 16777216 lines");
+  const ForeignTable table = table_of(bytes + std::string(64, '\0'));
+  EXPECT_EQ(table.rows(), 2U);
+  ASSERT_EQ(table.notes.size(), 1U);
+  EXPECT_EQ(table.notes.front(), "64 NUL bytes at the end of the file are left out");
+}
+
+TEST(Lvm, HasAtMostTheValuesOfATable) {
+  std::string names = "X_Value";
+  for (int i = 0; i < 2000; ++i) names += "\tY" + std::to_string(i);
+  document::Problems problems;
+  const std::string rows = std::string(80'000, '\n') + "0";
+  EXPECT_FALSE(read_lvm("t.lvm", header("One") + section("12:00:00,0", rows, names), {}, problems));
+  EXPECT_EQ(problems.list().front().message, "the text has more than 134217728 values");
+}
+
 }  // namespace
 }  // namespace softgrip::sysid::lvm_text_test
