@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <charconv>
 #include <cmath>
 #include <optional>
 
@@ -70,6 +71,14 @@ CellValue cell_value(std::string_view cell, const std::vector<std::string>& miss
     value.short_clock = moment->short_clock;
     value.surely_minutes = moment->surely_minutes;
   }
+  return value;
+}
+
+std::optional<std::size_t> whole_number(std::string_view text) {
+  std::size_t value = 0;
+  const char* const all = text.data() + text.size();
+  const auto [end, error] = std::from_chars(text.data(), all, value);
+  if (error != std::errc{} || end != all) return std::nullopt;
   return value;
 }
 

@@ -1,7 +1,9 @@
 #pragma once
 // What a cell of a foreign text says.
 
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -28,5 +30,8 @@ struct CellValue {
 /// an empty cell, NaN, NA, null, inf and the like, and the words in `missing` (lower-case; numbers by their
 /// value).
 [[nodiscard]] CellValue cell_value(std::string_view cell, const std::vector<std::string>& missing);
+
+/// The number of a text that has only decimal digits.
+[[nodiscard]] std::optional<std::size_t> whole_number(std::string_view text);
 
 }  // namespace softgrip::sysid

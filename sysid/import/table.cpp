@@ -1,7 +1,8 @@
 #include "sysid/import/table.h"
 
 #include <algorithm>
-#include <charconv>
+
+#include "sysid/import/cell_value.h"
 
 namespace softgrip::sysid {
 
@@ -12,11 +13,8 @@ std::size_t column_index(const ForeignTable& table, std::string_view word) {
     const auto found = std::find_if(table.columns.begin(), table.columns.end(), named);
     return static_cast<std::size_t>(found - table.columns.begin());
   }
-  std::size_t number = 0;
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
-  const bool is_number = error == std::errc{} && end == word.data() + word.size();
-  if (count > 1 || !is_number || number < 1 || number > table.columns.size()) return table.columns.size();
-  return number - 1;
+  const std::size_t number = count == 0 ? whole_number(word).value_or(0) : 0;
+  return number < 1 || number > table.columns.size() ? table.columns.size() : number - 1;
 }
 
 std::string word_of(const ForeignTable& table, std::size_t index) {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <chrono>
 #include <cmath>
 #include <cstdint>
@@ -11,6 +10,7 @@
 #include <optional>
 
 #include "base/numbers.h"
+#include "sysid/import/cell_value.h"
 #include "sysid/import/table.h"
 #include "sysid/import/units.h"
 #include "sysid/import/workbook_xml.h"
@@ -54,6 +54,12 @@ std::string column_letters(std::size_t column) {
   return text;
 }
 
+/// The number of a row; nothing where the text is none.
+std::optional<std::size_t> row_number(std::string_view text) {
+  const auto row = whole_number(text);
+  return row && *row >= 1 && *row <= most_sheet_rows ? row : std::nullopt;
+}
+
 /// A cell's place; nothing where the reference is none.
 struct Place {
   std::size_t row = 0;
@@ -64,13 +70,9 @@ std::optional<Place> place_of(std::string_view reference) {
   std::size_t letters = 0;
   while (letters < reference.size() && reference[letters] >= 'A' && reference[letters] <= 'Z' && letters < 4)
     place.column = 26 * place.column + static_cast<std::size_t>(reference[letters++] - 'A' + 1);
-  const char* const end = reference.data() + reference.size();
-  const auto [rest, error] = std::from_chars(reference.data() + letters, end, place.row);
-  if (letters == 0 || error != std::errc{} || rest != end || place.row < 1 || place.row > most_sheet_rows ||
-      place.column > most_sheet_columns)
-    return std::nullopt;
-  --place.column;
-  return place;
+  const auto row = row_number(reference.substr(letters));
+  if (letters == 0 || !row || place.column > most_sheet_columns) return std::nullopt;
+  return Place{*row, place.column - 1};
 }
 
 /// A date as days, in the calendar of `from`. Excel stores some 0.6 us; more digits are noise.
@@ -112,6 +114,8 @@ class SheetReader {
   tl::expected<SheetText, SheetProblem> read() {
     if (local_name(root_.name()) != "worksheet") fail({1, 1}, "its XML is no worksheet");
     walk([this](const SheetCell& cell) { survey(cell); });
+    full_row_ = first_full_row();
+    if (dates_ > 0) walk([this](const SheetCell& cell) { survey_date(cell); });
     if (!problem_) write();
     if (problem_) return tl::unexpected(*problem_);
     name_what_differs();
@@ -127,18 +131,19 @@ class SheetReader {
   template <class Take>
   void walk(const Take& take) {
     std::size_t row = 0;
+    shared_bytes_ = 0;
     for (const pugi::xml_node& node : data_.children()) {
       if (problem_) return;
       if (local_name(node.name()) != "row") continue;
       const std::size_t before = row++;
       if (const std::string_view number = attribute_of(node, "r"); !number.empty()) {
-        const auto at = place_of("A" + std::string(number));
-        if (!at || at->row <= before)
+        const auto said = row_number(number);
+        if (!said || *said <= before)
           return fail({static_cast<int>(before + 1), 1},
                       "a row has the number '" + document::shown(number) + "', above " +
                           std::to_string(before) + " and at most " + std::to_string(most_sheet_rows) +
                           " is expected");
-        row = at->row;
+        row = *said;
       }
       walk_row(node, row, take);
     }
@@ -209,8 +214,8 @@ class SheetReader {
     cell.content = Content::number;
     const std::string_view style = attribute_of(node, "s");
     if (style.empty() || texts_.date_styles.empty()) return;
-    const auto index = index_of(style, texts_.date_styles.size());
-    if (!index)
+    const auto index = whole_number(style);
+    if (!index || *index >= texts_.date_styles.size())
       return refuse_cell(cell, "style '" + document::shown(style) + "' is none of the " +
                                    std::to_string(texts_.date_styles.size()) + " of the workbook");
     if (!texts_.date_styles[*index]) return;
@@ -222,10 +227,15 @@ class SheetReader {
   }
 
   void fill_shared(SheetCell& cell) {
-    const auto index = index_of(trimmed(cell.text), texts_.strings.size());
-    if (!index)
+    const auto index = whole_number(trimmed(cell.text));
+    if (!index || *index >= texts_.strings.size())
       return refuse_cell(cell, "shared string '" + document::shown(cell.text) + "' is none of the " +
                                    std::to_string(texts_.strings.size()) + " of the workbook");
+    // Many cells can refer to one long text.
+    shared_bytes_ += texts_.strings[*index].size();
+    if (shared_bytes_ > most_text_bytes)
+      return refuse_cell(cell,
+                         "the sheet has more than " + std::to_string(most_text_bytes) + " bytes of text");
     cell.text = texts_.strings[*index];
     if (!trimmed(cell.text).empty()) cell.content = Content::text;
   }
@@ -238,14 +248,6 @@ class SheetReader {
       return refuse_cell(cell, "'" + document::shown(cell.text) + "' is no boolean: 0 or 1 is expected");
     cell.is_bool = true;
     cell.content = Content::number;
-  }
-
-  static std::optional<std::size_t> index_of(std::string_view text, std::size_t count) {
-    std::size_t index = 0;
-    const char* const end = text.data() + text.size();
-    const auto [rest, error] = std::from_chars(text.data(), end, index);
-    if (error != std::errc{} || rest != end || index >= count) return std::nullopt;
-    return index;
   }
 
   /// Finds the first and the last row and column of a sheet, before a cell is written.
@@ -264,15 +266,18 @@ class SheetReader {
     ++filled_.back().second;
     const bool number = cell.content == Content::number || cell.content == Content::date;
     if (number && ++numbers_ == 2) ++result_.rows_of_numbers;
-    if (cell.content == Content::date) {
-      longest_[cell.column] = std::max(longest_[cell.column], cell.serial);
-      ++dates_;
-    }
+    dates_ += cell.content == Content::date ? 1 : 0;
     const std::string name = cell_name(cell.row, cell.column);
     if (cell.content == Content::error) errors_.add(name + " (" + document::shown(cell.text, 20) + ")");
     if (cell.content == Content::no_value) no_values_.add(name);
     formulas_ += cell.formula ? 1 : 0;
     booleans_ += cell.is_bool ? 1 : 0;
+  }
+
+  /// A date in a title does not belong to the column below it.
+  void survey_date(const SheetCell& cell) {
+    if (cell.content == Content::date && cell.row >= full_row_)
+      longest_[cell.column] = std::max(longest_[cell.column], cell.serial);
   }
 
   /// The first row that has three quarters of the columns; names and numbers do, titles do not.
@@ -291,20 +296,19 @@ class SheetReader {
     constexpr sys_days of_1900{year{1899} / 12 / 30};
     constexpr sys_days of_1904{year{1904} / 1 / 1};
     constexpr double a_year = 366;
-    const double longest = longest_[cell.column];
+    const double longest = cell.row < full_row_ ? cell.serial : longest_[cell.column];
     // A column below a year is of durations, which have no calendar.
     return iso_date(cell.serial, texts_.from_1904 || longest < a_year ? of_1904 : of_1900, longest >= 1);
   }
 
   void write() {
     if (result_.first_row == 0) return;
-    const std::size_t full_row = first_full_row();
     std::size_t row = result_.first_row;
     std::size_t column = first_column_;
     std::string& text = result_.text;
     text.assign(row - 1, '\n');
     const auto end_row = [&] {
-      if (row >= full_row) text.append(last_column_ - column, ',');
+      if (row >= full_row_) text.append(last_column_ - column, ',');
     };
     walk([&](const SheetCell& cell) {
       if (cell.row != row) {
@@ -373,7 +377,9 @@ class SheetReader {
   std::size_t first_column_ = 0;
   std::size_t last_column_ = 0;
   std::vector<std::pair<std::size_t, std::size_t>> filled_;  ///< rows with content, and their cells
-  std::map<std::size_t, double> longest_;                    ///< the latest date of a column
+  std::size_t full_row_ = 0;                                 ///< the first one below the titles
+  std::size_t shared_bytes_ = 0;                             ///< of the shared strings in the cells
+  std::map<std::size_t, double> longest_;                    ///< the latest date of a column below the titles
   std::size_t numbers_ = 0;                                  ///< in this row
   std::size_t dates_ = 0;
   std::size_t formulas_ = 0;
@@ -388,7 +394,7 @@ std::string cell_name(std::size_t row, std::size_t column) {
   return column_letters(column) + std::to_string(row);
 }
 
-bool is_date_format(int builtin) {
+bool is_date_format(std::size_t builtin) {
   return (builtin >= 14 && builtin <= 22) || (builtin >= 27 && builtin <= 36) ||
          (builtin >= 45 && builtin <= 47) || (builtin >= 50 && builtin <= 58);
 }

@@ -37,15 +37,15 @@ struct SheetProblem {
 
 /// True if numbers in this format are dates or times of day: "yyyy-mm-dd", "[h]:mm:ss.000".
 [[nodiscard]] bool is_date_format(std::string_view code);
-[[nodiscard]] bool is_date_format(int builtin);
+[[nodiscard]] bool is_date_format(std::size_t builtin);
 
 /// "B7" of a row and a column that count from 1 and 0.
 [[nodiscard]] std::string cell_name(std::size_t row, std::size_t column);
 
 /// The cells in lines of CSV. Rows above the first one with 3 of 4 columns have only their own cells;
 /// below it each row with a cell has all columns. Booleans are 1 and 0. Dates are ISO 8601; a column of times
-/// within one day has times of day. Of formulas the stored value is taken. Errors and formulas without a
-/// stored value are empty, and a note names them.
+/// within one day has times of day, regardless of the rows above.  Of formulas the stored value is taken.
+/// Errors and formulas without a stored value are empty, and a note names them.
 [[nodiscard]] tl::expected<SheetText, SheetProblem> sheet_text(const pugi::xml_document& sheet,
                                                                const WorkbookTexts& texts);
 

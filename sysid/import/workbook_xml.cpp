@@ -10,12 +10,21 @@ constexpr std::size_t most_tree_bytes = std::size_t{1} << 30U;
 constexpr std::size_t node_bytes = 64;
 constexpr std::size_t attribute_bytes = 40;
 
-/// An upper bound of the memory that the tree needs.
+/// An upper bound of the memory that the tree needs. The first text in an element has no node of its own.
 std::size_t tree_bytes(std::string_view text) {
   std::size_t bytes = 0;
+  bool opens = false;
   for (std::size_t i = 0; i < text.size(); ++i) {
     if (text[i] == '=') bytes += attribute_bytes;
-    if (text[i] == '<' && i + 1 < text.size() && text[i + 1] != '/') bytes += node_bytes;
+    if (text[i] == '<') {
+      opens = i + 1 < text.size() && text[i + 1] != '/';
+      bytes += opens ? node_bytes : 0;
+    } else if (text[i] == '>') {
+      const bool first = opens && text[i - 1] != '/';
+      const std::size_t next = text.find_first_not_of(" \t\r\n", i + 1);
+      const bool is_text = next != std::string_view::npos && text[next] != '<';
+      bytes += is_text && !first ? node_bytes : 0;
+    }
   }
   return bytes;
 }

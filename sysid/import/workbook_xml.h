@@ -9,8 +9,8 @@
 
 namespace softgrip::sysid {
 
-/// Replaces `document` by the XML in `text`, which must outlive it. The error is a sentence. XML that would
-/// need more than 1 GiB as a tree is refused.
+/// Replaces `document` by the XML in `text`, which must outlive it. The error is a sentence. XML whose
+/// tree could need more than 1 GiB is refused.
 [[nodiscard]] tl::expected<void, std::string> load_xml(std::string& text, pugi::xml_document& document);
 
 /// A name without its prefix: "x:row" is "row".

@@ -1,13 +1,13 @@
 #include "sysid/import/xlsx_table.h"
 
 #include <algorithm>
-#include <charconv>
 #include <filesystem>
 #include <map>
 #include <utility>
 #include <vector>
 
 #include "base/enumerated.h"
+#include "sysid/import/cell_value.h"
 #include "sysid/import/text_table.h"
 #include "sysid/import/workbook_package.h"
 #include "sysid/import/workbook_sheet.h"
@@ -129,6 +129,14 @@ class WorkbookReader {
     const auto found = relations(folder, part.substr(folder.size()));
     if (!found || !load(part, file_)) return false;
     if (!read_sheets(*found)) return false;
+    for (const char* type : {"sharedStrings", "styles"}) {
+      const auto parts = std::count_if(found->begin(), found->end(),
+                                       [&](const auto& entry) { return entry.second.type == type; });
+      if (parts > 1) {
+        refuse("it has " + std::to_string(parts) + " parts '" + type + "' where at most 1 is expected");
+        return false;
+      }
+    }
     const bool good = std::all_of(found->begin(), found->end(), [this](const auto& entry) {
       const Relation& relation = entry.second;
       if (relation.external) return true;
@@ -178,8 +186,7 @@ class WorkbookReader {
     for (const pugi::xml_node& style : child_of(root, "cellXfs").children()) {
       const std::string_view id = attribute_of(style, "numFmtId");
       const auto found = own.find(id);
-      int number = 0;
-      std::from_chars(id.data(), id.data() + id.size(), number);
+      const std::size_t number = whole_number(id).value_or(0);
       texts_.date_styles.push_back(found == own.end() ? is_date_format(number) : found->second);
     }
     return true;

@@ -135,5 +135,12 @@ TEST(TextTable, MoreLinesThanTheBoundAreRefusedBeforeTheyAreSplit) {
   EXPECT_EQ(problems.list().front().message, "the text has more than 16777216 lines");
 }
 
+TEST(WholeNumber, IsDigitsAlone) {
+  EXPECT_EQ(whole_number("0"), 0U);
+  EXPECT_EQ(whole_number("1048576"), 1048576U);
+  for (const char* none : {"", "-1", "+1", "1.0", " 1", "1 ", "B7", "1e3", "99999999999999999999999"})
+    EXPECT_FALSE(whole_number(none)) << none;
+}
+
 }  // namespace
 }  // namespace softgrip::sysid::text_table_test

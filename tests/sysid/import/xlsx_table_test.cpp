@@ -218,6 +218,23 @@ TEST(XlsxTable, RefusesACellThatContradictsTheFile) {
   EXPECT_TRUE(has(said("<c r='XFE7'><v>2</v></c>"), "a cell 'XFE7'"));
   const std::string rows = refusal(book({{"Run", "<sheetData><row r='3'/><row r='3'/></sheetData>"}}));
   EXPECT_TRUE(has(rows, "a row has the number '3', above 3")) << rows;
+  const std::string row =
+      refusal(book({{"Run", "<sheetData><row r='B7'><c><v>2</v></c></row></sheetData>"}}));
+  EXPECT_TRUE(has(row, "a row has the number 'B7', above 0")) << row;
+}
+
+TEST(XlsxTable, RefusesASecondPartOfTextsOrStyles) {
+  for (const std::string type : {"sharedStrings", "styles"}) {
+    Parts parts = book({{"Run", cells(three_rows)}});
+    std::string more;
+    for (const std::string id : {"a", "b"}) {
+      more += "<Relationship Id='" + id + "' Type='x/" + type + "' Target='" + id + ".xml'/>";
+      parts["xl/" + id + ".xml"] = "<part><si><t>x</t></si></part>";
+    }
+    parts["xl/_rels/workbook.xml.rels"].insert(15, more);
+    EXPECT_TRUE(has(refusal(parts), "it has 2 parts '" + type + "' where at most 1 is expected"))
+        << refusal(parts);
+  }
 }
 
 TEST(XlsxTable, RefusesWhatIsNoWorkbook) {
@@ -267,6 +284,15 @@ TEST(WorkbookXml, RefusesATreeThatNeedsTooMuchMemory) {
   EXPECT_EQ(loaded.error(), "it has too many cells");
 }
 
+/// A text behind an element has a node of its own.
+TEST(WorkbookXml, CountsTheTextsBetweenElements) {
+  std::string text = "<a>";
+  for (int i = 0; i < 9'000'000; ++i) text += "<b/>x";
+  text += "</a>";
+  pugi::xml_document document;
+  EXPECT_FALSE(load_xml(text, document));
+}
+
 TEST(WorkbookPackage, BoundsWhatIsUnpacked) {
   const std::string bytes = archive({{"zeros", std::string(std::size_t{200} << 20U, '0')}});
   EXPECT_LT(bytes.size(), std::size_t{1} << 20U);
@@ -299,8 +325,31 @@ TEST(WorkbookSheet, DatesCountFrom1900Or1904) {
   WorkbookTexts texts{{}, {false, true}, false};
   EXPECT_EQ(sheet_text(document, texts)->text,
             "2024-05-31T12:00:00.000000,06:00:00.000000,1904-01-02T06:00:00.000000\n");
+  // The date in a title does not make dates of the times of day below it.
+  xml =
+      "<worksheet><sheetData><row r='1'><c s='1'><v>45443.5</v></c></row>"
+      "<row r='2'><c t='str'><v>t</v></c><c t='str'><v>p</v></c></row>"
+      "<row r='3'><c s='1'><v>0.5</v></c><c><v>1</v></c></row></sheetData></worksheet>";
+  ASSERT_TRUE(load_xml(xml, document));
+  EXPECT_EQ(sheet_text(document, texts)->text, "2024-05-31T12:00:00.000000\nt,p\n12:00:00.000000,1\n");
+  xml = "<worksheet><sheetData><row><c s='1'><v>45443.5</v></c></row></sheetData></worksheet>";
+  ASSERT_TRUE(load_xml(xml, document));
   texts.from_1904 = true;
   EXPECT_TRUE(sheet_text(document, texts)->text.starts_with("2028-06-01T12:00:00"));
+}
+
+TEST(WorkbookSheet, BoundsTheSharedTextsOfItsCells) {
+  std::string xml = "<worksheet><sheetData><row>";
+  for (int i = 0; i < 40; ++i) xml += "<c t='s'><v>0</v></c>";
+  xml += "</row></sheetData></worksheet>";
+  pugi::xml_document document;
+  ASSERT_TRUE(load_xml(xml, document));
+  WorkbookTexts texts{{std::string(std::size_t{1} << 20U, ' ')}, {}, false};
+  EXPECT_TRUE(sheet_text(document, texts));
+  texts.strings.front().resize(std::size_t{16} << 20U, ' ');
+  const auto text = sheet_text(document, texts);
+  ASSERT_FALSE(text);
+  EXPECT_EQ(text.error().message, "cell AG1: the sheet has more than 536870912 bytes of text");
 }
 
 TEST(WorkbookSheet, CellsAreNamedLikeInASpreadsheet) {
