@@ -12,6 +12,7 @@
 #include "sysid/import/lvm_text.h"
 #include "sysid/import/mat_elements.h"
 #include "sysid/import/mat_table.h"
+#include "sysid/import/mcap_table.h"
 #include "sysid/import/tdms_table.h"
 #include "sysid/import/text_table.h"
 #include "sysid/import/xlsx_table.h"
@@ -85,6 +86,7 @@ std::optional<ForeignTable> read_bytes(const std::string& path, const std::strin
   }
   if (is_hdf5(bytes)) return read_hdf5_table(path, opened, bytes.starts_with("MATLAB 7.3"), problems);
   if (is_matlab_4(bytes)) return read_mat_table(path, opened, problems);
+  if (bytes.starts_with(mcap_magic)) return read_mcap_table(path, bytes, options, problems);
   if (bytes.starts_with("TDSm")) return read_tdms_table(path, bytes, problems);
   if (bytes.starts_with("PK\x03\x04") || bytes.starts_with("PK\x05\x06"))
     return read_xlsx_table(path, bytes, options, problems);

@@ -12,9 +12,9 @@
 
 namespace softgrip::sysid {
 
-/// Reads text (gzip around it or not), XLSX, TDMS, MATLAB or HDF5, by what the file begins with and not by
-/// its name; a folder stands for the run.csv in it. What is refused is added to `problems`; `unreadable` is
-/// set where the file could not be opened at all.
+/// Reads text (gzip around it or not), XLSX, TDMS, MCAP, MATLAB or HDF5, by what the file begins with and not
+/// by its name; a folder stands for the run.csv in it. What is refused is added to `problems`; `unreadable`
+/// is set where the file could not be opened at all.
 [[nodiscard]] std::optional<ForeignTable> read_foreign_file(const std::string& path,
                                                             const TableOptions& options,
                                                             document::Problems& problems, bool& unreadable);

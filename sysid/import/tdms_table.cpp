@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "sysid/import/array_table.h"
+#include "sysid/import/byte_scanner.h"
 
 namespace softgrip::sysid {
 namespace {
@@ -160,36 +161,6 @@ std::string name_in(std::string_view path) {
   return name;
 }
 
-/// Reads a part of the file from its begin to its end; what lies behind the end is 0 or empty, and `good` is
-/// false afterwards.
-class TdmsScanner {
- public:
-  explicit TdmsScanner(std::string_view bytes) : bytes_(bytes) {}
-
-  template <class T>
-  T value() {
-    const char* const at = skip(sizeof(T));
-    return at == nullptr ? T{} : copied<T>(at);
-  }
-  std::string_view text() {
-    const auto size = value<std::uint32_t>();
-    const char* const at = skip(size);
-    return at == nullptr ? std::string_view{} : std::string_view(at, size);
-  }
-  const char* skip(std::uint64_t size) {
-    good_ = good_ && size <= bytes_.size();
-    if (!good_) return nullptr;
-    const char* const at = bytes_.data();
-    bytes_.remove_prefix(size);
-    return at;
-  }
-  [[nodiscard]] bool good() const { return good_; }
-
- private:
-  std::string_view bytes_;
-  bool good_ = true;
-};
-
 class TdmsReader {
  public:
   TdmsReader(std::string_view bytes, ArrayCollector& arrays) : bytes_(bytes), arrays_(arrays) {}
@@ -222,7 +193,7 @@ class TdmsReader {
  private:
   /// The place of the next segment.
   std::size_t segment(std::size_t at) {
-    TdmsScanner lead(bytes_.substr(at, lead_in_bytes));
+    ByteScanner lead(bytes_.substr(at, lead_in_bytes));
     const bool signed_so = std::string_view(lead.skip(4), 4) == "TDSm";
     const auto flags = lead.value<std::uint32_t>();
     lead.skip(4);
@@ -271,7 +242,7 @@ class TdmsReader {
   }
 
   bool metadata(std::string_view bytes, bool new_list) {
-    TdmsScanner scan(bytes);
+    ByteScanner scan(bytes);
     if (new_list) listed_.clear();
     const auto objects = scan.value<std::uint32_t>();
     for (std::uint32_t i = 0; i < objects && scan.good(); ++i) {
@@ -280,7 +251,7 @@ class TdmsReader {
     return scan.good();
   }
 
-  bool object(TdmsScanner& scan) {
+  bool object(ByteScanner& scan) {
     const std::string path(scan.text());
     const auto found = by_path_.try_emplace(path, channels_.size());
     if (found.second) {
@@ -308,7 +279,7 @@ class TdmsReader {
     return properties(scan, channel);
   }
 
-  bool index(TdmsScanner& scan, TdmsChannel& channel) {
+  bool index(ByteScanner& scan, TdmsChannel& channel) {
     const auto type = static_cast<TdmsType>(scan.value<std::uint32_t>());
     const auto dimension = scan.value<std::uint32_t>();
     channel.count = scan.value<std::uint64_t>();
@@ -324,7 +295,7 @@ class TdmsReader {
     return scan.good() && dimension == 1 && channel.bytes <= (std::uint64_t{1} << 44U);
   }
 
-  bool properties(TdmsScanner& scan, TdmsChannel& channel) {
+  bool properties(ByteScanner& scan, TdmsChannel& channel) {
     const auto count = scan.value<std::uint32_t>();
     for (std::uint32_t i = 0; i < count && scan.good(); ++i) {
       const std::string_view name = scan.text();

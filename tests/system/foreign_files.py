@@ -206,12 +206,26 @@ def recording(path):
     (path / "run.csv").write_text("\n".join(lines) + "\n")
 
 
+def exported(file):
+    """What `softgrip export` makes of the recording, as MCAP."""
+    def make(path):
+        with tempfile.TemporaryDirectory() as folder:
+            run = pathlib.Path(folder) / "run"
+            recording(run)
+            out = run.with_suffix(".mcap")
+            subprocess.run([BUILD / "tools/softgrip", "export", run, "--out", out], check=True, capture_output=True)
+            path.write_bytes(file(out.read_bytes()))
+    return make
+
+
 class File:
     """One foreign file: how it is made, what is said to import it, and what must come of it."""
 
-    def __init__(self, name, about, content, options="", *, columns=None, refused="", says="", tolerance=1e-9):
+    def __init__(self, name, about, content, options="", *, columns=None, refused="", says="", left_out=None, joined=0,
+                 tolerance=1e-9):
         self.name, self.about, self.content, self.options = name, about, content, options
         self.refused, self.says, self.tolerance = refused, says, tolerance
+        self.account = {"joined": joined, "left_out": left_out or {}}
         self.columns = None if refused else columns or {key: TRUTH[key] for key in BASIC}
 
     def make(self, folder):
@@ -280,7 +294,7 @@ def measurements():
         File("waveform.tdms", "LabVIEW TDMS: waveforms", tdms.file([tdms.segment("log", steps)]),
              says="'wf_time' counts from wf_start_offset in steps of wf_increment"),
         File("cut_off.tdms", "LabVIEW TDMS, interleaved and cut off", tdms.file([tdms.segment("log", times, interleaved=True)])[:-100 * 24 - 5],
-             columns={key: TRUTH[key][:199] for key in BASIC}, says="the file is cut off"),
+             columns={key: TRUTH[key][:199] for key in BASIC}, says="the file is cut off", left_out={"cut_off_line": 1}),
         File("daqmx.tdms", "LabVIEW TDMS: raw values of DAQmx", whole[:4] + bytes([whole[4] | 128]) + whole[5:],
              refused="raw values of DAQmx"),
     ]
@@ -405,15 +419,19 @@ def files():
                  COMMAND[49] if i == 50 else value for i, value in enumerate(COMMAND)]},
              says="keep the one before"),
         File("duplicates.csv", "rows that stand twice",
-             PLAIN.replace("\n1.5,", "\n1.49,61,99\n1.5,"), says="1 sample at the time of the one before left out"),
+             PLAIN.replace("\n1.5,", "\n1.49,61,99\n1.5,"), says="1 sample at the time of the one before left out",
+             left_out={"repeated_time": 1}),
         File("hole.csv", "a hole in which the command changed unseen",
              table(["time_s", "set_kpa", "tip_mm"], dropped([T, COMMAND, TIP], set(range(80, 150)))),
-             columns={key: without(set(range(150)))[key] for key in BASIC}, says="the longest piece is kept"),
+             columns={key: without(set(range(150)))[key] for key in BASIC}, says="the longest piece is kept",
+             left_out={"hole": 80}),
         File("stretch.csv", "a stretch of the file", PLAIN, "--from-s 1 --to-s 1.99",
-             columns={key: without(set(range(100)) | set(range(200, 300)))[key] for key in BASIC}),
+             columns={key: without(set(range(100)) | set(range(200, 300)))[key] for key in BASIC},
+             left_out={"outside_stretch": 200}),
         File("two_runs.csv", "two runs in one file", PLAIN + table([], [T, COMMAND, TIP]), refused="the time goes back"),
         File("cut_off.csv", "the last line is cut off", PLAIN[:-12],
-             columns={key: TRUTH[key][:-1] for key in BASIC}, says="the last line is cut off and left out"),
+             columns={key: TRUTH[key][:-1] for key in BASIC}, says="the last line is cut off and left out",
+             left_out={"cut_off_line": 1}),
         File("ragged.csv", "a row with a cell too many", changed(PLAIN, 120, ",", ",,"),
              refused="4 cells where the rows above have 3"),
         File("word.csv", "a word among the numbers", changed(PLAIN, 77, "0.75,", "0.75x,"),
@@ -486,7 +504,8 @@ def files():
                    ";")),
         File("coarse_times.csv", "time stamps of 50 ms in a log of 100 Hz",
              table(["time_s", "set_kpa", "tip_mm"], [[round(0.05 * (i // 5), 6) for i in range(COUNT)], COMMAND, TIP]),
-             columns={key: TRUTH[key][::5] for key in BASIC}, says="--rate-hz 101.4 in place of --time keeps every row"),
+             columns={key: TRUTH[key][::5] for key in BASIC}, says="--rate-hz 101.4 in place of --time keeps every row",
+             left_out={"repeated_time": 240}),
         File("coarser_times.csv", "time stamps of 1 s in a log of 100 Hz",
              table(["time_s", "set_kpa", "tip_mm"], [[i // 100 for i in range(COUNT)], COMMAND, TIP]),
              refused="too few rows are usable: 300 rows: 3 used, 297 left out (297 at the time of the row before)"),
@@ -497,11 +516,11 @@ def files():
              columns={"time_s": T, "pressure_command_kpa": held, "displacement_mm": [
                  math.nan if i % 10 == 0 else tip for i, tip in enumerate(TIP)]}, says="keep the one before"),
         File("rows_at_one_time.csv", "command and reading in two rows of one time",
-             "time_s,set_kpa,tip_mm\n" + "".join(f"{t!r},{c!r},\n{t!r},,{y!r}\n" for t, c, y in pairs)),
+             "time_s,set_kpa,tip_mm\n" + "".join(f"{t!r},{c!r},\n{t!r},,{y!r}\n" for t, c, y in pairs), joined=300),
         File("two_times.csv", "a time of the command and a time of the reading",
              table(["t_cmd (s)", "set (kPa)", "t_tip (s)", "tip (mm)"],
                    [T[::10] + [None] * 270, COMMAND[::10] + [None] * 270, T, TIP]),
-             columns=BASIC_OF | {"pressure_command_kpa": held}, says="each row has 2 times"),
+             columns=BASIC_OF | {"pressure_command_kpa": held}, says="each row has 2 times", left_out={"empty": 270}, joined=30),
         File("two_times_unclear.csv", "two times that differ, without a sign of what each is of",
              table(["time_a_s", "time_b_s", "set_kpa", "tip_mm"], [T, [round(0.5 * t, 6) for t in T], COMMAND, TIP]),
              refused="the times of the columns 'time_a_s', 'time_b_s' differ"),
@@ -524,7 +543,8 @@ def files():
             "tip_mm,\n", "tip_mm\n")),
         File("bad_lines.csv", "a word and a cell too many, skipped",
              changed(changed(PLAIN, 120, ",", ",,"), 77, "0.75,", "0.75x,"), "--skip-bad-lines",
-             columns={key: values for key, values in without({75, 118}).items() if key in BASIC}, says="--skip-bad-lines leaves out 1 lines of another width: 120"),
+             columns={key: values for key, values in without({75, 118}).items() if key in BASIC}, says="--skip-bad-lines leaves out 1 lines of another width: 120",
+             left_out={"bad_line": 2}),
         File("idle_options.csv", "options that change nothing", PLAIN,
              "--missing 888 --unit supply=bar --to-s 100", says="--missing 888 has no effect"),
         File("months_first.csv", "dates of which the month comes first",
@@ -536,8 +556,16 @@ def files():
         File("angle.csv", "degrees", table(["time_s", "set_kpa", "tip (deg)"], [T, COMMAND, TIP]),
              refused="'deg' is no unit of a displacement"),
         File("recording", "a recording of softgripd, one of its channels", recording, "--channel left",
-             columns=MEASURED),
+             columns=MEASURED, left_out={"other_channel": 300}),
         File("recording_both", "the same without saying which", recording, refused="2 channels"),
+        File("run.mcap", "the same recording exported as MCAP, one of its channels", exported(bytes), "--channel left",
+             columns=MEASURED, says="not used: 'state'", left_out={"other_channel": 300}),
+        File("both.mcap", "the same without saying which", exported(bytes), refused="2 channels: 'left', 'right'"),
+        File("cut_off.mcap", "the same, cut off", exported(lambda whole: whole[:whole.index(b'"time_s":2.0') - 40]),
+             "--channel left", columns={key: TRUTH[key][:201] for key in MEASURED}, says="the file is cut off: its last",
+             left_out={"other_channel": 200, "cut_off_line": 1}),
+        File("changed.mcap", "the same with a changed byte",
+             exported(lambda whole: whole.replace(b'"time_s":1.5,', b'"time_s":2.5,', 1)), "--channel left", refused="a chunk does not match its checksum"),
         *spreadsheets(),
         *measurements(),
         File("noise.bin", "random bytes", bytes((i * i * 31 + 7 * i) % 251 for i in range(3000)),
@@ -587,6 +615,8 @@ def outcome(file, folder):
     rows = told["rows"]
     if rows["file"] != rows["used"] + rows["joined"] + sum(rows["left_out"].values()) or rows["used"] != told["samples"]:
         return f"{rows} does not account for every row", "values", remarks
+    if {key: rows[key] for key in file.account} != file.account:
+        return f"{rows} where {file.account} is expected", "values", remarks
     worst, why = furthest(read_csv(out), file.columns)
     if why or worst > file.tolerance:
         return why or f"off by {worst:.2g}", "values", remarks

@@ -150,6 +150,15 @@ class Import(bench.BenchTest):
         self.assertIn(f"{path}: 2 sheets have rows of numbers: 'Monday', 'Tuesday': softgrip import {path} --sheet NAME "
                       "--out two_sheets_log.csv", done.stderr)
 
+    def test_a_log_comes_back_from_mcap(self):
+        self.softgrip("simulate", "--model", "config/models/bench_twin.yaml", "--input", "tp1", "--out", "own.csv",
+                      "--rate-hz", "50")
+        self.softgrip("export", "own.csv", "--out", "own.mcap")
+        hint = self.softgrip("identify", "--data", "own.mcap", "--out", "o", expect=3).stderr
+        self.assertIn("own.mcap as a log: softgrip import own.mcap --time time_s", hint)
+        self.imported("own.mcap", "--out", "back.csv", "--yes")
+        self.assertEqual((self.folder / "own.csv").read_bytes(), (self.folder / "back.csv").read_bytes())
+
     def test_what_was_imported_can_be_identified(self):
         self.softgrip("simulate", "--model", "config/models/bench_twin.yaml", "--input", "tp1", "--out", "own.csv",
                       "--rate-hz", "50")

@@ -11,27 +11,15 @@
 
 #include "base/numbers.h"
 #include "base/time.h"
+#include "sysid/import/mcap_table.h"
 
 namespace softgrip::tools {
 namespace {
 
-constexpr std::string_view magic{"\x89MCAP0\r\n"};
+using Opcode = sysid::McapOpcode;
+
 constexpr std::size_t chunk_bytes = std::size_t{4} << 20U;
 constexpr std::uint16_t first_id = 1;
-
-enum class Opcode : std::uint8_t {
-  header = 0x01,
-  footer = 0x02,
-  schema = 0x03,
-  channel = 0x04,
-  message = 0x05,
-  chunk = 0x06,
-  message_index = 0x07,
-  chunk_index = 0x08,
-  statistics = 0x0b,
-  summary_offset = 0x0e,
-  data_end = 0x0f,
-};
 
 template <class T>
 void put(std::string& bytes, T value) {
@@ -111,7 +99,7 @@ class Writer {
   }
 
   std::string run(const std::string& library) {
-    bytes_ = magic;
+    bytes_ = sysid::mcap_magic;
     std::string header;
     put_text(header, "");
     put_text(header, library);
@@ -125,7 +113,7 @@ class Writer {
     put(end, checksum(bytes_));
     bytes_ += record(Opcode::data_end, end);
     add_summary();
-    return std::move(bytes_) + std::string(magic);
+    return std::move(bytes_) + std::string(sysid::mcap_magic);
   }
 
  private:

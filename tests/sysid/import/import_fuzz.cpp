@@ -1,6 +1,6 @@
-// Fuzz target of the foreign text tables, workbooks and LabVIEW files: any bytes are a table or a refusal,
-// what is proposed for it can be said by options and a mapping file, and what is converted is a log that can
-// be read.
+// Fuzz target of the foreign text tables, workbooks, LabVIEW and MCAP files: any bytes are a table or a
+// refusal, what is proposed for it can be said by options and a mapping file, and what is converted is a log
+// that can be read.
 //
 //   scripts/fuzz.sh import_fuzz 30
 
@@ -11,6 +11,7 @@
 
 #include "sysid/import/conversion.h"
 #include "sysid/import/mapping_file.h"
+#include "sysid/import/mcap_table.h"
 #include "sysid/import/proposal.h"
 #include "sysid/import/tdms_table.h"
 #include "sysid/import/text_table.h"
@@ -33,7 +34,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   document::Problems problems;
   const auto table = text.starts_with("PK")     ? sysid::read_xlsx_table("fuzz.xlsx", text, {}, problems)
                      : text.starts_with("TDSm") ? sysid::read_tdms_table("fuzz.tdms", text, problems)
-                                                : sysid::parse_text_table("fuzz.csv", text, {}, problems);
+                     : text.starts_with(sysid::mcap_magic)
+                         ? sysid::read_mcap_table("fuzz.mcap", text, {}, problems)
+                         : sysid::parse_text_table("fuzz.csv", text, {}, problems);
   require(table.has_value() == problems.empty());
   (void)problems.format();
   if (!table) return 0;
