@@ -126,7 +126,7 @@ class LvmReader {
     place(section, begin, delta);
   }
 
-  /// Where the X values begin anew, the section stands at its own time; without one, a step behind the last.
+  /// Where the X values restart, the section begins at its own time; without one, a step behind the last.
   void place(const Header& section, std::size_t begin, double delta) {
     const auto moment = moment_of(first_of(section, "Date") + " " + first_of(section, "Time"));
     if (begin == 0 && moment) first_moment_ = moment->time;
@@ -138,9 +138,9 @@ class LvmReader {
       const bool has_time = x[begin] + apart_s > x[begin - 1];
       const double shift = has_time ? apart_s : x[begin - 1] + delta - x[begin];
       for (std::size_t i = begin; i < x.size(); ++i) x[i] += shift;
-      table_.notes.push_back("the times begin anew in line " + std::to_string(table_.line[begin]) +
-                             (has_time ? ": the section stands at its own Date and Time"
-                                       : ": the section stands a step behind the one before"));
+      table_.notes.push_back("the times restart in line " + std::to_string(table_.line[begin]) +
+                             (has_time ? ": the section begins at its own Date and Time"
+                                       : ": the section begins a step behind the one before"));
     }
   }
 

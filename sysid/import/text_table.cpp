@@ -196,7 +196,7 @@ std::optional<ForeignTable> parse_text_table(const std::string& file, std::strin
           dialect->first_row - (dialect->names_line > 0 ? 1 : 0) - (dialect->units.empty() ? 0 : 1);
       above > 0 && above < lines.content.size())
     table.notes.push_back(std::to_string(above) + (above == 1 ? " line" : " lines") +
-                          " above the columns' names passed over");
+                          " above the columns' names skipped");
   return table;
 }
 

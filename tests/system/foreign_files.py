@@ -317,6 +317,111 @@ PREAMBLE = "".join(f"{key}\t{value}\n" for key, value in (
 EPOCH = 1717156800
 
 
+def reports():
+    """More files of the classes of public field reports, each with the account of its rows."""
+    names = ["time_s", "set_kpa", "tip_mm"]
+    ms = [round(1000 * t) for t in T]
+    thirds = {"pressure_command_kpa": [COMMAND[3 * (i // 3)] for i in range(COUNT)]}
+    slow = [tip if i % 20 == 0 else math.nan for i, tip in enumerate(TIP)]
+    slow_cells = [tip if i % 20 == 0 else "n/a" for i, tip in enumerate(TIP)]
+    quarter = [round(0.25 * value, 6) for value in COMMAND]
+    other_tip = [round(3 - value, 6) for value in TIP]
+    three = table(["time_s", *(f"{finger}_{kind}" for finger in ("thumb", "index", "ring") for kind in (
+        "pressure_command_kpa", "displacement_mm"))], [T, quarter, other_tip, COMMAND, TIP, quarter, TIP[::-1]])
+    rows_of_two = "t_s,channel,set_kpa,tip_mm\n" + "".join(
+        f"{t!r},A,{q!r},{o!r}\n{t!r},B,{c!r},{y!r}\n" for t, q, o, c, y in zip(T, quarter, other_tip, COMMAND, TIP))
+    coded = {code: [code if i in (5, 120, 121) else tip for i, tip in enumerate(TIP)] for code in (-1000, 65535)}
+    coded_truth = BASIC_OF | {"displacement_mm": [math.nan if i in (5, 120, 121) else tip for i, tip in enumerate(TIP)]}
+    channels = {"t": tdms.Channel(T, {"unit_string": "s"}), "set": tdms.Channel(COMMAND, {"unit_string": "kPa"}),
+                "tip": tdms.Channel(TIP, {"unit_string": "mm"})}
+    parts = [tdms.segment("log", channels, rows=(begin, begin + 100)) for begin in (0, 100, 200)]
+    first = {key: TRUTH[key][:200] for key in BASIC}
+    clock = times("2024-05-31T12:59:58", "%I:%M:%S.%f")
+    two_clocks = table(["t_cmd (ms)", "set (kPa)", "t_tip (ms)", "tip (mm)"],
+                       [ms[::3] + [None] * 200, COMMAND[::3] + [None] * 200, ms, TIP], ";", ",")
+    lvm_text = lvm("One", 3)
+    blanks = [names] + [[t, c if i % 3 == 0 else None, y] for i, (t, c, y) in enumerate(zip(T, COMMAND, TIP))]
+    step_back = [t if i < 150 else round(t - 0.015, 6) for i, t in enumerate(T)]
+    return [
+        File("three_fingers.csv", "the wide export of three fingers, one of them", three, "--channel index"),
+        File("three_fingers_unsaid.csv", "the same without saying which", three,
+             refused="the columns are of 3 fingers: 'thumb', 'index', 'ring'"),
+        File("channel_rows.csv", "fingers in rows, one of them", rows_of_two, "--channel B", left_out={"other_channel": 300}),
+        File("channel_rows_none.csv", "the same and a name that is none", rows_of_two, "--channel C",
+             refused="no row is of channel 'C'"),
+        File("fingers.xlsx", "two fingers in a workbook, one of them", workbooks.book(
+            [["time_s", "P1 set (kPa)", "P2 set (kPa)", "tip 1 (mm)", "tip 2 (mm)"]]
+            + [list(row) for row in zip(T, quarter, COMMAND, other_tip, TIP)]), "--channel 2"),
+        File("one_sensor.csv", "the pressures of two fingers and the reading of one",
+             table(["t_s", "left set (kPa)", "right set (kPa)", "right tip (mm)"], [T, quarter, COMMAND, TIP])),
+        File("counter_24_bit.csv", "a counter of 24 bits in microseconds",
+             table(["t_us", "set_kpa", "tip_mm"], [[(2 ** 24 - 1000000 + round(1e6 * t)) % 2 ** 24 for t in T], COMMAND, TIP]),
+             says="the clock overflows at 16777216, 1 time"),
+        File("day_in_ms.csv", "milliseconds of the day across midnight",
+             table(["t_ms", "set_kpa", "tip_mm"], [[(86_399_000 + m) % 86_400_000 for m in ms], COMMAND, TIP]),
+             says="the clock overflows at 86400000, 1 time"),
+        File("clock_corrected.csv", "a clock that steps back by 15 ms", table(names, [step_back, COMMAND, TIP]),
+             refused="clock_corrected.csv:152:1: the time goes back"),
+        File("date_corrected.csv", "dates that step back by 15 ms", table(
+            ["Date", *names[1:]], [[(datetime.datetime(2024, 5, 31) + datetime.timedelta(seconds=t)).isoformat(
+                timespec="milliseconds") for t in step_back], COMMAND, TIP]), refused="date_corrected.csv:152:1: the time goes back"),
+        File("blank_commands.xlsx", "a workbook with a command in every third row", workbooks.book(blanks),
+             columns=BASIC_OF | thirds, says="200 samples without a command keep the one before"),
+        File("late_command.csv", "readings before the first command",
+             table(names, [T, [None] * 10 + COMMAND[10:], TIP]), columns={key: without(set(range(10)))[key] for key in BASIC},
+             says="10 samples before the first command left out", left_out={"before_command": 10}),
+        File("two_clocks.csv", "a slow clock of the command, decimal commas", two_clocks, columns=BASIC_OF | thirds,
+             says="each row has 2 times", joined=100, left_out={"empty": 200}),
+        File("same_clock_twice.csv", "the same time in s and in ms", table(
+            ["time_s", "t_ms", "set_kpa", "tip_mm"], [T, ms, COMMAND, TIP]), says="shows the time that is used"),
+        File("clock_and_counter.csv", "a time and a counter of samples",
+             table(["time_s", "sample", "set_kpa", "tip_mm"], [T, list(range(COUNT)), COMMAND, TIP]), says="not used: 'sample'"),
+        File("long_minutes.csv", "minutes above 59", table(
+            ["Time", *names[1:]], [[f"{(3598 + t) // 60:.0f}:{(3598 + t) % 60:05.2f}" for t in T], COMMAND, TIP])),
+        File("noon.csv", "p.m. in lower case across one o'clock",
+             table(["Time", *names[1:]], [[text[:12].lstrip("0") + " p.m." for text in clock], COMMAND, TIP])),
+        File("comma_fraction.csv", "ISO dates with a comma before the fraction", table(
+            ["Date", *names[1:]], [[text.replace(".", ",") for text in times("2024-05-31T11:59:59", "%Y-%m-%d %H:%M:%S.%f")],
+                                   COMMAND, TIP], ";", ",")),
+        File("zones.csv", "dates with an offset of time zone", table(
+            ["Date", *names[1:]], [[text + "+02:00" for text in times("2024-05-31T23:59:59", "%Y-%m-%dT%H:%M:%S.%f")],
+                                   COMMAND, TIP])),
+        File("slow_readings.csv", "a reading in every twentieth row", table(names, [T, COMMAND, slow_cells]),
+             refused="95.0 % of the samples have no reading"),
+        File("slow_readings_long.csv", "the same, ten times as long", table(
+            names, [[i / 100 for i in range(10 * COUNT)], COMMAND * 10, slow_cells * 10]),
+             columns={"time_s": [i / 100 for i in range(10 * COUNT)], "pressure_command_kpa": COMMAND * 10,
+                      "displacement_mm": slow * 10}, says="95.0 % of the samples have no reading"),
+        File("code_minus_1000.csv", "-1000 where the sensor read nothing", table(names, [T, COMMAND, coded[-1000]]),
+             columns=coded_truth, says="3 cells of 'tip_mm' with -1000, far from all others, count as missing"),
+        File("code_65535.csv", "65535 where the sensor read nothing", table(names, [T, COMMAND, coded[65535]]),
+             columns=coded_truth, says="3 cells of 'tip_mm' with 65535"),
+        File("stamps_of_20_ms.csv", "time stamps of 20 ms in a log of 100 Hz, counted", table(
+            names, [[round(0.02 * (i // 2), 6) for i in range(COUNT)], COMMAND, TIP]), "--rate-hz 100",
+             says="the column 'time_s' looks like a time and is not used: --rate-hz takes its place"),
+        File("cut_off.lvm", "a LabVIEW measurement, cut off", lvm_text[:-20], columns={key: TRUTH[key][:-1] for key in BASIC},
+             says="the last line is cut off and left out", left_out={"cut_off_line": 1}),
+        File("nul_tail.lvm", "a LabVIEW measurement with NUL bytes at its end", lvm_text.encode() + bytes(100),
+             says="100 NUL bytes at the end of the file are left out"),
+        File("cut_metadata.tdms", "LabVIEW TDMS: the third segment is cut off in its metadata",
+             tdms.file(parts)[:-100 * 24 - 30], columns=first, says="is cut off in its metadata"),
+        File("cut_block.tdms", "LabVIEW TDMS: the third segment is cut off in its values", tdms.file(parts)[:-100 * 16 - 80],
+             columns=first, says="incomplete rows or blocks of values are left out: 720 bytes", left_out={"cut_off_line": 90}),
+        File("nested_cells.mat", "MATLAB 5: a cell array of structures", matlab_5(cells("runs", [structures("", [
+            {"t_ms": matrix("", ms), "set_kPa": matrix("", COMMAND), "tip_mm": matrix("", TIP)}])]))),
+        File("title_date.xlsx", "a date in the title above times of day", workbooks.book(
+            [["Bench 3"], [workbooks.date(45443.5)], None, ["Time", *names[1:]]]
+            + [[workbooks.date(0.5 + t / 86400, 2), c, y] for t, c, y in zip(T, COMMAND, TIP)]), tolerance=1e-6),
+        File("short_rows.csv", "three rows without their last cell, skipped",
+             "\n".join(line.rsplit(",", 1)[0] if i in (40, 41, 200) else line for i, line in enumerate(PLAIN.split("\n"))),
+             "--skip-bad-lines", columns={key: without({39, 40, 199})[key] for key in BASIC}, left_out={"bad_line": 3},
+             says="leaves out 3 lines of another width: 41, 42, 201"),
+        File("idle_sheet.mcap", "an MCAP recording with options of other formats", exported(bytes),
+             "--channel left --sheet Run --separator tab", columns=MEASURED, left_out={"other_channel": 300},
+             says="--sheet has no effect: the file is no workbook"),
+    ]
+
+
 def files():
     hole = set(range(100, 200))
     slow = [tip if i % 5 == 0 else None for i, tip in enumerate(TIP)]
@@ -459,7 +564,7 @@ def files():
              "--time 1 --command 2 --displacement 3 --unit time=s --unit command=kPa --unit displacement=mm"),
         File("one_section.lvm", "a LabVIEW measurement", lvm("One", 1)),
         File("sections.lvm", "a LabVIEW measurement in 3 sections", lvm("One", 3),
-             says="the section stands a step behind the one before"),
+             says="the section begins a step behind the one before"),
         File("counted.lvm", "a LabVIEW measurement without X columns", lvm("No", 1)),
         File("old.mat", "MATLAB 4", matlab_4("time_s", T) + matlab_4("set_bar", scaled(COMMAND, BAR))
              + matlab_4("tip_mm", TIP)),
@@ -474,7 +579,7 @@ def files():
         File("counter_32_bit.csv", "microseconds of a counter of 32 bits",
              table(["t_us", "set_kpa", "tip_mm"],
                    [[(2 ** 32 - 500000 + round(1e6 * t)) % 2 ** 32 for t in T], COMMAND, TIP]),
-             says="the clock overflows at 4.294967296e+09, 1 time"),
+             says="the clock overflows at 4294967296, 1 time"),
         File("seconds_of_the_day.csv", "seconds of the day across midnight",
              table(["time_s", "set_kpa", "tip_mm"], [[f"{(86399 + t) % 86400:.2f}" for t in T], COMMAND, TIP]),
              says="the clock overflows at 86400, 1 time"),
@@ -568,6 +673,7 @@ def files():
              exported(lambda whole: whole.replace(b'"time_s":1.5,', b'"time_s":2.5,', 1)), "--channel left", refused="a chunk does not match its checksum"),
         *spreadsheets(),
         *measurements(),
+        *reports(),
         File("noise.bin", "random bytes", bytes((i * i * 31 + 7 * i) % 251 for i in range(3000)),
              refused="no text, nor a format that is known"),
     ]

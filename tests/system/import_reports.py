@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 """What `softgrip import` makes of every file in a folder of field reports.
 
-    tests/system/import_reports.py FOLDER [--softgrip PROGRAM]...
+    tests/system/import_reports.py [FOLDER] [--softgrip PROGRAM]...
 
-FOLDER has a folder for each report. The table has a row for each file. With two programs it has a column for each,
+FOLDER has a folder for each report. Without FOLDER the reports of foreign_files.py are made and imported. The table has
+a row for each file. With two programs it has a column for each,
 before and after. Exit code 1 if a run crashed.
 """
 
@@ -15,6 +16,8 @@ import shlex
 import subprocess
 import sys
 import tempfile
+
+import foreign_files
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 BUILD = pathlib.Path(os.environ.get("SOFTGRIP_BUILD", ROOT / "build" / "release"))
@@ -28,6 +31,10 @@ def cases(folder):
         if path.is_file() and path.suffix in SUFFIXES:
             for options in OPTIONS.get(path.parent.name, [""]):
                 yield path, options
+
+
+def own_cases(folder):
+    return [(file.make(folder), file.options) for file in foreign_files.reports()]
 
 
 def outcome(program, path, options):
@@ -46,18 +53,20 @@ def outcome(program, path, options):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("folder", type=pathlib.Path)
+    parser.add_argument("folder", type=pathlib.Path, nargs="?")
     parser.add_argument("--softgrip", type=pathlib.Path, action="append", help="default: that of the build folder")
     options = parser.parse_args()
     programs = options.softgrip or [BUILD / "tools/softgrip"]
     print("| file | options | " + " | ".join(f"exit code {i + 1} | result {i + 1}" for i in range(len(programs))) + " |")
     print("|---|---|" + "---|---|" * len(programs))
     crashed = False
-    for path, said in cases(options.folder):
+    made = tempfile.TemporaryDirectory()
+    folder = options.folder or pathlib.Path(made.name)
+    for path, said in cases(folder) if options.folder else own_cases(folder):
         results = [outcome(program, path, said) for program in programs]
         crashed = crashed or any(code < 0 for code, _ in results)
         cells = [cell for code, text in results for cell in (str(code), text.replace("|", "\\|"))]
-        print(f"| {path.relative_to(options.folder)} | {said} | " + " | ".join(cells) + " |", flush=True)
+        print(f"| {path.relative_to(folder)} | {said} | " + " | ".join(cells) + " |", flush=True)
     return 1 if crashed else 0
 
 

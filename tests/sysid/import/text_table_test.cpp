@@ -59,7 +59,7 @@ TEST(TextTable, CommentsAndLinesAboveTheNamesArePassedOver) {
   EXPECT_EQ(table.columns[1].name, "x");
   EXPECT_EQ(table.columns[1].values, (std::vector<double>{1, 2}));
   EXPECT_EQ(table.line, (std::vector<int>{6, 8}));
-  EXPECT_EQ(table.notes, std::vector<std::string>{"2 lines above the columns' names passed over"});
+  EXPECT_EQ(table.notes, std::vector<std::string>{"2 lines above the columns' names skipped"});
 }
 
 TEST(TextTable, NamesMayStandInACommentOrNowhere) {
