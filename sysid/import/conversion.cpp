@@ -253,11 +253,10 @@ class Converter {
     if (!overflow) return;
     const std::size_t row = rows[overflow->first];
     const bool has_lines = row < table_.line.size();
-    remarks_.notes.push_back("the clock overflows at " + written(overflow->period) + ", " +
-                             std::to_string(overflow->count) + (overflow->count == 1 ? " time" : " times") +
-                             ", first in " + (has_lines ? "line " : "sample ") +
-                             std::to_string(has_lines ? table_.line[row] : static_cast<int>(row) + 1) +
-                             ": it is continued");
+    remarks_.notes.push_back(
+        "the clock overflows at " + written(overflow->period) + ", " + std::to_string(overflow->count) +
+        (overflow->count == 1 ? " time" : " times") + ", first in " + (has_lines ? "line " : "sample ") +
+        std::to_string(has_lines ? table_.line[row] : static_cast<int>(row) + 1) + ": it is continued");
   }
 
   /// A value at the time of its own column.
