@@ -25,6 +25,7 @@
 #include "base/grid.h"
 #include "base/sha256.h"
 #include "daemon/service/trusted_user.h"
+#include "drivers/iio/iio_device.h"
 
 namespace softgrip::daemon {
 
@@ -58,6 +59,16 @@ std::string name_of(const drivers::ModbusAddress& link, std::uint8_t unit) {
     return fmt::format("modbus {} port {} unit {}", numeric(tcp->host), tcp->port, unit);
   // A serial line has one master, whatever units it asks.
   return "serial " + real_path(std::get<drivers::SerialLine>(link).device);
+}
+
+/// A converter is one board under all its words.
+std::string name_of(const std::vector<ComputerDevice>& there, const std::string& word,
+                    const std::string& root) {
+  const auto device = only_device(there, word, "converter");
+  if (device)
+    return "converter " +
+           (device->word("address").empty() ? device->folder.string() : drivers::identity_of(*device));
+  return fmt::format("converter {} of {}", word, real_path(root));
 }
 
 std::string key_of(const std::string& board) {
@@ -159,8 +170,9 @@ std::vector<std::string> driven_by(const rig::RigFile& rig) {
     }
   }
   if (const auto* converters = std::get_if<drivers::IioSettings>(&rig.board)) {
+    const auto there = drivers::converters_in(converters->root);
     for (const drivers::IioTerminal& output : converters->outputs)
-      names.insert(fmt::format("converter {} of {}", output.device, real_path(converters->root)));
+      names.insert(name_of(there, output.device, converters->root));
   }
   return {names.begin(), names.end()};
 }

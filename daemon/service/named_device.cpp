@@ -22,9 +22,10 @@ std::optional<NamedDevice> named_chip(const rig::RigFile& rig, const std::filesy
 std::optional<NamedDevice> named_converter(const rig::RigFile& rig, const std::string& device) {
   const auto* const converters = std::get_if<drivers::IioSettings>(&rig.board);
   if (converters == nullptr) return std::nullopt;
-  const std::filesystem::path folder = std::filesystem::path(converters->root) / device;
+  const auto there = drivers::converters_in(converters->root);
   const auto is_it = [&](const drivers::IioTerminal& terminal) {
-    return drivers::is_converter(folder, terminal.device);
+    const auto found = only_device(there, terminal.device, "converter");
+    return found && found->node == device;
   };
   const bool read = std::any_of(converters->inputs.begin(), converters->inputs.end(), is_it);
   NamedDevice named;

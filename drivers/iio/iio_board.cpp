@@ -25,15 +25,10 @@ double per_unit(std::string_view channel) noexcept {
   return unit_of_channel(channel) == ElectricalUnit::volt ? 1e-3 : 1;
 }
 
-/// The device's folder, or an empty path; `known` gets the names of all that are there.
-std::filesystem::path folder_of(const std::string& root, const std::string& device, std::string& known) {
-  std::error_code error;
-  for (const auto& entry : std::filesystem::directory_iterator(root, error)) {
-    if (!entry.path().filename().string().starts_with("iio:device")) continue;
-    if (is_converter(entry.path(), device)) return entry.path();
-    known += (known.empty() ? "" : ", ") + name_of_converter(entry.path());
-  }
-  return {};
+/// What must not change while a rig runs; a label or a serial number is enough by itself.
+std::string identity_behind(const std::string& word, const ComputerDevice& device) {
+  const bool says_which = device.has("label", word) || device.has("serial number", word);
+  return says_which ? std::string{} : identity_of(device);
 }
 
 std::string type_of(const std::string& channel) {
@@ -84,6 +79,9 @@ struct IioBoard::Parts {
   /// One wired terminal: its raw number's attribute and what the number means.
   struct Converter {
     std::string name;  // in messages
+    std::string path;  // of the attribute
+    std::string identity;
+    std::string first_identity;  // of the first session
     IioAttribute raw;
     double scale = 1;   // to V or mA
     double offset = 0;  // added to the raw number
@@ -97,7 +95,7 @@ struct IioBoard::Parts {
   std::vector<Converter> outputs;
   bool open = false;
   RoundTrip reads;
-  std::array<char, 256> detail{};
+  std::array<char, 512> detail{};
 
   BusStatus say(BusStatus status, const std::string& what, const char* why) noexcept {
     std::snprintf(detail.data(), detail.size(), "%s: %s", what.c_str(), why);
@@ -109,7 +107,10 @@ struct IioBoard::Parts {
     return say(BusStatus::disconnected, converter.name, error != 0 ? text_of_errno(error) : "no number");
   }
 
-  BusStatus attach(const IioTerminal& terminal, bool output, Converter& converter);
+  using Devices = std::vector<ComputerDevice>;
+  BusStatus attach(const Devices& there, const IioTerminal& terminal, bool output, Converter& converter);
+  BusStatus attach_each(const Devices& there, const std::vector<IioTerminal>& terminals, bool output,
+                        std::vector<Converter>& converters);
   BusStatus attach_all();
   BusStatus probe(Nanoseconds deadline) noexcept;
   BusStatus write(std::size_t channel, double command_kpa) noexcept;
@@ -117,19 +118,26 @@ struct IioBoard::Parts {
   BusStatus read_channel(std::size_t channel, Reading& reading) noexcept;
 };
 
-BusStatus IioBoard::Parts::attach(const IioTerminal& terminal, bool output, Converter& converter) {
-  std::string known;
-  const std::filesystem::path folder = folder_of(settings.root, terminal.device, known);
+BusStatus IioBoard::Parts::attach(const Devices& there, const IioTerminal& terminal, bool output,
+                                  Converter& converter) {
   converter.name = terminal.device + " " + terminal.channel;
-  if (folder.empty()) {
-    const std::string there = known.empty() ? "no converter is there" : "there are " + known;
-    return say(BusStatus::disconnected, converter.name,
-               ("no such device under " + settings.root + ", " + there).c_str());
+  const auto device = only_device(there, terminal.device, "converter");
+  if (!device) {
+    return say(BusStatus::disconnected, device.error().message,
+               (device.error().hint + ", under " + settings.root).c_str());
   }
+  converter.identity = identity_behind(terminal.device, *device);
+  if (!converter.first_identity.empty() && converter.identity != converter.first_identity) {
+    return say(BusStatus::disconnected, converter.name,
+               ("it was " + converter.first_identity + ", now it is " + converter.identity +
+                ": start again if that is right")
+                   .c_str());
+  }
+  const std::filesystem::path folder = std::filesystem::path(settings.root) / device->node;
   const std::string direction = output ? "out_" : "in_";
-  const std::string path = (folder / (direction + terminal.channel + "_raw")).string();
-  if (const int error = converter.raw.open(path, output); error != 0) {
-    return say(BusStatus::disconnected, path, text_of_errno(error));
+  converter.path = (folder / (direction + terminal.channel + "_raw")).string();
+  if (const int error = converter.raw.open(converter.path, output); error != 0) {
+    return say(BusStatus::disconnected, converter.path, text_of_errno(error));
   }
   converter.scale =
       shared_number(folder, direction, terminal.channel, "_scale", 0) * per_unit(terminal.channel);
@@ -141,18 +149,29 @@ BusStatus IioBoard::Parts::attach(const IioTerminal& terminal, bool output, Conv
   return BusStatus::ok;
 }
 
-BusStatus IioBoard::Parts::attach_all() {
-  for (std::size_t i = 0; i < outputs.size(); ++i) {
-    if (const BusStatus status = attach(settings.outputs[i], true, outputs[i]); status != BusStatus::ok) {
-      return status;
-    }
-  }
-  for (std::size_t i = 0; i < inputs.size(); ++i) {
-    if (const BusStatus status = attach(settings.inputs[i], false, inputs[i]); status != BusStatus::ok) {
-      return status;
+BusStatus IioBoard::Parts::attach_each(const Devices& there, const std::vector<IioTerminal>& terminals,
+                                       bool output, std::vector<Converter>& converters) {
+  for (std::size_t i = 0; i < converters.size(); ++i) {
+    const BusStatus status = attach(there, terminals[i], output, converters[i]);
+    if (status != BusStatus::ok) return status;
+    for (std::size_t j = 0; j < i; ++j) {
+      if (converters[j].path != converters[i].path) continue;
+      return say(BusStatus::disconnected, converters[j].name + " and " + converters[i].name,
+                 ("both are " + converters[i].path).c_str());
     }
   }
   return BusStatus::ok;
+}
+
+BusStatus IioBoard::Parts::attach_all() {
+  const Devices there = converters_in(settings.root);
+  BusStatus status = attach_each(there, settings.outputs, true, outputs);
+  if (status == BusStatus::ok) status = attach_each(there, settings.inputs, false, inputs);
+  if (status != BusStatus::ok) return status;
+  for (auto* const converters : {&outputs, &inputs}) {
+    for (Converter& converter : *converters) converter.first_identity = converter.identity;
+  }
+  return status;
 }
 
 /// Reads every wired input a few times: what that takes is the budget.

@@ -16,7 +16,7 @@ namespace softgrip::drivers {
 
 /// One channel of a converter. "voltage0", "current2", differential ones "voltage0-voltage1".
 struct IioTerminal {
-  std::string device;  ///< what its attribute `name` holds, or its folder (iio:device0)
+  std::string device;  ///< a word that fits one of converters_in()
   std::string channel;
   long raw_max = 0;  ///< outputs: the largest raw number that the converter takes; the smallest is 0
 };
@@ -42,6 +42,10 @@ struct IioSettings {
 ///
 /// A conversion happens inside the system call and cannot be cut short: the deadline is looked at after each.
 /// There is no watchdog: the outputs keep their last value for ever when nobody writes.
+///
+/// connect() refuses a word that fits no converter or several, and two terminals that are one. After a
+/// session a word must mean the same converter again, unless it is a label or a serial number: another one of
+/// that name would get the commands of the one that is gone.
 class IioBoard final : public Board {
  public:
   explicit IioBoard(const IioSettings& settings);

@@ -1,17 +1,25 @@
 #include "drivers/iio/iio_device.h"
 
-#include <fstream>
+#include <utility>
 
 namespace softgrip::drivers {
 
-std::string name_of_converter(const std::filesystem::path& folder) {
-  std::string word;
-  std::ifstream(folder / "name") >> word;
-  return word;
+std::vector<ComputerDevice> converters_in(const std::filesystem::path& root) {
+  std::vector<ComputerDevice> converters = devices_in(root, "iio:device");
+  for (ComputerDevice& converter : converters) {
+    const std::filesystem::path folder = root / converter.node;
+    std::vector<DeviceWord> of_bus = std::exchange(converter.words, {});
+    converter.add("label", first_line(folder / "label"));
+    converter.add("name", first_line(folder / "name"));
+    converter.add("serial number", first_line(folder / "serialnumber"));
+    for (DeviceWord& word : of_bus) converter.words.push_back(std::move(word));
+  }
+  return converters;
 }
 
-bool is_converter(const std::filesystem::path& folder, const std::string& device) {
-  return !device.empty() && (folder.filename() == device || name_of_converter(folder) == device);
+std::string identity_of(const ComputerDevice& converter) {
+  const std::string name = converter.word("name");
+  return converter.word("address").empty() ? name : name + " at " + converter.folder.parent_path().string();
 }
 
 }  // namespace softgrip::drivers

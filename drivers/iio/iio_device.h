@@ -1,16 +1,20 @@
 #pragma once
-// Which converter of this computer a rig file means.
+// The converters of this computer.
 
 #include <filesystem>
 #include <string>
+#include <vector>
+
+#include "base/computer_device.h"
 
 namespace softgrip::drivers {
 
-/// Returns the name that a converter gives itself: its attribute `name`.
-[[nodiscard]] std::string name_of_converter(const std::filesystem::path& folder);
+/// Returns the converters under `root` (/sys/bus/iio/devices), each with its attributes `label`, `name` and
+/// `serialnumber`, its address on its bus and the serial number of its USB device, as far as it has them.
+[[nodiscard]] std::vector<ComputerDevice> converters_in(const std::filesystem::path& root);
 
-/// True if a converter's folder (/sys/bus/iio/devices/iio:device0) is the device that a rig file names, by
-/// its own name or by that of its folder.
-[[nodiscard]] bool is_converter(const std::filesystem::path& folder, const std::string& device);
+/// Returns what stays the same of a converter while its node may change: its name and its place on its bus.
+/// "mcp4725 at /sys/devices/platform/soc/fe804000.i2c/i2c-1/1-0060"; without a bus the name alone.
+[[nodiscard]] std::string identity_of(const ComputerDevice& converter);
 
 }  // namespace softgrip::drivers

@@ -69,8 +69,8 @@ TEST(Examples, UseOnlyKeysThatTheManualDescribes) {
   manual << std::ifstream(root + "/docs/reference/rig-file.md").rdbuf();
   std::set<std::string> keys;
   document::Problems problems;
-  for (const char* const name : {"rig.yaml", "rig_tcp.yaml", "rig_rtu.yaml", "rig_service.yaml",
-                                 "rig_planned.yaml", "vacuum/rig.yaml"}) {
+  for (const char* const name : {"rig.yaml", "rig_tcp.yaml", "rig_rtu.yaml", "rig_iio.yaml",
+                                 "rig_service.yaml", "rig_planned.yaml", "vacuum/rig.yaml"}) {
     collect_keys(document::parse_file(root + "/config/" + name, problems).root, keys);
   }
   EXPECT_GE(keys.size(), 70U);

@@ -7,10 +7,12 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <fstream>
 #include <functional>
 #include <set>
 
 #include "base/clock.h"
+#include "base/scratch_folder.h"
 
 namespace softgrip::daemon::rig_file_test {
 namespace {
@@ -126,6 +128,61 @@ rig::RigReading edited(const std::string& name, const std::vector<std::pair<std:
     if (at != std::string::npos) text.replace(at, old.size(), now);
   }
   return rig::read_rig_so_far(document::parse(shipped(name), text, problems), problems);
+}
+
+/// Two converters of one name and two others of this computer, as far as a rig file is judged by them.
+class Converters : public ::testing::Test {
+ protected:
+  Converters() {
+    add("iio:device0", "1-0061", "mcp4725");
+    add("iio:device1", "1-0060", "mcp4725");
+    add("iio:device2", "1-0048", "ads1115");
+  }
+  void add(const std::string& node, const std::string& address, const std::string& name) const {
+    const std::filesystem::path folder = root_ / "hardware" / address / node;
+    std::filesystem::create_directories(folder);
+    std::filesystem::create_directory_symlink(folder, root_ / node);
+    std::ofstream(folder / "name") << name << "\n";
+  }
+  /// The problems of the shipped rig with these words for the two valves' converters.
+  [[nodiscard]] std::string problems_of(const std::string& first, const std::string& second) const {
+    Problems problems;
+    const auto reading = edited("rig_iio.yaml",
+                                {{"  iio:\n", "  iio:\n    root: " + root_.string() + "\n"},
+                                 {"device: 1-0060", "device: " + first},
+                                 {"device: 1-0061", "device: " + second}},
+                                problems);
+    EXPECT_EQ(reading.accepted, problems.empty());
+    return problems.format();
+  }
+
+  const ScratchFolder scratch_;
+  const std::filesystem::path root_ = std::filesystem::canonical(scratch_.path());
+};
+
+TEST_F(Converters, OfOneNameAreRefusedWithBothAndTheirPlaceInTheFile) {
+  const std::string problems = problems_of("mcp4725", "mcp4725");
+  for (const char* const said :
+       {"rig_iio.yaml:11:18: ", "rig_iio.yaml:12:18: ",
+        "`mcp4725` fits 2 converters: iio:device0 (name `mcp4725`, address `1-0061`) and iio:device1 (name "
+        "`mcp4725`, address `1-0060`)",
+        "write `1-0061` or `1-0060`"}) {
+    EXPECT_NE(problems.find(said), std::string::npos) << said << "\n" << problems;
+  }
+}
+
+TEST_F(Converters, AreChosenByAddressByNodeAndByPath) {
+  EXPECT_EQ(problems_of("1-0060", "1-0061"), "");
+  EXPECT_EQ(problems_of("iio:device1", (root_ / "hardware/1-0061").string()), "");
+  EXPECT_EQ(problems_of("1-0070", "1-0071"), "") << "of another computer";
+}
+
+TEST_F(Converters, OneChannelListedTwiceIsRefusedUnderWhateverWords) {
+  for (const auto& [first, second] : {std::pair{"1-0060", "iio:device1"}, {"other", "other"}}) {
+    EXPECT_NE(problems_of(first, second).find("is already listed at 11:18"), std::string::npos)
+        << first << "\n"
+        << problems_of(first, second);
+  }
 }
 
 TEST(RestPressure, IsOfTheChannelAndZeroWithoutTheKey) {

@@ -25,7 +25,7 @@ std::vector<InputFile> elsewhere(std::vector<InputFile> files) {
 }
 
 TEST(StoredRig, NeedsNothingOfTheDisk) {
-  for (const char* name : {"rig_tcp.yaml", "rig_rtu.yaml", "rig_service.yaml", "rig.yaml"}) {
+  for (const char* name : {"rig_tcp.yaml", "rig_rtu.yaml", "rig_iio.yaml", "rig_service.yaml", "rig.yaml"}) {
     const RigFile rig = shipped(name);
     document::Problems problems;
     const auto again = read_stored_rig(elsewhere(rig.inputs), problems);

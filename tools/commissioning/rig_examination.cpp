@@ -19,11 +19,11 @@ namespace {
 constexpr double ms_per_s = 1e3;
 
 std::string advice_for_silence(const rig::RigFile& rig) {
-  const bool simulated = std::holds_alternative<simulation::SimulatedBoardSettings>(rig.board);
-  return simulated
-             ? "look at `events` of the rig file"
-             : "check power and cable of the board, its address in the rig file, and that no other master "
-               "holds it";
+  if (std::holds_alternative<simulation::SimulatedBoardSettings>(rig.board))
+    return "look at `events` of the rig file";
+  if (std::holds_alternative<drivers::IioSettings>(rig.board))
+    return "compare `device` and `channel` in the rig file with the converters of this computer";
+  return "check power and cable of the board, its address in the rig file, and that no other master holds it";
 }
 
 /// True if a look at the sensors, which writes the rest pressures, could drop a part that is still held.

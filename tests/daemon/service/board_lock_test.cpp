@@ -13,6 +13,7 @@
 #include <filesystem>
 #include <functional>
 
+#include "base/scratch_folder.h"
 #include "base/sha256.h"
 
 namespace softgrip::daemon::board_lock_test {
@@ -63,6 +64,29 @@ TEST(BoardLock, ASerialLineHasOneMasterWhateverUnitItAsks) {
   const auto first = BoardLock::take(one);
   ASSERT_TRUE(first) << first.error();
   EXPECT_FALSE(BoardLock::take(two));
+}
+
+TEST(BoardLock, AConverterIsOneBoardUnderAllItsWords) {
+  const ScratchFolder scratch;
+  const std::filesystem::path root = std::filesystem::canonical(scratch.path());
+  for (const char* const address : {"1-0060", "1-0061"}) {
+    const std::string node = std::string("iio:device") + address[5];
+    std::filesystem::create_directories(root / "hardware" / address / node);
+    std::filesystem::create_directory_symlink(root / "hardware" / address / node, root / node);
+  }
+  const auto rig_with = [&](const std::string& word) {
+    drivers::IioSettings converters;
+    converters.root = root.string();
+    converters.outputs = {{word, "voltage0", 4095}};
+    rig::RigFile rig;
+    rig.board = converters;
+    return rig;
+  };
+  const auto first = BoardLock::take(rig_with("1-0060"));
+  ASSERT_TRUE(first) << first.error();
+  EXPECT_FALSE(BoardLock::take(rig_with("iio:device0")));
+  EXPECT_FALSE(BoardLock::take(rig_with((root / "iio:device0").string())));
+  EXPECT_TRUE(BoardLock::take(rig_with("iio:device1")));
 }
 
 /// A process that does `body` and then waits for its end.

@@ -49,6 +49,8 @@ TEST(NamedDevice, AConverterByItsNameOrItsFolderAndOnlyTheOutputsThatAreWritten)
   EXPECT_TRUE(inputs->written.empty()) << "inputs are read, which every user may do";
   EXPECT_FALSE(named_device(rig, "iio:device2"));
   EXPECT_FALSE(named_device(rig, "iio:device3"));
+  std::ofstream(root.path() + "/iio:device2/name") << "dac7578\n";
+  EXPECT_FALSE(named_device(rig, "iio:device1")) << "a name of two converters names none";
 }
 
 TEST(NamedDevice, OtherDevicesAreNone) {

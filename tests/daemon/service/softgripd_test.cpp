@@ -12,6 +12,7 @@
 #include <csignal>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <sstream>
 #include <string>
 #include <thread>
@@ -252,6 +253,35 @@ TEST_F(SoftgripdTest, RefusesWithTheExitCodesOfTheManual) {
   const std::string broken = make_rig(folder_.path(), {{"rate_hz: 200", "rate: 200"}});
   EXPECT_EQ(code({"--config", broken, "--check"}), 3);
   EXPECT_EQ(code({"--config", broken}), 3);
+}
+
+TEST_F(SoftgripdTest, RefusesANameOfTwoConvertersBeforeAnythingMoves) {
+  const std::filesystem::path root = folder_.path() + "/iio";
+  for (const auto& [node, name] :
+       {std::pair{"iio:device0", "mcp4725"}, {"iio:device1", "mcp4725"}, {"iio:device2", "ads1115"}}) {
+    std::filesystem::create_directories(root / node);
+    std::ofstream(root / node / "name") << name << "\n";
+    std::ofstream(root / node / "out_voltage0_raw") << "1234\n";
+  }
+  std::string text = text_of(SOFTGRIP_SOURCE_DIR "/config/rig_iio.yaml");
+  for (const auto& [from, to] : std::vector<std::pair<std::string, std::string>>{
+           {"  iio:\n", "  iio:\n    root: " + root.string() + "\n"},
+           {"device: 1-0060", "device: mcp4725"},
+           {"device: 1-0061", "device: mcp4725"},
+           {"models/", SOFTGRIP_SOURCE_DIR "/config/models/"}}) {
+    ASSERT_NE(text.find(from), std::string::npos) << from;
+    text.replace(text.find(from), from.size(), to);
+  }
+  const std::string rig = folder_.path() + "/converters.yaml";
+  std::ofstream(rig) << text;
+  SoftgripdProcess refused(folder_.path(), {.arguments = {"--config", rig, "--no-socket"}});
+  EXPECT_EQ(refused.wait(), 3);
+  EXPECT_NE(refused.output().find("converters.yaml:11:18: `mcp4725` fits 2 converters: iio:device0 (name "
+                                  "`mcp4725`) and iio:device1 (name `mcp4725`)"),
+            std::string::npos)
+      << refused.output();
+  for (const char* const node : {"iio:device0", "iio:device1"})
+    EXPECT_EQ(text_of((root / node / "out_voltage0_raw").string()), "1234\n") << node;
 }
 
 TEST_F(SoftgripdTest, RealTimeThatIsRequiredAndNotThereIsARefusal) {

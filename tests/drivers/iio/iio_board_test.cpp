@@ -154,6 +154,107 @@ TEST_F(IioBoardTest, WhatIsNotThereIsSaid) {
   EXPECT_NE(refusal().find("no converter is there"), std::string::npos) << refusal();
 }
 
+TEST_F(IioBoardTest, ANameOfTwoConvertersIsRefusedWithBothAndNothingIsWritten) {
+  put("iio:device2/name", "dac7578");
+  put("iio:device2/out_voltage0_raw", "17");
+  put("iio:device2/out_voltage_scale", "0.8");
+  EXPECT_NE(refusal().find("`dac7578` fits 2 converters: iio:device1 (name `dac7578`) and iio:device2 (name "
+                           "`dac7578`)"),
+            std::string::npos)
+      << refusal();
+  EXPECT_EQ(get("iio:device1/out_voltage0_raw"), "0");
+  EXPECT_EQ(get("iio:device2/out_voltage0_raw"), "17");
+  put("iio:device2/label", "spare");
+  put("iio:device1/label", "valves");
+  for (IioTerminal& output : settings_.outputs) output.device = "valves";
+  IioBoard board(settings_);
+  ASSERT_EQ(board.connect(5s), BusStatus::ok) << board.detail();
+  ASSERT_EQ(exchange(board, 50, 25), BusStatus::ok) << board.detail();
+  EXPECT_EQ(get("iio:device1/out_voltage0_raw"), "2000");
+  EXPECT_EQ(get("iio:device2/out_voltage0_raw"), "17");
+}
+
+TEST_F(IioBoardTest, OneChannelUnderTwoWordsIsRefused) {
+  settings_.outputs[1] = {"iio:device1", "voltage0", 4095};
+  EXPECT_NE(refusal().find("dac7578 voltage0 and iio:device1 voltage0: both are "), std::string::npos)
+      << refusal();
+  settings_.outputs[1] = {"dac7578", "voltage1", 4095};
+  settings_.inputs[1] = {"iio:device0", "voltage0", 0};
+  EXPECT_NE(refusal().find("both are "), std::string::npos) << refusal();
+}
+
+/// Converters on a bus, which come and go under the kernel's next number.
+class IioBusTest : public IioBoardTest {
+ protected:
+  IioBusTest() {
+    fs::remove_all(root_ / "iio:device1");
+    plug(1, "1-0060");
+  }
+  void plug(int number, const std::string& address) const {
+    const std::string node = "iio:device" + std::to_string(number);
+    const std::string folder = "hardware/" + address + "/" + node;
+    put(folder + "/name", "dac7578");
+    put(folder + "/out_voltage0_raw", "0");
+    put(folder + "/out_voltage1_raw", "0");
+    put(folder + "/out_voltage_scale", "0.8");
+    fs::create_directory_symlink(root_ / folder, root_ / node);
+  }
+  void unplug(int number, const std::string& address) const {
+    const std::string node = "iio:device" + std::to_string(number);
+    fs::remove(root_ / node);
+    fs::remove_all(root_ / "hardware" / address);
+  }
+  /// The session ends as with a converter that is gone.
+  void lose(IioBoard& board) {
+    put("iio:device0/in_voltage0_raw", "no");
+    EXPECT_EQ(exchange(board, 10, 10), BusStatus::disconnected);
+    put("iio:device0/in_voltage0_raw", "8000");
+  }
+};
+
+TEST_F(IioBusTest, AConverterIsFoundAgainUnderAnotherNumber) {
+  IioBoard board(settings_);
+  ASSERT_EQ(board.connect(5s), BusStatus::ok) << board.detail();
+  lose(board);
+  unplug(1, "1-0060");
+  EXPECT_EQ(board.connect(5s), BusStatus::disconnected);
+  EXPECT_NE(std::string(board.detail()).find("no converter of this computer is called `dac7578`"),
+            std::string::npos)
+      << board.detail();
+  EXPECT_NE(std::string(board.detail()).find("ads1115"), std::string::npos) << board.detail();
+  plug(4, "1-0060");
+  ASSERT_EQ(board.connect(5s), BusStatus::ok) << board.detail();
+  ASSERT_EQ(exchange(board, 50, 25), BusStatus::ok);
+  EXPECT_EQ(get("iio:device4/out_voltage0_raw"), "2000");
+}
+
+TEST_F(IioBusTest, AnotherConverterOfTheSameNameDoesNotTakeThePlaceOfOneThatIsGone) {
+  IioBoard board(settings_);
+  ASSERT_EQ(board.connect(5s), BusStatus::ok) << board.detail();
+  lose(board);
+  unplug(1, "1-0060");
+  plug(1, "1-0061");
+  EXPECT_EQ(board.connect(5s), BusStatus::disconnected);
+  EXPECT_NE(std::string(board.detail()).find("1-0061: start again if that is right"), std::string::npos)
+      << board.detail();
+  EXPECT_EQ(exchange(board, 50, 25), BusStatus::disconnected);
+  EXPECT_EQ(get("iio:device1/out_voltage0_raw"), "0");
+  IioBoard after_a_start(settings_);
+  EXPECT_EQ(after_a_start.connect(5s), BusStatus::ok) << after_a_start.detail();
+}
+
+TEST_F(IioBusTest, ALabelFollowsItsConverterToAnotherPlace) {
+  put("iio:device1/label", "valves");
+  for (IioTerminal& output : settings_.outputs) output.device = "valves";
+  IioBoard board(settings_);
+  ASSERT_EQ(board.connect(5s), BusStatus::ok) << board.detail();
+  lose(board);
+  unplug(1, "1-0060");
+  plug(1, "2-0060");
+  put("iio:device1/label", "valves");
+  EXPECT_EQ(board.connect(5s), BusStatus::ok) << board.detail();
+}
+
 TEST_F(IioBoardTest, AConverterThatShowsNoNumberEndsTheSession) {
   IioBoard board(settings_);
   ASSERT_EQ(board.connect(5s), BusStatus::ok);

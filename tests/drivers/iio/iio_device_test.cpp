@@ -1,27 +1,39 @@
 #include "drivers/iio/iio_device.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
-#include <filesystem>
 #include <fstream>
+
+#include "base/scratch_folder.h"
 
 namespace softgrip::drivers::iio_device_test {
 namespace {
 
-TEST(IioDevice, IsKnownByItsNameAndByItsFolder) {
-  const std::filesystem::path root =
-      std::filesystem::temp_directory_path() / ("softgrip-iio-device-" + std::to_string(::getpid()));
-  const std::filesystem::path folder = root / "iio:device3";
-  std::filesystem::create_directories(folder);
-  std::ofstream(folder / "name") << "dac7578\n";
-  EXPECT_EQ(name_of_converter(folder), "dac7578");
-  EXPECT_TRUE(is_converter(folder, "dac7578"));
-  EXPECT_TRUE(is_converter(folder, "iio:device3"));
-  EXPECT_FALSE(is_converter(folder, "iio:device"));
-  EXPECT_FALSE(is_converter(root / "iio:device4", "dac7578"));
-  EXPECT_FALSE(is_converter(root / "iio:device4", "")) << "a converter that is not there has no name";
-  std::filesystem::remove_all(root);
+namespace fs = std::filesystem;
+
+TEST(IioDevice, IsKnownByItsLabelItsNameItsSerialNumberAndItsAddress) {
+  const ScratchFolder scratch;
+  const fs::path root = fs::canonical(scratch.path());
+  const fs::path hardware = root / "devices/i2c-1/1-0060";
+  fs::create_directories(hardware / "iio:device3");
+  fs::create_directory_symlink(hardware / "iio:device3", root / "iio:device3");
+  fs::create_directories(root / "trigger0");
+  std::ofstream(hardware / "iio:device3/label") << "left valve\n";
+  std::ofstream(hardware / "iio:device3/name") << "mcp4725\n";
+  std::ofstream(hardware / "iio:device3/serialnumber") << "4711\n";
+  const std::vector<ComputerDevice> found = converters_in(root);
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(text_of(found[0]),
+            "iio:device3 (label `left valve`, name `mcp4725`, serial number `4711`, address `1-0060`)");
+  EXPECT_EQ(identity_of(found[0]), "mcp4725 at " + hardware.string());
+  EXPECT_TRUE(converters_in(root / "absent").empty());
+}
+
+TEST(IioDevice, IsItsNameWhereItIsOnNoBus) {
+  const ScratchFolder scratch;
+  fs::create_directories(fs::path(scratch.path()) / "iio:device0");
+  std::ofstream(fs::path(scratch.path()) / "iio:device0/name") << "dac7578\n";
+  EXPECT_EQ(identity_of(converters_in(scratch.path()).at(0)), "dac7578");
 }
 
 }  // namespace
