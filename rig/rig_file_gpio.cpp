@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "drivers/gpio/gpio_chip.h"
 #include "rig/rig_file_reader.h"
 
 namespace softgrip::rig {
@@ -13,20 +14,29 @@ using drivers::GpioBias;
 using drivers::GpioLineSettings;
 using drivers::GpioRole;
 
-/// The kernel's names of chips, labels and lines have room for 31 bytes.
+/// The kernel's names of lines have room for 31 bytes.
 constexpr std::size_t longest_name = 31;
 
-std::string read_kernel_name(MapReader& reader, std::string_view key, bool required) {
-  const auto text = required ? std::optional(reader.text(key)) : reader.optional_text(key);
-  if (text && text->size() > longest_name) {
-    reader.report(key, "`" + std::string(key) + "` is longer than 31 bytes, which no name of the kernel is");
-  }
+std::string read_line_name(MapReader& reader) {
+  const auto text = reader.optional_text("line");
+  if (text && text->size() > longest_name)
+    reader.report("line", "`line` is longer than 31 bytes, which no name of the kernel is");
   return text.value_or("");
 }
 
-void read_which_line(MapReader& reader, GpioLineSettings& line, const std::string& what) {
-  line.chip = read_kernel_name(reader, "chip", true);
-  line.line = read_kernel_name(reader, "line", false);
+/// A word that fits two chips of this computer would let their order decide. One that fits none may be right
+/// on the computer of the rig.
+std::string read_chip(MapReader& reader, const std::vector<ComputerDevice>& there) {
+  std::string chip = reader.text("chip");
+  const auto found = only_device(there, chip, "GPIO chip");
+  if (!found && found.error().several) reader.report("chip", found.error().message, found.error().hint);
+  return chip;
+}
+
+void read_which_line(MapReader& reader, GpioLineSettings& line, const std::vector<ComputerDevice>& there,
+                     const std::string& what) {
+  line.chip = read_chip(reader, there);
+  line.line = read_line_name(reader);
   if (const auto offset = reader.optional_integer("offset", 0, 65535)) {
     line.offset = static_cast<std::uint32_t>(*offset);
   }
@@ -49,8 +59,8 @@ void check_broken_wire(MapReader& reader, const GpioLineSettings& line) {
               "with this `active`, use the other pull, and a contact that is closed while all is well");
 }
 
-/// Reads one line; `extra` reads the keys that only this role has.
-void read_line(Context& context, MapReader& gpio, GpioRole role) {
+/// `there`: the chips of this computer.
+void read_line(Context& context, MapReader& gpio, const std::vector<ComputerDevice>& there, GpioRole role) {
   const std::string name(drivers::name_of(role));
   const Node* const node = gpio.child(name, false);
   if (node == nullptr) return;
@@ -58,7 +68,7 @@ void read_line(Context& context, MapReader& gpio, GpioRole role) {
   MapReader reader(context.document, *node, context.problems, name);
   GpioLineSettings line;
   line.role = role;
-  read_which_line(reader, line, name);
+  read_which_line(reader, line, there, name);
   line.active_low = reader.choice("active", {"high", "low"}) == 1;
   if (drivers::is_input(role)) {
     const auto bias = reader.optional_choice("bias", {"as_is", "disabled", "pull_up", "pull_down"});
@@ -91,8 +101,10 @@ void read_gpio(Context& context, MapReader& top) {
   if (const auto interval = reader.optional_number("look_interval_s", {0.001, 0.1})) {
     settings.look_interval_s = *interval;
   }
+  // A stored rig is read where it may not be driven.
+  const auto there = context.stored == nullptr ? drivers::chips_in() : std::vector<ComputerDevice>{};
   for (std::size_t i = 0; i < drivers::gpio_role_count; ++i)
-    read_line(context, reader, static_cast<GpioRole>(i));
+    read_line(context, reader, there, static_cast<GpioRole>(i));
   reader.finish();
   if (settings.lines.empty() && node->kind == Node::Kind::map) {
     top.report("gpio", "`gpio` names no line",

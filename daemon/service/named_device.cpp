@@ -10,11 +10,16 @@ namespace softgrip::daemon {
 
 namespace {
 
-std::optional<NamedDevice> named_chip(const rig::RigFile& rig, const std::filesystem::path& chip) {
+std::optional<NamedDevice> named_chip(const rig::RigFile& rig, const std::string& device,
+                                      const std::filesystem::path& chips) {
   if (!rig.gpio) return std::nullopt;
+  std::vector<ComputerDevice> there = drivers::chips_in(chips);
+  const auto is_it = [&](const ComputerDevice& chip) { return chip.node == device; };
+  if (std::none_of(there.begin(), there.end(), is_it)) there.push_back({device, {}, {}});  // not there yet
   const auto& lines = rig.gpio->lines;
   const bool named = std::any_of(lines.begin(), lines.end(), [&](const drivers::GpioLineSettings& line) {
-    return drivers::is_chip(chip, line.chip);
+    const auto found = only_device(there, line.chip, "GPIO chip");
+    return found && is_it(*found);
   });
   return named ? std::optional(NamedDevice{}) : std::nullopt;
 }
@@ -39,7 +44,7 @@ std::optional<NamedDevice> named_converter(const rig::RigFile& rig, const std::s
 
 std::optional<NamedDevice> named_device(const rig::RigFile& rig, const std::string& device,
                                         const std::filesystem::path& chips) {
-  if (device.starts_with("gpiochip")) return named_chip(rig, chips / device);
+  if (device.starts_with("gpiochip")) return named_chip(rig, device, chips);
   if (device.starts_with("iio:device")) return named_converter(rig, device);
   return std::nullopt;
 }

@@ -1,12 +1,16 @@
 #pragma once
-// Which GPIO chip of this computer a rig file means.
+// The GPIO chips of this computer.
 
 #include <filesystem>
-#include <string>
+#include <vector>
+
+#include "base/computer_device.h"
 
 namespace softgrip::drivers {
 
-/// True if the chip behind the file `device` (/dev/gpiochip0) has this name or this label.
-[[nodiscard]] bool is_chip(const std::filesystem::path& device, const std::string& wanted);
+/// Returns the chips whose files are in `devices`, each with its label, if it may be opened, and its address
+/// in sysfs, which is at `sys`. A link to the file of another chip is a word for that chip.
+[[nodiscard]] std::vector<ComputerDevice> chips_in(const std::filesystem::path& devices = "/dev",
+                                                   const std::filesystem::path& sys = "/sys");
 
 }  // namespace softgrip::drivers

@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "base/enumerated.h"
 #include "drivers/gpio/gpio_chip.h"
 #include "drivers/gpio/gpio_lines.h"
 #if SOFTGRIP_GPIOD_2
@@ -44,7 +45,7 @@ Failure failed(const std::string& what, int error) {
   return failure;
 }
 
-/// The chips of this machine, by name.
+/// The files of chips and the links to them, in the order of their names.
 std::vector<std::filesystem::path> chip_paths(const std::filesystem::path& devices) {
   std::vector<std::filesystem::path> paths;
   std::error_code error;
@@ -55,43 +56,72 @@ std::vector<std::filesystem::path> chip_paths(const std::filesystem::path& devic
   return paths;
 }
 
-tl::expected<Chip, Failure> open_chip(const std::filesystem::path& devices, const std::string& wanted) {
-  Chip by_label;
-  std::string there;
-  int denied = 0;
+/// `denied`: errno of the last chip that could not be opened.
+std::vector<ComputerDevice> look_at_chips(const std::filesystem::path& devices,
+                                          const std::filesystem::path& sys, int& denied) {
+  std::vector<ComputerDevice> chips;
   for (const std::filesystem::path& path : chip_paths(devices)) {
-    Chip chip(gpiod_chip_open(path.c_str()));
-    const std::string name = path.filename().string();
-    if (!chip) {
-      if (name == wanted) return tl::unexpected(failed("the chip `" + wanted + "` cannot be opened", errno));
-      denied = errno;
-      continue;
+    std::error_code error;
+    const std::filesystem::path real = std::filesystem::canonical(path, error);
+    const std::string node = (error ? path : real).filename().string();
+    auto chip = std::find_if(chips.begin(), chips.end(),
+                             [&](const ComputerDevice& known) { return known.node == node; });
+    if (chip == chips.end()) {
+      chip = chips.insert(chip, device_at(sys / "bus/gpio/devices" / node));
+      const Chip opened(gpiod_chip_open(path.c_str()));
+      if (!opened) denied = errno;
+      const std::string label = opened ? libgpiod::label_of(opened.get()) : "";
+      if (!label.empty()) chip->words.insert(chip->words.begin(), {"label", label});
     }
-    if (name == wanted) return chip;
-    const std::string label = libgpiod::label_of(chip.get());
-    there += (there.empty() ? "" : ", ") + name + " (" + label + ")";
-    if (label != wanted) continue;
-    if (by_label) {
-      return tl::unexpected(
-          refused("two chips of this machine have the label `" + wanted + "`", "name the chip: " + there));
-    }
-    by_label = std::move(chip);
+    if (path.filename() != node) chip->add("link", path.filename().string());
   }
-  if (by_label) return by_label;
-  const std::string what = "no GPIO chip of this machine is called `" + wanted + "`";
-  if (there.empty() && denied != 0) return tl::unexpected(failed(what + ", and none can be opened", denied));
-  return tl::unexpected(refused(what, there.empty() ? "it has none at all" : "it has " + there));
+  return chips;
+}
+
+tl::expected<Chip, Failure> open_chip(const std::filesystem::path& devices, const std::filesystem::path& sys,
+                                      const std::string& wanted) {
+  int denied = 0;
+  const std::vector<ComputerDevice> there = look_at_chips(devices, sys, denied);
+  const auto found = only_device(there, wanted, "GPIO chip");
+  if (!found) {
+    const bool none_opened = std::none_of(
+        there.begin(), there.end(), [](const ComputerDevice& chip) { return !chip.word("label").empty(); });
+    if (none_opened && denied != 0)
+      return tl::unexpected(failed(found.error().message + ", and none can be opened", denied));
+    return tl::unexpected(refused(found.error().message, found.error().hint));
+  }
+  Chip chip(gpiod_chip_open((devices / found->node).c_str()));
+  if (!chip) return tl::unexpected(failed("the chip `" + wanted + "` cannot be opened", errno));
+  return chip;
+}
+
+/// The offsets of the lines of a chip that have this name.
+std::vector<std::uint32_t> offsets_of(gpiod_chip* chip, const std::string& name) {
+  std::vector<std::uint32_t> offsets;
+  for (std::uint32_t offset = 0; offset < libgpiod::lines_of(chip); ++offset) {
+    const auto facts = libgpiod::facts_of(chip, offset);
+    if (facts && facts->name == name) offsets.push_back(offset);
+  }
+  return offsets;
 }
 
 tl::expected<LineFacts, Failure> find_line(gpiod_chip* chip, const GpioLineSettings& settings) {
   std::optional<std::uint32_t> offset = settings.offset;
   if (!settings.line.empty()) {
-    offset = libgpiod::offset_of(chip, settings.line);
-    if (!offset) {
+    const std::vector<std::uint32_t> named = offsets_of(chip, settings.line);
+    if (named.empty()) {
       return tl::unexpected(
           refused("the chip `" + settings.chip + "` has no line named `" + settings.line + "`",
                   "`gpioinfo` lists the lines and their names"));
     }
+    if (named.size() > 1) {
+      const auto number = [](std::uint32_t one) { return std::to_string(one); };
+      return tl::unexpected(refused("the chip `" + settings.chip + "` has " + std::to_string(named.size()) +
+                                        " lines named `" + settings.line +
+                                        "`: " + enumerated(named, " and ", number),
+                                    "write `offset` in the place of `line`"));
+    }
+    offset = named.front();
   }
   const std::size_t lines = libgpiod::lines_of(chip);
   if (!offset || *offset >= lines) {
@@ -132,8 +162,9 @@ Failure request_failure(const GpioLineSettings& settings, int error) {
 
 class LibgpiodLines final : public GpioLines {
  public:
-  tl::expected<void, Failure> add(const std::filesystem::path& devices, const GpioLineSettings& settings) {
-    auto chip = open_chip(devices, settings.chip);
+  tl::expected<void, Failure> add(const std::filesystem::path& devices, const std::filesystem::path& sys,
+                                  const GpioLineSettings& settings) {
+    auto chip = open_chip(devices, sys, settings.chip);
     if (!chip) return tl::unexpected(chip.error());
     const auto facts = find_line(chip->get(), settings);
     if (!facts) return tl::unexpected(facts.error());
@@ -201,22 +232,22 @@ class LibgpiodLines final : public GpioLines {
 
 }  // namespace
 
-bool is_chip(const std::filesystem::path& device, const std::string& wanted) {
-  if (device.filename() == wanted) return true;
-  const Chip chip(gpiod_chip_open(device.c_str()));
-  return chip && libgpiod::label_of(chip.get()) == wanted;
+std::vector<ComputerDevice> chips_in(const std::filesystem::path& devices, const std::filesystem::path& sys) {
+  int denied = 0;
+  return look_at_chips(devices, sys, denied);
 }
 
 tl::expected<std::unique_ptr<GpioLines>, GpioFailure> open_gpio_lines(
     std::span<const GpioLineSettings> lines) {
-  return open_gpio_lines_in("/dev", lines);
+  return open_gpio_lines_in("/dev", "/sys", lines);
 }
 
 tl::expected<std::unique_ptr<GpioLines>, GpioFailure> open_gpio_lines_in(
-    const std::filesystem::path& devices, std::span<const GpioLineSettings> lines) {
+    const std::filesystem::path& devices, const std::filesystem::path& sys,
+    std::span<const GpioLineSettings> lines) {
   auto opened = std::make_unique<LibgpiodLines>();
   for (std::size_t i = 0; i < lines.size(); ++i) {
-    const auto added = opened->add(devices, lines[i]);
+    const auto added = opened->add(devices, sys, lines[i]);
     if (added) continue;
     GpioFailure failure = added.error();
     failure.line = i;

@@ -32,7 +32,7 @@ enum class GpioBias : std::uint8_t { as_is, disabled, pull_up, pull_down };
 
 struct GpioLineSettings {
   GpioRole role = GpioRole::emergency_stop;
-  std::string chip;                     ///< "gpiochip0", or the chip's label
+  std::string chip;                     ///< a word that fits one of chips_in()
   std::string line;                     ///< the line's name; empty: `offset` counts
   std::optional<std::uint32_t> offset;  ///< of the line in its chip, from 0
   bool active_low = false;              ///< the low level means pressed, in position, on
@@ -85,8 +85,9 @@ struct GpioFailure {
 /// Requests all lines through libgpiod, outputs inactive. Nothing is kept of them if one cannot be had.
 [[nodiscard]] tl::expected<std::unique_ptr<GpioLines>, GpioFailure> open_gpio_lines(
     std::span<const GpioLineSettings> lines);
-/// The same where the chips' files stand in `devices` instead of /dev.
+/// The same where the chips' files are in `devices` instead of /dev, and sysfs is at `sys`.
 [[nodiscard]] tl::expected<std::unique_ptr<GpioLines>, GpioFailure> open_gpio_lines_in(
-    const std::filesystem::path& devices, std::span<const GpioLineSettings> lines);
+    const std::filesystem::path& devices, const std::filesystem::path& sys,
+    std::span<const GpioLineSettings> lines);
 
 }  // namespace softgrip::drivers

@@ -24,6 +24,7 @@ struct LineFacts {
   bool used = false;
   bool output = false;
   std::string consumer;
+  std::string name;
 };
 
 struct CloseChip {

@@ -24,18 +24,14 @@ inline std::size_t lines_of(gpiod_chip* chip) {
   return gpiod_chip_num_lines(chip);
 }
 
-inline std::optional<std::uint32_t> offset_of(gpiod_chip* chip, const std::string& name) {
-  gpiod_line* const line = gpiod_chip_find_line(chip, name.c_str());
-  if (line == nullptr) return std::nullopt;
-  return gpiod_line_offset(line);
-}
-
 inline std::optional<LineFacts> facts_of(gpiod_chip* chip, std::uint32_t offset) {
   gpiod_line* const line = gpiod_chip_get_line(chip, offset);
   if (line == nullptr) return std::nullopt;
   const char* const by = gpiod_line_consumer(line);
+  const char* const name = gpiod_line_name(line);
   return LineFacts{offset, gpiod_line_is_used(line),
-                   gpiod_line_direction(line) == GPIOD_LINE_DIRECTION_OUTPUT, by == nullptr ? "" : by};
+                   gpiod_line_direction(line) == GPIOD_LINE_DIRECTION_OUTPUT, by == nullptr ? "" : by,
+                   name == nullptr ? "" : name};
 }
 
 inline int flags_of(const GpioLineSettings& settings) {

@@ -40,18 +40,14 @@ inline std::size_t lines_of(gpiod_chip* chip) {
   return info ? gpiod_chip_info_get_num_lines(info.get()) : 0;
 }
 
-inline std::optional<std::uint32_t> offset_of(gpiod_chip* chip, const std::string& name) {
-  const int offset = gpiod_chip_get_line_offset_from_name(chip, name.c_str());
-  return offset < 0 ? std::nullopt : std::optional<std::uint32_t>(static_cast<std::uint32_t>(offset));
-}
-
 inline std::optional<LineFacts> facts_of(gpiod_chip* chip, std::uint32_t offset) {
   const LineInfo info(gpiod_chip_get_line_info(chip, offset));
   if (!info) return std::nullopt;
   const char* const by = gpiod_line_info_get_consumer(info.get());
+  const char* const name = gpiod_line_info_get_name(info.get());
   return LineFacts{offset, gpiod_line_info_is_used(info.get()),
                    gpiod_line_info_get_direction(info.get()) == GPIOD_LINE_DIRECTION_OUTPUT,
-                   by == nullptr ? "" : by};
+                   by == nullptr ? "" : by, name == nullptr ? "" : name};
 }
 
 inline gpiod_line_bias bias_of(GpioBias bias) {

@@ -55,20 +55,8 @@ unsigned gpiod_chip_num_lines(gpiod_chip* chip) {
 gpiod_line* gpiod_chip_get_line(gpiod_chip* chip, unsigned offset) {
   return handle(of(chip).lines.at(offset));
 }
-gpiod_line* gpiod_chip_find_line(gpiod_chip* chip, const char* name) {
-  for (FakeLine& line : of(chip).lines) {
-    if (line.name == name) return handle(line);
-  }
-  errno = ENOENT;
-  return nullptr;
-}
-unsigned gpiod_line_offset(gpiod_line* line) {
-  for (const FakeChip& chip : softgrip::drivers::testing::fake_chips()) {
-    for (std::size_t i = 0; i < chip.lines.size(); ++i) {
-      if (&chip.lines[i] == &of(line)) return static_cast<unsigned>(i);
-    }
-  }
-  return 0;
+const char* gpiod_line_name(gpiod_line* line) {
+  return of(line).name.empty() ? nullptr : of(line).name.c_str();
 }
 const char* gpiod_line_consumer(gpiod_line* line) {
   return of(line).consumer.empty() ? nullptr : of(line).consumer.c_str();

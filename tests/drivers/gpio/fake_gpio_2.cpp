@@ -87,12 +87,6 @@ const char* gpiod_chip_info_get_label(gpiod_chip_info* info) {
 size_t gpiod_chip_info_get_num_lines(gpiod_chip_info* info) {
   return info->chip->lines.size();
 }
-int gpiod_chip_get_line_offset_from_name(gpiod_chip* chip, const char* name) {
-  for (std::size_t i = 0; i < chip->chip->lines.size(); ++i) {
-    if (chip->chip->lines[i].name == name) return static_cast<int>(i);
-  }
-  return result(ENOENT);
-}
 gpiod_line_info* gpiod_chip_get_line_info(gpiod_chip* chip, unsigned offset) {
   return new gpiod_line_info{&chip->chip->lines.at(offset)};
 }
@@ -101,6 +95,9 @@ void gpiod_line_info_free(gpiod_line_info* info) {
 }
 bool gpiod_line_info_is_used(gpiod_line_info* info) {
   return info->line->used;
+}
+const char* gpiod_line_info_get_name(gpiod_line_info* info) {
+  return info->line->name.empty() ? nullptr : info->line->name.c_str();
 }
 const char* gpiod_line_info_get_consumer(gpiod_line_info* info) {
   return info->line->consumer.empty() ? nullptr : info->line->consumer.c_str();

@@ -47,7 +47,7 @@ class Libgpiod : public ::testing::Test {
     chips().push_back({name, label, 0, true, std::vector<FakeLine>(lines)});
     std::ofstream(devices_ / name) << "";
   }
-  auto open(const std::vector<GpioLineSettings>& lines) { return open_gpio_lines_in(devices_, lines); }
+  auto open(const std::vector<GpioLineSettings>& lines) { return open_gpio_lines_in(devices_, sys_, lines); }
   GpioFailure failure(const std::vector<GpioLineSettings>& lines) {
     const auto opened = open(lines);
     EXPECT_FALSE(opened.has_value());
@@ -55,6 +55,7 @@ class Libgpiod : public ::testing::Test {
   }
 
   std::filesystem::path devices_;
+  std::filesystem::path sys_;  // none
 };
 
 TEST_F(Libgpiod, RequestsEachLineAsDescribed) {
@@ -75,12 +76,24 @@ TEST_F(Libgpiod, RequestsEachLineAsDescribed) {
   EXPECT_TRUE((*lines)->sees_edges());
 }
 
-TEST_F(Libgpiod, KnowsAChipByItsNameAndByItsLabel) {
+TEST_F(Libgpiod, KnowsAChipByItsLabelItsLinksAndItsAddress) {
   add_chip("gpiochip1", "second", 2);
-  EXPECT_TRUE(is_chip(devices_ / "gpiochip1", "gpiochip1"));
-  EXPECT_TRUE(is_chip(devices_ / "gpiochip1", "second"));
-  EXPECT_FALSE(is_chip(devices_ / "gpiochip1", "first"));
-  EXPECT_FALSE(is_chip(devices_ / "gpiochip2", "second")) << "a chip that is not there";
+  std::filesystem::create_symlink("gpiochip1", devices_ / "gpiochip4");
+  const std::filesystem::path bus = devices_ / "bus/gpio/devices";
+  std::filesystem::create_directories(bus);
+  std::filesystem::create_directories(devices_ / "i2c-1/1-0020/gpiochip1");
+  std::filesystem::create_directory_symlink(devices_ / "i2c-1/1-0020/gpiochip1", bus / "gpiochip1");
+  const std::vector<ComputerDevice> found = chips_in(devices_, devices_);
+  ASSERT_EQ(found.size(), 2U);
+  EXPECT_EQ(text_of(found[0]), "gpiochip0 (label `first`)");
+  EXPECT_EQ(text_of(found[1]), "gpiochip1 (label `second`, address `1-0020`, link `gpiochip4`)");
+  sys_ = devices_;
+  for (const std::string& word : {std::string("second"), std::string("gpiochip4"), std::string("1-0020"),
+                                  (bus / "gpiochip1").string()}) {
+    GpioLineSettings lamp = line(GpioRole::ready_lamp, 1);
+    lamp.chip = word;
+    EXPECT_TRUE(open({lamp})) << word;
+  }
 }
 
 TEST_F(Libgpiod, PassesEveryBiasOn) {
@@ -171,15 +184,34 @@ TEST_F(Libgpiod, FindsChipsByLabelAndLinesByName) {
   EXPECT_EQ(failure({stop}).message, "the chip `second` has no line named `ESTOP`");
   stop.chip = "third";
   const GpioFailure none = failure({stop});
-  EXPECT_EQ(none.message, "no GPIO chip of this machine is called `third`");
-  EXPECT_EQ(none.hint, "it has gpiochip0 (first), gpiochip1 (second)");
+  EXPECT_EQ(none.message, "no GPIO chip of this computer is called `third`");
+  EXPECT_EQ(none.hint, "there are gpiochip0 (label `first`) and gpiochip1 (label `second`)");
 }
 
-TEST_F(Libgpiod, RefusesALabelOfTwoChips) {
+TEST_F(Libgpiod, RefusesAWordOfTwoChipsAndListsBoth) {
   add_chip("gpiochip1", "first", 2);
+  add_chip("gpiochip2", "gpiochip0", 2);
   GpioLineSettings stop = line(GpioRole::emergency_stop, 0);
   stop.chip = "first";
-  EXPECT_EQ(failure({stop}).message, "two chips of this machine have the label `first`");
+  const GpioFailure refused = failure({stop});
+  EXPECT_EQ(refused.kind, GpioFailure::Kind::refused);
+  EXPECT_EQ(refused.message,
+            "`first` fits 2 GPIO chips: gpiochip0 (label `first`) and gpiochip1 (label `first`)");
+  stop.chip = "gpiochip0";
+  EXPECT_EQ(failure({stop}).message,
+            "`gpiochip0` fits 2 GPIO chips: gpiochip0 (label `first`) and gpiochip2 (label `gpiochip0`)");
+  for (const FakeChip& chip : chips()) EXPECT_FALSE(chip.lines[0].used) << chip.name;
+}
+
+TEST_F(Libgpiod, RefusesANameOfTwoLinesAndListsBoth) {
+  chips()[0].lines[5].name = "ESTOP";
+  GpioLineSettings stop;
+  stop.chip = "gpiochip0";
+  stop.line = "ESTOP";
+  const GpioFailure refused = failure({stop});
+  EXPECT_EQ(refused.kind, GpioFailure::Kind::refused);
+  EXPECT_EQ(refused.message, "the chip `gpiochip0` has 2 lines named `ESTOP`: 2 and 5");
+  EXPECT_FALSE(chips()[0].lines[2].used || chips()[0].lines[5].used);
 }
 
 TEST_F(Libgpiod, RefusesALineBehindTheLast) {
