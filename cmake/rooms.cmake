@@ -143,8 +143,8 @@ softgrip_room(tools/exporting
 target_link_libraries(${softgrip_room_target} PRIVATE ZLIB::ZLIB PkgConfig::matio)
 # What moves a rig by hand: doctor and calibrate.
 softgrip_room(tools/commissioning
-  USES base document model model/file control/elements control/feedforward drivers/board rig/plc_file rig/web_file rig
-       daemon/loop daemon/recording tools/command_line
+  USES base document model model/file control/elements control/feedforward drivers/board drivers/modbus rig/plc_file
+       rig/web_file rig daemon/loop daemon/recording tools/command_line
   LIBRARIES nlohmann_json::nlohmann_json)
 softgrip_room(tools/investigation
   USES base document model model/file control/elements control/feedforward control/tuning simulation/plant rig

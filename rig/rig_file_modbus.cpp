@@ -8,6 +8,7 @@
 #include "base/enumerated.h"
 #include "base/numbers.h"
 #include "document/number.h"
+#include "drivers/modbus/serial_device.h"
 #include "drivers/modbus/serial_port.h"
 #include "rig/board_map_file.h"
 #include "rig/rig_file_reader.h"
@@ -133,6 +134,14 @@ void advise_on_name(MapReader& reader, const std::string& device) {
               "use the adapter's own name, see: ls -l /dev/serial/by-id");
 }
 
+/// A name of two adapters would let the one that came last decide. A name that is not there may be right on
+/// the computer of the rig.
+void check_device(MapReader& reader, const std::string& device) {
+  if (!reader.good("device")) return;
+  const auto unclear = drivers::unclear_serial_device(device);
+  if (unclear && unclear->several) reader.report("device", unclear->message, unclear->hint);
+}
+
 /// What the file says, else what the kernel says of the adapter that is plugged in now.
 void read_adapter_latency(MapReader& reader, drivers::SerialLine& line) {
   const auto stated = reader.optional_number("adapter_latency_s", {0, 1});
@@ -145,13 +154,15 @@ void read_adapter_latency(MapReader& reader, drivers::SerialLine& line) {
               "echo 1 > " + found->path + " (for good: a udev rule, ATTR{device/latency_timer}=\"1\")");
 }
 
-drivers::SerialLine read_line(MapReader& reader) {
+drivers::SerialLine read_line(const Context& context, MapReader& reader) {
   drivers::SerialLine line;
   line.device = reader.text("device");
   if (reader.good("device") && line.device.front() != '/') {
     reader.report("device",
                   "`device` must be an absolute path, found `" + document::shown(line.device) + "`");
   }
+  // A stored rig is read where it may not be driven.
+  if (context.stored == nullptr) check_device(reader, line.device);
   line.baud = static_cast<std::uint32_t>(reader.integer("baud", baud_rates.front(), baud_rates.back()));
   if (reader.good("baud") && std::find(baud_rates.begin(), baud_rates.end(), line.baud) == baud_rates.end()) {
     reader.report("baud", "`baud` is none of the usual rates",
@@ -179,7 +190,7 @@ void read_modbus_tcp(Context& context, const Node& node) {
 void read_modbus_rtu(Context& context, const Node& node) {
   MapReader reader(context.document, node, context.problems, "modbus_rtu");
   ModbusSettings settings;
-  settings.links.emplace_back(read_line(reader));
+  settings.links.emplace_back(read_line(context, reader));
   ModulesReader(context, settings, true).read(reader);
   read_timing(context, reader);
   context.rig.board = std::move(settings);

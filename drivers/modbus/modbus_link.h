@@ -24,7 +24,8 @@ namespace softgrip::drivers {
 /// judged by our own pure check before anything in it is used; bytes behind it are looked for.
 /// docs/explanation/libraries.md says what libmodbus leaves to us and why.
 ///
-/// Nothing but the constructors, cost() and describe() allocates; nothing throws, resolves names or retries.
+/// Nothing but the constructors, open() of a serial line, cost() and describe() allocates; nothing throws,
+/// resolves names of hosts or retries.
 class ModbusLink {
  public:
   ModbusLink(const ModbusLink&) = delete;
@@ -103,7 +104,7 @@ class ModbusLink {
   std::span<const std::uint8_t> data_ = {};
   RoundTrip measured_;
   Nanoseconds last_round_trip_ = 0;
-  std::array<char, 200> detail_{};
+  std::array<char, 256> detail_{};
 };
 
 [[nodiscard]] std::unique_ptr<ModbusLink> make_link(const ModbusAddress& address);

@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <cmath>
 #include <cstdio>
+#include <exception>
 #include <utility>
 
 #include "base/clock.h"
@@ -16,6 +17,7 @@
 #include "base/grid.h"
 #include "base/time.h"
 #include "drivers/modbus/rtu_frame.h"
+#include "drivers/modbus/serial_device.h"
 
 namespace softgrip::drivers {
 ModbusRtuLink::ModbusRtuLink(SerialLine line)
@@ -25,12 +27,23 @@ ModbusRtuLink::ModbusRtuLink(SerialLine line)
       silence_(nanoseconds(drivers::silence_s(line_))) {}
 
 BusStatus ModbusRtuLink::connect(Nanoseconds deadline) noexcept {
+  std::optional<UnclearDevice> unclear;
+  try {
+    unclear = unclear_serial_device(line_.device);
+  } catch (const std::exception& error) {
+    return refuse(BusStatus::disconnected, "looking for the serial device", error.what());
+  }
+  if (unclear && unclear->several)
+    return refuse(BusStatus::disconnected, unclear->message.c_str(), unclear->hint.c_str());
   const SerialFailure failure = open_serial(context(), line_, held_);
   if (failure.what != nullptr) {
     std::array<char, 128> what{};
+    std::array<char, 128> why{};
     std::snprintf(what.data(), what.size(), "%s %s", failure.what, line_.device.c_str());
-    return refuse(BusStatus::disconnected, what.data(),
-                  failure.error != 0 ? text_of_errno(failure.error) : "refused");
+    std::snprintf(why.data(), why.size(), "%s%s%s",
+                  failure.error != 0 ? text_of_errno(failure.error) : "refused", unclear ? "; " : "",
+                  unclear ? unclear->hint.c_str() : "");
+    return refuse(BusStatus::disconnected, what.data(), why.data());
   }
   heard_at_ = monotonic_now();
   return answer_may_come_ ? listen(deadline) : BusStatus::ok;

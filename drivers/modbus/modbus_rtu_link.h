@@ -17,6 +17,7 @@ namespace softgrip::drivers {
 /// answer that was under way could still take. libmodbus does none of this.
 ///
 /// open() opens the device by its name, so that an adapter that was pulled out and put back is found again.
+/// It allocates to look the name up, and refuses one that udev gave to several adapters.
 class ModbusRtuLink final : public ModbusLink {
  public:
   explicit ModbusRtuLink(SerialLine line);

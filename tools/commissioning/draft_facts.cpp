@@ -14,6 +14,7 @@
 #include "base/enumerated.h"
 #include "base/numbers.h"
 #include "document/problem.h"
+#include "drivers/modbus/serial_device.h"
 #include "model/file/model_file.h"
 #include "rig/board_map_file.h"
 #include "tools/command_line/configuration.h"
@@ -123,6 +124,8 @@ std::string take_address(const std::string& text, RigDraft& draft) {
   if (words.size() != 1) return "one address or device is needed";
   const std::string& word = words.front();
   if (word.front() == '/') {
+    const auto unclear = drivers::unclear_serial_device(word);
+    if (unclear && unclear->several) return unclear->message + ": " + unclear->hint;
     draft.device = word;
     draft.host.clear();
     return "";

@@ -1,0 +1,88 @@
+#include "drivers/modbus/serial_device.h"
+
+#include <algorithm>
+
+namespace softgrip::drivers {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kind = "serial device";
+
+/// The names of the files in a folder of `root`, in their order; those that begin with a dot are no devices.
+std::vector<std::string> names_in(const fs::path& root, const std::string& folder) {
+  std::vector<std::string> names;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(root / folder, error)) {
+    const std::string name = entry.path().filename().string();
+    if (!name.starts_with(".")) names.push_back(name);
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+/// As udev_node_escape_path() of systemd names the folder of a link under /run/udev/links.
+std::string escaped(const std::string& link) {
+  std::string text;
+  for (const char c : link) {
+    if (c == '/') {
+      text += "\\x2f";
+    } else if (c == '\\') {
+      text += "\\x5c";
+    } else {
+      text += c;
+    }
+  }
+  return text;
+}
+
+/// A device with the names of its port as words.
+ComputerDevice on_port(const fs::path& root, const std::string& node) {
+  ComputerDevice device{node, {}, {}};
+  std::error_code error;
+  const std::string ports = "dev/serial/by-path";
+  for (const std::string& port : names_in(root, ports)) {
+    if (fs::equivalent(root / ports / port, root / fs::path(node).relative_path(), error))
+      device.add("port", "/" + ports + "/" + port);
+  }
+  return device;
+}
+
+/// The devices to which udev gave the link: each is an entry, "c188:0", that points at
+/// "PRIORITY:/dev/ttyUSB0".
+std::vector<ComputerDevice> claimants(const fs::path& root, const std::string& link) {
+  const std::string folder = "run/udev/links/" + escaped(link);
+  std::vector<ComputerDevice> found;
+  for (const std::string& entry : names_in(root, folder)) {
+    std::error_code error;
+    const std::string target = fs::read_symlink(root / folder / entry, error).string();
+    const std::string node = target.substr(std::min(target.find(':') + 1, target.size()));
+    const bool is_there = !error && fs::exists(root / fs::path(node).relative_path(), error);
+    if (is_there) found.push_back(on_port(root, node));
+  }
+  return found;
+}
+
+std::vector<ComputerDevice> adapters(const fs::path& root) {
+  std::vector<ComputerDevice> found;
+  for (const std::string& name : names_in(root, "dev/serial/by-id"))
+    found.push_back({"/dev/serial/by-id/" + name, {}, {}});
+  return found;
+}
+
+}  // namespace
+
+std::optional<UnclearDevice> unclear_serial_device(const std::string& path, const fs::path& root) {
+  constexpr std::string_view devices = "/dev/";
+  const std::string name = fs::path(path).lexically_normal().string();
+  if (!name.starts_with(devices)) return std::nullopt;
+  std::error_code error;
+  if (!fs::exists(root / fs::path(name).relative_path(), error))
+    return only_device(adapters(root), path, kind).error();
+  const std::vector<ComputerDevice> found = claimants(root, name.substr(devices.size()));
+  if (found.size() < 2) return std::nullopt;
+  return several_devices(found, found, path, kind);
+}
+
+}  // namespace softgrip::drivers
