@@ -189,13 +189,21 @@ class BoardReader {
     map_.read_back = block;
   }
 
-  drivers::FixedWrite fixed_write(const Node& node, const std::string& what) {
+  /// `heartbeat`: it may have a second value.
+  drivers::FixedWrite fixed_write(const Node& node, const std::string& what, bool heartbeat = false) {
     MapReader in(document_, node, problems_, what);
     drivers::FixedWrite write;
     write.function =
         function(in, {fc_write_coil, fc_write_register, fc_write_registers}, "a write has one of");
     write.address = address(in, 1);
-    write.value = value_of(in, write.function == fc_write_coil ? 1 : 0xffff);
+    const int largest = write.function == fc_write_coil ? 1 : 0xffff;
+    write.value = value_of(in, largest);
+    if (!heartbeat) return write;
+    if (const auto alternate = in.optional_integer("alternate", 0, largest)) {
+      write.alternate = static_cast<std::uint16_t>(*alternate);
+      if (in.good("alternate") && in.good("value") && write.alternate == write.value)
+        in.report("alternate", "`alternate` must differ from `value`: the board waits for a change");
+    }
     return write;
   }
 
@@ -258,7 +266,7 @@ class BoardReader {
     if (watchdog.feed == drivers::BoardWatchdog::Feed::functions) feeding_functions(in);
     if (watchdog.feed == drivers::BoardWatchdog::Feed::feed_write) {
       if (const Node* write = in.child("feed_write", true)) {
-        watchdog.feed_write = fixed_write(*write, "the feeding write");
+        watchdog.feed_write = fixed_write(*write, "the feeding write", true);
       }
     }
     if (const Node* state = in.child("tripped", false)) watchdog.tripped = tripped(*state);

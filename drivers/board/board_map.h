@@ -81,6 +81,8 @@ struct FixedWrite {
   std::uint8_t function = 0;  ///< 5, 6 or 16
   std::uint16_t address = 0;
   std::uint16_t value = 0;  ///< of a coil: 0 or 1
+  /// Of a heartbeat: every second write has this value, since the board wants to see a change.
+  std::optional<std::uint16_t> alternate{};
 };
 
 /// The watchdog of the board itself, which acts when the daemon no longer does.

@@ -201,7 +201,15 @@ BusStatus ModbusModule::write(Nanoseconds deadline) noexcept {
   const BusStatus status = clear_due_ ? first_write(deadline) : write_outputs(deadline);
   if (status != BusStatus::ok) return name_refusal(status, deadline);
   if (!drives_outputs() || !settings_.map.watchdog.feed_write.has_value()) return BusStatus::ok;
-  return write_fixed({&*settings_.map.watchdog.feed_write, 1}, deadline);
+  return feed(*settings_.map.watchdog.feed_write, deadline);
+}
+
+/// A write that the board has not confirmed is repeated with the same value: it may have come.
+BusStatus ModbusModule::feed(FixedWrite write, Nanoseconds deadline) noexcept {
+  if (alternate_due_) write.value = write.alternate.value_or(write.value);
+  const BusStatus status = write_fixed({&write, 1}, deadline);
+  if (status == BusStatus::ok) alternate_due_ = !alternate_due_;
+  return status;
 }
 
 BusStatus ModbusModule::read(Nanoseconds deadline) noexcept {

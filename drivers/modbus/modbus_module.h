@@ -69,6 +69,7 @@ class ModbusModule {
   BusStatus ask(const ModbusRequest& request, Nanoseconds deadline) noexcept;
   BusStatus write_fixed(std::span<const FixedWrite> writes, Nanoseconds deadline) noexcept;
   BusStatus write_outputs(Nanoseconds deadline) noexcept;
+  BusStatus feed(FixedWrite write, Nanoseconds deadline) noexcept;
   BusStatus read_step(std::size_t step, Nanoseconds deadline) noexcept;
   void take_reply(std::size_t step) noexcept;
   BusStatus first_write(Nanoseconds deadline) noexcept;
@@ -95,8 +96,9 @@ class ModbusModule {
   std::uint32_t unlooked_ = 0;  ///< exchanges since one began with the reading
   bool confirmed_ = false;      ///< the last exchange read back what it had written
   bool reads_first_ = false;
-  bool clear_due_ = false;  ///< a session is new: a tripped watchdog may be cleared
-  bool setup_due_ = false;  ///< it was tripped when the session was opened
+  bool alternate_due_ = false;  ///< the last write of the heartbeat had its first value
+  bool clear_due_ = false;      ///< a session is new: a tripped watchdog may be cleared
+  bool setup_due_ = false;      ///< it was tripped when the session was opened
   std::array<char, 200> own_detail_{};
   const char* detail_ = "";
 };

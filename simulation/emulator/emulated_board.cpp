@@ -235,7 +235,19 @@ void EmulatedBoard::put_raw(const RegisterBlock& block, std::size_t index, doubl
   }
 }
 
-bool EmulatedBoard::feeds(std::span<const std::uint8_t> pdu) const {
+/// A heartbeat that does not change is that of a program that hangs.
+bool EmulatedBoard::is_heartbeat(std::span<const std::uint8_t> pdu) {
+  drivers::FixedWrite write = *map_.watchdog.feed_write;
+  if (!write.alternate) return is_write(pdu, write);
+  const bool first = is_write(pdu, write);
+  write.value = *write.alternate;
+  if (!first && !is_write(pdu, write)) return false;
+  const bool changed = alternated_ != !first;
+  alternated_ = !first;
+  return changed;
+}
+
+bool EmulatedBoard::feeds(std::span<const std::uint8_t> pdu) {
   const BoardWatchdog& watchdog = map_.watchdog;
   switch (watchdog.feed) {
     case BoardWatchdog::Feed::any_request:
@@ -244,7 +256,7 @@ bool EmulatedBoard::feeds(std::span<const std::uint8_t> pdu) const {
       return std::find(watchdog.functions.begin(), watchdog.functions.end(), pdu[0]) !=
              watchdog.functions.end();
     case BoardWatchdog::Feed::feed_write:
-      return watchdog.feed_write && is_write(pdu, *watchdog.feed_write);
+      return watchdog.feed_write && is_heartbeat(pdu);
   }
   return false;
 }

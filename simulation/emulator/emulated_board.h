@@ -52,7 +52,8 @@ class EmulatedBoard {
   void allow_functions();
   [[nodiscard]] double raw_in(const drivers::RegisterBlock& block, std::size_t index) const;
   void put_raw(const drivers::RegisterBlock& block, std::size_t index, double raw);
-  [[nodiscard]] bool feeds(std::span<const std::uint8_t> pdu) const;
+  [[nodiscard]] bool feeds(std::span<const std::uint8_t> pdu);
+  [[nodiscard]] bool is_heartbeat(std::span<const std::uint8_t> pdu);
   [[nodiscard]] bool is_write(std::span<const std::uint8_t> pdu, const drivers::FixedWrite& write) const;
   [[nodiscard]] bool touches_outputs(std::span<const std::uint8_t> pdu) const;
   void note_clearing(std::span<const std::uint8_t> pdu, bool wrote_outputs);
@@ -65,6 +66,7 @@ class EmulatedBoard {
   Registers registers_;
   std::vector<double> outputs_;  // V or mA
   Nanoseconds fed_at_ = 0;
+  std::optional<bool> alternated_;  // the last write of the heartbeat had its second value
   bool watchdog_awake_ = false;
   bool tripped_ = false;
   bool commanded_ = false;

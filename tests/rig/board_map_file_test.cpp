@@ -260,6 +260,23 @@ TEST(BoardMapFile, AWatchdogIsFedByReadersUnlessOnlyWritesFeedIt) {
   EXPECT_FALSE(none.fed_by_reading());
 }
 
+TEST(BoardMapFile, AHeartbeatHasTwoValuesThatDiffer) {
+  const auto with = [](const std::string& second) {
+    return read(changed(
+        "fed_by: functions\n  functions: [16]",
+        "fed_by: feed_write\n  feed_write: {function: 6, address: 61, value: 1, alternate: " + second + "}"));
+  };
+  const Result result = with("0");
+  ASSERT_TRUE(result.map.has_value()) << result.problems.format();
+  EXPECT_EQ(result.map->watchdog.feed_write->alternate, 0);
+  EXPECT_NE(with("1").problems.format().find("`alternate` must differ from `value`"), std::string::npos);
+  EXPECT_FALSE(with("70000").map.has_value());
+  EXPECT_FALSE(
+      read(changed("watchdog:", "setup: [{function: 6, address: 61, value: 1, alternate: 0}]\nwatchdog:"))
+          .map.has_value())
+      << "only a heartbeat alternates";
+}
+
 /// The trap of couplers whose watchdog is fed by the functions of a mask: the mask is made of what the file
 /// promises, and what the file promises is checked against the function that writes.
 TEST(BoardMapFile, AMaskOfFunctionsIsMadeOfThem) {

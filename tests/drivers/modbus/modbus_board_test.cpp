@@ -378,6 +378,21 @@ TEST_F(WatchdogTest, AFeedingWriteIsSentInEveryExchange) {
   }
 }
 
+TEST_F(WatchdogTest, AHeartbeatChangesWithEveryExchangeAndIsRepeatedUntilItIsConfirmed) {
+  map_.watchdog.feed = BoardWatchdog::Feed::feed_write;
+  map_.watchdog.feed_write = FixedWrite{.function = 6, .address = 4099, .value = 7, .alternate = 9};
+  connect(map_);
+  for (const int beat : {7, 9, 7, 9, 7}) {
+    ASSERT_EQ(exchange(10, 10), BusStatus::ok) << board_->detail();
+    EXPECT_EQ(server_.holding(4099), beat);
+  }
+  server_.refuse(std::uint8_t{6}, 6);
+  EXPECT_EQ(exchange(10, 10), BusStatus::exception);
+  server_.refuse(std::nullopt);
+  ASSERT_EQ(exchange(10, 10), BusStatus::ok) << board_->detail();
+  EXPECT_EQ(server_.holding(4099), 9);
+}
+
 /// The board refuses writes with an exception while its watchdog holds the outputs, as some couplers do.
 TEST_F(WatchdogTest, ABoardThatRefusesWritesWhileTrippedIsToldByItsFlag) {
   map_.setup = {{6, 500, 7}};

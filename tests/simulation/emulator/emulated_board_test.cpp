@@ -113,6 +113,24 @@ TEST(EmulatedBoard, OnlyTheMapsFunctionsFeedAWatchdogThatIsPicky) {
   EXPECT_TRUE(board.tripped());
 }
 
+TEST(EmulatedBoard, AHeartbeatFeedsTheWatchdogOnlyIfItChanges) {
+  drivers::BoardMap map = adam();
+  map.watchdog.feed = drivers::BoardWatchdog::Feed::feed_write;
+  map.watchdog.feed_write = drivers::FixedWrite{.function = 6, .address = 100, .value = 0, .alternate = 1};
+  const auto trips_with = [&](std::uint8_t second_value) {
+    EmulatedBoard board(map);
+    board.answer(0, write_outputs(2000, 2000));
+    for (int i = 0; i < 20; ++i) {
+      const std::uint8_t beat = i % 2 == 0 ? std::uint8_t{0} : second_value;
+      board.answer(i * second / 10, Bytes{0x06, 0, 100, 0, beat});
+    }
+    return board.tripped();
+  };
+  EXPECT_FALSE(trips_with(1));
+  EXPECT_TRUE(trips_with(0)) << "the same value again and again";
+  EXPECT_TRUE(trips_with(2)) << "a value that is none of the two";
+}
+
 TEST(EmulatedBoard, ALatchedTripIgnoresWritesUntilItIsCleared) {
   drivers::BoardMap map = adam();
   map.watchdog.clear = {drivers::FixedWrite{5, 0x1020, 1}};
