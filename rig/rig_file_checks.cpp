@@ -38,6 +38,16 @@ std::optional<std::string> stays_away(const Context& context, const drivers::Mod
   return std::nullopt;
 }
 
+/// Converters: the circuit behind the heartbeat takes the supply of the valves away.
+bool heartbeat_vents(const Context& context, const drivers::IioSettings& board) {
+  for (std::size_t i = 0; i < context.wiring.size(); ++i) {
+    const ValveFacts& valve = context.rig.valves[i];
+    const control::LimitSettings& limits = context.rig.settings.channels[i].limits;
+    if (valve.on_power_loss == PowerLoss::holds || !is_rest(limits, valve.power_loss_kpa)) return false;
+  }
+  return board.heartbeat.has_value();
+}
+
 void check_watchdog(Context& context, MapReader& top) {
   context.rig.settings.safety.board_vents_when_silent = board_vents_when_silent(context);
   const bool accepted = !context.rig.accept_no_watchdog.empty();
@@ -59,6 +69,8 @@ double watchdog_time_s(const Context& context) {
   if (const auto* modbus = std::get_if<drivers::ModbusSettings>(&context.rig.board)) {
     return seconds(drivers::ModbusBoard(*modbus).watchdog_time().count());
   }
+  if (const auto* converters = std::get_if<drivers::IioSettings>(&context.rig.board))
+    return converters->heartbeat ? converters->heartbeat->timeout_s : 0;
   const auto* simulated = std::get_if<simulation::SimulatedBoardSettings>(&context.rig.board);
   return simulated != nullptr ? simulated->watchdog_timeout_s : 0;
 }
@@ -128,6 +140,8 @@ bool board_vents_when_silent(const Context& context) {
   if (const auto* simulated = std::get_if<simulation::SimulatedBoardSettings>(&context.rig.board)) {
     return simulated->watchdog_timeout_s > 0;
   }
+  if (const auto* converters = std::get_if<drivers::IioSettings>(&context.rig.board))
+    return heartbeat_vents(context, *converters);
   const auto* modbus = std::get_if<drivers::ModbusSettings>(&context.rig.board);
   return modbus != nullptr && !stays_away(context, *modbus);
 }

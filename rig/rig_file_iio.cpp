@@ -1,5 +1,7 @@
 // The board of a rig file that is made of converters on this computer (industrial I/O).
 
+#include <cmath>
+
 #include "drivers/iio/iio_device.h"
 #include "rig/rig_file_reader.h"
 
@@ -11,40 +13,75 @@ using document::Node;
 
 constexpr std::int64_t largest_raw = (std::int64_t{1} << 24) - 1;
 
-/// Reads the terminals of one direction, each of which must be another channel of another converter.
+/// Reads the terminals; each is another channel or another converter.
 class TerminalsReader {
  public:
   TerminalsReader(Context& context, const std::vector<ComputerDevice>& there)
       : context_(context), there_(there) {}
 
-  std::vector<drivers::IioTerminal> read(MapReader& iio, std::string_view key, bool output) {
-    std::map<std::string, document::Location> known;
+  std::vector<drivers::IioTerminal> inputs(MapReader& iio) {
     std::vector<drivers::IioTerminal> terminals;
-    for (const Node* item : iio.sequence(key, true)) {
-      MapReader reader(context_.document, *item, context_.problems, output ? "an output" : "an input");
-      drivers::IioTerminal terminal;
-      terminal.device = reader.text("device");
-      terminal.channel = reader.text("channel");
-      check_channel(reader, terminal.channel);
-      check_device(reader, terminal, known);
-      if (output) terminal.raw_max = reader.integer("raw_max", 1, largest_raw);
-      terminals.push_back(std::move(terminal));
+    for (const Node* item : iio.sequence("inputs", true)) {
+      MapReader reader(context_.document, *item, context_.problems, "an input");
+      terminals.push_back(terminal(reader, false, known_inputs_));
     }
     return terminals;
   }
 
+  std::vector<drivers::IioTerminal> outputs(MapReader& iio) {
+    std::vector<drivers::IioTerminal> terminals;
+    for (const Node* item : iio.sequence("outputs", true)) {
+      MapReader reader(context_.document, *item, context_.problems, "an output");
+      terminals.push_back(terminal(reader, true, known_outputs_));
+      terminals.back().raw_max = reader.integer("raw_max", 1, largest_raw);
+    }
+    return terminals;
+  }
+
+  /// After outputs(): it is none of them.
+  std::optional<drivers::IioHeartbeat> heartbeat(MapReader& iio) {
+    const Node* const node = iio.child("heartbeat", false);
+    if (node == nullptr) return std::nullopt;
+    MapReader reader(context_.document, *node, context_.problems, "the heartbeat");
+    drivers::IioHeartbeat heartbeat;
+    heartbeat.terminal = terminal(reader, true, known_outputs_);
+    const auto raws = reader.numbers("raw", 2, {0, largest_raw});
+    if (reader.good("raw") &&
+        (raws[0] == raws[1] || std::floor(raws[0]) != raws[0] || std::floor(raws[1]) != raws[1]))
+      reader.report("raw", "`raw` must be two whole numbers that differ: the circuit waits for a change");
+    heartbeat.first = static_cast<long>(raws[0]);
+    heartbeat.second = static_cast<long>(raws[1]);
+    heartbeat.timeout_s = reader.number("timeout_s", {0.001, 3600});
+    return heartbeat;
+  }
+
  private:
-  static void check_channel(MapReader& reader, const std::string& channel) {
-    if (!reader.good("channel") || drivers::unit_of_channel(channel)) return;
+  using Known = std::map<std::string, document::Location>;
+
+  drivers::IioTerminal terminal(MapReader& reader, bool output, Known& known) {
+    drivers::IioTerminal terminal;
+    terminal.device = reader.text("device");
+    terminal.channel = reader.text("channel");
+    check_channel(reader, terminal.channel, output);
+    check_device(reader, terminal, known);
+    return terminal;
+  }
+
+  static void check_channel(MapReader& reader, const std::string& channel, bool output) {
+    if (!reader.good("channel")) return;
+    const auto unit = drivers::unit_of_channel(channel);
+    if (unit && !(output && unit == drivers::ElectricalUnit::kilopascal)) return;
     reader.report("channel",
-                  "`channel` must be a voltage or a current, found `" + document::shown(channel) + "`",
-                  "as in the names of the device's attributes: out_voltage0_raw is voltage0");
+                  std::string("`channel` must be a voltage") +
+                      (output ? " or a current" : ", a current or a pressure") + ", found `" +
+                      document::shown(channel) + "`",
+                  std::string("as in the names of the device's attributes: ") + (output ? "out" : "in") +
+                      "_voltage0_raw is voltage0");
   }
 
   /// A word that fits two converters of this computer would let their order decide. One that fits none may be
   /// right on the computer of the rig.
-  void check_device(MapReader& reader, const drivers::IioTerminal& terminal,
-                    std::map<std::string, document::Location>& known) const {
+  void check_device(MapReader& reader, const drivers::IioTerminal& terminal, Known& known) const {
     if (!reader.good("device") || !reader.good("channel")) return;
     const auto device = only_device(there_, terminal.device, "converter");
     if (!device && device.error().several) {
@@ -57,11 +94,13 @@ class TerminalsReader {
     reader.report("device",
                   "`" + document::shown(terminal.channel) + "` of `" + document::shown(terminal.device) +
                       "` is already listed at " + place(first->second),
-                  "two converters of one name are told apart by label, serial number or address");
+                  "a label, a serial number or an address distinguishes two converters of one name");
   }
 
   Context& context_;
   const std::vector<ComputerDevice>& there_;
+  Known known_inputs_;
+  Known known_outputs_;
 };
 
 }  // namespace
@@ -74,8 +113,9 @@ void read_iio(Context& context, const Node& node) {
   const auto there =
       context.stored == nullptr ? drivers::converters_in(settings.root) : std::vector<ComputerDevice>{};
   TerminalsReader terminals(context, there);
-  settings.inputs = terminals.read(reader, "inputs", false);
-  settings.outputs = terminals.read(reader, "outputs", true);
+  settings.inputs = terminals.inputs(reader);
+  settings.outputs = terminals.outputs(reader);
+  settings.heartbeat = terminals.heartbeat(reader);
   read_timing(context, reader);
   context.modules.push_back({"iio", drivers::terminals_of(settings)});
   context.rig.board = std::move(settings);

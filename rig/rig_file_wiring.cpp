@@ -16,8 +16,11 @@ namespace {
 using document::Node;
 using drivers::ElectricalUnit;
 
-/// V and mA of any board there is; tighter limits come from the board map.
-constexpr document::Range electrical{-100, 100};
+/// V and mA of any board there is, and the pressures of the sensors that measure kilopascals; tighter limits
+/// come from the board map.
+constexpr document::Range range_of(ElectricalUnit unit) {
+  return unit == ElectricalUnit::kilopascal ? document::Range{-200, 10'000} : document::Range{-100, 100};
+}
 
 /// Which of `stem_v` and `stem_ma` stands in the map decides the unit.
 struct ElectricalKey {
@@ -35,15 +38,15 @@ ElectricalKey electrical_key(MapReader& reader, const std::string& stem) {
       continue;
     }
     reader.report(name, "`" + found->name + "` and `" + name + "` exclude each other");
-    reader.optional_numbers(name, 2, electrical);
+    reader.optional_numbers(name, 2, range_of(unit));
   }
   return found.value_or(ElectricalKey{stem + "_v", ElectricalUnit::volt});
 }
 
 /// `at_v: [0, 10], is_kpa: [0, 100]`
-drivers::TwoPoints read_scaling(MapReader& reader, const std::string& at_key, std::string_view is_key,
+drivers::TwoPoints read_scaling(MapReader& reader, const ElectricalKey& at_key, std::string_view is_key,
                                 document::Range is_range) {
-  const auto at = reader.numbers(at_key, 2, electrical);
+  const auto at = reader.numbers(at_key.name, 2, range_of(at_key.unit));
   const auto is = reader.numbers(is_key, 2, is_range);
   const auto distinct = [&](std::string_view key, const std::vector<double>& pair) {
     if (reader.good(key) && pair[0] == pair[1]) {
@@ -53,9 +56,9 @@ drivers::TwoPoints read_scaling(MapReader& reader, const std::string& at_key, st
     }
     return true;
   };
-  const bool at_good = distinct(at_key, at);
+  const bool at_good = distinct(at_key.name, at);
   const bool is_good = distinct(is_key, is);
-  if (!at_good || !is_good || !reader.good(at_key) || !reader.good(is_key)) return {};
+  if (!at_good || !is_good || !reader.good(at_key.name) || !reader.good(is_key)) return {};
   return {at[0], is[0], at[1], is[1]};
 }
 
@@ -116,7 +119,7 @@ void check_unit(MapReader& reader, const ElectricalKey& key, const drivers::Term
 
 /// What of the electrical range counts as a reading.
 void read_validity(MapReader& reader, const std::string& valid_key, drivers::InputWiring& wiring) {
-  const auto valid = reader.numbers(valid_key, 2, electrical);
+  const auto valid = reader.numbers(valid_key, 2, range_of(wiring.unit));
   if (reader.good(valid_key) && valid[0] >= valid[1]) {
     reader.report(valid_key, "the first number of `" + valid_key + "` must be the smaller one");
   }
@@ -130,7 +133,7 @@ void read_error_codes(Context& context, MapReader& reader, const std::string& wh
   const std::string suffix(suffix_of(wiring.unit));
   for (const Node* item : reader.sequence("error_codes", false)) {
     MapReader code(context.document, *item, context.problems, "an error code of the " + who);
-    const double at = code.number("at" + suffix, electrical);
+    const double at = code.number("at" + suffix, range_of(wiring.unit));
     const double tolerance = code.number("tolerance" + suffix, {0, 100});
     wiring.error_codes.push_back({at, tolerance});
   }
@@ -144,7 +147,7 @@ drivers::InputWiring read_input(Context& context, MapReader& reader, const std::
   wiring.input = read_terminal(context, reader, "input", wiring.module, context.inputs, shared);
   const ElectricalKey at = electrical_key(reader, "at");
   wiring.unit = at.unit;
-  wiring.scaling = read_scaling(reader, at.name, is_key, is_range);
+  wiring.scaling = read_scaling(reader, at, is_key, is_range);
   check_unit(reader, at, terminal_of(context, "input", wiring.module, wiring.input));
   read_validity(reader, "valid" + std::string(suffix_of(at.unit)), wiring);
   read_error_codes(context, reader, who, wiring);
@@ -231,7 +234,7 @@ drivers::OutputWiring read_valve(Context& context, const Node& node, const std::
   wiring.output = read_terminal(context, reader, "output", wiring.module, context.outputs);
   const ElectricalKey at = electrical_key(reader, "at");
   wiring.unit = at.unit;
-  wiring.scaling = read_scaling(reader, at.name, "is_kpa", {-200, 10'000});
+  wiring.scaling = read_scaling(reader, at, "is_kpa", {-200, 10'000});
   check_unit(reader, at, terminal_of(context, "output", wiring.module, wiring.output));
   const auto range = reader.numbers("range_kpa", 2, {-200, 10'000});
   facts.range_min_kpa = range[0];

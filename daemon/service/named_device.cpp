@@ -34,8 +34,14 @@ std::optional<NamedDevice> named_converter(const rig::RigFile& rig, const std::s
   };
   const bool read = std::any_of(converters->inputs.begin(), converters->inputs.end(), is_it);
   NamedDevice named;
-  for (const drivers::IioTerminal& output : converters->outputs) {
-    if (is_it(output)) named.written.push_back("out_" + output.channel + "_raw");
+  std::vector<drivers::IioTerminal> outputs = converters->outputs;
+  if (converters->heartbeat) outputs.push_back(converters->heartbeat->terminal);
+  for (const drivers::IioTerminal& output : outputs) {
+    if (!is_it(output)) continue;
+    named.written.push_back("out_" + output.channel + "_raw");
+    const std::string powerdown =
+        drivers::powerdown_of(std::filesystem::path(converters->root) / device, output.channel);
+    if (!powerdown.empty()) named.written.push_back(powerdown);
   }
   return read || !named.written.empty() ? std::optional(named) : std::nullopt;
 }

@@ -10,6 +10,7 @@
 
 #include "base/clock.h"
 #include "base/errno_text.h"
+#include "base/time.h"
 #include "drivers/board/judged_input.h"
 #include "drivers/board/round_trip.h"
 #include "drivers/iio/iio_attribute.h"
@@ -19,20 +20,18 @@ namespace softgrip::drivers {
 namespace {
 
 constexpr int probes = 5;
+constexpr const char* stays_off_text = "it stays 1 after 0 was written: the output is switched off";
 
-/// Voltages are in millivolts, currents in milliamperes.
+/// Voltages are in millivolts, currents in milliamperes, pressures in kilopascals.
 double per_unit(std::string_view channel) noexcept {
   return unit_of_channel(channel) == ElectricalUnit::volt ? 1e-3 : 1;
 }
 
-/// What must not change while a rig runs; a label or a serial number is enough by itself.
+/// The converter's name and place, which must not change while a rig runs; a label or a serial number is
+/// enough by itself.
 std::string identity_behind(const std::string& word, const ComputerDevice& device) {
   const bool says_which = device.has("label", word) || device.has("serial number", word);
   return says_which ? std::string{} : identity_of(device);
-}
-
-std::string type_of(const std::string& channel) {
-  return channel.substr(0, channel.find_first_of("0123456789"));
 }
 
 /// A number that one channel has for itself or shares with all of its kind; `otherwise` if neither.
@@ -58,6 +57,7 @@ std::optional<ElectricalUnit> unit_of_channel(std::string_view channel) noexcept
   });
   if (plain && begins("voltage")) return ElectricalUnit::volt;
   if (plain && begins("current")) return ElectricalUnit::milliampere;
+  if (plain && (begins("pressure") || channel == "pressure")) return ElectricalUnit::kilopascal;
   return std::nullopt;
 }
 
@@ -83,16 +83,26 @@ struct IioBoard::Parts {
     std::string identity;
     std::string first_identity;  // of the first session
     IioAttribute raw;
-    double scale = 1;   // to V or mA
+    double scale = 1;   // to V, mA or kPa
     double offset = 0;  // added to the raw number
+    std::string powerdown_path;
+    IioAttribute powerdown;
+    IioAttribute wake;  // the same attribute, to be written
+    bool is_off = false;
+    bool stays_off = false;  // and did when it was switched on
   };
 
   explicit Parts(const IioSettings& given)
-      : settings(given), inputs(given.inputs.size()), outputs(given.outputs.size()) {}
+      : settings(given), written(given.outputs), inputs(given.inputs.size()) {
+    if (given.heartbeat) written.push_back(given.heartbeat->terminal);
+    outputs.resize(written.size());
+  }
 
   IioSettings settings;
+  std::vector<IioTerminal> written;  // the outputs, and behind them the heartbeat
   std::vector<Converter> inputs;
-  std::vector<Converter> outputs;
+  std::vector<Converter> outputs;  // one per terminal of `written`
+  bool beats_second = false;
   bool open = false;
   RoundTrip reads;
   std::array<char, 512> detail{};
@@ -112,6 +122,14 @@ struct IioBoard::Parts {
   BusStatus attach_each(const Devices& there, const std::vector<IioTerminal>& terminals, bool output,
                         std::vector<Converter>& converters);
   BusStatus attach_all();
+  BusStatus open_number(const std::filesystem::path& folder, const std::string& channel, bool output,
+                        Converter& converter);
+  [[nodiscard]] bool uses(std::size_t output) const;
+  BusStatus look_at_powerdown(const std::string& channel, Converter& converter);
+  BusStatus write_raw(const Converter& converter, long raw) noexcept;
+  BusStatus switch_on(Converter& converter) noexcept;
+  BusStatus switch_all_on() noexcept;
+  BusStatus beat() noexcept;
   BusStatus probe(Nanoseconds deadline) noexcept;
   BusStatus write(std::size_t channel, double command_kpa) noexcept;
   BusStatus read(const InputWiring& wiring, JudgedInput& input) noexcept;
@@ -134,19 +152,53 @@ BusStatus IioBoard::Parts::attach(const Devices& there, const IioTerminal& termi
                    .c_str());
   }
   const std::filesystem::path folder = std::filesystem::path(settings.root) / device->node;
+  return open_number(folder, terminal.channel, output, converter);
+}
+
+/// Opens the attribute with the converter's number and reads what the number means.
+BusStatus IioBoard::Parts::open_number(const std::filesystem::path& folder, const std::string& channel,
+                                       bool output, Converter& converter) {
+  const std::string stem = (output ? "out_" : "in_") + channel;
+  converter.path = (folder / (stem + "_raw")).string();
+  int error = converter.raw.open(converter.path, output);
+  // A driver may give the number in its unit alone.
+  const bool processed =
+      error == ENOENT && !output && converter.raw.open((folder / (stem + "_input")).string(), false) == 0;
+  if (error != 0 && !processed) return say(BusStatus::disconnected, converter.path, text_of_errno(error));
   const std::string direction = output ? "out_" : "in_";
-  converter.path = (folder / (direction + terminal.channel + "_raw")).string();
-  if (const int error = converter.raw.open(converter.path, output); error != 0) {
-    return say(BusStatus::disconnected, converter.path, text_of_errno(error));
-  }
-  converter.scale =
-      shared_number(folder, direction, terminal.channel, "_scale", 0) * per_unit(terminal.channel);
-  converter.offset = shared_number(folder, direction, terminal.channel, "_offset", 0);
+  const double scale = processed ? 1 : shared_number(folder, direction, channel, "_scale", 0);
+  converter.scale = scale * per_unit(channel);
+  converter.offset = processed ? 0 : shared_number(folder, direction, channel, "_offset", 0);
   if (!(std::abs(converter.scale) > 0) || !std::isfinite(converter.scale) ||
       !std::isfinite(converter.offset)) {
     return say(BusStatus::disconnected, converter.name, "it states no scale, so its numbers mean nothing");
   }
   return BusStatus::ok;
+}
+
+/// An output that no channel is wired to is left as it is.
+bool IioBoard::Parts::uses(std::size_t output) const {
+  return output >= settings.outputs.size() ||
+         std::any_of(settings.wiring.begin(), settings.wiring.end(),
+                     [&](const ChannelWiring& channel) { return channel.valve.output == output; });
+}
+
+BusStatus IioBoard::Parts::look_at_powerdown(const std::string& channel, Converter& converter) {
+  const std::filesystem::path folder = std::filesystem::path(converter.path).parent_path();
+  converter.is_off = false;
+  const std::string name = powerdown_of(folder, channel);
+  if (name.empty()) return BusStatus::ok;
+  const std::string path = (folder / name).string();
+  converter.powerdown_path = path;
+  const int error = converter.powerdown.open(path, false);
+  const auto state = error == 0 ? converter.powerdown.read() : std::nullopt;
+  if (!state) return say(BusStatus::disconnected, path, error != 0 ? text_of_errno(error) : "no number");
+  converter.is_off = *state != 0;
+  converter.stays_off = converter.stays_off && converter.is_off;
+  if (converter.stays_off) return say(BusStatus::disconnected, path, stays_off_text);
+  const int denied = converter.is_off ? converter.wake.open(path, true) : 0;
+  if (denied == 0) return BusStatus::ok;
+  return say(BusStatus::disconnected, path + " is 1 and cannot be cleared", text_of_errno(denied));
 }
 
 BusStatus IioBoard::Parts::attach_each(const Devices& there, const std::vector<IioTerminal>& terminals,
@@ -165,7 +217,10 @@ BusStatus IioBoard::Parts::attach_each(const Devices& there, const std::vector<I
 
 BusStatus IioBoard::Parts::attach_all() {
   const Devices there = converters_in(settings.root);
-  BusStatus status = attach_each(there, settings.outputs, true, outputs);
+  BusStatus status = attach_each(there, written, true, outputs);
+  for (std::size_t i = 0; status == BusStatus::ok && i < outputs.size(); ++i) {
+    if (uses(i)) status = look_at_powerdown(written[i].channel, outputs[i]);
+  }
   if (status == BusStatus::ok) status = attach_each(there, settings.inputs, false, inputs);
   if (status != BusStatus::ok) return status;
   for (auto* const converters : {&outputs, &inputs}) {
@@ -188,16 +243,48 @@ BusStatus IioBoard::Parts::probe(Nanoseconds deadline) noexcept {
   return BusStatus::ok;
 }
 
+BusStatus IioBoard::Parts::switch_on(Converter& converter) noexcept {
+  const int error = converter.wake.write(0);
+  const std::optional<double> state = converter.powerdown.read();
+  converter.is_off = error != 0 || !state || *state != 0;
+  converter.stays_off = converter.is_off;
+  if (!converter.is_off) return BusStatus::ok;
+  open = false;
+  return say(BusStatus::disconnected, converter.powerdown_path,
+             error != 0 ? text_of_errno(error) : stays_off_text);
+}
+
+/// After all numbers were written: several outputs may share one switch.
+BusStatus IioBoard::Parts::switch_all_on() noexcept {
+  for (Converter& converter : outputs) {
+    if (!converter.is_off) continue;
+    if (const BusStatus status = switch_on(converter); status != BusStatus::ok) return status;
+  }
+  return BusStatus::ok;
+}
+
+BusStatus IioBoard::Parts::write_raw(const Converter& converter, long raw) noexcept {
+  const int error = converter.raw.write(raw);
+  if (error == EINVAL || error == ERANGE) {
+    return say(BusStatus::write_refused, converter.name, text_of_errno(error));
+  }
+  return error == 0 ? BusStatus::ok : lost(converter, error);
+}
+
+BusStatus IioBoard::Parts::beat() noexcept {
+  if (!settings.heartbeat) return BusStatus::ok;
+  const IioHeartbeat& heartbeat = *settings.heartbeat;
+  beats_second = !beats_second;
+  return write_raw(outputs.back(), beats_second ? heartbeat.second : heartbeat.first);
+}
+
 BusStatus IioBoard::Parts::write(std::size_t channel, double command_kpa) noexcept {
   const OutputWiring& valve = settings.wiring[channel].valve;
   const Converter& converter = outputs[valve.output];
   const double raw = std::round(valve.scaling.x_at(command_kpa) / converter.scale - converter.offset);
   const double taken = std::clamp(raw, 0.0, static_cast<double>(settings.outputs[valve.output].raw_max));
-  const int error = converter.raw.write(static_cast<long>(taken));
-  if (error == EINVAL || error == ERANGE) {
-    return say(BusStatus::write_refused, converter.name, text_of_errno(error));
-  }
-  if (error != 0) return lost(converter, error);
+  const BusStatus status = write_raw(converter, static_cast<long>(taken));
+  if (status != BusStatus::ok) return status;
   if (taken == raw) return BusStatus::ok;
   std::snprintf(detail.data(), detail.size(),
                 "channel '%s': %g kPa is beyond the output's range, its end was written",
@@ -280,6 +367,9 @@ BusStatus IioBoard::exchange(std::span<const double> commands_kpa, std::span<Rea
     if (status == BusStatus::disconnected) return status;
     if (status != BusStatus::ok) written = status;
   }
+  if (const BusStatus status = parts.beat(); status != BusStatus::ok) return status;
+  if (written == BusStatus::ok) written = parts.switch_all_on();
+  if (written == BusStatus::disconnected) return written;
   // All readings change, or none.
   std::array<Reading, most_channels> fresh{};
   for (std::size_t i = 0; i < readings.size(); ++i) {
@@ -299,9 +389,18 @@ const char* IioBoard::detail() const noexcept {
   return parts_->detail.data();
 }
 
+bool IioBoard::has_watchdog() const noexcept {
+  return parts_->settings.heartbeat.has_value();
+}
+
+std::chrono::nanoseconds IioBoard::watchdog_time() const noexcept {
+  const auto& heartbeat = parts_->settings.heartbeat;
+  return std::chrono::nanoseconds(heartbeat ? nanoseconds(heartbeat->timeout_s) : 0);
+}
+
 std::string IioBoard::describe() const {
   std::vector<std::string> devices;
-  for (const auto* terminals : {&parts_->settings.outputs, &parts_->settings.inputs}) {
+  for (const auto* terminals : {&parts_->written, &parts_->settings.inputs}) {
     for (const IioTerminal& terminal : *terminals) {
       if (std::find(devices.begin(), devices.end(), terminal.device) == devices.end()) {
         devices.push_back(terminal.device);
@@ -318,7 +417,7 @@ Board::Budget IioBoard::budget() const {
   std::size_t reads = 0;
   for (const ChannelWiring& channel : parts.settings.wiring)
     reads += 1U + (channel.pressure.has_value() ? 1U : 0U) + (channel.temperature.has_value() ? 1U : 0U);
-  const std::size_t writes = parts.settings.wiring.size();
+  const std::size_t writes = parts.settings.wiring.size() + (parts.settings.heartbeat ? 1U : 0U);
   // A write is taken to be as long as a conversion: it cannot be measured without moving something.
   const double each_s = parts.reads.median_s();
   Budget cost;

@@ -22,4 +22,17 @@ std::string identity_of(const ComputerDevice& converter) {
   return converter.word("address").empty() ? name : name + " at " + converter.folder.parent_path().string();
 }
 
+std::string type_of(const std::string& channel) {
+  return channel.substr(0, channel.find_first_of("0123456789"));
+}
+
+std::string powerdown_of(const std::filesystem::path& folder, const std::string& channel) {
+  std::error_code error;
+  for (const std::string& whose : {channel, type_of(channel)}) {
+    const std::string name = "out_" + whose + "_powerdown";
+    if (std::filesystem::exists(folder / name, error)) return name;
+  }
+  return {};
+}
+
 }  // namespace softgrip::drivers

@@ -17,4 +17,10 @@ namespace softgrip::drivers {
 /// "mcp4725 at /sys/devices/platform/soc/fe804000.i2c/i2c-1/1-0060"; without a bus the name alone.
 [[nodiscard]] std::string identity_of(const ComputerDevice& converter);
 
+/// Returns the kind of a channel: "voltage" of "voltage0".
+[[nodiscard]] std::string type_of(const std::string& channel);
+/// Returns the attribute that switches an output off, its own or that of all outputs of its kind; empty: the
+/// converter in `folder` has none.
+[[nodiscard]] std::string powerdown_of(const std::filesystem::path& folder, const std::string& channel);
+
 }  // namespace softgrip::drivers

@@ -177,9 +177,45 @@ TEST_F(Converters, AreChosenByAddressByNodeAndByPath) {
   EXPECT_EQ(problems_of("1-0070", "1-0071"), "") << "of another computer";
 }
 
+TEST_F(Converters, AHeartbeatCountsAsAWatchdogIfEveryValveRestsWithoutPower) {
+  const std::pair<std::string, std::string> heartbeat{
+      "    exchange_deadline_s",
+      "    heartbeat: {device: 1-0062, channel: voltage0, raw: [0, 4095], timeout_s: 0.5}\n    "
+      "exchange_deadline_s"};
+  const std::pair<std::string, std::string> not_accepted{"accept_no_watchdog", "#"};
+  const std::pair<std::string, std::string> holds{"on_power_loss: vents", "on_power_loss: holds"};
+  Problems problems;
+  const auto reading = edited("rig_iio.yaml", {heartbeat, not_accepted}, problems);
+  EXPECT_TRUE(reading.accepted) << problems.format();
+  EXPECT_TRUE(reading.rig.settings.safety.board_vents_when_silent);
+  const auto& heart = std::get<drivers::IioSettings>(reading.rig.board).heartbeat;
+  ASSERT_TRUE(heart);
+  EXPECT_EQ(heart->second, 4095);
+  EXPECT_EQ(heart->timeout_s, 0.5);
+  EXPECT_FALSE(edited("rig_iio.yaml", {not_accepted}, problems).accepted);
+  EXPECT_FALSE(edited("rig_iio.yaml", {heartbeat, not_accepted, holds}, problems).accepted)
+      << "without power these valves keep their pressure";
+}
+
+TEST_F(Converters, APressureSensorIsReadInKilopascalsAboveAmbient) {
+  Problems problems;
+  const auto reading = edited(
+      "rig_iio.yaml",
+      {{"device: ads1115, channel: voltage2", "device: hsc030, channel: pressure"},
+       {"pressure_monitor: {input: 2}",
+        "pressure_monitor: {input: 2, at_kpa: [101.3, 201.3], valid_kpa: [90, 250]}"},
+       {"  pressure_monitor: {at_v: [0, 5], is_kpa: [0, 100], valid_v: [-0.1, 5]}",
+        "  pressure_monitor: {is_kpa: [0, 100]}"},
+       {"pressure_monitor: {input: 3}", "pressure_monitor: {input: 3, at_v: [0, 5], valid_v: [-0.1, 5]}"}},
+      problems);
+  ASSERT_TRUE(reading.accepted) << problems.format();
+  EXPECT_EQ(reading.rig.wiring[0].pressure->unit, drivers::ElectricalUnit::kilopascal);
+  EXPECT_EQ(reading.rig.wiring[0].pressure->valid_max, 250);
+}
+
 TEST_F(Converters, OneChannelListedTwiceIsRefusedUnderWhateverWords) {
   for (const auto& [first, second] : {std::pair{"1-0060", "iio:device1"}, {"other", "other"}}) {
-    EXPECT_NE(problems_of(first, second).find("is already listed at 11:18"), std::string::npos)
+    EXPECT_NE(problems_of(first, second).find("is already listed at 11:10"), std::string::npos)
         << first << "\n"
         << problems_of(first, second);
   }

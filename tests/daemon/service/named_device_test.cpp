@@ -41,9 +41,11 @@ TEST(NamedDevice, AConverterByItsNameOrItsFolderAndOnlyTheOutputsThatAreWritten)
   converters.outputs = {{"dac7578", "voltage2", 4095}, {"dac7578", "voltage0", 4095}};
   rig::RigFile rig;
   rig.board = converters;
+  std::ofstream(root.path() + "/iio:device1/out_voltage0_powerdown") << "1\n";
   const auto outputs = named_device(rig, "iio:device1");
   ASSERT_TRUE(outputs);
-  EXPECT_EQ(outputs->written, (std::vector<std::string>{"out_voltage2_raw", "out_voltage0_raw"}));
+  EXPECT_EQ(outputs->written,
+            (std::vector<std::string>{"out_voltage2_raw", "out_voltage0_raw", "out_voltage0_powerdown"}));
   const auto inputs = named_device(rig, "iio:device0");
   ASSERT_TRUE(inputs);
   EXPECT_TRUE(inputs->written.empty()) << "inputs are read, which every user may do";

@@ -174,6 +174,126 @@ TEST_F(IioBoardTest, ANameOfTwoConvertersIsRefusedWithBothAndNothingIsWritten) {
   EXPECT_EQ(get("iio:device2/out_voltage0_raw"), "17");
 }
 
+TEST_F(IioBoardTest, AnOutputThatIsSwitchedOffIsSwitchedOnAfterItsNumberWasWritten) {
+  put("iio:device1/out_voltage0_powerdown", "1");
+  put("iio:device1/out_voltage1_powerdown", "0");
+  put("iio:device1/out_voltage0_raw", "1234");
+  IioBoard board(settings_);
+  ASSERT_EQ(board.connect(5s), BusStatus::ok) << board.detail();
+  EXPECT_EQ(get("iio:device1/out_voltage0_powerdown"), "1") << "the old number must not come out";
+  EXPECT_EQ(exchange(board, 110, 10), BusStatus::write_refused);
+  EXPECT_EQ(get("iio:device1/out_voltage0_powerdown"), "1");
+  BusStatus status = BusStatus::disconnected;
+  EXPECT_EQ(softgrip::test::allocations_of([&] { status = exchange(board, 50, 25); }), 0U);
+  EXPECT_EQ(status, BusStatus::ok) << board.detail();
+  EXPECT_EQ(get("iio:device1/out_voltage0_powerdown"), "0");
+  EXPECT_EQ(get("iio:device1/out_voltage0_raw"), "2000");
+}
+
+TEST_F(IioBoardTest, ASwitchThatOutputsShareIsReadAndClearedToo) {
+  put("iio:device1/out_voltage_powerdown", "1");
+  IioBoard board(settings_);
+  ASSERT_EQ(board.connect(5s), BusStatus::ok) << board.detail();
+  ASSERT_EQ(exchange(board, 50, 25), BusStatus::ok) << board.detail();
+  EXPECT_EQ(get("iio:device1/out_voltage_powerdown"), "0");
+}
+
+TEST_F(IioBoardTest, APowerdownThatCannotBeReadOrWrittenIsRefusedBeforeAnythingIsWritten) {
+  put("iio:device1/out_voltage1_powerdown", "off");
+  EXPECT_NE(refusal().find("out_voltage1_powerdown: no number"), std::string::npos) << refusal();
+  const fs::path powerdown = root_ / "iio:device1/out_voltage1_powerdown";
+  fs::remove(powerdown);
+  fs::create_symlink("/proc/sys/kernel/ngroups_max", powerdown);  // above 0, and no user may write it
+  EXPECT_NE(refusal().find("out_voltage1_powerdown is 1 and cannot be cleared: Permission denied"),
+            std::string::npos)
+      << refusal();
+  EXPECT_EQ(get("iio:device1/out_voltage0_raw"), "0");
+}
+
+TEST_F(IioBoardTest, APowerdownThatStaysEndsTheSessionAndTheNextIsRefused) {
+  const fs::path powerdown = root_ / "iio:device1/out_voltage1_powerdown";
+  // The kernel takes any number there and keeps its own, which is above 0.
+  const std::string keeps_its_number = "/proc/sys/kernel/random/urandom_min_reseed_secs";
+  if (::access(keeps_its_number.c_str(), W_OK) != 0) GTEST_SKIP() << "needs root: " << keeps_its_number;
+  fs::create_symlink(keeps_its_number, powerdown);
+  IioBoard board(settings_);
+  ASSERT_EQ(board.connect(5s), BusStatus::ok) << board.detail();
+  EXPECT_EQ(exchange(board, 0, 0), BusStatus::disconnected);
+  EXPECT_NE(std::string(board.detail()).find("out_voltage1_powerdown: it stays 1"), std::string::npos)
+      << board.detail();
+  EXPECT_EQ(readings_[0].sequence, 0U);
+  EXPECT_EQ(board.connect(5s), BusStatus::disconnected);
+  EXPECT_NE(std::string(board.detail()).find("stays 1 after 0 was written"), std::string::npos)
+      << board.detail();
+  fs::remove(powerdown);
+  put("iio:device1/out_voltage1_powerdown", "0");
+  EXPECT_EQ(board.connect(5s), BusStatus::ok) << board.detail();
+  EXPECT_EQ(exchange(board, 50, 25), BusStatus::ok) << board.detail();
+}
+
+TEST_F(IioBoardTest, AnOutputWithoutAChannelStaysSwitchedOff) {
+  settings_.outputs.push_back({"dac7578", "voltage2", 4095});
+  put("iio:device1/out_voltage2_raw", "17");
+  put("iio:device1/out_voltage2_powerdown", "1");
+  IioBoard board(settings_);
+  ASSERT_EQ(board.connect(5s), BusStatus::ok) << board.detail();
+  EXPECT_EQ(exchange(board, 50, 25), BusStatus::ok) << board.detail();
+  EXPECT_EQ(get("iio:device1/out_voltage2_powerdown"), "1");
+  EXPECT_EQ(get("iio:device1/out_voltage2_raw"), "17");
+}
+
+TEST_F(IioBoardTest, APressureIsReadInKilopascals) {
+  put("iio:device2/name", "bmp280");
+  put("iio:device2/in_pressure_input", "121.3");  // processed: no number and no scale
+  put("iio:device3/name", "mpl115");
+  put("iio:device3/in_pressure0_raw", "400");
+  put("iio:device3/in_pressure_scale", "0.25");
+  put("iio:device3/in_pressure_offset", "80");
+  settings_.inputs.push_back({"bmp280", "pressure", 0});
+  settings_.inputs.push_back({"mpl115", "pressure0", 0});
+  const TwoPoints above_ambient{101.3, 0, 201.3, 100};
+  for (std::size_t i = 0; i < 2; ++i) {
+    settings_.wiring[i].pressure = InputWiring{.input = 2 + i,
+                                               .unit = ElectricalUnit::kilopascal,
+                                               .scaling = above_ambient,
+                                               .valid_min = 90,
+                                               .valid_max = 250,
+                                               .error_codes = {}};
+  }
+  const ModuleTerminals terminals = terminals_of(settings_);
+  EXPECT_TRUE(wiring_problems({&terminals, 1}, settings_.wiring).empty());
+  IioBoard board(settings_);
+  ASSERT_EQ(board.connect(5s), BusStatus::ok) << board.detail();
+  ASSERT_EQ(exchange(board, 50, 25), BusStatus::ok) << board.detail();
+  EXPECT_NEAR(readings_[0].pressure_kpa, 20, 1e-9);
+  EXPECT_NEAR(readings_[1].pressure_kpa, 18.7, 1e-9) << "(400 + 80) * 0.25 = 120 kPa";
+}
+
+TEST_F(IioBoardTest, AHeartbeatChangesWithEveryExchange) {
+  put("iio:device1/out_voltage2_raw", "0");
+  put("iio:device1/out_voltage2_powerdown", "1");
+  settings_.heartbeat = IioHeartbeat{{"dac7578", "voltage2", 0}, 0, 4095, 0.5};
+  IioBoard board(settings_);
+  EXPECT_TRUE(board.has_watchdog());
+  EXPECT_EQ(board.watchdog_time(), 500ms);
+  ASSERT_EQ(board.connect(5s), BusStatus::ok) << board.detail();
+  EXPECT_EQ(get("iio:device1/out_voltage2_raw"), "0") << "connecting writes nothing";
+  BusStatus status = BusStatus::disconnected;
+  for (const char* const raw : {"4095", "0", "4095", "0"}) {
+    EXPECT_EQ(softgrip::test::allocations_of([&] { status = exchange(board, 50, 25); }), 0U);
+    EXPECT_EQ(status, BusStatus::ok) << board.detail();
+    EXPECT_EQ(get("iio:device1/out_voltage2_raw"), raw);
+  }
+  EXPECT_EQ(get("iio:device1/out_voltage2_powerdown"), "0");
+  put("iio:device0/in_voltage0_raw", "no");
+  EXPECT_EQ(exchange(board, 50, 25), BusStatus::disconnected);
+  const std::string last = get("iio:device1/out_voltage2_raw");
+  EXPECT_EQ(exchange(board, 50, 25), BusStatus::disconnected);
+  EXPECT_EQ(get("iio:device1/out_voltage2_raw"), last) << "no session, no heartbeat";
+  settings_.heartbeat->terminal = settings_.outputs[0];
+  EXPECT_NE(refusal().find("both are "), std::string::npos) << "a valve is no heartbeat";
+}
+
 TEST_F(IioBoardTest, OneChannelUnderTwoWordsIsRefused) {
   settings_.outputs[1] = {"iio:device1", "voltage0", 4095};
   EXPECT_NE(refusal().find("dac7578 voltage0 and iio:device1 voltage0: both are "), std::string::npos)
@@ -290,11 +410,14 @@ TEST_F(IioBoardTest, AnExchangeAllocatesNothing) {
   EXPECT_EQ(softgrip::test::allocations_of([&] { status = exchange(board, 10, 200); }), 0U);
 }
 
-TEST(IioChannel, NamesAreVoltagesAndCurrents) {
+TEST(IioChannel, NamesAreVoltagesCurrentsAndPressures) {
   EXPECT_EQ(unit_of_channel("voltage0"), ElectricalUnit::volt);
   EXPECT_EQ(unit_of_channel("voltage0-voltage1"), ElectricalUnit::volt);
   EXPECT_EQ(unit_of_channel("current3"), ElectricalUnit::milliampere);
-  for (const char* const other : {"", "voltage", "temp0", "../voltage0", "voltage0/..", "Voltage0"}) {
+  EXPECT_EQ(unit_of_channel("pressure"), ElectricalUnit::kilopascal);
+  EXPECT_EQ(unit_of_channel("pressure1"), ElectricalUnit::kilopascal);
+  for (const char* const other :
+       {"", "voltage", "temp0", "../voltage0", "voltage0/..", "Voltage0", "pressures", "pressure/.."}) {
     EXPECT_FALSE(unit_of_channel(other).has_value()) << other;
   }
 }
