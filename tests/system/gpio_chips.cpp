@@ -11,7 +11,9 @@
 //   gone              the chip was pulled out
 //   levels            answers with the names of all lines that are high
 //
-// What is answered is "ok" or the names. While the process stands still nothing is answered; what was asked
+// With GPIO_TWIN there is a second chip with the label of the first.
+//
+// The answer is "ok" or the names. While the process stands still nothing is answered; what was asked
 // for meanwhile comes with its own time when it goes on, as from the kernel's queue.
 
 #include <dlfcn.h>
@@ -85,6 +87,11 @@ void serve(int listening) {
   }
   fake_chips().push_back(chip);
   const std::ofstream empty(folder() + "/gpiochip0");
+  if (std::getenv("GPIO_TWIN") != nullptr) {
+    chip.name = "gpiochip1";
+    fake_chips().push_back(chip);
+    const std::ofstream twin(folder() + "/gpiochip1");
+  }
   const int listening = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
