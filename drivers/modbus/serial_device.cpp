@@ -8,7 +8,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kind = "serial device";
+constexpr const char* serial_device = "serial device";
 
 /// The names of the files in a folder of `root`, in their order; those that begin with a dot are no devices.
 std::vector<std::string> names_in(const fs::path& root, const std::string& folder) {
@@ -79,10 +79,10 @@ std::optional<UnclearDevice> unclear_serial_device(const std::string& path, cons
   if (!name.starts_with(devices)) return std::nullopt;
   std::error_code error;
   if (!fs::exists(root / fs::path(name).relative_path(), error))
-    return only_device(adapters(root), path, kind).error();
+    return only_device(adapters(root), path, serial_device).error();
   const std::vector<ComputerDevice> found = claimants(root, name.substr(devices.size()));
   if (found.size() < 2) return std::nullopt;
-  return several_devices(found, found, path, kind);
+  return several_devices(found, found, path, serial_device);
 }
 
 }  // namespace softgrip::drivers
