@@ -44,6 +44,13 @@ FAULTS = (
      "rest_kpa_[i] = rig.channels[i].limits.pressure_min_kpa;"),
     ("a vent goes to the lowest pressure", "control/tick/channel_controller.cpp",
      "      return resting_kpa(limits_);", "      return limits_.pressure_min_kpa;"),
+    ("a command that crosses rest goes on by almost three steps", "control/elements/limits.cpp",
+     "  return {reached, in_range(limits, wanted_kpa) != wanted_kpa, reached != inside, false, capped};",
+     "  const double past_kpa = reached - resting_kpa(limits);\n"
+     "  const double slew = past_kpa > 0 ? limits.slew_up_kpa_per_s : -limits.slew_down_kpa_per_s;\n"
+     "  const bool crosses = (last - resting_kpa(limits)) * past_kpa < 0;\n"
+     "  return {crosses ? in_range(limits, resting_kpa(limits) + 2.9 * slew * elapsed_s) : reached,\n"
+     "          in_range(limits, wanted_kpa) != wanted_kpa, reached != inside, false, capped};"),
     ("every report of the bus is kept", "daemon/loop/bus.cpp",
      "wires_.bus.publish(report_);",
      "wires_.bus.publish(report_);\n  static auto& kept = *new std::vector<BusReport>;\n  kept.push_back(report_);", 600),

@@ -84,6 +84,7 @@ class DaemonInWorld {
 
   rig::RigFile rig;
   WorldClock clock;
+  WorldClock bus_clock;  ///< the bus thread's own
   LoopClock loop_clock;  ///< the loop's own: looked at when a tick begins and when it ends
   Nanoseconds origin;
   control::RigController controller;

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace softgrip::world {
 namespace {
@@ -51,7 +52,8 @@ bool may_follow(State before, State after) {
 
 }  // namespace
 
-Monitor::Monitor(const control::RigSettings& rig, Nanoseconds watchdog) : rig_(rig), watchdog_(watchdog) {
+Monitor::Monitor(const control::RigSettings& rig, Nanoseconds watchdog, Nanoseconds margin)
+    : rig_(rig), watchdog_(watchdog), margin_(margin) {
   boots();
 }
 
@@ -61,7 +63,7 @@ void Monitor::violate(Nanoseconds at, const char* invariant, std::string text) {
 
 void Monitor::boots() {
   armed_ = armed_at_entry_ = false;
-  last_began_ = 0;
+  last_began_ = last_woke_ = exchange_ = before_ = 0;
   state_ = State::starting;
   safe_kpa_.clear();
   for (std::size_t i = 0; i < rig_.channels.size(); ++i) safe_kpa_.push_back(rest_of(rig_, i));
@@ -162,7 +164,9 @@ void Monitor::write(Nanoseconds began, Nanoseconds now, std::span<const double> 
                     std::span<const double> commands_kpa, bool safe_outputs) {
   const double period_s = 1 / rig_.rate_hz;
   const double elapsed_s = last_began_ == 0 ? period_s : seconds(began - last_began_) + 2 * period_s;
+  if (watch_gap(began, now, commands_kpa)) safe_outputs = true;
   last_began_ = began;
+  last_woke_ = woke_;
   for (std::size_t i = 0; i < commands_kpa.size(); ++i) {
     const double rest_kpa = rest_of(rig_, i);
     const double allowed_kpa = control::no_further(rest_kpa, commands_kpa[i], outputs_kpa[i]);
@@ -180,11 +184,32 @@ void Monitor::write(Nanoseconds began, Nanoseconds now, std::span<const double> 
   foreign_ = false;
 }
 
-/// On either side of rest, a channel leaves it and comes back to it within the slew limits.
+/// After a gap in which the board has or may have vented, the daemon writes the rest pressures. Returns true
+/// if it does that. It looks at its clock after it wakes up and before the exchange begins.
+bool Monitor::watch_gap(Nanoseconds began, Nanoseconds now, std::span<const double> commands_kpa) {
+  if (watchdog_ == 0 || last_began_ == 0 || woke_ == 0) return false;
+  bool rested = true;
+  for (std::size_t i = 0; i < commands_kpa.size(); ++i)
+    rested = rested && std::abs(commands_kpa[i] - rest_of(rig_, i)) <= equal_kpa;
+  const Nanoseconds longest = watchdog_ - margin_;
+  if (before_ > 0 && woke_ - before_ >= longest && !rested)
+    violate(now, "rest is written where the board has or may have vented",
+            fmt::format("{:.3f} kPa after {:.3f} s", fmt::join(commands_kpa, " "), seconds(woke_ - before_)));
+  return rested && began - last_woke_ >= longest;
+}
+
+/// On either side of rest, and from one to the other, a channel moves within the slew limits.
 void Monitor::watch_way(Nanoseconds now, std::size_t channel, double output_kpa, double command_kpa,
                         double elapsed_s, bool safe_outputs) {
   const control::LimitSettings& limits = rig_.channels[channel].limits;
   const double rest_kpa = rest_of(rig_, channel);
+  // From what was written last: a board that refuses writes stays behind.
+  const double last_kpa = last_kpa_[channel];
+  const double slew = command_kpa > last_kpa ? limits.slew_up_kpa_per_s : limits.slew_down_kpa_per_s;
+  const bool crosses = (command_kpa - rest_kpa) * (last_kpa - rest_kpa) < 0;
+  if (crosses && std::abs(command_kpa - last_kpa) > slew * elapsed_s + equal_kpa)
+    violate(now, "outputs cross rest within their slew",
+            fmt::format("channel {}: {:.3f} -> {:.3f} kPa", channel, last_kpa, command_kpa));
   for (const double side : {1.0, -1.0}) {
     const double leaving = side > 0 ? limits.slew_up_kpa_per_s : limits.slew_down_kpa_per_s;
     const double returning = side > 0 ? limits.slew_down_kpa_per_s : limits.slew_up_kpa_per_s;
@@ -192,8 +217,6 @@ void Monitor::watch_way(Nanoseconds now, std::size_t channel, double output_kpa,
     if (!foreign_ && there_kpa - away_kpa(rest_kpa, output_kpa, side) > leaving * elapsed_s + equal_kpa)
       violate(now, "outputs leave rest within their slew",
               fmt::format("channel {}: {:.3f} -> {:.3f} kPa", channel, output_kpa, command_kpa));
-    // From what was written last: a board that refuses writes stays behind.
-    const double last_kpa = last_kpa_[channel];
     if (!safe_outputs && away_kpa(rest_kpa, last_kpa, side) - there_kpa > returning * elapsed_s + equal_kpa)
       violate(now, "outputs return to rest within their slew, but for safe ones that no loop shapes",
               fmt::format("channel {}: {:.3f} -> {:.3f} kPa", channel, last_kpa, command_kpa));

@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "control/tick/settings.h"
@@ -31,15 +32,21 @@ struct Excuse {
 
 class Monitor {
  public:
-  Monitor(const control::RigSettings& rig, Nanoseconds watchdog);
+  /// `margin`: that of rig::watchdog_margin().
+  Monitor(const control::RigSettings& rig, Nanoseconds watchdog, Nanoseconds margin);
 
   /// After a tick of the loop; `now` by the daemon's clock.
   void ticked(Nanoseconds now, const control::TickOutput& output);
   /// Before a write of the daemon reaches the board, whose outputs are as given. `began`: its exchange.
   void write(Nanoseconds began, Nanoseconds now, std::span<const double> outputs_kpa,
              std::span<const double> commands_kpa, bool safe_outputs);
-  /// The daemon looked at its permission to move when this exchange began.
-  void exchange_begins() noexcept { armed_at_entry_ = armed_; }
+  /// The daemon looked at its permission to move when this exchange began, now. `woke`: when its bus thread
+  /// looked at its clock before, and so at the gap since the last exchange; 0: not known.
+  void exchange_begins(Nanoseconds now = 0, Nanoseconds woke = 0) noexcept {
+    armed_at_entry_ = armed_;
+    before_ = std::exchange(exchange_, now);
+    woke_ = woke;
+  }
   /// For a program without a loop: it may move pressures away from rest, or may not any more.
   void may_rise(bool allowed) noexcept { armed_ = allowed; }
   /// Another master has written these.
@@ -76,17 +83,23 @@ class Monitor {
   void watch_events(Nanoseconds now, const control::TickOutput& output);
   void watch_state(Nanoseconds now, const control::TickOutput& output);
   void watch_grips(Nanoseconds now, const control::TickOutput& output);
+  bool watch_gap(Nanoseconds began, Nanoseconds now, std::span<const double> commands_kpa);
   void watch_way(Nanoseconds now, std::size_t channel, double output_kpa, double command_kpa,
                  double elapsed_s, bool safe_outputs);
   void watch_foreign(Nanoseconds now, const Excuse& excuse, Nanoseconds duration);
 
   const control::RigSettings& rig_;
   Nanoseconds watchdog_;
+  Nanoseconds margin_;
   std::optional<Violation> violation_;
   bool armed_ = false;  // a start was accepted, and nothing since forbids to leave rest
   bool armed_at_entry_ = false;
   bool foreign_ = false;        // another master has written since our last write
   Nanoseconds last_began_ = 0;  // an exchange
+  Nanoseconds exchange_ = 0;    // when the newest one began, whether it writes or not, ...
+  Nanoseconds before_ = 0;      // and the one before it
+  Nanoseconds woke_ = 0;
+  Nanoseconds last_woke_ = 0;  // for the exchange of last_began_
   Nanoseconds seen_ = 0;
   std::uint32_t halted_by_ = 0;  // the newest request to stop or to vent
   control::State state_ = control::State::starting;

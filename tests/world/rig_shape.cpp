@@ -43,10 +43,12 @@ RigShape draw_shape(const rig::RigFile& example, std::uint64_t seed) {
     channel.limits.slew_down_kpa_per_s = 2 * slew;
   }
   shape.text = fmt::format(
-      "watchdog {} s{}, bus_down_cycles {}, max_missed_commands {}, slew {}/{} kPa/s, holding: {}",
+      "watchdog {} s{}, bus_down_cycles {}, max_missed_commands {}, slew {}/{} kPa/s, holding: {}, "
+      "on_emergency_stop: {}",
       watchdog_s, shape.trip_latches ? ", latching" : ", cleared by a write", settings.faults.bus_down_cycles,
       shape.rig.loop.max_missed_commands, slew, 2 * slew,
-      control::name_of(settings.safety.safe_action[static_cast<std::size_t>(control::Phase::holding)]));
+      control::name_of(settings.safety.safe_action[static_cast<std::size_t>(control::Phase::holding)]),
+      control::name_of(settings.safety.on_emergency_stop));
   const control::LimitSettings& limits = settings.channels.front().limits;
   const double rest_kpa = control::resting_kpa(limits);
   if (rest_kpa > limits.pressure_min_kpa)

@@ -44,7 +44,8 @@ Surroundings::Surroundings(RigShape rig_shape, bool tracing_)
           hardware, line, scheduler,
           [this](Nanoseconds began, std::span<const double> commands) { on_write(began, commands); },
           [this] { on_exchange(); }),
-      monitor(shape.rig.settings, shape.watchdog) {}
+      monitor(shape.rig.settings, shape.watchdog,
+              rig::watchdog_margin(shape.rig.loop, std::chrono::nanoseconds(shape.watchdog)).count()) {}
 
 HardwareSettings Surroundings::hardware_settings() {
   HardwareSettings settings;

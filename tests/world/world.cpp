@@ -74,7 +74,7 @@ class World final : public Host {
     around_.on_write = [this](Nanoseconds began, std::span<const double> commands) {
       wrote(began, commands);
     };
-    around_.on_exchange = [this] { monitor_.exchange_begins(); };
+    around_.on_exchange = [this] { monitor_.exchange_begins(scheduler_.now(), daemon_->bus_clock.woke()); };
     around_.on_trip = [this] { tripped(); };
     result_.shape = around_.shape.text;
     result_.incidents =
