@@ -40,11 +40,13 @@ void tell_each(const Json& channels, MetricText& metrics, const auto& value_of) 
     metrics.sample({{"channel", text(channel, "name")}}, value_of(channel));
 }
 
-/// How much of the pressure that the finger may have is asked for.
+/// The share of the way from rest to the limit on that side.
 double pressure_use(const Json& channel) {
   const Json& limits = member(channel, "limits");
-  const double lowest = number(limits, "pressure_min_kpa");
-  return (number(channel, "command_kpa") - lowest) / (number(limits, "pressure_max_kpa") - lowest);
+  const double rest_kpa = number(limits, "rest_kpa");
+  const double away_kpa = number(channel, "command_kpa") - rest_kpa;
+  const double end_kpa = number(limits, away_kpa < 0 ? "pressure_min_kpa" : "pressure_max_kpa");
+  return away_kpa == 0 ? 0 : away_kpa / (end_kpa - rest_kpa);
 }
 
 void tell_one_of(const Json& channels, MetricText& metrics, const char* key,
@@ -65,8 +67,9 @@ void tell_channels(const Json& channels, MetricText& metrics) {
       return number(channel, quantity.key) / quantity.units_per_base_unit;
     });
   }
-  metrics.family("softgrip_pressure_use_ratio", gauge,
-                 "Pressure that is asked for, from 0 at the finger's lowest limit to 1 at its highest.");
+  metrics.family(
+      "softgrip_pressure_use_ratio", gauge,
+      "Distance of the command from the rest pressure, from 0 at rest to 1 at the limit on its side.");
   tell_each(channels, metrics, pressure_use);
   metrics.family("softgrip_reading_valid", gauge, "1 while the displacement reading is good.");
   tell_each(channels, metrics,

@@ -27,7 +27,7 @@ Json status() {
     "under_pressure": null, "fault": {"code": "F202", "name": "reading_out_of_range", "channel": "left"},
     "channels": [{"name": "left", "command_kpa": 15, "pressure_kpa": null, "displacement_mm": 12.5, "age_s": 0.004,
       "validity": "valid", "limit": null, "health": "suspect", "health_rms_mm": 0.5,
-      "limits": {"pressure_min_kpa": 0, "pressure_max_kpa": 60}}],
+      "limits": {"pressure_min_kpa": -40, "pressure_max_kpa": 60, "rest_kpa": 0}}],
     "bus": {"connected": true}, "recording": {"active": false, "dropped_rows": 3, "error": null}, "gpio": null,
     "real_time": {"degraded": true}})");
 }
@@ -69,6 +69,16 @@ TEST(Metrics, AreInBaseUnits) {
                            "softgrip_loop_wake_up_seconds_count 100",
                            "softgrip_bus_errors_total 4"})
     EXPECT_TRUE(has_line(text, line)) << line << "\n" << text;
+}
+
+TEST(Metrics, ThePressureUseIsTheDistanceFromRest) {
+  for (const auto& [command_kpa, use] : {std::pair{0, "0"}, {15, "0.25"}, {-10, "0.25"}, {-40, "1"}}) {
+    Json one = status();
+    one["channels"][0]["command_kpa"] = command_kpa;
+    EXPECT_TRUE(has_line(told(one, statistics()),
+                         std::string("softgrip_pressure_use_ratio{channel=\"left\"} ") + use))
+        << command_kpa;
+  }
 }
 
 TEST(Metrics, CountWhatHasHappened) {
