@@ -153,6 +153,12 @@ bool SimulatedRig::run_until_step(std::uint16_t step, double seconds) {
   return false;
 }
 
+bool SimulatedRig::start_until_step(const PreparedSequence& sequence, std::uint16_t step, double seconds) {
+  if (!run_until(State::idle, 1)) return false;
+  request(Request::Kind::start, &sequence);
+  return run_until_step(step, seconds);
+}
+
 std::size_t SimulatedRig::count(Event::Kind kind) const {
   return static_cast<std::size_t>(
       std::count_if(events.begin(), events.end(), [&](const Event& event) { return event.kind == kind; }));

@@ -65,6 +65,8 @@ class SimulatedRig {
   bool run_until(State state, double seconds);
   /// Ticks until the step with this index runs, at most `seconds`.
   bool run_until_step(std::uint16_t step, double seconds);
+  /// Ticks until it is idle, starts the sequence, and ticks until the step with this index runs.
+  bool start_until_step(const PreparedSequence& sequence, std::uint16_t step, double seconds = 20);
 
   [[nodiscard]] const TickOutput& output() const { return output_; }
   [[nodiscard]] double time_s() const { return static_cast<double>(now_) * 1e-9; }

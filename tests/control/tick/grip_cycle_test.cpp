@@ -26,9 +26,7 @@ class GripCycle : public testing::Test {
 TEST_F(GripCycle, AStoneIsHeldAndReleased) {
   SimulatedRig rig(settings);
   rig.stone(12);
-  ASSERT_TRUE(rig.run_until(State::idle, 1));
-  rig.request(Request::Kind::start, &pick);
-  ASSERT_TRUE(rig.run_until_step(2, 20));
+  ASSERT_TRUE(rig.start_until_step(pick, 2));
   for (std::size_t i = 0; i < 2; ++i) {
     EXPECT_EQ(rig.result(i), GripResult::holding);
     EXPECT_EQ(rig.output().channels[i].evidence, GripEvidence::displacement);
@@ -62,9 +60,7 @@ TEST_F(GripCycle, NoPartIsSaidByTheRecipeForTheStoneTooAfterItsRetry) {
 
 TEST_F(GripCycle, AStoneThatComesBackForTheRetryIsHeld) {
   SimulatedRig rig(settings);
-  ASSERT_TRUE(rig.run_until(State::idle, 1));
-  rig.request(Request::Kind::start, &pick);
-  ASSERT_TRUE(rig.run_until_step(1, 20));
+  ASSERT_TRUE(rig.start_until_step(pick, 1));
   const std::size_t before = rig.count(Event::Kind::step_started);
   double waited = 0;
   while (rig.output().channels[0].displacement_mm < 16 && waited < 10) {
@@ -84,9 +80,7 @@ TEST_F(GripCycle, AStoneThatComesBackForTheRetryIsHeld) {
 TEST_F(GripCycle, AStonePulledOutDuringHoldIsPartLostWithinTwoReverifications) {
   SimulatedRig rig(settings);
   rig.stone(12);
-  ASSERT_TRUE(rig.run_until(State::idle, 1));
-  rig.request(Request::Kind::start, &pick);
-  ASSERT_TRUE(rig.run_until_step(2, 20));
+  ASSERT_TRUE(rig.start_until_step(pick, 2));
   rig.run(1.13);
   ASSERT_EQ(rig.result(0), GripResult::holding);
   rig.stone(std::nullopt);
@@ -106,9 +100,7 @@ TEST_F(GripCycle, AStonePulledOutDuringHoldIsPartLostWithinTwoReverifications) {
 TEST_F(GripCycle, TheNextStartClearsPartLost) {
   SimulatedRig rig(settings);
   rig.stone(12);
-  ASSERT_TRUE(rig.run_until(State::idle, 1));
-  rig.request(Request::Kind::start, &pick);
-  ASSERT_TRUE(rig.run_until_step(2, 20));
+  ASSERT_TRUE(rig.start_until_step(pick, 2));
   rig.stone(std::nullopt);
   ASSERT_TRUE(rig.run_until(State::idle, 20));
   ASSERT_EQ(rig.result(0), GripResult::part_lost);
@@ -124,9 +116,7 @@ TEST_F(GripCycle, APressureGripIsDetectedByTheSameEvidence) {
   const PreparedSequence screw = example_sequence("pick_screw", settings);
   SimulatedRig rig(settings);
   rig.stone(12);
-  ASSERT_TRUE(rig.run_until(State::idle, 1));
-  rig.request(Request::Kind::start, &screw);
-  ASSERT_TRUE(rig.run_until_step(2, 20));
+  ASSERT_TRUE(rig.start_until_step(screw, 2));
   EXPECT_EQ(rig.result(0), GripResult::holding);
   EXPECT_NEAR(rig.board_kpa(0), 45, 1e-6);
   ASSERT_TRUE(rig.run_until(State::idle, 20));
@@ -210,9 +200,7 @@ steps:
                                             settings);
   SimulatedRig rig(settings);
   rig.fault[0].validity = rig.fault[1].validity = model::Validity::out_of_range;  // the beam is blocked
-  ASSERT_TRUE(rig.run_until(State::idle, 1));
-  rig.request(Request::Kind::start, &grip);
-  ASSERT_TRUE(rig.run_until_step(1, 20));
+  ASSERT_TRUE(rig.start_until_step(grip, 1));
   EXPECT_EQ(rig.result(0), GripResult::holding);
   EXPECT_EQ(rig.output().channels[0].evidence, GripEvidence::pressure);
   ASSERT_TRUE(rig.run_until(State::idle, 20));
@@ -232,9 +220,7 @@ steps:
     SCOPED_TRACE(moved_mm);
     SimulatedRig rig(settings);
     rig.stone(12);
-    ASSERT_TRUE(rig.run_until(State::idle, 1));
-    rig.request(Request::Kind::start, &grip);
-    ASSERT_TRUE(rig.run_until_step(1, 20));
+    ASSERT_TRUE(rig.start_until_step(grip, 1));
     ASSERT_EQ(rig.result(0), GripResult::holding);
     rig.run(1);
     ASSERT_EQ(rig.result(0), GripResult::holding) << "inside its window";
@@ -312,9 +298,7 @@ steps:
                                             settings);
   SimulatedRig rig(settings);
   rig.stone(6);
-  ASSERT_TRUE(rig.run_until(State::idle, 1));
-  rig.request(Request::Kind::start, &grip);
-  ASSERT_TRUE(rig.run_until_step(1, 20));
+  ASSERT_TRUE(rig.start_until_step(grip, 1));
   rig.fault[0].offset_mm = -3;  // the finger stays 3 mm behind where it would be free
   rig.run(0.1);
   ASSERT_TRUE(rig.run_until(State::idle, 10));
@@ -325,9 +309,7 @@ steps:
 TEST_F(GripCycle, ABlockedFingerIsNotPressedEverHarder) {
   SimulatedRig rig(settings);
   rig.stone(12);
-  ASSERT_TRUE(rig.run_until(State::idle, 1));
-  rig.request(Request::Kind::start, &pick);
-  ASSERT_TRUE(rig.run_until_step(2, 20));
+  ASSERT_TRUE(rig.start_until_step(pick, 2));
   const double at_verification = rig.board_kpa(0);
   rig.run(4.5);
   EXPECT_LT(rig.board_kpa(0), at_verification + 1);
@@ -337,9 +319,7 @@ TEST_F(GripCycle, ABlockedFingerIsNotPressedEverHarder) {
 TEST_F(GripCycle, TheSineIsFollowedByFreeFingers) {
   const PreparedSequence track = example_sequence("track_sine", settings);
   SimulatedRig rig(settings);
-  ASSERT_TRUE(rig.run_until(State::idle, 1));
-  rig.request(Request::Kind::start, &track);
-  ASSERT_TRUE(rig.run_until_step(1, 20));
+  ASSERT_TRUE(rig.start_until_step(track, 1));
   double sum = 0;
   int count = 0;
   while (rig.output().state == State::running && rig.output().channels[0].step == 1) {

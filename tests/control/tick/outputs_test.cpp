@@ -13,9 +13,7 @@ class Outputs : public testing::Test {
   void close_on_stone(SimulatedRig& rig) { close_on_stone(rig, pick, 0.3); }
   static void close_on_stone(SimulatedRig& rig, const PreparedSequence& sequence, double into_grip_s) {
     rig.stone(12);
-    ASSERT_TRUE(rig.run_until(State::idle, 1));
-    rig.request(Request::Kind::start, &sequence);
-    ASSERT_TRUE(rig.run_until_step(1, 10));
+    ASSERT_TRUE(rig.start_until_step(sequence, 1, 10));
     rig.run(into_grip_s);
   }
   static double command(const SimulatedRig& rig) { return rig.output().channels[0].command_kpa; }

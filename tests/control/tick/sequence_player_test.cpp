@@ -104,9 +104,7 @@ TEST_F(SequencePlayback, FingersOfOneStepAnswerEachForItself) {
   rig.stone(12);
   rig.stone_only_left = true;
   const PreparedSequence sequence = steps(grip + let_go);
-  ASSERT_TRUE(rig.run_until(State::idle, 1));
-  rig.request(Request::Kind::start, &sequence);
-  ASSERT_TRUE(rig.run_until_step(1, 10));
+  ASSERT_TRUE(rig.start_until_step(sequence, 1, 10));
   EXPECT_EQ(rig.result(0), GripResult::holding);
   EXPECT_EQ(rig.result(1), GripResult::no_part);
   ASSERT_TRUE(rig.run_until(State::idle, 10));
@@ -121,9 +119,7 @@ TEST_F(SequencePlayback, AStepBeginsWhenTheSlowestFingerIsThere) {
                                           "  - move: {pressure_kpa: 40, speed_kpa_per_s: 20}\n"
                                           "  - move: {pressure_kpa: 41, duration_s: 0.1}\n");
   SimulatedRig rig(settings);
-  ASSERT_TRUE(rig.run_until(State::idle, 1));
-  rig.request(Request::Kind::start, &sequence);
-  ASSERT_TRUE(rig.run_until_step(2, 20));
+  ASSERT_TRUE(rig.start_until_step(sequence, 2));
   EXPECT_NEAR(rig.output().channels[0].command_kpa, 40, 0.2);
   EXPECT_NEAR(rig.output().channels[1].command_kpa, 40, 0.2);
 }

@@ -40,9 +40,7 @@ TEST_F(UnsteadyTest, IsAFaultWhereTheSettingsSaySo) {
   settings.faults.unsteady_is_fault = true;
   SimulatedRig rig(settings);
   const PreparedSequence track = example_sequence("track_sine", settings);
-  ASSERT_TRUE(rig.run_until(State::idle, 1));
-  rig.request(Request::Kind::start, &track);
-  ASSERT_TRUE(rig.run_until_step(1, 20));
+  ASSERT_TRUE(rig.start_until_step(track, 1));
   const double from_s = rig.time_s();
   jump(rig, 1.5);
   EXPECT_EQ(rig.output().state, State::faulted);
@@ -68,9 +66,7 @@ TEST_F(UnsteadyTest, PartsThatSlipAndComeBackAreNone) {
   SimulatedRig rig(settings);
   const PreparedSequence pick = example_sequence("pick_stone", settings);
   rig.stone(12);
-  ASSERT_TRUE(rig.run_until(State::idle, 1));
-  rig.request(Request::Kind::start, &pick);
-  ASSERT_TRUE(rig.run_until_step(2, 20));
+  ASSERT_TRUE(rig.start_until_step(pick, 2));
   for (const double at_mm : {13.0, 14.0, 12.5, 13.5}) {
     rig.stone(at_mm);
     rig.run(0.4);

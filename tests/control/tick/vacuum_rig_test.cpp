@@ -16,9 +16,7 @@ class VacuumRig : public testing::Test {
  protected:
   /// Holds -30 kPa.
   void hold_vacuum(SimulatedRig& rig) {
-    ASSERT_TRUE(rig.run_until(State::idle, 1));
-    rig.request(Request::Kind::start, &grip);
-    ASSERT_TRUE(rig.run_until_step(1, 20));
+    ASSERT_TRUE(rig.start_until_step(grip, 1));
     ASSERT_EQ(rig.result(0), GripResult::holding);
     ASSERT_NEAR(rig.board_kpa(0), -30, 1e-9);
   }
@@ -72,9 +70,7 @@ TEST_F(VacuumRig, AVacuumThatStaysIsSaid) {
   settings.safety.safe_action.fill(SafeAction::hold);
   const PreparedSequence held = vacuum_grip(settings);
   SimulatedRig rig(settings);
-  ASSERT_TRUE(rig.run_until(State::idle, 1));
-  rig.request(Request::Kind::start, &held);
-  ASSERT_TRUE(rig.run_until_step(1, 20));
+  ASSERT_TRUE(rig.start_until_step(held, 1));
   rig.request(Request::Kind::stop);
   ASSERT_TRUE(rig.run_until(State::idle, 2));
   EXPECT_EQ(rig.output().under_pressure, 3U);
@@ -110,9 +106,7 @@ TEST_F(VacuumRig, ACommandBelowRestThatTheBoardDoesNotHaveIsForgotten) {
   const PreparedSequence held = vacuum_grip(settings);
   for (const double outputs_kpa : {-4.0, 0.0, 25.0}) {
     SimulatedRig rig(settings);
-    ASSERT_TRUE(rig.run_until(State::idle, 1));
-    rig.request(Request::Kind::start, &held);
-    ASSERT_TRUE(rig.run_until_step(1, 20));
+    ASSERT_TRUE(rig.start_until_step(held, 1));
     rig.outputs_kpa = {outputs_kpa, outputs_kpa};
     rig.request(Request::Kind::stop);
     rig.tick();
@@ -141,9 +135,7 @@ TEST_F(VacuumRig, AReleaseToAPressureGoesNoFurtherThanRest) {
       "  - release: {pressure_kpa: 15, duration_s: 0.2, purge_s: 0.1, timeout_s: 5, on_fail: vent}\n",
       settings);
   SimulatedRig rig(settings);
-  ASSERT_TRUE(rig.run_until(State::idle, 1));
-  rig.request(Request::Kind::start, &release);
-  ASSERT_TRUE(rig.run_until_step(1, 20));
+  ASSERT_TRUE(rig.start_until_step(release, 1));
   while (rig.output().state == State::running) {
     rig.tick();
     ASSERT_LE(command(rig), 0) << "the other side of rest is not on the way";
@@ -213,9 +205,7 @@ TEST_F(VacuumRig, StepsAboveRestWorkAsOnARigWithoutVacuum) {
   const PreparedSequence pick = example_sequence("pick_stone", settings);
   SimulatedRig rig(settings);
   rig.stone(12);
-  ASSERT_TRUE(rig.run_until(State::idle, 1));
-  rig.request(Request::Kind::start, &pick);
-  ASSERT_TRUE(rig.run_until_step(2, 20));
+  ASSERT_TRUE(rig.start_until_step(pick, 2));
   EXPECT_EQ(rig.result(0), GripResult::holding);
   ASSERT_TRUE(rig.run_until(State::idle, 30));
   EXPECT_EQ(rig.result(0), GripResult::released);
