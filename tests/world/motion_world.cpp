@@ -134,11 +134,7 @@ class MotionWorld {
     tools::calibrate::Settings settings;
     settings.channel = static_cast<std::size_t>(drawn() * static_cast<double>(around_.hardware.channels()));
     settings.may_move = true;
-    const control::LimitSettings& limits = rig.settings.channels[settings.channel].limits;
-    const double rest_kpa = control::resting_kpa(limits);
-    const double span_kpa = control::far_end_kpa(limits) - rest_kpa;
-    settings.low_kpa = rest_kpa + span_kpa / 6;
-    settings.high_kpa = rest_kpa + 2 * span_kpa / 3;
+    tools::calibrate::set_places(settings, rig.settings.channels[settings.channel].limits);
     settings.settle_s = settings.average_s = 0.5;
     settings.ramp_s = 4;
     PersonInWorld person(around_, settings.channel, derived_seed(seed_, result_.met.calls));

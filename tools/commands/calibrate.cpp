@@ -76,15 +76,14 @@ std::string names_of(const rig::RigFile& rig) {
   return with_commas(rig.settings.channels, &control::ChannelSettings::name);
 }
 
-/// Pressures of the two places: as given, or a sixth and two thirds of the way from rest to the further
-/// limit.
+/// Pressures of the two places: as given, or those of set_places().
 std::optional<ExitCode> set_pressures(const CalibrateOptions& options, const control::LimitSettings& limits,
                                       calibrate::Settings& settings) {
-  const double rest_kpa = control::resting_kpa(limits);
-  const double span = control::far_end_kpa(limits) - rest_kpa;
-  const auto [low_kpa, high_kpa] = std::minmax({rest_kpa + span / 6, rest_kpa + 2 * span / 3});
-  settings.low_kpa = options.at_kpa.empty() ? low_kpa : options.at_kpa[0];
-  settings.high_kpa = options.at_kpa.empty() ? high_kpa : options.at_kpa[1];
+  calibrate::set_places(settings, limits);
+  if (!options.at_kpa.empty()) {
+    settings.low_kpa = options.at_kpa[0];
+    settings.high_kpa = options.at_kpa[1];
+  }
   const bool inside =
       settings.low_kpa >= limits.pressure_min_kpa && settings.high_kpa <= limits.pressure_max_kpa;
   if (inside && settings.low_kpa < settings.high_kpa) return std::nullopt;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <tuple>
 
 #include <fmt/format.h>
 
@@ -221,6 +222,13 @@ Expected<ValveVisit> visit_valve(const rig::RigFile& rig, MotionSession& session
 }
 
 }  // namespace
+
+void set_places(Settings& settings, const control::LimitSettings& limits) {
+  const double rest_kpa = control::resting_kpa(limits);
+  const double span_kpa = control::far_end_kpa(limits) - rest_kpa;
+  std::tie(settings.low_kpa, settings.high_kpa) =
+      std::minmax({rest_kpa + span_kpa / 6, rest_kpa + 2 * span_kpa / 3});
+}
 
 std::optional<double> typed_number(std::string text) {
   std::replace(text.begin(), text.end(), ',', '.');

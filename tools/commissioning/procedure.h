@@ -8,6 +8,7 @@
 #include <tl/expected.hpp>
 
 #include "base/exit_code.h"
+#include "control/elements/limits.h"
 #include "tools/commissioning/line_fit.h"
 #include "tools/commissioning/motion_session.h"
 
@@ -46,6 +47,9 @@ struct Settings {
   std::size_t repeats = 1;  ///< visits to each place
   double ramp_s = 10;       ///< of the dead zone's ramp
 };
+
+/// Sets the two places a sixth and two thirds of the way from rest to the further limit.
+void set_places(Settings& settings, const control::LimitSettings& limits);
 
 /// Why there is no calibration, and what the program exits with.
 struct Refusal {
