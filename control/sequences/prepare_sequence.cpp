@@ -276,7 +276,7 @@ class Fitting {
 
   /// A bound that the rest pressure satisfies cannot verify a grip.
   void check_pressure_bound(const Step& step, const ChannelSettings& channel) {
-    const bool below = std::isfinite(step.verify.pressure_max_kpa);
+    const bool below = step.verify.below();
     const double bound_kpa = below ? step.verify.pressure_max_kpa : step.verify.pressure_min_kpa;
     check_pressure(step, channel, bound_kpa, bound_kpa);
     const double rest_kpa = resting_kpa(channel.limits);

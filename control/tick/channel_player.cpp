@@ -286,10 +286,9 @@ Progress ChannelPlayer::release(double time_s) noexcept {
 
 void ChannelPlayer::watch_from(double time_s, double interval_s) noexcept {
   const bool pressure = held_by_.by == VerifyBy::pressure;
-  const bool below = std::isfinite(held_by_.pressure_max_kpa);
   const bool position = held_by_.by == VerifyBy::position;
   hold_.start(time_s, interval_s,
-              pressure   ? (below ? -held_by_.pressure_max_kpa : held_by_.pressure_min_kpa)
+              pressure   ? (held_by_.below() ? -held_by_.pressure_max_kpa : held_by_.pressure_min_kpa)
               : position ? 0.5
                          : 0.5 * traits_.margin_mm);
 }
@@ -300,7 +299,7 @@ bool ChannelPlayer::watch(double time_s, const ChannelOutput& seen) noexcept {
                       seen.displacement_mm <= held_by_.displacement_max_mm;
   double evidence = inside ? deficit_mm_ : 0;
   if (held_by_.by == VerifyBy::pressure) {
-    evidence = std::isfinite(held_by_.pressure_max_kpa) ? -seen.pressure_kpa : seen.pressure_kpa;
+    evidence = held_by_.below() ? -seen.pressure_kpa : seen.pressure_kpa;
   } else if (held_by_.by == VerifyBy::position) {
     evidence = inside ? 1 : 0;
   }

@@ -2,6 +2,7 @@
 // Grip sequences as plain values: as written (Sequence), and fitted to one rig (PreparedSequence).
 // The keys of the file carry the same names; docs/reference/sequence-file.md describes them.
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -85,6 +86,8 @@ struct Verify {
   double displacement_max_mm = std::numeric_limits<double>::infinity();   ///< both must agree
   double pressure_min_kpa = 0;                                        ///< of pressure, for grips above rest
   double pressure_max_kpa = std::numeric_limits<double>::infinity();  ///< of pressure, for grips below rest
+  /// By a pressure that is below rest.
+  [[nodiscard]] bool below() const noexcept { return std::isfinite(pressure_max_kpa); }
 };
 
 /// A point of a piecewise linear profile.
