@@ -104,7 +104,7 @@ class Cost {
     models_ = draws_of(scheme, options.search_draws, derived_seed(options.seed, 1000), refused);
   }
   double operator()(const PidSettings& pid) const {
-    const double sensitivity = control::loop_margins(finger_, pid, 60, tick_s, tick_s).sensitivity;
+    const double sensitivity = control::loop_margins(finger_, pid, {0, 60}, tick_s, tick_s).sensitivity;
     if (sensitivity > options_.max_sensitivity) return 10 + std::min(100.0, sensitivity);
     double squares = 0;
     for (std::size_t i = 0; i < models_.size(); ++i) {
@@ -168,7 +168,7 @@ void study(const Scheme& scheme, const Options& options, const model::Model& fin
     }
     control::TrackingRun exact = run_of(scheme, options, finger, frequency, pid);
     exact.seed = derived_seed(options.seed, 9999);
-    const double sensitivity = control::loop_margins(finger, pid, 60, tick_s, tick_s).sensitivity;
+    const double sensitivity = control::loop_margins(finger, pid, {0, 60}, tick_s, tick_s).sensitivity;
     std::printf(
         "  %.2f Hz: RMSE %.4f mm [%.4f, %.4f], worst %.3f mm, model exact %.4f mm; "
         "kp %.4g ki %.4g kd %.3g, Ms %.2f; model residual %.3f mm, cut %.1f %%, out of reach %.1f %%\n",

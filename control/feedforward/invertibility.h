@@ -21,8 +21,9 @@ struct Refusal {
   [[nodiscard]] std::string with_advice() const;
 };
 
-/// Checks that `settings.kind` can be computed for `model` over the working range (0 to pressure_max_kpa,
-/// every hysteresis state reachable in it). A refusal names the block or the numbers.
+/// Checks that `settings.kind` can be computed for `model` over the working range (from 0 kPa to
+/// pressure_max_kpa, and to a pressure_min_kpa below 0; every hysteresis state reachable in it). A refusal
+/// names the block or the numbers.
 [[nodiscard]] tl::expected<void, Refusal> check_feedforward(const model::Model& model,
                                                             const FeedforwardSettings& settings,
                                                             const LimitSettings& limits, double tick_s);

@@ -12,19 +12,27 @@
 namespace softgrip::control {
 namespace {
 
-/// Readings on the way.
-std::vector<double> along_the_way(const model::Model& model, double pressure_max_kpa) {
+/// Readings on the way, on both sides of 0 kPa as far as the limits reach.
+std::vector<double> along_the_way(const model::Model& model, const LimitSettings& limits) {
   constexpr int steps = 100;
   constexpr double step_s = 0.05;
   model::Chain<double> chain(model, {}, step_s);
   chain.reset(0);
   std::vector<double> reading_mm;
-  for (const double end : {1.0, 0.0, 1.0, 0.0}) {
+  double from_kpa = 0;
+  const auto go = [&](double to_kpa) {
     for (int i = 1; i <= steps; ++i) {
-      const double share = static_cast<double>(i) / steps;
-      chain.step(step_s, pressure_max_kpa * (end > 0 ? share : 1 - share));
+      chain.step(step_s, from_kpa + (to_kpa - from_kpa) * i / steps);
       reading_mm.push_back(chain.reading_mm());
     }
+    from_kpa = to_kpa;
+  };
+  for (int cycle = 0; cycle < 2; ++cycle) {
+    go(limits.pressure_max_kpa);
+    go(0);
+    if (limits.pressure_min_kpa >= 0) continue;
+    go(limits.pressure_min_kpa);
+    go(0);
   }
   return reading_mm;
 }
@@ -57,13 +65,13 @@ std::optional<InvertiblePart> invertible_part(const model::Model& model, const L
     if (part.left_out.empty()) return std::nullopt;
     return part;
   }
-  const std::vector<double> whole = along_the_way(part.model, limits.pressure_max_kpa);
+  const std::vector<double> whole = along_the_way(part.model, limits);
   std::optional<std::size_t> least_missed;
   double least = 0;
   for (const model::BlockSpec& block : part.model.blocks) {
     const model::Model without = model::without_block(part.model, block.type);
     if (!is_accepted(without)) continue;
-    const double missed = square_sum(whole, along_the_way(without, limits.pressure_max_kpa));
+    const double missed = square_sum(whole, along_the_way(without, limits));
     if (least_missed && !(missed < least)) continue;
     least_missed = block.type;
     least = missed;

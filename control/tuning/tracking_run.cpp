@@ -88,13 +88,12 @@ struct GainRange {
   double largest = 0;
 };
 
-GainRange gain_range(const model::Model& body, double pressure_max_kpa) {
-  GainRange range;
+void look_at_gains(const model::Model& body, double end_kpa, GainRange& range) {
   model::Chain<double> chain(body);
   constexpr int steps = 100;
-  for (const bool rising : {true, false, true, false}) {
+  for (const bool leaving : {true, false, true, false}) {
     for (int i = 0; i <= steps; ++i) {
-      const double pressure = pressure_max_kpa * (rising ? i : steps - i) / steps;
+      const double pressure = end_kpa * (leaving ? i : steps - i) / steps;
       chain.step(0, pressure);
       for (const double aside : {1e-7, -1e-7}) {
         const double gain = chain.peek(0.0, model::Dual<double>(pressure + aside, 1)).v;
@@ -103,6 +102,12 @@ GainRange gain_range(const model::Model& body, double pressure_max_kpa) {
       }
     }
   }
+}
+
+GainRange gain_range(const model::Model& body, const LimitSettings& limits) {
+  GainRange range;
+  look_at_gains(body, limits.pressure_max_kpa, range);
+  if (limits.pressure_min_kpa < 0) look_at_gains(body, limits.pressure_min_kpa, range);
   return range;
 }
 
@@ -194,10 +199,10 @@ model::Model with_scatter(const model::Model& model, double relative, std::uint6
   return model::with_values(model, values);
 }
 
-LoopMargins loop_margins(const model::Model& model, const PidSettings& pid, double pressure_max_kpa,
+LoopMargins loop_margins(const model::Model& model, const PidSettings& pid, const LimitSettings& limits,
                          double tick_s, double age_s) {
   const model::Model body = body_of(model);
-  const GainRange gains = gain_range(body, pressure_max_kpa);
+  const GainRange gains = gain_range(body, limits);
   double lag_s = 0;
   if (const auto lag = model::find_path(model, "valve_lag.time_constant_s")) {
     lag_s = model::flat_values(model)[*lag];

@@ -63,9 +63,10 @@ struct LoopMargins {
   double sensitivity = 0;   ///< Ms, the largest of |1/(1+L)|; infinite for an unstable loop
   double crossover_hz = 0;  ///< lowest frequency at which |L| = 1
 };
-/// The worst over the smallest and the largest instantaneous gain that the model shows between 0 and
-/// pressure_max_kpa, with the model's dead time, the hold's half tick and `age_s` of the reading.
+/// The worst over the smallest and the largest instantaneous gain that the model shows on both sides of 0
+/// kPa, as far as the pressure range reaches, with the model's dead time, the hold's half tick and `age_s` of
+/// the reading.
 [[nodiscard]] LoopMargins loop_margins(const model::Model& model, const PidSettings& pid,
-                                       double pressure_max_kpa, double tick_s, double age_s);
+                                       const LimitSettings& limits, double tick_s, double age_s);
 
 }  // namespace softgrip::control

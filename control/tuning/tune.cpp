@@ -60,8 +60,8 @@ class Cost {
     LoopMargins worst;
     worst.crossover_hz = 0.5 * task_.rate_hz;
     for (const model::Model& finger : fingers_) {
-      const LoopMargins one = loop_margins(finger, pid, task_.channel.limits.pressure_max_kpa, tick_s_,
-                                           tick_s_ + task_.exchange_s);
+      const LoopMargins one =
+          loop_margins(finger, pid, task_.channel.limits, tick_s_, tick_s_ + task_.exchange_s);
       worst.sensitivity = std::max(worst.sensitivity, one.sensitivity);
       worst.crossover_hz = std::min(worst.crossover_hz, one.crossover_hz);
       if (worst.sensitivity > task_.most_sensitivity) break;
@@ -171,7 +171,7 @@ void choose_reference(TuneTask& task) {
   body.reset(resting_kpa(limits));
   const double rest_mm = body.after(model::Station::load);
   body.reset(far_end_kpa(limits));
-  const double far_mm = std::min(body.after(model::Station::load), limits.displacement_max_mm);
+  const double far_mm = limit_reference(limits, body.after(model::Station::load)).reference_mm;
   task.mean_mm = rest_mm + 0.45 * (far_mm - rest_mm);
   task.amplitude_mm = 0.22 * std::abs(far_mm - rest_mm);
 }

@@ -136,7 +136,7 @@ class Rigs {
 
   [[nodiscard]] double cost(control::TrackingRun run, const control::PidSettings& pid) const {
     const double sensitivity =
-        control::loop_margins(rigs_[0], pid, question_.pressure_max_kpa, 1 / rate_hz, 1 / rate_hz)
+        control::loop_margins(rigs_[0], pid, {0, question_.pressure_max_kpa}, 1 / rate_hz, 1 / rate_hz)
             .sensitivity;
     if (!(sensitivity <= largest_sensitivity)) return 1000 + std::min(100.0, sensitivity);
     run.settings.pid = pid;

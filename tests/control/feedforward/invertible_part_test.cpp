@@ -43,6 +43,13 @@ TEST(InvertiblePart, OfThePublishedFingerItIsTheCreepAlone) {
   EXPECT_EQ(part->left_out, std::vector<std::string>{"bouc_wen"});
 }
 
+TEST(InvertiblePart, IsMissedOnBothSides) {
+  const LimitSettings vacuum{-60, 1, 400, 400, -25, 1, 1};
+  const auto part = invertible_part(model_named("zhang2025"), vacuum, sim::tick_s);
+  ASSERT_TRUE(part);
+  EXPECT_EQ(part->left_out, std::vector<std::string>{"bouc_wen"});
+}
+
 TEST(InvertiblePart, WhatMovesNothingHasNone) {
   const model::Model valve = model::only(model_named("bench_twin"), [](const model::BlockInfo& info) {
     return info.station == model::Station::valve;

@@ -23,6 +23,8 @@ using sim::tick_s;
 /// The gains that the search of bench/tracking_study.cpp finds for every scheme at Ms <= 2.
 constexpr PidSettings found{2.7, 13, 0, 0.02, 1, AntiWindup::back_calculation, 0.5};
 
+constexpr LimitSettings to_60_kpa{0, 60};
+
 TrackingRun run_with(FeedforwardKind kind, std::uint64_t seed) {
   TrackingRun run;
   run.finger = model_named("bench_twin");
@@ -143,16 +145,17 @@ TEST(LoopMargins, AgreeWithAnIntegratorByHand) {
   set("transport_delay.delay_s", 0.1);
   model = model::with_values(model, values);
   const double dead_s = 0.1 + 0.5 * tick_s + tick_s;
-  const LoopMargins half = loop_margins(model, {5, 0, 0, 0.02, 1, AntiWindup::none, 1}, 60, tick_s, tick_s);
+  const LoopMargins half =
+      loop_margins(model, {5, 0, 0, 0.02, 1, AntiWindup::none, 1}, to_60_kpa, tick_s, tick_s);
   EXPECT_NEAR(half.crossover_hz, 5 / (2 * M_PI), 0.01);
   EXPECT_GT(half.sensitivity, 1.5);
   // The stability limit of an integrator with a dead time is K L = pi/2.
   const double limit = M_PI / 2 / dead_s;
   EXPECT_TRUE(std::isfinite(
-      loop_margins(model, {0.98 * limit, 0, 0, 0.02, 1, AntiWindup::none, 1}, 60, tick_s, tick_s)
+      loop_margins(model, {0.98 * limit, 0, 0, 0.02, 1, AntiWindup::none, 1}, to_60_kpa, tick_s, tick_s)
           .sensitivity));
   EXPECT_FALSE(std::isfinite(
-      loop_margins(model, {1.02 * limit, 0, 0, 0.02, 1, AntiWindup::none, 1}, 60, tick_s, tick_s)
+      loop_margins(model, {1.02 * limit, 0, 0, 0.02, 1, AntiWindup::none, 1}, to_60_kpa, tick_s, tick_s)
           .sensitivity));
 }
 
@@ -174,10 +177,8 @@ double smallest_gain(const model::Model& model, double pressure_max_kpa) {
   return smallest;
 }
 
-// Under an integrator alone |L| = ki gain / (2 pi f): the crossover says what the smallest gain was taken to
-// be. This finger is stiffest at the very end of its second unloading, 2.7 times as stiff as anywhere before
-// it.
-TEST(LoopMargins, AreThoseOfTheStiffestPlaceOfTwoCycles) {
+/// This finger is stiffest at the very end of its second unloading, 2.7 times as stiff as anywhere before it.
+model::Model stiff_at_its_end() {
   model::Model model = model::with_block({}, model::block_of<model::BoucWen>({{"alpha_mm_per_kpa", 0.39},
                                                                               {"beta_mm_per_kpa", 0.158},
                                                                               {"gamma_per_kpa", 0.002},
@@ -188,16 +189,34 @@ TEST(LoopMargins, AreThoseOfTheStiffestPlaceOfTwoCycles) {
                  {{"beta_share", -0.35}, {"delta_per_kpa", -0.0004}, {"epsilon_per_kpa", 0.0129}}));
   model = model::with_block(model,
                             model::block_of<model::Characteristic>({{"curvature", 1.59}, {"span_mm", 20}}));
+  return model;
+}
+
+// Under an integrator alone |L| = ki gain / (2 pi f): the crossover says what the smallest gain was taken to
+// be.
+TEST(LoopMargins, AreThoseOfTheStiffestPlaceOfTwoCycles) {
+  const model::Model model = stiff_at_its_end();
   const double gain = smallest_gain(model, 60);
   ASSERT_GT(gain, 0);
   const double ki = 1 / gain;
   const LoopMargins margins =
-      loop_margins(model, {0, ki, 0, 0.02, 1, AntiWindup::none, 1}, 60, tick_s, tick_s);
+      loop_margins(model, {0, ki, 0, 0.02, 1, AntiWindup::none, 1}, to_60_kpa, tick_s, tick_s);
   EXPECT_NEAR(2 * M_PI * margins.crossover_hz / (ki * gain), 1, 0.01);
 }
 
+TEST(LoopMargins, LookAtBothSidesOfTheRange) {
+  const auto margins = [](const LimitSettings& limits) {
+    return loop_margins(stiff_at_its_end(), {0, 1, 0, 0.02, 1, AntiWindup::none, 1}, limits, tick_s, tick_s);
+  };
+  const LoopMargins above = margins({0, 10});
+  const LoopMargins below = margins({-60, 10});
+  EXPECT_GT(std::abs(below.crossover_hz / above.crossover_hz - 1) +
+                std::abs(below.sensitivity / above.sensitivity - 1),
+            0.01);
+}
+
 TEST(LoopMargins, OfTheRigsGainsAreThoseThatWereAskedFor) {
-  const LoopMargins margins = loop_margins(model_named("bench_twin"), found, 60, tick_s, tick_s);
+  const LoopMargins margins = loop_margins(model_named("bench_twin"), found, to_60_kpa, tick_s, tick_s);
   EXPECT_LT(margins.sensitivity, 2.05);
 }
 

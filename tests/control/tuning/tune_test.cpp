@@ -42,8 +42,8 @@ TEST(Tune, TellsTheMarginsOfTheWorstFinger) {
   task.draws = 1;
   const Tuned tuned = tune(task);
   const double tick_s = 1 / task.rate_hz;
-  const LoopMargins margins = loop_margins(task.finger, tuned.pid, task.channel.limits.pressure_max_kpa,
-                                           tick_s, tick_s + task.exchange_s);
+  const LoopMargins margins =
+      loop_margins(task.finger, tuned.pid, task.channel.limits, tick_s, tick_s + task.exchange_s);
   EXPECT_EQ(tuned.sensitivity, margins.sensitivity);
   EXPECT_EQ(tuned.crossover_hz, margins.crossover_hz);
 }
@@ -147,6 +147,17 @@ TEST(Tune, TheReferenceIsWithinReach) {
   choose_reference(task);
   EXPECT_GT(task.mean_mm - task.amplitude_mm, 1);
   EXPECT_LT(task.mean_mm + task.amplitude_mm, 30);
+}
+
+TEST(Tune, TheReferenceIsWithinReachBelowRest) {
+  TuneTask task = quick_task(FeedforwardKind::none);
+  LimitSettings& limits = task.channel.limits;
+  limits.pressure_min_kpa = -80;
+  limits.pressure_max_kpa = 10;
+  limits.displacement_min_mm = -5;
+  choose_reference(task);
+  EXPECT_LT(task.mean_mm, 0);
+  EXPECT_GT(task.mean_mm - task.amplitude_mm, limits.displacement_min_mm);
 }
 
 // The published model has no inverse. Its plan and its PID against its PID alone, each tuned alike.
