@@ -46,20 +46,32 @@ std::string about(double value) {
   return significant(std::round(value / unit) * unit, 6);
 }
 
+/// One end of the pressure range, and the end of the displacement range to which it moves the finger.
+struct Reach {
+  const char* pressure;
+  const char* displacement;
+  double end_mm;
+  double limit_mm;
+};
+
 void compare_reach(const document::Document& document, const control::ChannelSettings& channel,
                    std::size_t index, const control::FreeMotion& motion, document::Problems& problems) {
   const control::LimitSettings& limits = channel.limits;
-  const double allowed_mm = limits.displacement_max_mm - motion.rest_mm;
-  const double travel_mm = motion.highest_mm - motion.rest_mm;
-  if (!(allowed_mm > 0) || !(travel_mm > most_times_too_far * allowed_mm)) return;
-  const double enough_kpa = control::FreeCurve(channel.model, limits).command_kpa(limits.displacement_max_mm);
-  problems.warn(
-      document.problem(place_of(document, index, "limits", "pressure_max_kpa"),
-                       "at `pressure_max_kpa` the model of channel `" + channel.name + "` goes to " +
-                           about(motion.highest_mm) + " mm, " + about(travel_mm / allowed_mm) +
-                           " times as far as `displacement_max_mm` (" +
-                           significant(limits.displacement_max_mm, 6) + " mm) allows",
-                       "pressure_max_kpa: " + about(enough_kpa) + " is where the model reaches it"));
+  for (const Reach& reach :
+       {Reach{"pressure_max_kpa", "displacement_max_mm", motion.highest_mm, limits.displacement_max_mm},
+        Reach{"pressure_min_kpa", "displacement_min_mm", motion.lowest_mm, limits.displacement_min_mm}}) {
+    const double allowed_mm = reach.limit_mm - motion.rest_mm;
+    const double times = (reach.end_mm - motion.rest_mm) / allowed_mm;
+    if (allowed_mm == 0 || !(times > most_times_too_far)) continue;
+    const double enough_kpa = control::FreeCurve(channel.model, limits).command_kpa(reach.limit_mm);
+    const std::string pressure = reach.pressure;
+    problems.warn(document.problem(place_of(document, index, "limits", pressure),
+                                   "at `" + pressure + "` the model of channel `" + channel.name +
+                                       "` goes to " + about(reach.end_mm) + " mm, " + about(times) +
+                                       " times as far as `" + reach.displacement + "` (" +
+                                       significant(reach.limit_mm, 6) + " mm) allows",
+                                   pressure + ": " + about(enough_kpa) + " is where the model reaches it"));
+  }
 }
 
 void compare_speed(const document::Document& document, const control::ChannelSettings& channel,

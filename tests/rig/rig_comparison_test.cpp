@@ -65,6 +65,21 @@ TEST_F(RigComparisonTest, APressureAtWhichTheModelGoesFarBeyondItsDisplacement) 
   EXPECT_EQ(compare().format().find("displacement_max_mm"), std::string::npos) << "what it advises is good";
 }
 
+TEST_F(RigComparisonTest, APressureBelowRestAtWhichTheModelGoesFarBeyondItsDisplacement) {
+  change("pressure_min_kpa: 0", "pressure_min_kpa: -40");
+  change("_kpa: \\[0, 100\\]", "_kpa: [-100, 100]");
+  change("displacement_min_mm: -1", "displacement_min_mm: -2");
+  ASSERT_EQ(compare().warnings().size(), 2U) << problems.format();
+  const document::Problem& first = problems.warnings()[0];
+  EXPECT_NE(first.message.find("`pressure_min_kpa` the model of channel `left` goes to -"), std::string::npos)
+      << first.message;
+  EXPECT_EQ(first.line_text, "    pressure_min_kpa: -40");
+  std::smatch found;
+  ASSERT_TRUE(std::regex_search(first.hint, found, std::regex("pressure_min_kpa: (-[\\d.]+)"))) << first.hint;
+  change("pressure_min_kpa: -40", "pressure_min_kpa: " + found[1].str());
+  EXPECT_EQ(compare().format().find("displacement_min_mm"), std::string::npos) << "what it advises is good";
+}
+
 TEST_F(RigComparisonTest, ASpeedThatNoFingerHas) {
   change("max_speed_mm_per_s: 500", "max_speed_mm_per_s: 50000");
   ASSERT_EQ(compare().warnings().size(), 2U) << problems.format();
