@@ -97,8 +97,9 @@ void read_gpio(Context& context, MapReader& top);
 [[nodiscard]] control::PlausibilitySettings read_plausibility(Context& context, const document::Node& node);
 [[nodiscard]] control::ModelHealthSettings read_model_health(Context& context, const document::Node& node);
 
-/// True if a pressure is the rest pressure, within 1 % of the range. If the limits only keep the channel from
-/// 0 kPa, all pressures from there to the rest pressure count.
+/// Returns 0 kPa if the limits only keep a channel from it at rest; else the rest pressure.
+[[nodiscard]] double vented_kpa(const control::LimitSettings& limits);
+/// True if a pressure is the rest pressure, within 1 % of the range, or between it and vented_kpa().
 [[nodiscard]] bool is_rest(const control::LimitSettings& limits, double pressure_kpa);
 
 /// How a channel is wired. `rest_stated`: the file gives the channel's `rest_kpa`.

@@ -40,9 +40,7 @@ simulation::SimulatedChannel simulated_channel(const Context& context, std::size
   channel.measures_temperature = wiring.temperature.has_value();
   channel.valve_min_kpa = context.rig.valves[index].range_min_kpa;
   channel.valve_max_kpa = context.rig.valves[index].range_max_kpa;
-  const control::LimitSettings& limits = context.rig.settings.channels[index].limits;
-  const double rest_kpa = control::resting_kpa(limits);
-  channel.vented_kpa = rest_kpa > limits.pressure_min_kpa ? rest_kpa : std::min(0.0, rest_kpa);
+  channel.vented_kpa = vented_kpa(context.rig.settings.channels[index].limits);
   const drivers::InputWiring& sensor = wiring.displacement;
   const double a = sensor.scaling.y_at(sensor.valid_min);
   const double b = sensor.scaling.y_at(sensor.valid_max);

@@ -217,11 +217,15 @@ void check_sensor(MapReader& reader, const drivers::InputWiring& wiring,
 
 }  // namespace
 
+double vented_kpa(const control::LimitSettings& limits) {
+  const double rest_kpa = control::resting_kpa(limits);
+  return control::in_range(limits, 0) == rest_kpa ? 0 : rest_kpa;
+}
+
 bool is_rest(const control::LimitSettings& limits, double pressure_kpa) {
   const double slack_kpa = 0.01 * (limits.pressure_max_kpa - limits.pressure_min_kpa);
-  const double rest_kpa = control::resting_kpa(limits);
-  const bool nearest_to_air = control::in_range(limits, 0) == rest_kpa;
-  const double inside_kpa = control::no_further(rest_kpa, pressure_kpa, nearest_to_air ? 0 : rest_kpa);
+  const double inside_kpa =
+      control::no_further(control::resting_kpa(limits), pressure_kpa, vented_kpa(limits));
   return std::abs(pressure_kpa - inside_kpa) <= slack_kpa;
 }
 

@@ -237,6 +237,13 @@ TEST(RestPressure, IsOfTheChannelAndZeroWithoutTheKey) {
   const auto& board = std::get<simulation::SimulatedBoardSettings>(own.rig.board);
   EXPECT_EQ(board.channels[0].vented_kpa, 0);
   EXPECT_EQ(board.channels[1].vented_kpa, -12);
+  const auto vacuum = edited("vacuum/rig.yaml",
+                             {{"pressure_min_kpa: -40", "pressure_min_kpa: -80"},
+                              {"pressure_max_kpa: 60", "pressure_max_kpa: -10"},
+                              {"  rest_kpa: 0 ", "  rest_kpa: -10 "}},
+                             problems);
+  EXPECT_EQ(std::get<simulation::SimulatedBoardSettings>(vacuum.rig.board).channels[0].vented_kpa, 0)
+      << "only the limits keep it from 0 kPa";
 }
 
 TEST(RestPressure, BeyondTheLimitsIsRefusedWithTheRange) {
