@@ -47,6 +47,7 @@ class ChannelController {
   /// How far ahead of now the feedforward asks the reference. A reference that changes its mind does so
   /// without a step when it is cut at now + preview_s().
   [[nodiscard]] double preview_s() const noexcept { return feedforward_.preview_s(); }
+  [[nodiscard]] const LimitSettings& limits() const noexcept { return limits_; }
   /// What resynchronising added to the model [mm].
   [[nodiscard]] double offset_mm() const noexcept { return offset_mm_; }
 

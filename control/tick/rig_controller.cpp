@@ -33,9 +33,6 @@ RigController::Channel::Channel(const RigSettings& rig, const ChannelSettings& s
     : controller(settings, 1 / rig.rate_hz),
       // Without sight a finger is at rest when its command has not been changed.
       rest(settings.displacement_used ? rig.rest_band_mm : 0, rig.rest_time_s),
-      within(settings.limits),
-      rest_kpa(resting_kpa(settings.limits)),
-      tick_s(1 / rig.rate_hz),
       longest_age(nanoseconds(settings.plausibility.max_age_s)),
       sighted(settings.displacement_used) {}
 
@@ -44,7 +41,7 @@ bool RigController::Channel::valid(const ChannelOutput& seen) const noexcept {
 }
 
 bool RigController::Channel::at_rest(const ChannelOutput& seen) const noexcept {
-  return seen.command_kpa == rest_kpa;
+  return seen.command_kpa == rest_kpa();
 }
 
 bool RigController::Channel::rests(double time_s, const ChannelOutput& seen) noexcept {
@@ -53,7 +50,8 @@ bool RigController::Channel::rests(double time_s, const ChannelOutput& seen) noe
 }
 
 RigController::RigController(const RigSettings& settings)
-    : rest_timeout_s_(settings.rest_timeout_s),
+    : tick_s_(1 / settings.rate_hz),
+      rest_timeout_s_(settings.rest_timeout_s),
       margin_mm_(settings.detection.margin_mm),
       monitor_(settings),
       supervisor_(settings) {
@@ -94,11 +92,11 @@ void RigController::stay_within_outputs(std::size_t index, double last_kpa, cons
   if (may_rise(supervisor_.state()) || index >= input.outputs_kpa.size()) return;
   const Channel& channel = channels_[index];
   double& command_kpa = output_.channels[index].command_kpa;
-  double allowed_kpa = no_further(channel.rest_kpa, command_kpa, input.outputs_kpa[index]);
+  double allowed_kpa = no_further(channel.rest_kpa(), command_kpa, input.outputs_kpa[index]);
   if (!inhibits(input.bus.fault)) {
-    allowed_kpa = limit(channel.within, allowed_kpa, last_kpa, channel.tick_s).command_kpa;
+    allowed_kpa = limit(channel.controller.limits(), allowed_kpa, last_kpa, tick_s_).command_kpa;
   }
-  command_kpa = no_further(channel.rest_kpa, allowed_kpa, command_kpa);
+  command_kpa = no_further(channel.rest_kpa(), allowed_kpa, command_kpa);
 }
 
 /// What the tick before saw is what this one decides on. After a gap it says nothing any more, neither that a
@@ -257,7 +255,8 @@ void RigController::look_for_pressure() noexcept {
   output_.under_pressure = 0;
   if (moves(output_.state)) return;
   for (std::size_t i = 0; i < channels_.size(); ++i) {
-    const bool pressed = std::abs(output_.channels[i].command_kpa - channels_[i].rest_kpa) > unpressed_kpa;
+    const bool pressed =
+        std::abs(output_.channels[i].command_kpa - channels_[i].rest_kpa()) > unpressed_kpa;
     output_.under_pressure |= pressed ? channel_bit(i) : 0;
   }
 }
@@ -271,7 +270,7 @@ void RigController::conclude() noexcept {
     channel.result = played.result();
     channel.evidence = played.evidence();
     channel.step = player_.step();
-    channel.safe_kpa = (venting & channel_bit(i)) != 0 ? channels_[i].rest_kpa : channel.command_kpa;
+    channel.safe_kpa = (venting & channel_bit(i)) != 0 ? channels_[i].rest_kpa() : channel.command_kpa;
   }
 }
 

@@ -36,6 +36,7 @@ class RigController {
   /// One finger and what is particular of it.
   struct Channel {
     Channel(const RigSettings& rig, const ChannelSettings& settings);
+    [[nodiscard]] double rest_kpa() const noexcept { return resting_kpa(controller.limits()); }
     [[nodiscard]] bool valid(const ChannelOutput& seen) const noexcept;
     [[nodiscard]] bool at_rest(const ChannelOutput& seen) const noexcept;
     [[nodiscard]] bool rests(double time_s, const ChannelOutput& seen) noexcept;
@@ -43,9 +44,6 @@ class RigController {
     ChannelController controller;
     RestWatch rest;
     LimitWatch limits;
-    LimitSettings within;
-    double rest_kpa;
-    double tick_s;
     Nanoseconds longest_age;  ///< of a reading
     bool sighted;             ///< it uses its displacement
     bool valid_before = true;
@@ -70,6 +68,7 @@ class RigController {
   void conclude() noexcept;
   void look_for_pressure() noexcept;
 
+  double tick_s_;
   double rest_timeout_s_;
   double margin_mm_;
   std::vector<Channel> channels_;
