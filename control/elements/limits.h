@@ -55,6 +55,12 @@ struct LimitedCommand {
   return above ? limits.pressure_max_kpa : limits.pressure_min_kpa;
 }
 
+/// True if a pressure is so far from rest that a channel under it counts as pressed.
+[[nodiscard]] inline bool pressed(const LimitSettings& limits, double pressure_kpa) noexcept {
+  constexpr double unpressed_kpa = 0.1;
+  return std::abs(pressure_kpa - resting_kpa(limits)) > unpressed_kpa;
+}
+
 /// No ceiling but the pressure range's.
 inline constexpr double no_ceiling = std::numeric_limits<double>::infinity();
 

@@ -14,8 +14,6 @@ namespace {
 constexpr std::array<std::string_view, 6> state_names{"starting", "idle",     "resynchronising",
                                                       "running",  "stopping", "faulted"};
 constexpr std::array<std::string_view, 4> end_names{"done", "failed", "stopped", "faulted"};
-/// From the rest pressure by less is no pressure to speak of.
-constexpr double unpressed_kpa = 0.1;
 ChannelPlayer player_of(const RigSettings& rig, const ChannelSettings& channel, double preview_s) {
   return ChannelPlayer(
       {rig.detection.margin_mm, resting_kpa(channel.limits), preview_s, channel.displacement_used});
@@ -255,9 +253,8 @@ void RigController::look_for_pressure() noexcept {
   output_.under_pressure = 0;
   if (moves(output_.state)) return;
   for (std::size_t i = 0; i < channels_.size(); ++i) {
-    const bool pressed =
-        std::abs(output_.channels[i].command_kpa - channels_[i].rest_kpa()) > unpressed_kpa;
-    output_.under_pressure |= pressed ? channel_bit(i) : 0;
+    const bool on = pressed(channels_[i].controller.limits(), output_.channels[i].command_kpa);
+    output_.under_pressure |= on ? channel_bit(i) : 0;
   }
 }
 

@@ -135,8 +135,7 @@ void DaemonParts::conclude(Outcome& outcome) {
   if (!options.record_folder.empty()) outcome.recording_error = recorder.status().error;
   outcome.left_safely = wires.left_safely.load(std::memory_order_acquire);
   for (std::size_t i = 0; i < outcome.last.channel_count; ++i) {
-    const bool on =
-        outcome.last.channels[i].safe_kpa != control::resting_kpa(rig.settings.channels[i].limits);
+    const bool on = control::pressed(rig.settings.channels[i].limits, outcome.last.channels[i].safe_kpa);
     outcome.pressure_left_on = outcome.pressure_left_on || on;
     if (on) outcome.vents_after_s = seconds(board->watchdog_time().count());
   }

@@ -70,7 +70,7 @@ struct Outcome {
   std::vector<std::string> channel_names;
   std::string recording_error;    ///< why record_folder does not hold all of the run; empty: it does
   bool left_safely = false;       ///< the board confirmed the safe outputs at the end
-  bool pressure_left_on = false;  ///< the safe outputs of a channel are not its rest pressure
+  bool pressure_left_on = false;  ///< control::pressed() of the safe output of a channel
   double vents_after_s = 0;  ///< pressure was left on, and the board's watchdog vents it so soon; 0: neither
   int signal = 0;  ///< the first signal that asked for the end, until the outputs were safe; 0: none
   std::uint64_t ticks = 0;

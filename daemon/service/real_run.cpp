@@ -81,7 +81,7 @@ class RealRun {
   bool listen();
   /// Says what was found beside the lock, and keeps the rig for the safe outputs after a crash.
   void note_and_keep(const BoardLock& lock);
-  void forget_if_lowest();
+  void forget_if_rested();
   void start_threads();
   void start();
   /// An exception of this thread must not leave the others alone: it is noted, and the run ends in order.
@@ -361,7 +361,7 @@ void RealRun::note_and_keep(const BoardLock& lock) {
 }
 
 /// As long as pressure may be on, the safe outputs need the rig that put it there.
-void RealRun::forget_if_lowest() {
+void RealRun::forget_if_rested() {
   if (outcome_.left_safely && !outcome_.pressure_left_on) forget_rig(parts_.rig.path);
 }
 
@@ -384,7 +384,7 @@ Outcome RealRun::run() {
   }
   stop();
   parts_.conclude(outcome_);
-  forget_if_lowest();
+  forget_if_rested();
   if (outcome_.ending == Ending::broken) outcome_.message = broken_text_;
   outcome_.wall_s = seconds(parts_.clock.now() - start_);
   guarded([this] { parts_.deliver_events(); });

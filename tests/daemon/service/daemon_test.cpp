@@ -50,6 +50,29 @@ TEST(Daemon, RunsASequenceAndReportsItsResult) {
   EXPECT_NE(std::find(kinds.begin(), kinds.end(), "sequence_finished"), kinds.end());
 }
 
+TEST(Daemon, APressureLeftOnIsOneThatIsUnderPressure) {
+  for (const auto& [kpa, on] : {std::pair{"0.05", false}, {"5", true}}) {
+    rig::RigFile rig = testing::example_rig("rig.yaml");
+    rig.recorder.mode = rig::RecorderSettings::Mode::off;
+    rig.settings.safety.safe_action.fill(control::SafeAction::hold);
+    DaemonOptions options;
+    options.virtual_time = true;
+    const auto loaded =
+        SequenceLoader(rig.settings, "")
+            .load_text("press.yaml", std::string("name: press\nsteps:\n  - move: {pressure_kpa: ") + kpa +
+                                         ", duration_s: 0.5}\n");
+    ASSERT_TRUE(loaded) << loaded.error().format();
+    options.sequence = *loaded;
+    const auto daemon = Daemon::create(std::move(rig), options);
+    ASSERT_TRUE(daemon) << daemon.error();
+    const Outcome outcome = (*daemon)->run();
+    EXPECT_EQ(outcome.sequence_end, control::SequenceEnd::done);
+    EXPECT_NEAR(outcome.last.channels[0].safe_kpa, std::stod(kpa), 1e-3);
+    EXPECT_EQ(outcome.pressure_left_on, on) << kpa;
+    EXPECT_EQ(outcome.last.under_pressure != 0, on) << kpa;
+  }
+}
+
 TEST(Daemon, AnExceptionOfTheCallersOwnStillEndsWithSafeOutputs) {
   const testing::TemporaryFolder folder;
   rig::RigFile rig = testing::example_rig("rig.yaml");
