@@ -15,6 +15,7 @@ namespace softgrip::sysid {
 /// Bounds of a foreign file, so that a small file cannot exhaust the memory. A log of 512 MiB is the longest
 /// that other commands read.
 inline constexpr std::size_t most_text_bytes = std::size_t{512} << 20U;  ///< after decompression
+inline constexpr std::size_t longest_line = std::size_t{1} << 20U;       ///< [bytes]; each can be a cell
 inline constexpr std::size_t most_rows = std::size_t{1} << 24U;          ///< 4.6 h at 1 kHz
 inline constexpr std::size_t most_values = std::size_t{1} << 27U;        ///< in all columns or arrays
 

@@ -79,6 +79,17 @@ std::size_t nul_tail(std::string_view bytes) {
   return last == std::string_view::npos ? 0 : bytes.size() - last - 1;
 }
 
+/// The first line that is too long, counted from 1.
+std::optional<std::size_t> number_of_long_line(std::string_view text) {
+  std::size_t number = 1;
+  for (std::size_t begin = 0; begin < text.size(); ++number) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    if (end - begin > longest_line) return number;
+    begin = end + 1;
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 tl::expected<std::string, std::string> utf8_of(std::string_view bytes) {
@@ -112,6 +123,10 @@ std::optional<ForeignText> foreign_text(const std::string& file, std::string_vie
   if (!text) return refused(text.error(), "export it as CSV");
   if (static_cast<std::size_t>(std::count(text->begin(), text->end(), '\n')) > most_rows)
     return too_long(most_rows, " lines");
+  if (const auto line = number_of_long_line(*text))
+    return refused(
+        "line " + std::to_string(*line) + " has more than " + std::to_string(longest_line) + " bytes",
+        "export it as CSV");
   ForeignText foreign{std::move(*text), {}};
   if (nul_bytes > 0)
     foreign.notes.push_back(std::to_string(nul_bytes) + " NUL bytes at the end of the file are left out");

@@ -21,8 +21,8 @@ struct ForeignText {
   std::vector<std::string> notes;  ///< NUL bytes at the end, as a logger leaves them that loses its power
 };
 
-/// The text of an external file with at most most_text_bytes and most_rows lines (table.h). A text that is
-/// refused is a problem.
+/// The text of an external file with at most most_text_bytes and most_rows lines of at most longest_line
+/// (table.h). A text that is refused is a problem.
 [[nodiscard]] std::optional<ForeignText> foreign_text(const std::string& file, std::string_view bytes,
                                                       document::Problems& problems);
 

@@ -135,6 +135,13 @@ TEST(TextTable, MoreLinesThanTheBoundAreRefusedBeforeTheyAreSplit) {
   EXPECT_EQ(problems.list().front().message, "the text has more than 16777216 lines");
 }
 
+TEST(TextTable, RefusesALineThatIsTooLong) {
+  document::Problems problems;
+  const std::string text = "t_s,p_kpa\n0,1\n" + std::string(longest_line + 1, ',') + "\n1,2\n";
+  EXPECT_FALSE(parse_text_table("t.csv", text, {}, problems));
+  EXPECT_EQ(problems.list().front().message, "line 3 has more than 1048576 bytes");
+}
+
 TEST(WholeNumber, IsDigitsAlone) {
   EXPECT_EQ(whole_number("0"), 0U);
   EXPECT_EQ(whole_number("1048576"), 1048576U);
