@@ -173,6 +173,11 @@ class Bombs(bench_files.Files):
             text.write(b"time_s,pressure_command_kpa,displacement_mm\n" + b"0,1,2\n" * 20_000_000)
         self.assertIn("16777216 lines", self.limited("import", "plain.csv", "--yes", "--out", "x.csv", code=3))
 
+    def test_text_of_one_line(self):
+        self.packed(b"," * 1_000_000, 400)
+        self.assertIn("line 2 has more than 1048576 bytes",
+                      self.limited("import", "bomb.csv.gz", "--yes", "--out", "x.csv", code=3))
+
     def test_workbooks(self):
         """A sheet of 600 MB, one with more cells than memory, and strings that many cells repeat."""
         cells = "<c><v>1</v></c>" * 4
@@ -181,7 +186,7 @@ class Bombs(bench_files.Files):
         repeated = "<worksheet><sheetData>" + "<row><c t='s'><v>0</v></c></row>" * 500_000 + "</sheetData></worksheet>"
         for sheet, strings, reason in ((huge, [], "after decompression the workbook has more than 536870912 bytes"),
                                        (many, [], "it has too many cells"),
-                                       (repeated, ["x" * 30_000], "its text has more than 536870912 bytes")):
+                                       (repeated, ["x" * 30_000], "the sheet has more than 536870912 bytes of text")):
             packed = workbooks.package({"Run": sheet}, strings)
             self.assertLess(len(packed), 4 << 20)
             (self.folder / "bomb.xlsx").write_bytes(packed)
