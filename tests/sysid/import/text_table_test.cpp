@@ -135,6 +135,17 @@ TEST(TextTable, MoreLinesThanTheBoundAreRefusedBeforeTheyAreSplit) {
   EXPECT_EQ(problems.list().front().message, "the text has more than 16777216 lines");
 }
 
+TEST(TextTable, TheGivenSeparatorDecides) {
+  const std::string text = "0,1;2,3\n0,2;2,4\n0,3;2,5\n";
+  TableOptions options;
+  options.separator = ',';
+  EXPECT_EQ(table_of(text, options).columns.size(), 3U);
+  options.separator = ';';
+  const ForeignTable table = table_of(text, options);
+  ASSERT_EQ(table.columns.size(), 2U);
+  EXPECT_EQ(table.columns[0].values, (std::vector<double>{0.1, 0.2, 0.3}));
+}
+
 TEST(TextTable, RefusesALineThatIsTooLong) {
   document::Problems problems;
   const std::string text = "t_s,p_kpa\n0,1\n" + std::string(longest_line + 1, ',') + "\n1,2\n";
