@@ -69,7 +69,7 @@ const TickOutput& RigController::tick(const TickInput& input) noexcept {
   output_.events.clear();
   forget_old_readings(input.now);
   carry_out(supervisor_.tick(input, facts(input, time_s), output_.events), time_s);
-  play(time_s);
+  play(input, time_s);
   for (std::size_t i = 0; i < channels_.size(); ++i) {
     const double last_kpa = output_.channels[i].command_kpa;
     control(i, input, time_s);
@@ -104,6 +104,7 @@ void RigController::forget_old_readings(Nanoseconds now) noexcept {
   last_now_ = now;
   for (std::size_t i = 0; i < channels_.size(); ++i) {
     ChannelOutput& seen = output_.channels[i];
+    unheard_ = unheard_ || gap > channels_[i].longest_age;
     if (gap <= channels_[i].longest_age || seen.validity != model::Validity::valid) continue;
     seen.validity = model::Validity::stale;
     seen.pressure_kpa = std::numeric_limits<double>::quiet_NaN();
@@ -189,9 +190,14 @@ void RigController::conclude_sequence(const SequencePlayer::Outcome& outcome, Ph
   if (outcome.finished) supervisor_.sequence_ended(outcome.end, outcome.action, phase, output_.events);
 }
 
-void RigController::play(double time_s) noexcept {
+/// In a gap the board may have vented, which the bus reports with the next exchange. Until then no step ends.
+void RigController::play(const TickInput& input, double time_s) noexcept {
+  const Nanoseconds age = input.now - input.readings.front().sampled_at;
+  const bool silent = input.bus.fault == FaultCode::none && input.bus.consecutive_failures == 0 &&
+                      age > channels_.front().longest_age;
+  unheard_ = unheard_ && silent;
   if (supervisor_.state() == State::idle) player_.idle_tick(time_s, output_.channels, output_.events);
-  if (supervisor_.state() != State::running) return;
+  if (supervisor_.state() != State::running || unheard_) return;
   const Phase phase = player_.phase();
   conclude_sequence(player_.tick(time_s, output_.channels, output_.events), phase);
 }

@@ -56,7 +56,7 @@ class RigController {
   Rest look_for_rest(const PreparedSequence& sequence, double time_s) noexcept;
   void carry_out(const Orders& orders, double time_s) noexcept;
   void tell_lacks(std::uint32_t channels) noexcept;
-  void play(double time_s) noexcept;
+  void play(const TickInput& input, double time_s) noexcept;
   void release(double time_s) noexcept;
   void conclude_sequence(const SequencePlayer::Outcome& outcome, Phase phase) noexcept;
   void forget_old_readings(Nanoseconds now) noexcept;
@@ -79,6 +79,7 @@ class RigController {
   double seeking_since_s_ = 0;
   Nanoseconds began_ = no_tick;
   Nanoseconds last_now_ = no_tick;
+  bool unheard_ = false;  ///< there was a gap, and the bus has reported no exchange since
 
   static constexpr Nanoseconds no_tick = -1;
 };

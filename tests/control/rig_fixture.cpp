@@ -51,6 +51,7 @@ void SimulatedRig::step_plants() {
 }
 
 void SimulatedRig::read() {
+  if (bus_quiet) return;
   failures_ = wire_cut ? failures_ + 1 : 0;
   if (wire_cut) {
     return;

@@ -33,6 +33,7 @@ class SimulatedRig {
   // Faults; each stays until it is taken back.
   bool wire_cut = false;    ///< no exchange succeeds; the board vents after its watchdog time
   bool board_vents = true;  ///< its watchdog puts the outputs to the rest pressure
+  bool bus_quiet = false;   ///< the bus has reported nothing since the tick before
   bool emergency_stop = false;
   bool inputs_lost = false;
   bool interlock_open = false;

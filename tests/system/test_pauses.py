@@ -4,6 +4,7 @@ The whole process (SIGSTOP), its loop, its bus or its service thread alone (ptra
 board's watchdog, in every phase of a grip, over a real wire.
 """
 
+import os
 import subprocess
 import time
 
@@ -94,6 +95,19 @@ class Pauses(bench.BenchTest):
 
     def test_while_releasing(self):
         self.check_phase("releasing")
+
+    def test_a_sequence_whose_last_step_ends_in_a_pause_is_faulted(self):
+        self.start_rig()
+        path = self.write("config/sequences/brief.yaml",
+                          "name: brief\nsteps:\n  - move: {pressure_kpa: 10, duration_s: 1}\n")
+        with subprocess.Popen([bench.SOFTGRIP, "start", "--wait", path], cwd=self.folder, stdin=subprocess.DEVNULL,
+                              stdout=subprocess.PIPE, text=True,
+                              env={**os.environ, "SOFTGRIP_SOCKET": str(self.folder / "softgripd.sock")}) as waiting:
+            bench.wait_for("a pressure", lambda: min(self.board.commands_kpa()) > 1, pause_s=0.005)
+            self.pause(self.softgripd, "process", 1.5)
+            said = waiting.communicate(timeout=bench.PATIENCE_S)[0]
+        self.assertEqual(waiting.returncode, 6, said)
+        self.softgripd.wait_for_event("sequence_finished", code="faulted")
 
     def test_patience_beyond_the_watchdog_is_refused(self):
         rig = self.rig(1502, ((r"bus_down_cycles: \d+", "bus_down_cycles: 90"),))

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -498,6 +499,31 @@ TEST_F(SingleFault, ABriefDropoutIsBridged) {
   EXPECT_EQ(rig.output().first_fault.code, FaultCode::none);
   ASSERT_TRUE(rig.run_until_step(2, 20));
   EXPECT_EQ(rig.result(0), GripResult::holding);
+}
+
+// The time of its last step can pass in a pause in which the board vents.
+TEST(FaultAfterAPause, ASequenceDoesNotEndBeforeTheFirstExchangeAfterAPause) {
+  const RigSettings settings = two_finger_settings();
+  const PreparedSequence brief =
+      sequence_of("name: x\nsteps:\n  - move: {pressure_kpa: 10, duration_s: 1}\n", settings);
+  for (const bool vented : {true, false}) {
+    SimulatedRig rig(settings);
+    ASSERT_TRUE(rig.start_until_step(brief, 0));
+    rig.run(0.5);
+    rig.pause(1);
+    rig.bus_quiet = true;
+    rig.tick();
+    EXPECT_EQ(rig.count(Event::Kind::sequence_finished), 0U);
+    rig.bus_quiet = false;
+    if (vented) rig.bus_fault = FaultCode::board_watchdog_tripped;
+    if (vented) rig.outputs_kpa = {0, 0};
+    rig.run(2 / settings.rate_hz);
+    ASSERT_EQ(rig.count(Event::Kind::sequence_finished), 1U);
+    const auto finished = std::find_if(rig.events.begin(), rig.events.end(), [](const Event& event) {
+      return event.kind == Event::Kind::sequence_finished;
+    });
+    EXPECT_EQ(static_cast<SequenceEnd>(finished->detail), vented ? SequenceEnd::faulted : SequenceEnd::done);
+  }
 }
 
 }  // namespace
