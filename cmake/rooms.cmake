@@ -79,7 +79,8 @@ softgrip_room(sysid/evidence USES base sysid/logs sysid/fitting)
 softgrip_room(sysid/diagnosis/causes
   USES model sysid/logs sysid/fitting sysid/evidence sysid/diagnosis/residual)
 softgrip_room(sysid/diagnosis/search
-  USES base model sysid/logs sysid/fitting sysid/identification sysid/diagnosis/residual sysid/diagnosis/causes)
+  USES base model sysid/logs sysid/fitting sysid/identification sysid/evidence sysid/diagnosis/residual
+       sysid/diagnosis/causes)
 softgrip_room(sysid/diagnosis/evidence
   USES base model sysid/logs sysid/fitting sysid/identification sysid/diagnosis/search)
 softgrip_room(sysid/diagnosis/gauge

@@ -43,16 +43,27 @@ Prepared prepared(std::vector<Record> records) {
   return p;
 }
 
-double rms_of(const Binned& series, double zero) {
+double rms_of(const Binned& series) {
   double sum = 0, count = 0;
   for (const std::vector<double>& part : series) {
     for (const double v : part) {
       if (!std::isfinite(v)) continue;
-      sum += (v - zero) * (v - zero);
+      sum += v * v;
       count += 1;
     }
   }
   return count > 0 ? std::sqrt(sum / count) : 0;
+}
+
+double rms_about_mean(const std::vector<double>& series) {
+  double sum = 0, squares = 0, count = 0;
+  for (const double v : series) {
+    if (!std::isfinite(v)) continue;
+    sum += v;
+    squares += v * v;
+    count += 1;
+  }
+  return count > 0 ? std::sqrt(std::max(0.0, squares / count - square(sum / count))) : 0;
 }
 
 Binned minus(Binned from, const Binned& what) {
@@ -318,7 +329,7 @@ class Judge {
       if (ties(ranked.front(), ranked[i]) && vetoed(readings, ranked[i], without, found) == Veto::none)
         cause.rivals.push_back(ranked[i].fit.fitted.effect.id);
     }
-    cause.effect_mm = rms_of(added, 0);
+    cause.effect_mm = rms_of(added);
     cause.full_pressure_mm = at_full_pressure(readings, added);
     cause.size = size_of(readings, best, cause.full_pressure_mm);
     const double excess = per_bin(readings, without) - 1;
@@ -334,6 +345,13 @@ class Judge {
     for (const Record& record : readings.records()) judged.logs.push_back(record.name);
     judged.left = readings.left();
     judged.explained = found.empty() ? judged.left : minus(readings.left(), readings.added(found));
+    for (std::size_t r = 0; r < base_.records.size(); ++r) {
+      const double left = rms_about_mean(base_.left[r]);
+      judged.runs.push_back({base_.records[r].name, true, left, left});
+    }
+    for (std::size_t r = 0; r < judged.logs.size(); ++r)
+      judged.runs.push_back(
+          {judged.logs[r], false, rms_about_mean(judged.left[r]), rms_about_mean(judged.explained[r])});
     const LaterReadings::Slack slack = readings.slack(found);
     judged.zero_mm = slack.zero_mm;
     judged.gain_percent = 100 * slack.gain;

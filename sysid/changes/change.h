@@ -61,6 +61,13 @@ struct ChangeRival {
   std::string rejected;     ///< why it is no cause, if that was found out
 };
 
+/// Root mean square of what the base leaves of a run, about its mean, without and with the causes.
+struct RunLeft {
+  std::string run;
+  bool is_healthy = false;  ///< then it was left out of the base's fit, and no cause acts
+  double base = 0, explained = 0;
+};
+
 /// One reading: the displacement, or the pressure.
 struct JudgedChange {
   Judged judged = Judged::displacement;
@@ -79,6 +86,7 @@ struct JudgedChange {
   std::vector<EffectIntervals> intervals;         ///< of its causes, in the order in which they were found
   std::map<std::string, std::string> not_tested;  ///< causes, each with the recording that would show it
   double bin_s = 0.05;
+  std::vector<RunLeft> runs;      ///< the healthy ones first
   std::vector<std::string> logs;  ///< names of the later ones
   Binned left, explained;         ///< what the base leaves of them, without and with the causes
 };

@@ -47,6 +47,12 @@ Json reading_json(const JudgedChange& judged) {
                      {"healthy_gain", rival.healthy_gain},
                      {"tolerance", rival.tolerance},
                      {"rejected", rival.rejected.empty() ? Json(nullptr) : Json(rival.rejected)}});
+  Json runs = Json::array();
+  for (const RunLeft& run : judged.runs)
+    runs.push_back({{"run", run.run},
+                    {"healthy", run.is_healthy},
+                    {"base_rms", run.base},
+                    {"explained_rms", run.explained}});
   return {{"reading", judged.judged == Judged::pressure ? "pressure_kpa" : "displacement_mm"},
           {"unit", unit_of(judged.judged)},
           {"base", judged.base},
@@ -61,6 +67,7 @@ Json reading_json(const JudgedChange& judged) {
           {"zero", judged.zero_mm},
           {"gain_percent", judged.gain_percent},
           {"not_tested", judged.not_tested},
+          {"runs", std::move(runs)},
           {"tried", std::move(tried)}};
 }
 

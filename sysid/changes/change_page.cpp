@@ -101,15 +101,36 @@ Figure tried_figure(const JudgedChange& judged) {
       stacked({chart})};
 }
 
-/// Why causes were rejected.
-Table rejected_table(const JudgedChange& judged) {
-  Table table{
-      "Rejected causes", {"cause", "improvement", "tolerance", "reason"}, {false, true, true, false}, {}};
-  for (const ChangeRival& tried : judged.tried) {
-    if (!tried.rejected.empty())
-      table.rows.push_back({tried.id, fixed(tried.gain, 3), fixed(tried.tolerance, 3), tried.rejected});
+/// What the base leaves of every run, the healthy ones first.
+Figure runs_figure(const JudgedChange& judged, bool explained) {
+  Chart chart;
+  chart.height = 220;
+  chart.y.label = std::string("left [") + unit_of(judged.judged) + "]";
+  chart.x.lower = -0.5;
+  chart.x.upper = static_cast<double>(judged.runs.size()) - 0.5;
+  Series before, after;
+  before.label = "base of the healthy finger";
+  before.colour = Colour::error;
+  after.label = "with the causes";
+  after.colour = Colour::model;
+  before.style = after.style = Series::Style::points;
+  before.width = after.width = 4;
+  for (const RunLeft& run : judged.runs) {
+    const auto at = static_cast<double>(chart.x.categories.size());
+    chart.x.categories.push_back(run.run + (run.is_healthy ? " (healthy)" : ""));
+    before.x.push_back(at);
+    before.y.push_back(run.base);
+    if (run.is_healthy) continue;
+    after.x.push_back(at);
+    after.y.push_back(run.explained);
   }
-  return table;
+  chart.series = {before};
+  if (explained) chart.series.push_back(after);
+  chart.marks.push_back({Mark::Direction::horizontal, judged.allowed_mm, "another healthy run may have"});
+  return {std::string("error by run ") + name_of(judged.judged),
+          "What the base leaves of every run (RMS about its mean). Each healthy run was left out of the fit "
+          "that predicts it.",
+          stacked({chart})};
 }
 
 /// What the data cannot show, and the recording that would.
@@ -134,8 +155,9 @@ void add_reading(Page& page, const JudgedChange& judged, const ChangeDiagnosis& 
   bool explained = false;
   for (const ChangeCause& cause : d.causes) explained |= cause.judged == judged.judged;
   page.figure(misfit_figure(judged, explained));
+  page.figure(runs_figure(judged, explained));
   page.figure(tried_figure(judged));
-  page.table(rejected_table(judged));
+  page.table(tried_table(judged));
   if (!judged.not_tested.empty()) page.table(not_tested_table(judged));
 }
 
@@ -155,6 +177,28 @@ Page change_page(const ChangeDiagnosis& diagnosis, const std::vector<Log>& healt
   }
   for (const JudgedChange& judged : diagnosis.readings) add_reading(page, judged, diagnosis);
   return page;
+}
+
+Table tried_table(const JudgedChange& judged) {
+  Table table{"Causes that were tried, each alone; improvement in whitened squares per bin",
+              {"cause", "improvement", "in healthy runs", "tolerance", "rejected because"},
+              {false, true, true, true, false},
+              {}};
+  for (const ChangeRival& tried : judged.tried)
+    table.rows.push_back({tried.id, fixed(tried.gain, 3), fixed(tried.healthy_gain, 3),
+                          fixed(tried.tolerance, 3), tried.rejected});
+  return table;
+}
+
+Table run_table(const JudgedChange& judged) {
+  Table table{std::string("What is left of each run, RMS about its mean [") + unit_of(judged.judged) + "]",
+              {"run", "base", "with the causes"},
+              {false, true, true},
+              {}};
+  for (const RunLeft& run : judged.runs)
+    table.rows.push_back({run.run + (run.is_healthy ? " (healthy)" : ""), significant(run.base, 3),
+                          run.is_healthy ? "-" : significant(run.explained, 3)});
+  return table;
 }
 
 }  // namespace softgrip::sysid

@@ -10,4 +10,9 @@ namespace softgrip::sysid {
 [[nodiscard]] Page change_page(const ChangeDiagnosis& diagnosis, const std::vector<Log>& healthy,
                                const std::vector<Log>& later, const model::Model& given);
 
+/// Every cause that was tried: its improvement, its tolerance, and why it was rejected.
+[[nodiscard]] Table tried_table(const JudgedChange& judged);
+/// What the base leaves of every run, without and with the causes.
+[[nodiscard]] Table run_table(const JudgedChange& judged);
+
 }  // namespace softgrip::sysid

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "sysid/evidence/limits.h"
-#include "sysid/logs/division.h"
 
 namespace softgrip::sysid {
 
@@ -31,6 +30,20 @@ std::vector<Record> Units::without(const std::vector<Record>& records, std::size
     hide_readings(record, unit == 0 ? 0 : middle, unit == 0 ? middle : record.size());
   }
   return rest;
+}
+
+Division divide_by_unit(const std::vector<Record>& records) {
+  const Units units(records);
+  Division division = divide(records, limits::block_s);
+  division.folds = units.count();
+  division.gap_s = 0;
+  for (Block& block : division.blocks) {
+    const std::vector<double>& time_s = records[block.record].time_s;
+    block.fold = units.unit_of(block.record, time_s[block.first] - time_s.front());
+    block.hidden_first = block.first;
+    block.hidden_last = block.last;
+  }
+  return division;
 }
 
 }  // namespace softgrip::sysid

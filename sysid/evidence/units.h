@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "sysid/logs/division.h"
 #include "sysid/logs/record.h"
 
 namespace softgrip::sysid {
@@ -33,5 +34,8 @@ class Units {
   std::size_t count_ = 0;
   std::vector<double> middle_s_;  ///< of each record, since its start
 };
+
+/// Blocks of limits::block_s in which every unit is held out as a whole.
+[[nodiscard]] Division divide_by_unit(const std::vector<Record>& records);
 
 }  // namespace softgrip::sysid

@@ -78,14 +78,6 @@ Division thinned_like(Division division, const std::vector<Record>& records,
   return division;
 }
 
-Division divide_by_record(const std::vector<Record>& records) {
-  Division division;
-  division.folds = records.size();
-  for (std::size_t k = 0; k < records.size(); ++k)
-    division.blocks.push_back({k, 0, records[k].size(), k, 0, records[k].size()});
-  return division;
-}
-
 Division divide_into_fifths(const std::vector<Record>& records) {
   const double total_s = length_of(records);
   Division division;

@@ -36,8 +36,6 @@ struct Division {
 /// The same stretches of time among the samples that are left of `records`.
 [[nodiscard]] Division thinned_like(Division division, const std::vector<Record>& records,
                                     const std::vector<Record>& thinned);
-/// One fold per record: whole logs are held out.
-[[nodiscard]] Division divide_by_record(const std::vector<Record>& records);
 /// Ten blocks in all, at least two of each record (five of a single one), in five folds; a tenth of a block
 /// on either side is not fitted.
 [[nodiscard]] Division divide_into_fifths(const std::vector<Record>& records);

@@ -26,6 +26,9 @@ struct Table {
   std::vector<std::vector<std::string>> rows;
 };
 
+/// The table as lines of text, columns aligned; the caption first.
+[[nodiscard]] std::string text_of(const Table& table);
+
 /// Terms and their values.
 using Terms = std::vector<std::pair<std::string, std::string>>;
 

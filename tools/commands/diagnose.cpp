@@ -14,6 +14,7 @@
 #include "base/files.h"
 #include "base/numbers.h"
 #include "sysid/diagnosis/report/report.h"
+#include "sysid/diagnosis/report/report_tables.h"
 #include "sysid/diagnosis/verdict/diagnosis.h"
 #include "tools/command_line/call.h"
 #include "tools/command_line/model_input.h"
@@ -117,6 +118,14 @@ void print_summary(const sysid::Diagnosis& d, const std::string& out) {
               (std::filesystem::path(out) / "report.html").c_str());
 }
 
+void print_explanation(const sysid::Diagnosis& d) {
+  std::printf("\n%s", sysid::text_of(sysid::run_table(d)).c_str());
+  for (const sysid::Table& table : sysid::candidate_tables(d))
+    std::printf("\n%s", sysid::text_of(table).c_str());
+  for (const auto& [id, recording] : d.not_tested)
+    std::printf("%s was not tested: %s\n", id.c_str(), recording.c_str());
+}
+
 ConsequenceOptions consequence_options(const DiagnoseOptions& options, const std::vector<sysid::Log>& logs) {
   ConsequenceOptions wanted = options.consequences;
   sysid::RigLimits limits{options.pressure_max_kpa, options.slew_kpa_per_s};
@@ -188,8 +197,6 @@ ExitCode run(DiagnoseOptions options, const std::vector<std::string>& call) {
   if (!model) return model.error();
   const auto logs = read_logs(options.data, options.logs);
   if (!logs) return logs.error();
-  if (options.explain && options.healthy.empty())
-    return fail(ExitCode::usage, "--explain needs --healthy or --baseline");
   if (!options.healthy.empty()) return changed(options, *model, *logs, call);
   options.diagnosis.record = options.logs.record_options();
   if (!options.gauge.empty()) {
@@ -224,6 +231,7 @@ ExitCode run(DiagnoseOptions options, const std::vector<std::string>& call) {
     std::fputs(json->c_str(), stdout);
   } else {
     print_summary(*result, options.out);
+    if (options.explain) print_explanation(*result);
     std::fputs(on_screen(text_of(consequences, options.out)).c_str(), stdout);
   }
   return ExitCode::done;
@@ -245,7 +253,7 @@ void add_diagnose(CLI::App& program, ExitCode& outcome) {
                    "Folder of `softgrip baseline`: its logs are the healthy ones")
       ->excludes("--healthy");
   command->add_flag("--explain", options->explain,
-                    "With --healthy or --baseline: print improvement, tolerance and reason of every cause");
+                    "Print the comparison behind each name: causes, errors by run, reasons of rejection");
   command
       ->add_option(
           "--out", options->out,

@@ -41,12 +41,8 @@ void print_explanation(const sysid::JudgedChange& judged) {
       significant(judged.allowed_mm, 3).c_str(), significant(judged.later_mm, 3).c_str());
   std::printf("  whitened squared error of the later logs %s (1: as in healthy runs)\n",
               significant(judged.misfit_before, 3).c_str());
-  std::printf("  %-26s %12s %12s %12s  %s\n", "cause", "improvement", "in healthy", "tolerance",
-              "rejected because");
-  for (const sysid::ChangeRival& tried : judged.tried)
-    std::printf("  %-26s %12s %12s %12s  %s\n", tried.id.c_str(), fixed(tried.gain, 3).c_str(),
-                fixed(tried.healthy_gain, 3).c_str(), fixed(tried.tolerance, 3).c_str(),
-                tried.rejected.c_str());
+  std::printf("%s\n%s", sysid::text_of(sysid::run_table(judged)).c_str(),
+              sysid::text_of(sysid::tried_table(judged)).c_str());
   for (const auto& [id, recording] : judged.not_tested)
     std::printf("  %-26s not tested: %s\n", id.c_str(), recording.c_str());
 }

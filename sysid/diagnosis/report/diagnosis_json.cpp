@@ -210,6 +210,13 @@ Json json_of(const Diagnosis& d) {
         {"recalibrated", number(*d.recalibrated_other_logs_rmse_mm)},
         {"extended", number(d.extended_other_logs_rmse_mm.value_or(*d.recalibrated_other_logs_rmse_mm))}};
   }
+  json["runs"] = Json::array();
+  for (const RunError& one : d.runs) {
+    json["runs"].push_back({{"run", one.run},
+                            {"as_given_rmse_mm", number(one.given)},
+                            {"recalibrated_rmse_mm", number(one.recalibrated)},
+                            {"extended_rmse_mm", number(one.extended)}});
+  }
   json["gain_percent"] = spread(d.gain);
   json["unexplained_percent"] = d.unexplained_percent;
   json["budget"] = budget_json(d, budget);

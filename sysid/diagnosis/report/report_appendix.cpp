@@ -33,20 +33,6 @@ void add_other_logs(Page& page, const Diagnosis& d) {
                    std::to_string(order.size()) + ".");
 }
 
-void add_candidates(Page& page, const Diagnosis& d) {
-  for (const auto* list : {&d.causes, &d.partial}) {
-    for (const NamedCause& named : *list) {
-      if (!named.candidates.empty())
-        page.table(candidate_table(named.candidates, &named, d.extended_rmse_mm,
-                                   "Tried in the place of " + std::string(named.cause.id)));
-    }
-  }
-  if (!d.rejected.empty())
-    page.table(candidate_table(d.rejected, nullptr, d.extended_rmse_mm,
-                               d.causes.empty() && d.partial.empty() ? "No cause gained anything"
-                                                                     : "One more cause gained nothing"));
-}
-
 void add_conditions(Page& page, const Diagnosis& d) {
   if (!d.evidence) return;
   const ResidualEvidence& e = d.evidence->recalibrated;
@@ -104,7 +90,7 @@ void add_sources(Page& page, const DiagnosisReport& report) {
 
 void add_appendix(Page& page, const DiagnosisReport& report) {
   page.appendix("Appendix");
-  add_candidates(page, report.result);
+  for (Table& table : candidate_tables(report.result)) page.table(std::move(table));
   add_conditions(page, report.result);
   add_model(page, report);
   add_sources(page, report);

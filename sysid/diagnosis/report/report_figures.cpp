@@ -257,6 +257,34 @@ Figure error_figure(const Diagnosis& d, std::size_t k) {
           stacked(std::move(charts))};
 }
 
+Figure runs_figure(const Diagnosis& d) {
+  Chart chart;
+  chart.height = 220;
+  chart.y.label = "RMSE [mm]";
+  chart.y.logarithmic = true;
+  chart.x.lower = -0.5;
+  chart.x.upper = static_cast<double>(d.runs.size()) - 0.5;
+  for (const RunError& one : d.runs) chart.x.categories.push_back(one.run);
+  for (const Shown& model : shown(d)) {
+    const auto error = model.fit == &d.as_given       ? &RunError::given
+                       : model.fit == &d.recalibrated ? &RunError::recalibrated
+                                                      : &RunError::extended;
+    std::vector<double> at, errors;
+    for (const RunError& one : d.runs) {
+      at.push_back(static_cast<double>(at.size()));
+      errors.push_back(one.*error);
+    }
+    Series points = curve(model.label, model.colour, 4, at, errors);
+    points.style = Series::Style::points;
+    chart.series.push_back(std::move(points));
+  }
+  chart.marks.push_back({Mark::Direction::horizontal, d.noise_mm, "noise of the readings"});
+  return {"error by run",
+          std::string("RMSE of each ") + (d.records.size() > 1 ? "run" : "half of the run") +
+              ", predicted by the model that was fitted to the others. The given model is not fitted.",
+          {{chart}}};
+}
+
 Figure loops_figure(const Diagnosis& d, std::size_t k) {
   const Record& record = d.records[k];
   Chart whole;

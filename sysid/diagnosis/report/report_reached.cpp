@@ -57,6 +57,7 @@ void add_errors(Page& page, const Diagnosis& d) {
       "extended cause by cause. Each was refitted without stretches of the logs and judged there, simulated "
       "from the logs' true starts; intervals by drawing whole stretches anew.");
   page.table(rmse_table(d));
+  page.figure(runs_figure(d));
   if (is_extended(d) && d.extended_rmse_mm < d.recalibrated_rmse_mm)
     page.paragraph("The extended model's held-out error is smaller than the recalibrated one's by " +
                    range(d.gain, 1) + ".");

@@ -37,6 +37,24 @@ std::string outcome_of(const CandidateScore& c, const NamedCause* chosen, double
          significant(chosen_rmse_mm, 3) + " mm";
 }
 
+/// What was tried, how well it did, and why it was not kept.
+/// @param chosen  the cause in whose place these were tried; nullptr: one more cause was looked for.
+Table candidate_table(const std::vector<CandidateScore>& candidates, const NamedCause* chosen,
+                      double chosen_rmse_mm, std::string caption) {
+  Table table;
+  table.caption = std::move(caption);
+  table.header = {"cause", "station", "fitted [mm]", "held out [mm]", "held-out gain [%]", "outcome"};
+  table.numeric = {false, false, true, true, true, false};
+  for (const CandidateScore& c : candidates) {
+    const bool judged = std::isfinite(c.heldout_rmse_mm) && c.heldout_rmse_mm > 0;
+    table.rows.push_back(
+        {std::string(c.cause.id), std::string(model::name_of(c.cause.station)),
+         c.rmse_mm > 0 ? or_dash(c.rmse_mm, 3) : dash, judged ? or_dash(c.heldout_rmse_mm, 3) : dash,
+         judged ? percent_range(c.gain_percent) : dash, outcome_of(c, chosen, chosen_rmse_mm)});
+  }
+  return table;
+}
+
 std::string value_at(const model::Model& model, const std::string& path) {
   const auto index = model::find_path(model, path);
   return index ? significant(model::flat_values(model)[*index], 4) : dash;
@@ -101,19 +119,31 @@ Table condition_table(const Evidence& evidence, bool extended) {
   return table;
 }
 
-Table candidate_table(const std::vector<CandidateScore>& candidates, const NamedCause* chosen,
-                      double chosen_rmse_mm, std::string caption) {
-  Table table;
-  table.caption = std::move(caption);
-  table.header = {"cause", "station", "fitted [mm]", "held out [mm]", "held-out gain [%]", "outcome"};
-  table.numeric = {false, false, true, true, true, false};
-  for (const CandidateScore& c : candidates) {
-    const bool judged = std::isfinite(c.heldout_rmse_mm) && c.heldout_rmse_mm > 0;
-    table.rows.push_back(
-        {std::string(c.cause.id), std::string(model::name_of(c.cause.station)),
-         c.rmse_mm > 0 ? or_dash(c.rmse_mm, 3) : dash, judged ? or_dash(c.heldout_rmse_mm, 3) : dash,
-         judged ? percent_range(c.gain_percent) : dash, outcome_of(c, chosen, chosen_rmse_mm)});
+std::vector<Table> candidate_tables(const Diagnosis& d) {
+  std::vector<Table> tables;
+  for (const auto* list : {&d.causes, &d.partial}) {
+    for (const NamedCause& named : *list) {
+      if (!named.candidates.empty())
+        tables.push_back(candidate_table(named.candidates, &named, d.extended_rmse_mm,
+                                         "Tried in the place of " + std::string(named.cause.id)));
+    }
   }
+  if (!d.rejected.empty())
+    tables.push_back(candidate_table(
+        d.rejected, nullptr, d.extended_rmse_mm,
+        d.causes.empty() && d.partial.empty() ? "No cause was kept" : "No further cause was kept"));
+  return tables;
+}
+
+Table run_table(const Diagnosis& d) {
+  Table table;
+  table.caption =
+      "Error of each run, RMSE [mm]; the recalibrated and the extended model are fitted to the others";
+  table.header = {"run", "given", "recalibrated", "extended"};
+  table.numeric = {false, true, true, true};
+  for (const RunError& one : d.runs)
+    table.rows.push_back({one.run, or_dash(one.given, 3), or_dash(one.recalibrated, 3),
+                          is_extended(d) ? or_dash(one.extended, 3) : dash});
   return table;
 }
 

@@ -16,10 +16,10 @@ namespace softgrip::sysid {
 [[nodiscard]] Table rmse_table(const Diagnosis& diagnosis);
 /// Share and p-value of every condition, for the models that there are.
 [[nodiscard]] Table condition_table(const Evidence& evidence, bool extended);
-/// What was tried, how well it did, and why it was not kept.
-/// @param chosen  the cause in whose place these were tried; nullptr: one more cause was looked for.
-[[nodiscard]] Table candidate_table(const std::vector<CandidateScore>& candidates, const NamedCause* chosen,
-                                    double chosen_rmse_mm, std::string caption);
+/// What was tried in the place of every cause, and beside all of them.
+[[nodiscard]] std::vector<Table> candidate_tables(const Diagnosis& diagnosis);
+/// Errors of every run that was left out of the fit.
+[[nodiscard]] Table run_table(const Diagnosis& diagnosis);
 /// What the first part shows: the causes that are named, and those that explain a part where their gain's
 /// interval excludes zero.
 [[nodiscard]] std::vector<const NamedCause*> shown_causes(const Diagnosis& diagnosis);

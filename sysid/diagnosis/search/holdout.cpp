@@ -24,8 +24,9 @@ BlockLosses held_out_losses(const std::vector<Record>& records, const Division& 
   });
 }
 
-BlockLosses left_out_log_losses(const std::vector<Record>& records, const StructureFit& fit) {
-  return held_out_losses(records, divide_by_record(records), [&](const std::vector<Record>& rest) {
+BlockLosses left_out_losses(const std::vector<Record>& records, const Division& by_unit,
+                            const StructureFit& fit) {
+  return held_out_losses(records, by_unit, [&](const std::vector<Record>& rest) {
     FitPoint point = fit_structure(rest, fit.causes, fit.point, refit).point;
     for (std::size_t k = 0; k < rest.size(); ++k) {
       if (rest[k].readings == 0) point.starts[k] = estimated_start(point.model, records[k]);

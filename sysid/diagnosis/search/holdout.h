@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "sysid/diagnosis/search/fit.h"
+#include "sysid/evidence/units.h"
 #include "sysid/fitting/held_out.h"
 #include "sysid/logs/record.h"
 
@@ -15,9 +16,11 @@ inline constexpr double block_length_s = 8;
 /// The structure refitted without each fold. The starts of the records stay as they are in `fit`.
 [[nodiscard]] BlockLosses held_out_losses(const std::vector<Record>& records, const Division& division,
                                           const StructureFit& fit);
-/// The structure refitted without each log, which is then a unit that was left out: its start is estimated by
-/// its first readings (sysid/fitting/start_estimate.h).
-[[nodiscard]] BlockLosses left_out_log_losses(const std::vector<Record>& records, const StructureFit& fit);
+/// The structure refitted without each unit (sysid/evidence/units.h). Of a log that is left out as a whole
+/// the first readings tell the start (sysid/fitting/start_estimate.h).
+/// @param by_unit  divide_by_unit(records).
+[[nodiscard]] BlockLosses left_out_losses(const std::vector<Record>& records, const Division& by_unit,
+                                          const StructureFit& fit);
 /// Of a model that is not refitted.
 [[nodiscard]] BlockLosses losses_of(const StructureFit& fit, const Division& division);
 

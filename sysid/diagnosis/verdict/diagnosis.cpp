@@ -12,6 +12,7 @@
 #include "sysid/diagnosis/residual/noise.h"
 #include "sysid/diagnosis/residual/spectrum_peaks.h"
 #include "sysid/diagnosis/search/coherence.h"
+#include "sysid/diagnosis/search/linear_holdout.h"
 #include "sysid/diagnosis/search/staircase_selection.h"
 #include "sysid/diagnosis/verdict/another_base.h"
 #include "sysid/diagnosis/verdict/base_ingredients.h"
@@ -48,6 +49,28 @@ tl::expected<StructureFit, std::string> recalibrate(const SearchData& data, cons
   }
   if (!std::isfinite(best.mean_square_mm2)) return Failure("the model's answer to these logs is not finite");
   return best;
+}
+
+/// Of each run, or of each half of a single one, the root of its blocks' mean loss.
+std::vector<RunError> run_errors(const std::vector<Record>& records, const Division& by_unit,
+                                 const BlockLosses& given, const BlockLosses& recalibrated,
+                                 const BlockLosses& extended) {
+  const bool are_runs = records.size() > 1;
+  std::vector<RunError> runs(are_runs ? records.size() : by_unit.folds);
+  for (std::size_t k = 0; k < runs.size(); ++k) {
+    runs[k].run = are_runs ? records[k].name : k == 0 ? "first half" : "second half";
+    BlockLosses own_given, own_recalibrated, own_extended;
+    for (std::size_t b = 0; b < by_unit.blocks.size(); ++b) {
+      if ((are_runs ? by_unit.blocks[b].record : by_unit.blocks[b].fold) != k) continue;
+      own_given.push_back(given[b]);
+      own_recalibrated.push_back(recalibrated[b]);
+      own_extended.push_back(extended[b]);
+    }
+    runs[k].given = rmse_mm(own_given);
+    runs[k].recalibrated = rmse_mm(own_recalibrated);
+    runs[k].extended = rmse_mm(own_extended);
+  }
+  return runs;
 }
 
 class Diagnostician {
@@ -238,6 +261,10 @@ class Diagnostician {
     d_.extended_rmse_mm = rmse_mm(base.losses);
     d_.extended_other_logs_rmse_mm.reset();
     d_.recalibrated_other_logs_rmse_mm.reset();
+    const Division by_unit = divide_by_unit(data_.records);
+    d_.runs = run_errors(data_.records, by_unit, losses_of(d_.as_given, by_unit),
+                         left_out_losses(data_.records, by_unit, selection.base),
+                         linear_held_out_losses(data_.records, by_unit, d_.extended));
     d_.gain = gain_percent(selection.base_losses, base.losses, options_.seed);
     d_.structure_left = structure_of(d_.extended.residual_mm, d_.noise_mm);
     d_.unexplained_percent =
@@ -275,11 +302,14 @@ class Diagnostician {
             ? std::min(100.0, 100 * square(selection.left.excess_mm / selection.base_structure.excess_mm))
             : 0;
     if (!selection.left.present && !selection.base_structure.present) d_.unexplained_percent = 0;
+    const Division by_unit = divide_by_unit(data_.records);
+    const BlockLosses recalibrated = left_out_losses(data_.records, by_unit, selection.base);
+    const BlockLosses extended =
+        selection.chosen.empty() ? recalibrated : left_out_losses(data_.records, by_unit, selection.extended);
+    d_.runs = run_errors(data_.records, by_unit, losses_of(d_.as_given, by_unit), recalibrated, extended);
     if (data_.records.size() > 1) {
-      d_.recalibrated_other_logs_rmse_mm = rmse_mm(left_out_log_losses(data_.records, selection.base));
-      if (!selection.chosen.empty()) {
-        d_.extended_other_logs_rmse_mm = rmse_mm(left_out_log_losses(data_.records, selection.extended));
-      }
+      d_.recalibrated_other_logs_rmse_mm = rmse_mm(recalibrated);
+      if (!selection.chosen.empty()) d_.extended_other_logs_rmse_mm = rmse_mm(extended);
     }
     d_.extended_model = named_model(selection.extended.point.model,
                                     selection.extended.causes.empty() ? "recalibrated" : "extended");

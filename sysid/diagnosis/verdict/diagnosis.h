@@ -40,6 +40,14 @@ struct DiagnosisOptions {
   std::function<void(const std::string&)> progress;
 };
 
+/// RMSE of a run, or of half of a single one, under the models that a diagnosis compares [mm].
+struct RunError {
+  std::string run;
+  double given = 0;
+  double recalibrated = 0;  ///< fitted to the other runs
+  double extended = 0;      ///< the same; of no extended model the recalibrated one's
+};
+
 struct Diagnosis {
   Verdict verdict = Verdict::unexplained;  ///< of the displacement; see whole_verdict()
   std::vector<NamedCause> causes;          ///< of cause_found, ambiguous and partly_explained
@@ -53,6 +61,7 @@ struct Diagnosis {
   /// The same with whole logs held out; empty with a single log.
   std::optional<double> recalibrated_other_logs_rmse_mm;
   std::optional<double> extended_other_logs_rmse_mm;
+  std::vector<RunError> runs;
   double unexplained_percent = 0;
   std::optional<NullCalibration> null_calibration;  ///< where it was asked for and something was to be named
   OutlierEvidence outliers;

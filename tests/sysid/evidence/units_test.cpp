@@ -78,5 +78,27 @@ TEST(Units, OfManyRunsAreLeftOutTogetherAndEachOnce) {
   EXPECT_EQ(left_out, records.size());
 }
 
+TEST(Units, AreHeldOutAsAWholeInBlocks) {
+  for (const std::size_t runs : {1U, 3U, 8U}) {
+    std::vector<Record> records;
+    for (std::size_t r = 0; r < runs; ++r) records.push_back(record_of(41 + r, 100));
+    const Units units(records);
+    const Division division = divide_by_unit(records);
+    EXPECT_EQ(division.folds, units.count());
+    for (std::size_t unit = 0; unit < units.count(); ++unit) {
+      const std::vector<Record> rest = without_fold(records, division, unit);
+      std::size_t left_out = 0;
+      for (std::size_t r = 0; r < runs; ++r) {
+        left_out += records[r].readings - rest[r].readings;
+        const std::size_t own = r % units.count() == unit ? 0 : records[r].readings;
+        if (units.are_runs()) {
+          EXPECT_EQ(rest[r].readings, own);
+        }
+      }
+      EXPECT_GT(left_out, 0U) << unit << " of " << runs << " runs";
+    }
+  }
+}
+
 }  // namespace
 }  // namespace softgrip::sysid::units_test

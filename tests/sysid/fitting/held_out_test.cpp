@@ -29,8 +29,8 @@ struct Predicted {
 
 TEST(HeldOutLosses, OfAModelThatIsOffByAMillimetreAreOneInEveryBlock) {
   const Predicted off(1);
-  for (const Division& division : {divide(off.records, 8), divide_by_record(off.records),
-                                   divide_into_fifths(off.records), divide_into_halves(off.records)}) {
+  for (const Division& division :
+       {divide(off.records, 8), divide_into_fifths(off.records), divide_into_halves(off.records)}) {
     const BlockLosses losses =
         held_out_losses(off.records, division, [&](const std::vector<Record>&) { return off.point; });
     ASSERT_EQ(losses.size(), division.blocks.size());

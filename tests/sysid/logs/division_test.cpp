@@ -44,8 +44,7 @@ void expect_each_sample_once(const std::vector<Record>& records, const Division&
 
 TEST(Division, HoldsEverySampleOutOnce) {
   const std::vector<Record> records{of_length(33, 100), of_length(20, 60)};
-  for (const Division& division :
-       {divide(records, 8), divide_by_record(records), divide_into_fifths(records)}) {
+  for (const Division& division : {divide(records, 8), divide_into_fifths(records)}) {
     expect_each_sample_once(records, division);
     std::vector<std::size_t> hidden(records.size());
     for (std::size_t fold = 0; fold < division.folds; ++fold) {

@@ -15,6 +15,16 @@ TEST(Markup, NothingActiveSurvives) {
             "b\xef\xbf\xbd");
 }
 
+TEST(Table, AsTextHasAlignedColumns) {
+  const Table table{
+      "Errors", {"run", "error"}, {false, true}, {{"a", "0.1"}, {"l\xc3\xa4nger", "\xe2\x80\x93"}}};
+  EXPECT_EQ(text_of(table),
+            "Errors\n"
+            "  run     error\n"
+            "  a         0.1\n"
+            "  l\xc3\xa4nger      \xe2\x80\x93\n");
+}
+
 TEST(Page, EveryTextThatEntersIsEscaped) {
   const std::string evil = "\"><img src=x onerror=alert(1)>";
   Page page(evil, evil, Tone::bad);

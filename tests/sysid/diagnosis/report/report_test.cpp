@@ -67,6 +67,7 @@ Diagnosis a_diagnosis(const model::Model& given) {
   d.as_given_rmse_mm = 0.5;
   d.recalibrated_rmse_mm = 0.3;
   d.extended_rmse_mm = 0.2;
+  d.runs = {{"log_1", 0.5, 0.31, 0.2}, {"log_2", 0.5, 0.29, 0.2}};
   d.noise_mm = 0.1;
   return d;
 }
