@@ -59,6 +59,17 @@ TEST(Change, AnotherGainIsAgeingInPercent) {
     EXPECT_FALSE(tried.id == "ageing" && !tried.rejected.empty()) << tried.rejected;
   }
   EXPECT_GT(rejected, 0U);
+  ASSERT_EQ(judged.runs.size(), judged.healthy_runs + judged.logs.size());
+  for (std::size_t k = 0; k < judged.runs.size(); ++k) {
+    const RunLeft& run = judged.runs[k];
+    EXPECT_EQ(run.is_healthy, k < judged.healthy_runs);
+    EXPECT_GT(run.base, 0) << run.run;
+    if (run.is_healthy) {
+      EXPECT_EQ(run.explained, run.base) << run.run;
+    } else {
+      EXPECT_LT(run.explained, run.base) << run.run;
+    }
+  }
 }
 
 TEST(Change, AGainThatFollowsTheTemperatureNeedNotBeWhatItWasOnTheHealthyDay) {
@@ -281,8 +292,11 @@ TEST(Change, ThePageSaysWhatToDoAndShowsTheMisfit) {
   EXPECT_NE(html.find("What to do about ageing"), std::string::npos);
   EXPECT_NE(html.find(interval_text(d.causes[0])), std::string::npos) << interval_text(d.causes[0]);
   EXPECT_NE(html.find(std::string(next_steps("ageing")[1]).substr(0, 30)), std::string::npos);
-  ASSERT_EQ(page.figures().size(), 2U);
+  ASSERT_EQ(page.figures().size(), 3U);
   EXPECT_EQ(page.figures()[0].charts.size(), 2U);  // a log each
+  const Chart& runs = page.figures()[1].charts[0][0];
+  EXPECT_EQ(runs.x.categories.size(), d.readings.back().runs.size());
+  EXPECT_EQ(runs.series.size(), 2U);
 }
 
 TEST(Change, TooLittleIsRefused) {

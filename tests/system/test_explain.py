@@ -1,0 +1,36 @@
+"""softgrip diagnose --explain: what was compared for every name, by run and by cause, on the screen and in the files."""
+
+import json
+
+import bench
+
+GIVEN, TWIN = "config/models/zhang2025.yaml", "config/models/bench_twin.yaml"
+
+
+class Explain(bench.BenchTest):
+
+    def diagnosed(self, logs):
+        for seed, log in enumerate(logs, 1):
+            self.softgrip("simulate", "--model", TWIN, "--input", log, "--out", f"{log}.csv", "--noise-mm", "0.1", "--seed",
+                          str(seed))
+        text = self.softgrip("diagnose", "--model", GIVEN, "--data", *(f"{log}.csv" for log in logs), "--no-closed-loop",
+                             "--out", "out", "--explain", timeout_s=170).stdout
+        return text, json.loads((self.folder / "out/diagnosis.json").read_text())
+
+    def test_states_the_errors_of_each_run_and_every_cause_that_was_tried(self):
+        text, found = self.diagnosed(["tp1", "sp2"])
+        self.assertEqual([run["run"] for run in found["runs"]], ["tp1", "sp2"])
+        for run in found["runs"]:
+            self.assertLess(run["extended_rmse_mm"], run["recalibrated_rmse_mm"], run)
+            self.assertRegex(text, rf"(?m)^  {run['run']} .*{run['extended_rmse_mm']:.3g}$")
+        named = [cause["id"] for cause in found["causes"]]
+        self.assertIn("transport_delay", named)
+        for cause in named:
+            self.assertRegex(text, rf"Tried in the place of {cause}\n(?s:.*)\n  {cause} .* named\n")
+        for candidate in found["candidates"]["transport_delay"]:
+            self.assertIn(f"\n  {candidate['id']} ", text)
+        self.assertIn("error by run", (self.folder / "out/report.html").read_text())
+
+    def test_of_a_single_log_the_runs_are_its_halves(self):
+        _, found = self.diagnosed(["sp2"])
+        self.assertEqual([run["run"] for run in found["runs"]], ["first half", "second half"])
