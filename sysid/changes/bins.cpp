@@ -7,10 +7,11 @@
 
 #include <Eigen/Cholesky>
 
+#include "sysid/evidence/signature.h"
+
 namespace softgrip::sysid {
 namespace {
 
-constexpr double memory_s = 0.5;
 /// Shares of all bins at which classes of haste end.
 constexpr std::array class_ends{0.4, 0.7, 0.9};
 
@@ -47,13 +48,7 @@ std::size_t Whitener::class_of(double haste) const {
 }
 
 std::vector<double> haste_of(const Record& record, double bin_s) {
-  std::vector<double> haste(record.size(), 0);
-  for (std::size_t i = 1; i < record.size(); ++i) {
-    const double dt = record.duration_s[i];
-    const double rate = dt > 0 ? std::abs(record.drive_kpa[i] - record.drive_kpa[i - 1]) / dt : 0;
-    haste[i] = std::max(rate, haste[i - 1] * std::exp(-dt / memory_s));
-  }
-  return binned(record, haste, bin_s);
+  return binned(record, rates_of(record), bin_s);
 }
 
 std::vector<double> with_bins(std::vector<double> series, std::size_t bins) {

@@ -1,6 +1,7 @@
 #include "sysid/evidence/signature.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "sysid/evidence/limits.h"
 
@@ -28,6 +29,17 @@ class Extent {
 };
 
 }  // namespace
+
+std::vector<double> rates_of(const Record& record) {
+  constexpr double memory_s = 0.5;
+  std::vector<double> rates(record.size(), 0);
+  for (std::size_t i = 1; i < record.size(); ++i) {
+    const double dt = record.duration_s[i];
+    const double rate = dt > 0 ? std::abs(record.drive_kpa[i] - record.drive_kpa[i - 1]) / dt : 0;
+    rates[i] = std::max(rate, rates[i - 1] * std::exp(-dt / memory_s));
+  }
+  return rates;
+}
 
 std::vector<bool> required_at(Appears appears, const std::vector<OperatingPoint>& conditions) {
   const Extent pressure(conditions, &OperatingPoint::pressure_kpa);

@@ -5,6 +5,8 @@
 #include <string_view>
 #include <vector>
 
+#include "sysid/logs/record.h"
+
 namespace softgrip::sysid {
 
 /// The condition under which a cause acts.
@@ -22,6 +24,9 @@ struct OperatingPoint {
   double rate_kpa_per_s = 0;  ///< of the drive, >= 0, held at its peak for a moment
   double motion = 0;          ///< what the base predicts, in the unit of the reading
 };
+
+/// How fast the drive of a record moves or has moved half a second before, at each sample [kPa/s].
+[[nodiscard]] std::vector<double> rates_of(const Record& record);
 
 /// For each bin whether the cause must act there. Pressure counts as none within limits::rest_share of its
 /// range above the lowest, a rate as none within as much of the highest. A displacement and a rate count in

@@ -73,9 +73,9 @@ Json candidates_json(const std::vector<CandidateScore>& candidates) {
   Json list = Json::array();
   for (const CandidateScore& c : candidates) {
     Json one{{"id", c.cause.id}};
-    if (!c.why_not.empty()) {
-      one["not_fitted"] = c.why_not;
-    } else {
+    const bool is_fitted = c.rmse_mm > 0;
+    if (!c.why_not.empty()) one[is_fitted ? "rejected" : "not_fitted"] = c.why_not;
+    if (is_fitted || c.why_not.empty()) {
       one["rmse_mm"] = number(c.rmse_mm);
       one["heldout_rmse_mm"] = number(c.heldout_rmse_mm);
     }

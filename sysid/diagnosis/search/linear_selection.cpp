@@ -12,6 +12,7 @@
 #include "sysid/diagnosis/causes/backlash.h"
 #include "sysid/diagnosis/residual/spectrum_peaks.h"
 #include "sysid/diagnosis/search/linear_holdout.h"
+#include "sysid/diagnosis/search/named_claim.h"
 #include "sysid/diagnosis/search/scan.h"
 #include "sysid/diagnosis/search/scored.h"
 #include "sysid/diagnosis/search/slack.h"
@@ -254,15 +255,34 @@ class SelectorUpon {
 
   bool add_one() {
     std::vector<ScoredCandidate> scored = score();
+    const bool found = best_first(scored);
     result_.last_candidates = describe(scored, result_.extended_losses, options_.seed);
-    if (scored.empty()) return false;
-    const ScoredCandidate& best = scored.front();
-    if (!is_gain(result_.extended_losses, best.losses, share_worth_mm2())) return false;
+    if (!found) return false;
     const BlockLosses before = result_.extended_losses;
     if (!take(scored)) return false;
     if (result_.chosen.size() > 1) return both_stay(before);
     in_first_place_ = std::move(scored);
     return true;
+  }
+
+  /// Puts the candidate that gains most first, of those whose condition the data meet. False: it gains too
+  /// little or fails another condition of a name. Then no other is named in its place: it explains less.
+  bool best_first(std::vector<ScoredCandidate>& scored) const {
+    const Division by_unit = divide_by_unit(data_.records);
+    for (auto best = scored.begin(); best != scored.end(); ++best) {
+      if (!is_gain(result_.extended_losses, best->losses, share_worth_mm2())) break;
+      const Veto veto = veto_of(
+          data_.records, best->candidate.cause, *best->candidate.fit, result_.extended,
+          [&](const StructureFit& fit) { return linear_held_out_losses(data_.records, by_unit, fit); },
+          options_.seed);
+      if (veto == Veto::none) {
+        std::rotate(scored.begin(), best, best + 1);
+        return true;
+      }
+      best->candidate.why_not = reason_of(veto);
+      if (veto != Veto::not_tested) break;
+    }
+    return false;
   }
 
   [[nodiscard]] bool is_gain(const BlockLosses& before, const BlockLosses& after, double worth_mm2) const {

@@ -8,6 +8,7 @@
 
 #include "base/parallel.h"
 #include "base/statistics.h"
+#include "sysid/diagnosis/search/named_claim.h"
 #include "sysid/diagnosis/search/scored.h"
 
 namespace softgrip::sysid {
@@ -28,7 +29,11 @@ class Selector {
  public:
   Selector(const SearchData& data, StructureFit base, double noise_mm, const Division& division,
            const SelectionOptions& options)
-      : data_(data), noise_(noise_mm), division_(division), options_(options) {
+      : data_(data),
+        noise_(noise_mm),
+        division_(division),
+        options_(options),
+        by_unit_(divide_by_unit(data.records)) {
     BlockLosses losses = held_out_losses(data_.records, division_, base);
     result_ = selection_from(std::move(base), std::move(losses), noise_);
   }
@@ -116,11 +121,33 @@ class Selector {
     return square(structure_of(fit.residual_mm, noise_).excess_mm);
   }
 
+  /// Puts the candidate that gains most first, of those whose condition the data meet. False: it gains too
+  /// little or fails another condition of a name. Then no other is named in its place: it explains less.
+  bool best_first(std::vector<Scored>& scored) const {
+    for (auto best = scored.begin(); best != scored.end() && !best->losses.empty(); ++best) {
+      const StructureFit& fit = *best->candidate.fit;
+      if (!is_gain(result_.extended_losses, best->losses, result_.extended, fit)) break;
+      const Veto veto = vetoed(best->candidate.cause, fit, result_.extended);
+      if (veto == Veto::none) {
+        std::rotate(scored.begin(), best, best + 1);
+        return true;
+      }
+      best->candidate.why_not = reason_of(veto);
+      if (veto != Veto::not_tested) break;
+    }
+    return false;
+  }
+
+  [[nodiscard]] Veto vetoed(const Cause& cause, const StructureFit& with, const StructureFit& without) const {
+    return veto_of(
+        data_.records, cause, with, without,
+        [this](const StructureFit& fit) { return left_out_losses(data_.records, by_unit_, fit); },
+        options_.seed);
+  }
+
   bool add_one() {
     std::vector<Scored> scored = score(result_.extended);
-    if (scored.empty() || scored.front().losses.empty() ||
-        !is_gain(result_.extended_losses, scored.front().losses, result_.extended,
-                 *scored.front().candidate.fit)) {
+    if (!best_first(scored)) {
       result_.last_candidates = describe(scored, result_.extended_losses, options_.seed);
       return false;
     }
@@ -162,8 +189,9 @@ class Selector {
       const Cause old = result_.extended.causes[i];
       std::vector<Scored> scored = score(without(i));
       if (scored.empty() || scored.front().losses.empty()) continue;
+      const Candidate& best = scored.front().candidate;
       const bool better = rmse_mm(scored.front().losses) < rmse_mm(result_.extended_losses) &&
-                          scored.front().candidate.cause != old;
+                          best.cause != old && vetoed(best.cause, *best.fit, without(i)) == Veto::none;
       if (better) {
         take(scored.front());
         // It stands last now; the others were searched with the old one.
@@ -216,6 +244,7 @@ class Selector {
   double noise_;
   const Division& division_;
   const SelectionOptions& options_;
+  Division by_unit_;
   Selection result_;
   std::optional<double> to_beat_mm2_;  ///< of another explanation, once it was asked for
   /// The structure without one cause: its fit, and what it loses held out, as far as they were asked for.

@@ -50,5 +50,18 @@ TEST(Signature, EveryConditionHasARecordingThatMeetsIt) {
   EXPECT_TRUE(contains(Appears::displaced, "highest pressure"));
 }
 
+TEST(Rates, AreHeldAtTheirPeakForAMoment) {
+  Record record;
+  record.time_s = {0, 1, 2, 2.5};
+  record.duration_s = {0, 1, 1, 0.5};
+  record.drive_kpa = {0, 3, 3, 3};
+  const std::vector<double> rates = rates_of(record);
+  ASSERT_EQ(rates.size(), 4U);
+  EXPECT_EQ(rates[0], 0);
+  EXPECT_EQ(rates[1], 3);
+  EXPECT_NEAR(rates[2], 3 * std::exp(-2.0), 1e-12);
+  EXPECT_NEAR(rates[3], 3 * std::exp(-3.0), 1e-12);
+}
+
 }  // namespace
 }  // namespace softgrip::sysid::signature_test

@@ -65,7 +65,7 @@ TEST(LinearSelection, FindsWhatTheFullSearchFinds) {
     const Selection found = select_causes_upon(c.data, c.base, 0.03, c.division, {});
     const Selection full = select_causes(c.data, c.base, 0.03, c.division, {});
     const std::string name(model::catalogue()[effect.type].info.id);
-    ASSERT_EQ(found.chosen.size(), 1U) << name;
+    ASSERT_EQ(found.chosen.size(), 1U) << name << ": " << found.last_candidates.front().why_not;
     ASSERT_EQ(full.chosen.size(), 1U) << name;
     EXPECT_EQ(found.chosen.front().cause, full.chosen.front().cause) << name;
     EXPECT_EQ(found.chosen.front().cause.id, name);

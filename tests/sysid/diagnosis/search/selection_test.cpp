@@ -11,6 +11,7 @@
 
 #include "base/random.h"
 #include "sysid/diagnosis/residual/spectrum_peaks.h"
+#include "sysid/evidence/veto.h"
 #include "sysid/fitting/trajectory.h"
 #include "tests/sysid/diagnosis/campaign.h"
 #include "tests/sysid/simulated.h"
@@ -21,7 +22,8 @@ namespace {
 constexpr double noise_mm = 0.03;
 
 /// What is selected where the twin's readings are bent by `bend(y, t)`, t the time of the campaign.
-Selection select(const std::function<double(double y_mm, double t_s)>& bend) {
+Selection select(const std::function<double(double y_mm, double t_s)>& bend,
+                 const SelectionOptions& options = {}) {
   const model::Model given = loaded("bench_twin");
   std::vector<Record> records = known_campaign(2);
   for (std::size_t k = 0; k < records.size(); ++k) {
@@ -35,7 +37,7 @@ Selection select(const std::function<double(double y_mm, double t_s)>& bend) {
   SearchData data = make_search_data(records, given);
   StructureFit base = fit_structure(data.records, {}, data.given);
   data.scales.residual_lines = spectrum_peaks(data.records, base.residual_mm, 3);
-  return select_causes(data, std::move(base), noise_mm, divide(data.records, 8), {});
+  return select_causes(data, std::move(base), noise_mm, divide(data.records, 8), options);
 }
 
 std::vector<std::string> names(const Selection& selection) {
@@ -65,6 +67,21 @@ TEST(Selection, ASmallEffectThatExplainsTheRestIsNamed) {
   // It takes less of the misfit than the form of a large one may leave.
   const double excess = selection.base_structure.excess_mm;
   EXPECT_LT(0.09 * 0.09 / 2, 0.05 * excess * excess);
+}
+
+/// Blocks of both runs together agree on a size that neither run has.
+TEST(Selection, WhatEachRunShowsInAnotherSizeIsNotNamed) {
+  SelectionOptions one;
+  one.most_causes = 1;
+  const Selection selection = select(
+      [](double y_mm, double t_s) {
+        return y_mm + (t_s < 60 ? 0.3 : 0.06) * std::sin(2 * std::numbers::pi * 3.1 * t_s);
+      },
+      one);
+  EXPECT_EQ(names(selection), std::vector<std::string>{});
+  ASSERT_FALSE(selection.last_candidates.empty());
+  EXPECT_EQ(selection.last_candidates.front().cause.id, "periodic_disturbance");
+  EXPECT_EQ(selection.last_candidates.front().why_not, reason_of(Veto::error_not_reduced));
 }
 
 }  // namespace

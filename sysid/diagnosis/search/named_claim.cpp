@@ -1,0 +1,127 @@
+#include "sysid/diagnosis/search/named_claim.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string_view>
+
+#include "model/catalogue.h"
+#include "sysid/diagnosis/search/scored.h"
+#include "sysid/evidence/comparison.h"
+#include "sysid/evidence/limits.h"
+#include "sysid/evidence/signature.h"
+#include "sysid/fitting/residuals.h"
+#include "sysid/fitting/trajectory.h"
+#include "sysid/identification/uncertainty.h"
+
+namespace softgrip::sysid {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// The range of the signal that a number of this unit is a part of.
+double range_of(const std::vector<Record>& records, std::string_view unit) {
+  double span_mm = 0, largest_kpa = 0, length_s = 0;
+  for (const Record& record : records) {
+    span_mm = std::max(span_mm, record.span_mm);
+    largest_kpa = std::max(largest_kpa, record.largest_kpa);
+    length_s = std::max(length_s, record.length_s());
+  }
+  if (unit == "mm") return span_mm;
+  if (unit == "kPa") return largest_kpa;
+  if (unit == "s") return length_s;
+  return infinity;
+}
+
+void claim_size(Claim& claim, const std::vector<Record>& records, const Cause& cause,
+                const StructureFit& with) {
+  const model::Model& model = with.point.model;
+  const std::size_t position = *position_of(model, cause);
+  const FitSpace space = structure_space(records, model, with.causes);
+  const auto residuals = residuals_for(records, space);
+  const std::vector<double> z = space.z(with.point);
+  const Uncertainty uncertainty = uncertainty_at(*residuals, z, infinity);
+  double farthest = -infinity;
+  for (std::size_t j = 0; j < space.size(); ++j) {
+    const FreeParameter& free = space.free()[j];
+    if (free.kind != FreeParameter::Kind::model || uncertainty.at_bound[j]) continue;
+    const model::ParameterPlace place = model::place_of(model, free.flat_index);
+    if (place.block != position) continue;
+    const model::ParameterSpec& spec = model::catalogue()[model.blocks[position].type].spec(place.value);
+    const auto row = static_cast<Eigen::Index>(j);
+    const double deviation = std::sqrt(std::max(0.0, uncertainty.covariance(row, row)));
+    if (!std::isfinite(spec.neutral) || !(deviation > 0)) continue;
+    const double half = uncertainty.quantile * deviation;
+    const double distance = std::abs(z[j] - free.to_z(spec.neutral)) / deviation;
+    if (!(distance > farthest)) continue;
+    farthest = distance;
+    claim.size =
+        Interval{free.to_value(z[j] - half) - spec.neutral, free.to_value(z[j] + half) - spec.neutral};
+    // A limit does nothing far above all signals, where its distance from there says nothing.
+    claim.largest_size = spec.neutral == 0 ? range_of(records, spec.unit) : infinity;
+  }
+}
+
+/// Of every reading whether the cause must act there, record after record.
+std::vector<bool> required_readings(const std::vector<Record>& records, Appears appears,
+                                    const StructureFit& without) {
+  std::vector<OperatingPoint> conditions;
+  for (std::size_t r = 0; r < records.size(); ++r) {
+    const Record& record = records[r];
+    const std::vector<double> rates = rates_of(record);
+    const std::vector<double> motion = predict(without.point.model, record, without.point.starts[r]);
+    for (std::size_t i = 0; i < record.size(); ++i) {
+      if (std::isfinite(record.reading_mm[i]))
+        conditions.push_back({record.drive_kpa[i], rates[i], motion[i]});
+    }
+  }
+  return required_at(appears, conditions);
+}
+
+/// Squares of both residuals where the cause must act, by block.
+PairedLosses losses_there(const std::vector<Record>& records, const std::vector<bool>& required,
+                          const StructureFit& with, const StructureFit& without) {
+  PairedLosses losses;
+  std::vector<std::size_t> before{0};  // readings of earlier records
+  for (const Record& record : records) before.push_back(before.back() + record.readings);
+  std::vector<std::size_t> next = before;
+  for (const Block& block : divide(records, limits::block_s).blocks) {
+    double worse = 0, better = 0, rows = 0;
+    for (std::size_t i = block.first; i < block.last; ++i) {
+      if (!std::isfinite(records[block.record].reading_mm[i]) || !required[next[block.record]++]) continue;
+      worse += without.residual_mm[block.record][i] * without.residual_mm[block.record][i];
+      better += with.residual_mm[block.record][i] * with.residual_mm[block.record][i];
+      rows += 1;
+    }
+    losses.worse.push_back(worse);
+    losses.better.push_back(better);
+    losses.rows.push_back(rows);
+  }
+  return losses;
+}
+
+PairedLosses paired(const BlockLosses& worse, const BlockLosses& better) {
+  return {worse, better, std::vector<double>(worse.size(), 1.0)};
+}
+
+}  // namespace
+
+Veto veto_of(const std::vector<Record>& records, const Cause& cause, const StructureFit& with,
+             const StructureFit& without, const LeftOutLosses& left_out, std::uint64_t seed) {
+  Claim claim;
+  const std::vector<bool> required = required_readings(records, cause.appears, without);
+  claim.condition_met =
+      static_cast<std::size_t>(std::count(required.begin(), required.end(), true)) >= limits::fewest_bins;
+  claim_size(claim, records, cause, with);
+  claim.shown_there = is_better(compare(losses_there(records, required, with, without), 0, seed));
+  claim.error_without = 1;
+  if (const Veto veto = veto_of(claim); veto != Veto::none || has_free_form(with.point.model, cause))
+    return veto;
+  const BlockLosses losses_without = left_out(without), losses_with = left_out(with);
+  claim.error_without = rmse_mm(losses_without);
+  claim.error_with = rmse_mm(losses_with);
+  claim.predicts_worse = is_better(compare(paired(losses_with, losses_without), 0, seed));
+  return veto_of(claim);
+}
+
+}  // namespace softgrip::sysid

@@ -1,0 +1,25 @@
+#pragma once
+// What a search claims of a cause, held against the conditions of every name.
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "sysid/diagnosis/search/holdout.h"
+#include "sysid/evidence/veto.h"
+
+namespace softgrip::sysid {
+
+/// What a structure loses in the units that its numbers were not fitted to, by divide_by_unit().
+using LeftOutLosses = std::function<BlockLosses(const StructureFit&)>;
+
+/// The first condition (sysid/evidence/veto.h) that a cause fails; Veto::none: it may be named.
+///
+/// Its size is the number that is farthest, in standard deviations, from where the cause does nothing. A
+/// cause without such a number, as a limit, has an effect of any size. A free form says nothing of units that
+/// it was not fitted to: there it is not judged.
+/// @param with, without  fitted to the records, with the cause and without. @param seed  of the draws.
+[[nodiscard]] Veto veto_of(const std::vector<Record>& records, const Cause& cause, const StructureFit& with,
+                           const StructureFit& without, const LeftOutLosses& left_out, std::uint64_t seed);
+
+}  // namespace softgrip::sysid

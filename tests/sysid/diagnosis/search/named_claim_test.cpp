@@ -1,0 +1,100 @@
+// The conditions of every name, one by one: each has a case that fails it alone.
+
+#include "sysid/diagnosis/search/named_claim.h"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "base/random.h"
+#include "sysid/diagnosis/search/search.h"
+#include "sysid/fitting/trajectory.h"
+#include "tests/sysid/diagnosis/campaign.h"
+#include "tests/sysid/simulated.h"
+
+namespace softgrip::sysid::named_claim_test {
+namespace {
+
+/// Two runs of a twin, a cause fitted to them, and what a stand-in says of left-out runs.
+struct Case {
+  std::vector<Record> records = known_campaign(2);
+  Cause cause;
+  StructureFit without, with;
+  double error_without = 1, error_with = 0.5;  ///< of every block of the left-out runs
+  int asked = 0;
+
+  /// @param bend  of the readings, at the time of the campaign.
+  template <class Bend>
+  Case(const char* id, Bend bend) : cause(*find_cause(id)) {
+    const model::Model twin = loaded("bench_twin");
+    for (std::size_t k = 0; k < records.size(); ++k) {
+      Record& r = records[k];
+      r.reading_mm = predict(twin, r, rest_starts(twin, {r}).front());
+      for (std::size_t i = 0; i < r.size(); ++i)
+        r.reading_mm[i] = bend(r.reading_mm[i], r.campaign_time_s + r.time_s[i]) + 0.03 * normal_at(5 + k, i);
+    }
+    SearchData data = make_search_data(records, twin);
+    without = fit_structure(records, {}, data.given);
+    std::vector<Candidate> found = fit_candidates(data, without, {.only = {cause}});
+    if (found.size() == 1 && found[0].fit) with = *found[0].fit;
+  }
+
+  Veto veto() {
+    const LeftOutLosses left_out = [this](const StructureFit& fit) {
+      ++asked;
+      const double error = fit.causes.empty() ? error_without : error_with;
+      return BlockLosses(divide_by_unit(records).blocks.size(), error * error);
+    };
+    return veto_of(records, cause, with, without, left_out, 1);
+  }
+};
+
+double aged(double y_mm, double t_s) {
+  return y_mm * (1 + 0.1 * t_s / 120);
+}
+
+TEST(NamedClaim, OfWhatIsThereMeetsAllConditions) {
+  Case ageing("ageing", aged);
+  ASSERT_FALSE(ageing.with.causes.empty());
+  EXPECT_EQ(ageing.veto(), Veto::none);
+  EXPECT_EQ(ageing.asked, 2);
+}
+
+TEST(NamedClaim, FailsWhereLeftOutRunsAreNotPredictedBetter) {
+  Case ageing("ageing", aged);
+  ageing.error_with = ageing.error_without;
+  EXPECT_EQ(ageing.veto(), Veto::error_not_reduced);
+}
+
+TEST(NamedClaim, FailsWhereItIsNotClearOfZero) {
+  Case ageing("ageing", [](double y_mm, double) { return y_mm; });
+  ASSERT_FALSE(ageing.with.causes.empty());
+  EXPECT_EQ(ageing.veto(), Veto::size_uncertain);
+}
+
+TEST(NamedClaim, FailsWhereTheDataNeverShowIt) {
+  Case drift("sensor_drift", [](double y_mm, double t_s) { return y_mm + 2 * t_s / 120; });
+  ASSERT_FALSE(drift.with.causes.empty());
+  EXPECT_EQ(drift.veto(), Veto::none);
+  // Without a rest nothing tells a zero that moves from a finger that does.
+  for (Record& record : drift.records) {
+    for (double& p : record.drive_kpa)
+      p += p < 1 ? 20 * normal_at(9, static_cast<std::uint64_t>(&p - record.drive_kpa.data())) : 0;
+  }
+  EXPECT_EQ(drift.veto(), Veto::not_tested);
+}
+
+TEST(NamedClaim, FailsWhereItsEffectIsAbsent) {
+  Case ageing("ageing", aged);
+  // What it explains is where the finger hardly moves.
+  for (std::size_t r = 0; r < ageing.records.size(); ++r) {
+    for (std::size_t i = 0; i < ageing.records[r].size(); ++i) {
+      if (ageing.records[r].reading_mm[i] > 8)
+        ageing.with.residual_mm[r][i] = ageing.without.residual_mm[r][i];
+    }
+  }
+  EXPECT_EQ(ageing.veto(), Veto::absent_where_required);
+}
+
+}  // namespace
+}  // namespace softgrip::sysid::named_claim_test
