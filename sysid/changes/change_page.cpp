@@ -101,7 +101,7 @@ Figure tried_figure(const JudgedChange& judged) {
       stacked({chart})};
 }
 
-/// What the base leaves of every run, the healthy ones first.
+/// Error of the base in every run, the healthy ones first.
 Figure runs_figure(const JudgedChange& judged, bool explained) {
   Chart chart;
   chart.height = 220;

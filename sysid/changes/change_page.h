@@ -12,7 +12,7 @@ namespace softgrip::sysid {
 
 /// Every cause that was tried: its improvement, its tolerance, and why it was rejected.
 [[nodiscard]] Table tried_table(const JudgedChange& judged);
-/// What the base leaves of every run, without and with the causes.
+/// Error of the base in every run, without and with the causes.
 [[nodiscard]] Table run_table(const JudgedChange& judged);
 
 }  // namespace softgrip::sysid

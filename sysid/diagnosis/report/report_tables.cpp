@@ -37,7 +37,7 @@ std::string outcome_of(const CandidateScore& c, const NamedCause* chosen, double
          significant(chosen_rmse_mm, 3) + " mm";
 }
 
-/// What was tried, how well it did, and why it was not kept.
+/// The candidates, their errors, and the reason why each was not kept.
 /// @param chosen  the cause in whose place these were tried; nullptr: one more cause was looked for.
 Table candidate_table(const std::vector<CandidateScore>& candidates, const NamedCause* chosen,
                       double chosen_rmse_mm, std::string caption) {

@@ -16,7 +16,7 @@ namespace softgrip::sysid {
 [[nodiscard]] Table rmse_table(const Diagnosis& diagnosis);
 /// Share and p-value of every condition, for the models that there are.
 [[nodiscard]] Table condition_table(const Evidence& evidence, bool extended);
-/// What was tried in the place of every cause, and beside all of them.
+/// The candidates in the place of every cause, and beside all of them.
 [[nodiscard]] std::vector<Table> candidate_tables(const Diagnosis& diagnosis);
 /// Errors of every run that was left out of the fit.
 [[nodiscard]] Table run_table(const Diagnosis& diagnosis);

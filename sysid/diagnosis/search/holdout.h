@@ -16,8 +16,8 @@ inline constexpr double block_length_s = 8;
 /// The structure refitted without each fold. The starts of the records stay as they are in `fit`.
 [[nodiscard]] BlockLosses held_out_losses(const std::vector<Record>& records, const Division& division,
                                           const StructureFit& fit);
-/// The structure refitted without each unit (sysid/evidence/units.h). Of a log that is left out as a whole
-/// the first readings tell the start (sysid/fitting/start_estimate.h).
+/// The structure refitted without each unit (sysid/evidence/units.h). The first readings of a log
+/// that is left out as a whole determine its start (sysid/fitting/start_estimate.h).
 /// @param by_unit  divide_by_unit(records).
 [[nodiscard]] BlockLosses left_out_losses(const std::vector<Record>& records, const Division& by_unit,
                                           const StructureFit& fit);

@@ -1,5 +1,5 @@
 #pragma once
-// What a search claims of a cause, held against the conditions of every name.
+// The conditions of every name for one cause that a search has found.
 
 #include <cstdint>
 #include <functional>
@@ -10,7 +10,7 @@
 
 namespace softgrip::sysid {
 
-/// What a structure loses in the units that its numbers were not fitted to, by divide_by_unit().
+/// Losses of a structure in the units that its numbers were not fitted to, by divide_by_unit().
 using LeftOutLosses = std::function<BlockLosses(const StructureFit&)>;
 
 /// The first condition (sysid/evidence/veto.h) that a cause fails; Veto::none: it may be named.

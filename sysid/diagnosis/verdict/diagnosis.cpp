@@ -31,6 +31,9 @@ using Failure = tl::unexpected<std::string>;
 
 constexpr double clearly_correlated = 0.05;
 constexpr std::size_t fewest_samples = 200;
+/// Of the structure's mean square: starts that take less than half of it are not the main reason.
+constexpr double left_by_an_open_start = 0.5;
+
 /// The base fitted from the given model and, since recalibration can start far off, from the data's scale.
 tl::expected<StructureFit, std::string> recalibrate(const SearchData& data, const DiagnosisOptions& options) {
   StructureFit best = fit_structure(data.records, {}, data.given);
@@ -51,7 +54,7 @@ tl::expected<StructureFit, std::string> recalibrate(const SearchData& data, cons
   return best;
 }
 
-/// Of each run, or of each half of a single one, the root of its blocks' mean loss.
+/// Root of the mean loss of each run, or of each half of a single run.
 std::vector<RunError> run_errors(const std::vector<Record>& records, const Division& by_unit,
                                  const BlockLosses& given, const BlockLosses& recalibrated,
                                  const BlockLosses& extended) {
@@ -93,6 +96,8 @@ class Diagnostician {
     auto base = recalibrate(data_, options_);
     if (!base) return Failure(base.error());
     hide_more_outliers(*base);
+    const Division division = divide(data_.records, block_length_s);
+    open_starts(*base, division);
     d_.recalibrated = *base;
     if (const auto wrong = why_not_about(data_.records, *base)) return Failure(*wrong);
     data_.scales.residual_lines = spectrum_peaks(data_.records, base->residual_mm);
@@ -104,7 +109,6 @@ class Diagnostician {
       if (!d_.in_valve->advice.empty()) d_.warnings.push_back(d_.in_valve->advice);
       clock.ended("valve");
     }
-    const Division division = divide(data_.records, block_length_s);
     AnotherBase another(data_, {options_.record.drive, d_.noise_mm, options_.seed, options_.threads, division,
                                 options_.progress});
     Selection selection = search(std::move(*base), division, another);
@@ -193,6 +197,31 @@ class Diagnostician {
       use(std::move(records));
       base = fit_structure(data_.records, {}, base.point);
     }
+  }
+
+  /// A log may begin without pressure before the finger has settled. Its hysteresis and creep are then
+  /// estimated, if that takes most of the structure.
+  void open_starts(StructureFit& base, const Division& division) {
+    const auto is_given = [](const Record& r) { return r.start != Start::automatic || r.start_unknown; };
+    const Structure before = structure_of(base.residual_mm, d_.noise_mm);
+    if (!before.present || std::all_of(data_.records.begin(), data_.records.end(), is_given)) return;
+    const std::vector<Record> resting = data_.records;
+    std::vector<Record> open = resting;
+    for (Record& record : open) record.start_unknown |= !is_given(record);
+    const BlockLosses losses = held_out_losses(resting, division, base);
+    use(open);
+    auto fit = recalibrate(data_, options_);
+    const auto left_mm = [&] { return structure_of(fit->residual_mm, d_.noise_mm).excess_mm; };
+    if (!fit || square(left_mm()) > left_by_an_open_start * square(before.excess_mm) ||
+        !is_missed(losses, held_out_losses(open, division, *fit), 0.01 * square(d_.noise_mm),
+                   options_.seed)) {
+      use(resting);
+      return;
+    }
+    base = std::move(*fit);
+    d_.warnings.emplace_back(
+        "The logs begin without pressure but before the finger has settled: the state at their start is "
+        "estimated");
   }
 
   /// Whether a selection leaves more than what is named may leave, or structure where nothing is named.

@@ -76,7 +76,7 @@ TEST(NamedClaim, FailsWhereTheDataNeverShowIt) {
   Case drift("sensor_drift", [](double y_mm, double t_s) { return y_mm + 2 * t_s / 120; });
   ASSERT_FALSE(drift.with.causes.empty());
   EXPECT_EQ(drift.veto(), Veto::none);
-  // Without a rest nothing tells a zero that moves from a finger that does.
+  // Without a rest a zero that moves looks like a finger that moves.
   for (Record& record : drift.records) {
     for (double& p : record.drive_kpa)
       p += p < 1 ? 20 * normal_at(9, static_cast<std::uint64_t>(&p - record.drive_kpa.data())) : 0;
@@ -86,7 +86,7 @@ TEST(NamedClaim, FailsWhereTheDataNeverShowIt) {
 
 TEST(NamedClaim, FailsWhereItsEffectIsAbsent) {
   Case ageing("ageing", aged);
-  // What it explains is where the finger hardly moves.
+  // It explains only readings at which the finger hardly moves.
   for (std::size_t r = 0; r < ageing.records.size(); ++r) {
     for (std::size_t i = 0; i < ageing.records[r].size(); ++i) {
       if (ageing.records[r].reading_mm[i] > 8)

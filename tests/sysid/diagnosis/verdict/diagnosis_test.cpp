@@ -10,10 +10,12 @@
 #include <string_view>
 #include <vector>
 
+#include "base/random.h"
 #include "model/blocks/bouc_wen.h"
 #include "model/blocks/prandtl_ishlinskii.h"
 #include "model/blocks/transport_delay.h"
 #include "model/named.h"
+#include "sysid/fitting/trajectory.h"
 #include "tests/sysid/simulated.h"
 
 namespace softgrip::sysid::diagnosis_test {
@@ -100,6 +102,39 @@ TEST(Diagnosis, WrongSamplesKeepTheirNameWhereAnotherBaseHolds) {
   EXPECT_TRUE(names("hysteresis_shape"));
   EXPECT_TRUE(names("outliers"));
   EXPECT_NEAR(static_cast<double>(diagnosis->outliers.count), static_cast<double>(wrong), 2);
+}
+
+/// The log of a finger that was pressed before the recording began.
+Log begun_unsettled(const model::Model& truth, model::SignalName signal, double pulse_kpa,
+                    std::uint64_t seed) {
+  constexpr double rate_hz = 25;
+  constexpr std::size_t pressed = 250, rested = 75;
+  Log log = simulated(truth, signal, rate_hz, noise_mm, seed);
+  const std::vector<double> command_kpa = log.pressure_command_kpa;
+  log.pressure_command_kpa.assign(pressed, pulse_kpa);
+  log.pressure_command_kpa.resize(pressed + rested, 0);
+  log.pressure_command_kpa.insert(log.pressure_command_kpa.end(), command_kpa.begin(), command_kpa.end());
+  log.displacement_mm.assign(log.pressure_command_kpa.size(), 0);
+  log.time_s.clear();
+  for (std::size_t i = 0; i < log.displacement_mm.size(); ++i)
+    log.time_s.push_back(static_cast<double>(i) / rate_hz);
+  const Record record = make_records({log}, {.start = Start::rest}).front();
+  log.displacement_mm = predict(truth, record, rest_starts(truth, {record}).front());
+  for (std::size_t i = 0; i < log.displacement_mm.size(); ++i)
+    log.displacement_mm[i] += noise_mm * normal_at(seed, i);
+  return slice(log, pressed + rested, log.size());
+}
+
+/// A log may begin without pressure and not at rest: what its creep does then has no cause.
+TEST(Diagnosis, AStartBeforeTheFingerHasSettledIsNoCause) {
+  const model::Model truth = without_valve();
+  const std::vector<Log> logs{begun_unsettled(truth, model::SignalName::tp1, 45, 3),
+                              begun_unsettled(truth, model::SignalName::sp2, 20, 4),
+                              begun_unsettled(truth, model::SignalName::tp2, 35, 5)};
+  const auto diagnosis = diagnose(logs, truth, {});
+  ASSERT_TRUE(diagnosis) << diagnosis.error();
+  EXPECT_TRUE(diagnosis->causes.empty()) << diagnosis->causes.front().cause.id;
+  EXPECT_FALSE(diagnosis->structure_recalibrated.present) << diagnosis->structure_recalibrated.excess_mm;
 }
 
 }  // namespace
