@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <cstring>
 #include <span>
 
 namespace softgrip::daemon {
@@ -133,7 +134,9 @@ bool Bus::ensure_session() noexcept {
     return true;
   }
   put_off_next_attempt();
+  const bool another = told_failed_;
   note_failure(status);
+  if (another) note_refusal(status);
   return false;
 }
 
@@ -190,6 +193,7 @@ void Bus::note_success(Nanoseconds duration) noexcept {
   report_.health.consecutive_failures = silent() ? unheard_ : 0;
   if (told_failed_) tell(BusEvent::Kind::recovered, BusStatus::ok);
   told_failed_ = false;
+  told_refused_ = false;
   note_clients();
 }
 
@@ -223,6 +227,14 @@ void Bus::note_failure(BusStatus status) noexcept {
   tell(BusEvent::Kind::failed, status, board_.detail());
 }
 
+/// Once in an outage: why no new session can be opened may be another fact than why the last one ended. A
+/// converter is gone, and another one of its name is there.
+void Bus::note_refusal(BusStatus status) noexcept {
+  if (told_refused_ || std::strncmp(told_.data(), board_.detail(), told_.size() - 1) == 0) return;
+  told_refused_ = true;
+  tell(BusEvent::Kind::not_connected, status, board_.detail());
+}
+
 /// A board that has not been fed for longer than it waits has put its own safe value out.
 void Bus::judge_gap(Nanoseconds now, Nanoseconds margin) noexcept {
   if (watchdog_ == 0 || !last_good_ || now - *last_good_ < watchdog_ - margin) return;
@@ -247,6 +259,7 @@ void Bus::tell(BusEvent::Kind kind, BusStatus status, const char* detail) noexce
   event.at = clock_.now();
   event.status = status;
   std::snprintf(event.detail.data(), event.detail.size(), "%s", detail);
+  if (kind == BusEvent::Kind::failed) told_ = event.detail;
   wires_.bus_events.push(event);
 }
 

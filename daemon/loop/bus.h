@@ -61,6 +61,7 @@ class Bus {
   void choose_outputs() noexcept;
   void note_success(Nanoseconds duration) noexcept;
   void note_failure(drivers::BusStatus status) noexcept;
+  void note_refusal(drivers::BusStatus status) noexcept;
   void note_clients() noexcept;
   void judge_gap(Nanoseconds now, Nanoseconds margin) noexcept;
   void rest_outputs() noexcept;
@@ -94,6 +95,8 @@ class Bus {
   std::uint32_t unheard_ = 0;                                // steps since the loop's last commands
   std::optional<Nanoseconds> last_good_;                     // when the last good exchange began
   bool told_failed_ = false;                                 // the log knows about the present failure
+  bool told_refused_ = false;                                // and why no session can be opened again
+  std::array<char, sizeof(BusEvent::detail)> told_{};        // the last failure in the log
   bool told_clients_ = false;  // the log knows, of this session, that the board has another client
   Nanoseconds pause_ = 0;      // before the attempt after the next
   Nanoseconds next_attempt_ = 0;

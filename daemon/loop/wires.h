@@ -51,11 +51,12 @@ struct BusEvent {
     loop_silent,     ///< no new commands from the loop: the safe outputs are written
     loop_back,       ///< the loop's commands are written again
     another_client,  ///< another client feeds the board's watchdog; `detail`: number of clients
+    not_connected,   ///< no session can be opened again, for another reason than `failed` stated
   };
   Kind kind = Kind::connected;
   Nanoseconds at = 0;
   drivers::BusStatus status = drivers::BusStatus::ok;
-  std::array<char, 120> detail{};  ///< what the board said, ended by 0
+  std::array<char, 256> detail{};  ///< what the board said, ended by 0
 };
 
 /// From the loop to the recorder: a row of one channel.

@@ -29,15 +29,16 @@ struct Words {
 using enum Severity;
 
 /// In the order of BusEvent::Kind.
-constexpr std::array<Words, 6> bus_words{{
+constexpr std::array<Words, 7> bus_words{{
     {"bus_connected", information, "A session with the board is up."},
     {"bus_failed", error, ""},
     {"bus_recovered", information, "The board answers again."},
     {"loop_silent", error, "No commands from the loop: the safe outputs are written."},
     {"loop_back", information, "The loop's commands are written again."},
     {"another_client", warning, ""},
+    {"bus_not_connected", error, ""},
 }};
-static_assert(static_cast<std::size_t>(BusEvent::Kind::another_client) + 1 == bus_words.size());
+static_assert(static_cast<std::size_t>(BusEvent::Kind::not_connected) + 1 == bus_words.size());
 
 /// In the order of PanelEvent::Kind.
 constexpr std::array<Words, 8> panel_words{{
@@ -292,10 +293,13 @@ EventEntry describe(const BusEvent& event) {
         "without venting, the board does not vent while that client sends requests.",
         detail);
   }
-  if (event.kind != BusEvent::Kind::failed) return entry;
+  const bool failed = event.kind == BusEvent::Kind::failed;
+  if (!failed && event.kind != BusEvent::Kind::not_connected) return entry;
   entry.code = drivers::name_of(event.status);
-  entry.text = fmt::format("The exchange with the board failed: {}{}{}.", entry.code,
-                           detail.empty() ? "" : ": ", detail);
+  entry.text =
+      fmt::format("{}: {}{}{}.",
+                  failed ? "The exchange with the board failed" : "No session with the board can be opened",
+                  entry.code, detail.empty() ? "" : ": ", detail);
   return entry;
 }
 

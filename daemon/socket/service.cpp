@@ -112,7 +112,8 @@ void Service::pump() {
   for (BusEvent event; wires_.bus_events.pop(event);) {
     EventEntry entry = describe(event);
     entry.time_s = seconds(event.at - origin_);
-    if (event.kind == BusEvent::Kind::failed) bus_failure_ = entry.text;
+    const bool fails = event.kind == BusEvent::Kind::failed || event.kind == BusEvent::Kind::not_connected;
+    if (fails) bus_failure_ = entry.text;
     if (event.kind == BusEvent::Kind::recovered) bus_failure_.clear();
     log_.add(std::move(entry));
   }

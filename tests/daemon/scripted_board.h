@@ -21,6 +21,7 @@ class ScriptedBoard final : public drivers::Board {
   std::chrono::nanoseconds watchdog{0};
   bool readers_feed = false;
   unsigned counted_clients = 0;
+  const char* said = "scripted";
   std::function<void()> on_connect;           ///< while it connects
   std::function<void()> on_exchange;          ///< before what was sent arrives
   std::vector<Nanoseconds> connect_attempts;  ///< when
@@ -44,7 +45,7 @@ class ScriptedBoard final : public drivers::Board {
     }
     return drivers::BusStatus::ok;
   }
-  [[nodiscard]] const char* detail() const noexcept override { return "scripted"; }
+  [[nodiscard]] const char* detail() const noexcept override { return said; }
   [[nodiscard]] std::string describe() const override { return "scripted board"; }
   [[nodiscard]] Budget budget() const override { return {}; }
   [[nodiscard]] bool has_watchdog() const noexcept override { return watchdog.count() > 0; }

@@ -2,6 +2,7 @@
 
 import os
 import pathlib
+import re
 import subprocess
 import tempfile
 import unittest
@@ -50,6 +51,47 @@ class Devices(unittest.TestCase):
             self.assertIn("rig.yaml:11:18: `mcp4725` fits 2 converters: iio:device0 (name `mcp4725`) and iio:device1", said)
         for number in range(3):
             self.assertEqual((self.folder / f"iio/iio:device{number}/out_voltage0_raw").read_text(), "1234\n")
+
+    def plug(self, number, address, name):
+        """A converter on a bus, and its link among all converters."""
+        node = self.folder / "hardware" / address / f"iio:device{number}"
+        node.mkdir(parents=True)
+        for attribute, text in (("name", name), ("out_voltage0_raw", "1234"), ("out_voltage0_scale", "0.8"),
+                                ("out_voltage0_powerdown", "1")):
+            (node / attribute).write_text(text + "\n")
+        for channel in range(4):
+            (node / f"in_voltage{channel}_raw").write_text("8000\n")
+            (node / f"in_voltage{channel}_scale").write_text("0.125\n")
+        (self.folder / "iio").mkdir(exist_ok=True)
+        (self.folder / "iio" / node.name).symlink_to(node)
+        return node
+
+    def test_another_converter_of_the_name_of_one_that_vanished(self):
+        valve = self.plug(0, "1-0060", "mcp4725")
+        self.plug(1, "1-0061", "dac7571")
+        sensors = self.plug(2, "1-0048", "ads1115")
+        rig = self.write_rig("rig_iio.yaml", ("  iio:\n", f"  iio:\n    root: {self.folder}/iio\n"),
+                             ("device: 1-0060", "device: mcp4725"), ("device: 1-0061", "device: dac7571"))
+        log = self.folder / "log"
+        with log.open("w") as file:
+            daemon = subprocess.Popen([bench.SOFTGRIPD, "--config", rig], stdout=file, stderr=file)
+        self.addCleanup(daemon.wait)
+        self.addCleanup(daemon.kill)
+        bench.wait_for("the first output", lambda: (valve / "out_voltage0_powerdown").read_text() == "0\n")
+        self.assertEqual((valve / "out_voltage0_raw").read_text().split()[0], "0")
+        (self.folder / "iio/iio:device0").unlink()
+        other = self.plug(0, "1-0062", "mcp4725")
+        (sensors / "in_voltage0_raw").write_text("gone\n")  # the session ends
+        bench.wait_for("the end of the session", lambda: "no number" in log.read_text())
+        (sensors / "in_voltage0_raw").write_text("8000\n")
+        bench.wait_for("the refusal", lambda: re.search(
+            "No session with the board can be opened: disconnected: mcp4725 voltage0: it was mcp4725 at .*1-0060, "
+            "now it is mcp4725 at .*1-0062: start again", log.read_text()))
+        self.assertEqual((other / "out_voltage0_raw").read_text(), "1234\n")
+        self.assertEqual((other / "out_voltage0_powerdown").read_text(), "1\n")
+        (self.folder / "iio/iio:device0").unlink()
+        (self.folder / "iio/iio:device3").symlink_to(valve)  # its own converter comes back, under another number
+        bench.wait_for("the next session", lambda: "The board answers again" in log.read_text())
 
     @unittest.skipUnless(digital_lines.PRELOADED.exists(), "not built: a sanitizer's runtime must be loaded first")
     def test_a_label_of_two_chips(self):

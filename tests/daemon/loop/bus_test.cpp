@@ -272,6 +272,47 @@ TEST_F(VacuumBusTest, OutputsThatTheBoardDidNotConfirmAreTheNearerToRest) {
 }
 
 /// A client that comes and goes does not fill the log.
+TEST_F(BusTest, ThatNoSessionCanBeOpenedAgainIsToldOnceIfItIsForAnotherReason) {
+  const auto failures = [this] {
+    std::vector<std::string> texts;
+    for (BusEvent event; wires_.bus_events.pop(event);) {
+      if (event.kind == BusEvent::Kind::failed) texts.emplace_back(event.detail.data());
+      if (event.kind == BusEvent::Kind::not_connected)
+        texts.push_back(std::string("again: ") + event.detail.data());
+    }
+    return texts;
+  };
+  command(12, 0, true);
+  step();
+  const std::string refusal =
+      "`mcp4725` fits 2 converters: iio:device0 (name `mcp4725`, address `1-0060`) and "
+      "iio:device1 (name `mcp4725`, address `1-0061`)";
+  for (int outage = 0; outage < 2; ++outage) {
+    board_.next_exchange = BusStatus::disconnected;
+    board_.next_connect = BusStatus::disconnected;
+    board_.said = "gone";
+    step();
+    EXPECT_EQ(failures(), (std::vector<std::string>{"gone"}));
+    for (int i = 0; i < 5; ++i) {
+      clock_.advance(60'000'000'000);
+      step();
+    }
+    EXPECT_TRUE(failures().empty()) << "the same reason";
+    board_.said = refusal.c_str();
+    for (int i = 0; i < 5; ++i) {
+      clock_.advance(60'000'000'000);
+      step();
+    }
+    EXPECT_EQ(failures(), (std::vector<std::string>{"again: " + refusal})) << "whole, and once";
+    board_.next_exchange = BusStatus::ok;
+    board_.next_connect = BusStatus::ok;
+    clock_.advance(60'000'000'000);
+    step();
+    step();
+    (void)failures();
+  }
+}
+
 TEST_F(BusTest, AnotherClientThatFeedsTheWatchdogIsToldOnceASession) {
   const std::vector<BusEvent::Kind> none;
   command(12, 0, true);

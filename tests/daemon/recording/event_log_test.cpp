@@ -41,6 +41,17 @@ TEST(EventLog, AnotherClientOfTheBoardIsAWarningWithTheirNumber) {
   EXPECT_NE(entry.text.find("counts 2 clients"), std::string::npos) << entry.text;
 }
 
+TEST(EventLog, WhyNoSessionCanBeOpenedIsAnEventOfItsOwn) {
+  BusEvent event;
+  event.kind = BusEvent::Kind::not_connected;
+  event.status = drivers::BusStatus::disconnected;
+  event.detail = {'g', 'o', 'n', 'e'};
+  const EventEntry entry = describe(event);
+  EXPECT_EQ(entry.kind, "bus_not_connected");
+  EXPECT_EQ(entry.code, "disconnected");
+  EXPECT_EQ(entry.text, "No session with the board can be opened: disconnected: gone.");
+}
+
 TEST(EventLog, IdsHaveNoGapsAndTheOldestGo) {
   EventLog log(3);
   EXPECT_EQ(log.oldest(), 0U);
