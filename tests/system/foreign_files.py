@@ -376,6 +376,9 @@ def reports():
             ["time_s", "t_ms", "set_kpa", "tip_mm"], [T, ms, COMMAND, TIP]), says="shows the time that is used"),
         File("clock_and_counter.csv", "a time and a counter of samples",
              table(["time_s", "sample", "set_kpa", "tip_mm"], [T, list(range(COUNT)), COMMAND, TIP]), says="not used: 'sample'"),
+        File("unread_time.csv", "a time, and dates of which the month comes first", table(
+            ["time_s", "Timestamp", *names[1:]], [T, times("2024-05-31T12:00:00", "%m/%d/%Y %H:%M:%S.%f"), COMMAND, TIP]),
+             says="the column 'Timestamp' looks like a time and cannot be read ('05/31/2024 12:00:00.000')"),
         File("long_minutes.csv", "minutes above 59", table(
             ["Time", *names[1:]], [[f"{(3598 + t) // 60:.0f}:{(3598 + t) % 60:05.2f}" for t in T], COMMAND, TIP])),
         File("noon.csv", "p.m. in lower case across one o'clock",
@@ -418,7 +421,7 @@ def reports():
              says="leaves out 3 lines of another width: 41, 42, 201"),
         File("idle_sheet.mcap", "an MCAP recording with options of other formats", exported(bytes),
              "--channel left --sheet Run --separator tab", columns=MEASURED, left_out={"other_channel": 300},
-             says="--sheet has no effect: the file is no workbook"),
+             says="--separator has no effect: the file is no text"),
     ]
 
 

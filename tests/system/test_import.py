@@ -94,6 +94,10 @@ class Import(bench.BenchTest):
         rows = json.loads(self.imported(path, "--out", "log.csv", "--yes", "--json").stdout)["logs"][0]["rows"]
         self.assertEqual(rows, {"file": 300, "used": 60, "joined": 0, "left_out": {"repeated_time": 240}})
 
+    def test_the_account_is_kept_when_no_row_is_lost(self):
+        self.imported(self.foreign("names_psi.csv"), "--out", "log.csv", "--yes")
+        self.assertIn("# 300 rows: 300 used", (self.folder / "log.import.yaml").read_text())
+
     def test_what_was_found_in_a_file_gives_the_same_bytes_from_the_mapping(self):
         for name, options in (("codes.csv", ()), ("two_times.csv", ()), ("bad_lines.csv", ("--skip-bad-lines",)),
                               ("fingers_right.csv", ("--channel", "right"))):

@@ -72,6 +72,7 @@ struct Generated {
   std::map<std::int64_t, double> readings;  ///< by time in ms, where the log must have one
   std::map<std::int64_t, double> commands;  ///< by time in ms, where the file has one
   std::vector<std::string> unused;
+  std::vector<std::string> second_times;  ///< among these
   std::vector<std::string> idle;
 };
 
@@ -119,7 +120,10 @@ class Generator {
     if (one_in(4)) file_.text += "# made by a generator\n";
     std::vector<std::string> names{clock_name(clock_), "set_kpa", "tip_mm"};
     if (raw_) names.emplace_back("valve_current_mA");
-    if (second_time_) names.emplace_back("clock_s");
+    if (second_time_) {
+      names.emplace_back("clock_s");
+      file_.second_times.push_back(names.back());
+    }
     for (std::size_t i = 3; i < names.size(); ++i) file_.unused.push_back(names[i]);
     line(names);
   }
@@ -269,6 +273,10 @@ TEST(ImportAccount, EachRowColumnAndOptionOfGeneratedFilesHasAFate) {
     check_values(file, result->log);
     for (const std::string& column : file.unused)
       EXPECT_TRUE(any_says(result->notes, "'" + column + "'")) << column;
+    for (const std::string& column : file.second_times)
+      EXPECT_TRUE(any_says(result->notes, "'" + column + "' looks like a time") ||
+                  any_says(result->warnings, "'" + column + "' looks like a time"))
+          << column;
     for (const std::string& option : file.idle)
       EXPECT_TRUE(any_says(result->warnings, option + " has no effect")) << option;
   }
