@@ -126,7 +126,6 @@ Figure runs_figure(const JudgedChange& judged, bool explained) {
   }
   chart.series = {before};
   if (explained) chart.series.push_back(after);
-  chart.marks.push_back({Mark::Direction::horizontal, judged.allowed_mm, "another healthy run may have"});
   return {std::string("error by run ") + name_of(judged.judged),
           "What the base leaves of every run (RMS about its mean). Each healthy run was left out of the fit "
           "that predicts it.",

@@ -4,10 +4,21 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "base/statistics.h"
 #include "sysid/fitting/trajectory.h"
 #include "sysid/logs/each_record.h"
 
 namespace softgrip::sysid {
+namespace {
+
+bool is_finite_where_read(const Record& record, const std::vector<double>& residual_mm, const Block& block) {
+  for (std::size_t i = block.first; i < block.last; ++i) {
+    if (std::isfinite(record.reading_mm[i]) && !std::isfinite(residual_mm[i])) return false;
+  }
+  return true;
+}
+
+}  // namespace
 
 double loss_of(const std::vector<double>& residual_mm, const Block& block) {
   double sum = 0;
@@ -32,8 +43,9 @@ BlockLosses held_out_losses(const std::vector<Record>& records, const Division& 
     for (std::size_t b = 0; b < losses.size(); ++b) {
       const Block& block = division.blocks[b];
       if (block.fold != fold) continue;
-      const double span_mm = records[block.record].span_mm;
-      losses[b] = std::min(loss_of(residual_mm[block.record], block), span_mm * span_mm);
+      const double most = square(records[block.record].span_mm);
+      const bool is_predicted = is_finite_where_read(records[block.record], residual_mm[block.record], block);
+      losses[b] = is_predicted ? std::min(loss_of(residual_mm[block.record], block), most) : most;
     }
   });
   return losses;

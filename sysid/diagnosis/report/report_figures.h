@@ -21,9 +21,9 @@ namespace softgrip::sysid {
 
 /// Measured and the models over time, and on the same axis the errors before and after.
 [[nodiscard]] Figure error_figure(const Diagnosis& diagnosis, std::size_t record);
-/// Displacement over pressure, as a whole and where the models differ most.
 /// The error of every run that was left out of the fit, under the models that there are.
 [[nodiscard]] Figure runs_figure(const Diagnosis& diagnosis);
+/// Displacement over pressure, as a whole and where the models differ most.
 [[nodiscard]] Figure loops_figure(const Diagnosis& diagnosis, std::size_t record);
 /// The reference and what follows it, and the tracking errors.
 [[nodiscard]] Figure closed_loop_figure(const ClosedLoopCurves& curves);

@@ -1,5 +1,7 @@
 #include "sysid/diagnosis/search/holdout.h"
 
+#include <algorithm>
+
 #include "sysid/fitting/start_estimate.h"
 
 namespace softgrip::sysid {
@@ -27,7 +29,10 @@ BlockLosses held_out_losses(const std::vector<Record>& records, const Division& 
 BlockLosses left_out_losses(const std::vector<Record>& records, const Division& by_unit,
                             const StructureFit& fit) {
   return held_out_losses(records, by_unit, [&](const std::vector<Record>& rest) {
-    FitPoint point = fit_structure(rest, fit.causes, fit.point, refit).point;
+    // Without readings in the other units nothing can be fitted.
+    const bool is_fitted =
+        std::any_of(rest.begin(), rest.end(), [](const Record& r) { return r.readings > 0; });
+    FitPoint point = is_fitted ? fit_structure(rest, fit.causes, fit.point, refit).point : fit.point;
     for (std::size_t k = 0; k < rest.size(); ++k) {
       if (rest[k].readings == 0) point.starts[k] = estimated_start(point.model, records[k]);
     }

@@ -265,12 +265,13 @@ class SelectorUpon {
     return true;
   }
 
-  /// Puts the candidate that gains most first, of those whose condition the data meet. False: it gains too
-  /// little or fails another condition of a name. Then no other is named in its place: it explains less.
+  /// Puts a candidate first that meets all conditions of a name: the one that gains most, or one that ties
+  /// with it. False: there is none.
   bool best_first(std::vector<ScoredCandidate>& scored) const {
     const Division by_unit = divide_by_unit(data_.records);
     for (auto best = scored.begin(); best != scored.end(); ++best) {
       if (!is_gain(result_.extended_losses, best->losses, share_worth_mm2())) break;
+      if (best != scored.begin() && !ties(scored.front(), *best, options_.seed)) break;
       const Veto veto = veto_of(
           data_.records, best->candidate.cause, *best->candidate.fit, result_.extended,
           [&](const StructureFit& fit) { return linear_held_out_losses(data_.records, by_unit, fit); },
@@ -280,7 +281,6 @@ class SelectorUpon {
         return true;
       }
       best->candidate.why_not = reason_of(veto);
-      if (veto != Veto::not_tested) break;
     }
     return false;
   }

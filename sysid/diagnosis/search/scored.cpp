@@ -6,6 +6,7 @@
 
 #include "base/statistics.h"
 #include "sysid/diagnosis/causes/twins.h"
+#include "sysid/evidence/limits.h"
 
 namespace softgrip::sysid {
 namespace {
@@ -18,6 +19,10 @@ constexpr double rival_share = 0.05;
 
 bool is_free_form(const ScoredCandidate& scored) {
   return has_free_form(scored.candidate.fit->point.model, scored.candidate.cause);
+}
+
+bool ties(const ScoredCandidate& best, const ScoredCandidate& other, std::uint64_t seed) {
+  return winning_share(best.losses, other.losses, seed) < limits::probability;
 }
 
 bool has_free_form(const model::Model& model, const Cause& cause) {
@@ -35,7 +40,7 @@ ChosenCause weigh(const Cause& cause, const ChosenBetween& between,
   const auto twin = twin_of(cause, between.with.point.model);
   if (twin) chosen.rivals.push_back(*twin);
   for (const ScoredCandidate& s : scored) {
-    if (s.losses.empty() || s.candidate.cause == cause) continue;
+    if (s.losses.empty() || s.candidate.cause == cause || !s.candidate.why_not.empty()) continue;
     if (twin && s.candidate.cause == *twin) continue;
     if (is_free_form(s)) continue;
     chosen.inclusion = std::min(chosen.inclusion, winning_share(between.with_losses, s.losses, between.seed));

@@ -121,19 +121,19 @@ class Selector {
     return square(structure_of(fit.residual_mm, noise_).excess_mm);
   }
 
-  /// Puts the candidate that gains most first, of those whose condition the data meet. False: it gains too
-  /// little or fails another condition of a name. Then no other is named in its place: it explains less.
+  /// Puts a candidate first that meets all conditions of a name: the one that gains most, or one that ties
+  /// with it. False: there is none.
   bool best_first(std::vector<Scored>& scored) const {
     for (auto best = scored.begin(); best != scored.end() && !best->losses.empty(); ++best) {
       const StructureFit& fit = *best->candidate.fit;
       if (!is_gain(result_.extended_losses, best->losses, result_.extended, fit)) break;
+      if (best != scored.begin() && !ties(scored.front(), *best, options_.seed)) break;
       const Veto veto = vetoed(best->candidate.cause, fit, result_.extended);
       if (veto == Veto::none) {
         std::rotate(scored.begin(), best, best + 1);
         return true;
       }
       best->candidate.why_not = reason_of(veto);
-      if (veto != Veto::not_tested) break;
     }
     return false;
   }
@@ -189,10 +189,12 @@ class Selector {
       const Cause old = result_.extended.causes[i];
       std::vector<Scored> scored = score(without(i));
       if (scored.empty() || scored.front().losses.empty()) continue;
-      const Candidate& best = scored.front().candidate;
-      const bool better = rmse_mm(scored.front().losses) < rmse_mm(result_.extended_losses) &&
-                          best.cause != old && vetoed(best.cause, *best.fit, without(i)) == Veto::none;
-      if (better) {
+      Candidate& best = scored.front().candidate;
+      const bool better =
+          rmse_mm(scored.front().losses) < rmse_mm(result_.extended_losses) && best.cause != old;
+      const Veto veto = better ? vetoed(best.cause, *best.fit, without(i)) : Veto::none;
+      best.why_not = reason_of(veto);
+      if (better && veto == Veto::none) {
         take(scored.front());
         // It stands last now; the others were searched with the old one.
         fresh_[result_.extended.causes.size() - 1] = std::move(scored);

@@ -64,7 +64,13 @@ std::vector<RunError> run_errors(const std::vector<Record>& records, const Divis
     runs[k].run = are_runs ? records[k].name : k == 0 ? "first half" : "second half";
     BlockLosses own_given, own_recalibrated, own_extended;
     for (std::size_t b = 0; b < by_unit.blocks.size(); ++b) {
-      if ((are_runs ? by_unit.blocks[b].record : by_unit.blocks[b].fold) != k) continue;
+      const Block& block = by_unit.blocks[b];
+      const auto readings = records[block.record].reading_mm.begin();
+      const auto begin = readings + static_cast<std::ptrdiff_t>(block.first);
+      const auto end = readings + static_cast<std::ptrdiff_t>(block.last);
+      if ((are_runs ? block.record : block.fold) != k ||
+          std::none_of(begin, end, [](double y) { return std::isfinite(y); }))
+        continue;
       own_given.push_back(given[b]);
       own_recalibrated.push_back(recalibrated[b]);
       own_extended.push_back(extended[b]);
@@ -205,23 +211,23 @@ class Diagnostician {
     const auto is_given = [](const Record& r) { return r.start != Start::automatic || r.start_unknown; };
     const Structure before = structure_of(base.residual_mm, d_.noise_mm);
     if (!before.present || std::all_of(data_.records.begin(), data_.records.end(), is_given)) return;
-    const std::vector<Record> resting = data_.records;
-    std::vector<Record> open = resting;
+    std::vector<Record> open = data_.records;
     for (Record& record : open) record.start_unknown |= !is_given(record);
-    const BlockLosses losses = held_out_losses(resting, division, base);
-    use(open);
-    auto fit = recalibrate(data_, options_);
-    const auto left_mm = [&] { return structure_of(fit->residual_mm, d_.noise_mm).excess_mm; };
-    if (!fit || square(left_mm()) > left_by_an_open_start * square(before.excess_mm) ||
-        !is_missed(losses, held_out_losses(open, division, *fit), 0.01 * square(d_.noise_mm),
-                   options_.seed)) {
-      use(resting);
+    StructureFit fit = fit_structure(open, {}, {base.point.model, rest_starts(base.point.model, open)});
+    StructureFit from_given =
+        fit_structure(open, {}, {data_.given.model, rest_starts(data_.given.model, open)});
+    if (from_given.mean_square_mm2 < fit.mean_square_mm2) fit = std::move(from_given);
+    const double left_mm = structure_of(fit.residual_mm, d_.noise_mm).excess_mm;
+    if (square(left_mm) > left_by_an_open_start * square(before.excess_mm) ||
+        !is_missed(held_out_losses(data_.records, division, base), held_out_losses(open, division, fit),
+                   0.01 * square(d_.noise_mm), options_.seed))
       return;
-    }
-    base = std::move(*fit);
+    use(std::move(open));
+    base = std::move(fit);
     d_.warnings.emplace_back(
-        "The logs begin without pressure but before the finger has settled: the state at their start is "
-        "estimated");
+        "The logs begin without pressure but not as a settled finger does: the state at their start is "
+        "estimated. "
+        "A slow change at their beginning may be hidden in it");
   }
 
   /// Whether a selection leaves more than what is named may leave, or structure where nothing is named.

@@ -63,7 +63,7 @@ TEST(NamedClaim, OfWhatIsThereMeetsAllConditions) {
 TEST(NamedClaim, FailsWhereLeftOutRunsAreNotPredictedBetter) {
   Case ageing("ageing", aged);
   ageing.error_with = ageing.error_without;
-  EXPECT_EQ(ageing.veto(), Veto::error_not_reduced);
+  EXPECT_EQ(ageing.veto(), Veto::not_predictive);
 }
 
 TEST(NamedClaim, FailsWhereItIsNotClearOfZero) {

@@ -81,7 +81,7 @@ TEST(Selection, WhatEachRunShowsInAnotherSizeIsNotNamed) {
   EXPECT_EQ(names(selection), std::vector<std::string>{});
   ASSERT_FALSE(selection.last_candidates.empty());
   EXPECT_EQ(selection.last_candidates.front().cause.id, "periodic_disturbance");
-  EXPECT_EQ(selection.last_candidates.front().why_not, reason_of(Veto::error_not_reduced));
+  EXPECT_EQ(selection.last_candidates.front().why_not, reason_of(Veto::not_predictive));
 }
 
 }  // namespace
