@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "sysid/evidence/limits.h"
+#include "sysid/logs/division.h"
 
 namespace softgrip::sysid {
 

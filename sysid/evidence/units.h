@@ -4,10 +4,11 @@
 #include <cstddef>
 #include <vector>
 
-#include "sysid/logs/division.h"
 #include "sysid/logs/record.h"
 
 namespace softgrip::sysid {
+
+struct Division;
 
 /// A unit is a run. Of many runs, a unit is a few of them. Of a single run the units are its two halves:
 /// within one run nothing shows how runs differ.

@@ -21,7 +21,7 @@ namespace {
 constexpr std::size_t most_mcap_columns = 10'000;
 constexpr std::size_t largest_message = std::size_t{1} << 20U;
 constexpr std::size_t deepest_object = 8;
-constexpr double no_value = std::numeric_limits<double>::quiet_NaN();
+constexpr double missing_value = std::numeric_limits<double>::quiet_NaN();
 
 class McapReader {
  public:
@@ -51,7 +51,7 @@ class McapReader {
     for (const std::string& name : arrays_)
       table_.notes.push_back("'" + document::shown(name, 40) + "' is skipped: an array");
     if (table_.channels == std::vector<std::string>{"signals"}) table_.channels.clear();
-    for (TableColumn& column : table_.columns) column.values.resize(rows_, no_value);
+    for (TableColumn& column : table_.columns) column.values.resize(rows_, missing_value);
     add_log_time();
     return std::move(table_);
   }
@@ -183,7 +183,7 @@ class McapReader {
       table_.columns.emplace_back().name = name;
     }
     TableColumn& column = table_.columns[place.first->second];
-    column.values.resize(rows_, no_value);
+    column.values.resize(rows_, missing_value);
     column.values.back() = number(column, value);
   }
 
@@ -194,12 +194,12 @@ class McapReader {
     const CellValue cell = cell_value(text, options_.missing);
     if (cell.missing_word >= 0) ++table_.missing_cells[static_cast<std::size_t>(cell.missing_word)];
     if (cell.kind == CellKind::number) return cell.number;
-    if (cell.kind == CellKind::missing) return no_value;
+    if (cell.kind == CellKind::missing) return missing_value;
     constexpr std::size_t bad_kept = 3;
     if (options_.skip_bad_lines) column.bad_rows.push_back(rows_ - 1);
     if (++column.bad_count <= bad_kept)
       column.bad.push_back({rows_ - 1, {1, 1}, {}, text, "of message " + std::to_string(messages_)});
-    return no_value;
+    return missing_value;
   }
 
   void add_log_time() {

@@ -118,7 +118,7 @@ void print_summary(const sysid::Diagnosis& d, const std::string& out) {
               (std::filesystem::path(out) / "report.html").c_str());
 }
 
-void print_explanation(const sysid::Diagnosis& d) {
+void print_comparison(const sysid::Diagnosis& d) {
   std::printf("\n%s", sysid::text_of(sysid::run_table(d)).c_str());
   for (const sysid::Table& table : sysid::candidate_tables(d))
     std::printf("\n%s", sysid::text_of(table).c_str());
@@ -231,7 +231,7 @@ ExitCode run(DiagnoseOptions options, const std::vector<std::string>& call) {
     std::fputs(json->c_str(), stdout);
   } else {
     print_summary(*result, options.out);
-    if (options.explain) print_explanation(*result);
+    if (options.explain) print_comparison(*result);
     std::fputs(on_screen(text_of(consequences, options.out)).c_str(), stdout);
   }
   return ExitCode::done;

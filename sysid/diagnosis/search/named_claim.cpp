@@ -110,8 +110,8 @@ Veto veto_of(const std::vector<Record>& records, const Cause& cause, const Struc
       static_cast<std::size_t>(std::count(required.begin(), required.end(), true)) >= limits::fewest_bins;
   if (!claim.condition_met) return veto_of(claim);
   claim_size(claim, records, cause, with);
-  claim.error_without = without.mean_square_mm2;
-  claim.error_with = with.mean_square_mm2;
+  claim.error_without = std::sqrt(without.mean_square_mm2);
+  claim.error_with = std::sqrt(with.mean_square_mm2);
   claim.shown_there = is_better(compare(losses_there(records, required, with, without), 0, seed));
   if (const Veto veto = veto_of(claim); veto != Veto::none || has_free_form(with.point.model, cause))
     return veto;

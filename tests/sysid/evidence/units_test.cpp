@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "sysid/evidence/limits.h"
+#include "sysid/logs/division.h"
 
 namespace softgrip::sysid::units_test {
 namespace {
