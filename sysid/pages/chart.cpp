@@ -158,7 +158,8 @@ class Painter {
     }
   }
 
-  /// Dots as strokes of no length: round, or square in the colours of what is wrong and of others.
+  /// Dots as strokes: round ones of no length, or square in the colours of what is wrong and of others. A
+  /// square needs a length, for renderers of PDF do not draw a square end that has no direction.
   void points(const std::vector<Pixel>& curve, Colour colour, double radius) {
     const bool square = colour == Colour::error || colour == Colour::other;
     const auto dots = distinct_dots(curve);
@@ -168,7 +169,7 @@ class Painter {
       return;
     }
     std::string data;
-    for (const Pixel& p : *dots) data += path_data({p}) + "h0";
+    for (const Pixel& p : *dots) data += path_data({p}) + (square ? "h.1" : "h0");
     canvas_.raw("<path d=\"" + data + '"' + stroked(colour) + " stroke-linecap=\"" +
                 (square ? "square" : "round") + "\" stroke-width=\"" + fixed(2 * radius, 1) + "\"/>");
   }
@@ -296,6 +297,26 @@ std::string markup_of(const ChartRows& rows) {
     top += height;
   }
   return markup;
+}
+
+Chart chart_over(std::vector<std::string> names) {
+  Chart chart;
+  chart.height = 220;
+  chart.x.lower = -0.5;
+  chart.x.upper = static_cast<double>(names.size()) - 0.5;
+  chart.x.categories = std::move(names);
+  return chart;
+}
+
+Series points_over_names(std::string label, Colour colour, std::vector<double> values) {
+  Series points;
+  points.label = std::move(label);
+  points.colour = colour;
+  points.style = Series::Style::points;
+  points.width = 4;
+  for (std::size_t i = 0; i < values.size(); ++i) points.x.push_back(static_cast<double>(i));
+  points.y = std::move(values);
+  return points;
 }
 
 ChartRows stacked(std::vector<Chart> charts) {

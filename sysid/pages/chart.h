@@ -63,6 +63,11 @@ struct Chart {
   int height = 280;  ///< [px]
 };
 
+/// A chart of which the x axis has names instead of numbers, for series over them.
+[[nodiscard]] Chart chart_over(std::vector<std::string> names);
+/// Points over the names of such a chart, one value for each; NaN: none.
+[[nodiscard]] Series points_over_names(std::string label, Colour colour, std::vector<double> values);
+
 /// Rows of charts, one below the other: each a chart of full width, or several side by side.
 using ChartRows = std::vector<std::vector<Chart>>;
 

@@ -247,5 +247,15 @@ TEST(Chart, SameValuesSameBytes) {
   EXPECT_EQ(to_svg(a_chart()), to_svg(a_chart()));
 }
 
+TEST(Chart, HasPointsOverNamesOfWhichTheSquareOnesHaveADirection) {
+  Chart chart = chart_over({"first", "second", "third"});
+  chart.series = {points_over_names("square", Colour::error, {1, 2, 3}),
+                  points_over_names("round", Colour::model, {2, nan_value, 1})};
+  const std::string svg = to_svg(chart);
+  for (const char* name : {"first", "second", "third"}) EXPECT_NE(svg.find(name), std::string::npos) << name;
+  EXPECT_EQ(count(svg, "h.1"), 3U);
+  EXPECT_EQ(count(svg, "h0"), 2U);
+}
+
 }  // namespace
 }  // namespace softgrip::sysid::chart_test
