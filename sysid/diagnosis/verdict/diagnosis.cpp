@@ -31,9 +31,6 @@ using Failure = tl::unexpected<std::string>;
 
 constexpr double clearly_correlated = 0.05;
 constexpr std::size_t fewest_samples = 200;
-/// Of the structure's mean square: starts that take less than half of it are not the main reason.
-constexpr double left_by_an_open_start = 0.5;
-
 /// The base fitted from the given model and, since recalibration can start far off, from the data's scale.
 tl::expected<StructureFit, std::string> recalibrate(const SearchData& data, const DiagnosisOptions& options) {
   StructureFit best = fit_structure(data.records, {}, data.given);
@@ -103,10 +100,8 @@ class Diagnostician {
     if (!base) return Failure(base.error());
     hide_more_outliers(*base);
     const Division division = divide(data_.records, block_length_s);
-    open_starts(*base, division);
-    d_.recalibrated = *base;
-    if (const auto wrong = why_not_about(data_.records, *base)) return Failure(*wrong);
-    data_.scales.residual_lines = spectrum_peaks(data_.records, base->residual_mm);
+    d_.recalibrated = std::move(*base);
+    if (const auto wrong = why_not_about(data_.records, d_.recalibrated)) return Failure(*wrong);
     clock.ended("recalibration");
     if (options_.progress) options_.progress("looks at the measured pressure");
     d_.in_valve =
@@ -115,9 +110,15 @@ class Diagnostician {
       if (!d_.in_valve->advice.empty()) d_.warnings.push_back(d_.in_valve->advice);
       clock.ended("valve");
     }
-    AnotherBase another(data_, {options_.record.drive, d_.noise_mm, options_.seed, options_.threads, division,
-                                options_.progress});
-    Selection selection = search(std::move(*base), division, another);
+    const BaseQuestion about_base{options_.record.drive, d_.noise_mm, options_.seed,
+                                  options_.threads,      division,    options_.progress};
+    std::optional<AnotherBase> asked(std::in_place, data_, about_base);
+    Selection selection = search(d_.recalibrated, division, *asked);
+    if (open_starts(selection, division)) {
+      asked.emplace(data_, about_base);
+      selection = search(d_.recalibrated, division, *asked);
+    }
+    AnotherBase& another = *asked;
     clock.ended("search");
     if (leaves_too_much(selection) || (another.is_found() && selection.left.present)) {
       if (may_ask_at_once()) look_for_base(another, selection);
@@ -205,29 +206,31 @@ class Diagnostician {
     }
   }
 
-  /// A log may begin without pressure before the finger has settled. Its hysteresis and creep are then
-  /// estimated, if that takes most of the structure.
-  void open_starts(StructureFit& base, const Division& division) {
+  /// A log may begin without pressure before the finger has settled. If the given structure with an estimated
+  /// start explains the logs better than all causes found, it takes the place of the recalibrated one.
+  bool open_starts(const Selection& selection, const Division& division) {
     const auto is_given = [](const Record& r) { return r.start != Start::automatic || r.start_unknown; };
-    const Structure before = structure_of(base.residual_mm, d_.noise_mm);
-    if (!before.present || std::all_of(data_.records.begin(), data_.records.end(), is_given)) return;
+    if (!selection.left.present || std::all_of(data_.records.begin(), data_.records.end(), is_given))
+      return false;
     std::vector<Record> open = data_.records;
     for (Record& record : open) record.start_unknown |= !is_given(record);
-    StructureFit fit = fit_structure(open, {}, {base.point.model, rest_starts(base.point.model, open)});
-    StructureFit from_given =
-        fit_structure(open, {}, {data_.given.model, rest_starts(data_.given.model, open)});
+    const auto fitted_from = [&](const model::Model& model) {
+      return fit_structure(open, {}, {model, rest_starts(model, open)});
+    };
+    StructureFit fit = fitted_from(selection.base.point.model);
+    StructureFit from_given = fitted_from(data_.given.model);
     if (from_given.mean_square_mm2 < fit.mean_square_mm2) fit = std::move(from_given);
-    const double left_mm = structure_of(fit.residual_mm, d_.noise_mm).excess_mm;
-    if (square(left_mm) > left_by_an_open_start * square(before.excess_mm) ||
-        !is_missed(held_out_losses(data_.records, division, base), held_out_losses(open, division, fit),
+    if (!is_missed(selection.extended_losses, held_out_losses(open, division, fit),
                    0.01 * square(d_.noise_mm), options_.seed))
-      return;
+      return false;
+    // Creep that never settles follows any difference between logs of two rigs.
+    if (strangers_among(data_.records, selection.base, fit.mean_square_mm2)) return false;
     use(std::move(open));
-    base = std::move(fit);
+    d_.recalibrated = std::move(fit);
     d_.warnings.emplace_back(
         "The logs begin without pressure but not as a settled finger does: the state at their start is "
-        "estimated. "
-        "A slow change at their beginning may be hidden in it");
+        "estimated. A slow change at their beginning may be hidden in it");
+    return true;
   }
 
   /// Whether a selection leaves more than what is named may leave, or structure where nothing is named.
@@ -271,6 +274,7 @@ class Diagnostician {
   }
 
   Selection search(StructureFit recalibrated, const Division& division, AnotherBase& another) {
+    data_.scales.residual_lines = spectrum_peaks(data_.records, recalibrated.residual_mm);
     SelectionOptions options;
     options.seed = options_.seed;
     options.progress = options_.progress;
