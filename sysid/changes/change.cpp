@@ -56,14 +56,9 @@ double rms_of(const Binned& series) {
 }
 
 double rms_about_mean(const std::vector<double>& series) {
-  double sum = 0, squares = 0, count = 0;
-  for (const double v : series) {
-    if (!std::isfinite(v)) continue;
-    sum += v;
-    squares += v * v;
-    count += 1;
-  }
-  return count > 0 ? std::sqrt(std::max(0.0, squares / count - square(sum / count))) : 0;
+  PairSums sums;
+  for (const double v : series) sums.add(v, v);
+  return sums.count > 0 ? std::sqrt(std::max(0.0, sums.variance_x())) / sums.count : 0;
 }
 
 Binned minus(Binned from, const Binned& what) {

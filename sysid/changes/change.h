@@ -61,7 +61,7 @@ struct ChangeRival {
   std::string rejected;     ///< why it is no cause, if that was found out
 };
 
-/// Root mean square of what the base leaves of a run, about its mean, without and with the causes.
+/// Error of the base in a run, root mean square about its mean, without and with the causes.
 struct RunLeft {
   std::string run;
   bool is_healthy = false;  ///< then it was left out of the base's fit, and no cause acts

@@ -1,5 +1,7 @@
 #include "sysid/changes/change_page.h"
 
+#include <limits>
+
 #include "base/enumerated.h"
 #include "base/numbers.h"
 #include "sysid/changes/next_steps.h"
@@ -101,34 +103,27 @@ Figure tried_figure(const JudgedChange& judged) {
       stacked({chart})};
 }
 
+std::string name_with_state(const RunLeft& run) {
+  return run.run + (run.is_healthy ? " (healthy)" : "");
+}
+
 /// Error of the base in every run, the healthy ones first.
 Figure runs_figure(const JudgedChange& judged, bool explained) {
-  Chart chart;
-  chart.height = 220;
-  chart.y.label = std::string("left [") + unit_of(judged.judged) + "]";
-  chart.x.lower = -0.5;
-  chart.x.upper = static_cast<double>(judged.runs.size()) - 0.5;
-  Series before, after;
-  before.label = "base of the healthy finger";
-  before.colour = Colour::error;
-  after.label = "with the causes";
-  after.colour = Colour::model;
-  before.style = after.style = Series::Style::points;
-  before.width = after.width = 4;
+  std::vector<std::string> names;
+  std::vector<double> before, after;
   for (const RunLeft& run : judged.runs) {
-    const auto at = static_cast<double>(chart.x.categories.size());
-    chart.x.categories.push_back(run.run + (run.is_healthy ? " (healthy)" : ""));
-    before.x.push_back(at);
-    before.y.push_back(run.base);
-    if (run.is_healthy) continue;
-    after.x.push_back(at);
-    after.y.push_back(run.explained);
+    names.push_back(name_with_state(run));
+    before.push_back(run.base);
+    after.push_back(run.is_healthy ? std::numeric_limits<double>::quiet_NaN() : run.explained);
   }
-  chart.series = {before};
-  if (explained) chart.series.push_back(after);
+  Chart chart = chart_over(std::move(names));
+  chart.y.label = std::string("error [") + unit_of(judged.judged) + "]";
+  chart.series = {points_over_names("base of the healthy finger", Colour::error, std::move(before))};
+  if (explained)
+    chart.series.push_back(points_over_names("with the causes", Colour::model, std::move(after)));
   return {std::string("error by run ") + name_of(judged.judged),
-          "What the base leaves of every run (RMS about its mean). Each healthy run was left out of the fit "
-          "that predicts it.",
+          "Error of the base in each run, RMS about its mean. Each healthy run was left out of the fit that "
+          "predicts it.",
           stacked({chart})};
 }
 
@@ -190,12 +185,12 @@ Table tried_table(const JudgedChange& judged) {
 }
 
 Table run_table(const JudgedChange& judged) {
-  Table table{std::string("What is left of each run, RMS about its mean [") + unit_of(judged.judged) + "]",
+  Table table{std::string("Error of each run, RMS about its mean [") + unit_of(judged.judged) + "]",
               {"run", "base", "with the causes"},
               {false, true, true},
               {}};
   for (const RunLeft& run : judged.runs)
-    table.rows.push_back({run.run + (run.is_healthy ? " (healthy)" : ""), significant(run.base, 3),
+    table.rows.push_back({name_with_state(run), significant(run.base, 3),
                           run.is_healthy ? "-" : significant(run.explained, 3)});
   return table;
 }

@@ -1,6 +1,7 @@
 #include "sysid/diagnosis/report/report_figures.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -258,26 +259,21 @@ Figure error_figure(const Diagnosis& d, std::size_t k) {
 }
 
 Figure runs_figure(const Diagnosis& d) {
-  Chart chart;
-  chart.height = 220;
+  std::vector<std::string> names;
+  std::vector<double> given, recalibrated, extended;
+  for (const RunError& one : d.runs) {
+    names.push_back(one.run);
+    given.push_back(one.given);
+    recalibrated.push_back(one.recalibrated);
+    extended.push_back(one.extended);
+  }
+  Chart chart = chart_over(std::move(names));
   chart.y.label = "RMSE [mm]";
   chart.y.logarithmic = true;
-  chart.x.lower = -0.5;
-  chart.x.upper = static_cast<double>(d.runs.size()) - 0.5;
-  for (const RunError& one : d.runs) chart.x.categories.push_back(one.run);
-  for (const Shown& model : shown(d)) {
-    const auto error = model.fit == &d.as_given       ? &RunError::given
-                       : model.fit == &d.recalibrated ? &RunError::recalibrated
-                                                      : &RunError::extended;
-    std::vector<double> at, errors;
-    for (const RunError& one : d.runs) {
-      at.push_back(static_cast<double>(at.size()));
-      errors.push_back(one.*error);
-    }
-    Series points = curve(model.label, model.colour, 4, at, errors);
-    points.style = Series::Style::points;
-    chart.series.push_back(std::move(points));
-  }
+  const std::vector<Shown> models = shown(d);
+  const std::array errors{&given, &recalibrated, &extended};
+  for (std::size_t i = 0; i < models.size(); ++i)
+    chart.series.push_back(points_over_names(models[i].label, models[i].colour, *errors[i]));
   chart.marks.push_back({Mark::Direction::horizontal, d.noise_mm, "noise of the readings"});
   return {"error by run",
           std::string("RMSE of each ") + (d.records.size() > 1 ? "run" : "half of the run") +

@@ -16,6 +16,7 @@
 #include "sysid/diagnosis/search/scan.h"
 #include "sysid/diagnosis/search/scored.h"
 #include "sysid/diagnosis/search/slack.h"
+#include "sysid/evidence/limits.h"
 #include "sysid/fitting/jacobian.h"
 #include "sysid/fitting/minimise.h"
 #include "sysid/fitting/residuals.h"
@@ -33,10 +34,8 @@ constexpr int look_iterations = 15;
 /// A fit begins where the base answers to the cause best; a base that is not linear by far goes too far at
 /// once.
 constexpr std::array answers{1.0, 0.5, 0.2, 0.0};
-/// The share of the resampled blocks in which a cause is ahead of what it clearly beats.
-constexpr double least_inclusion = 0.95;
-/// Or by how much, as a log ratio of a block's losses, it is ahead at least: a contact and a sensor that
-/// clips are 0.01 apart, in every block (textbook worlds).
+/// By how much, as a log ratio of a block's losses, a cause is ahead of one that it clearly beats: a contact
+/// and a sensor that clips are 0.01 apart, in every block (textbook worlds).
 constexpr double clearly_ahead = 0.05;
 /// The mean of the blocks' log ratios from which a gain is one of most blocks, see LeastTaken.
 constexpr double in_most_blocks = 0.15;
@@ -265,24 +264,15 @@ class SelectorUpon {
     return true;
   }
 
-  /// Puts a candidate first that meets all conditions of a name: the one that gains most, or one that ties
-  /// with it. False: there is none.
   bool best_first(std::vector<ScoredCandidate>& scored) const {
     const Division by_unit = divide_by_unit(data_.records);
-    for (auto best = scored.begin(); best != scored.end(); ++best) {
-      if (!is_gain(result_.extended_losses, best->losses, share_worth_mm2())) break;
-      if (best != scored.begin() && !ties(scored.front(), *best, options_.seed)) break;
-      const Veto veto = veto_of(
-          data_.records, best->candidate.cause, *best->candidate.fit, result_.extended,
-          [&](const StructureFit& fit) { return linear_held_out_losses(data_.records, by_unit, fit); },
-          options_.seed);
-      if (veto == Veto::none) {
-        std::rotate(scored.begin(), best, best + 1);
-        return true;
-      }
-      best->candidate.why_not = reason_of(veto);
-    }
-    return false;
+    return put_nameable_first(
+        scored, data_.records, result_.extended,
+        [this](const ScoredCandidate& one) {
+          return is_gain(result_.extended_losses, one.losses, share_worth_mm2());
+        },
+        [&](const StructureFit& fit) { return linear_held_out_losses(data_.records, by_unit, fit); },
+        options_.seed);
   }
 
   [[nodiscard]] bool is_gain(const BlockLosses& before, const BlockLosses& after, double worth_mm2) const {
@@ -372,7 +362,7 @@ class SelectorUpon {
   [[nodiscard]] bool stands(ChosenCause& chosen, const std::vector<ScoredCandidate>& scored) const {
     const ScoredCandidate& best = scored.front();
     const auto beats = [&](const BlockLosses& losses) {
-      return winning_share(best.losses, losses, options_.seed) >= least_inclusion ||
+      return winning_share(best.losses, losses, options_.seed) >= limits::probability ||
              mean_log_ratio(losses, best.losses, options_.seed).lower > clearly_ahead;
     };
     if (!beats(result_.extended_losses)) return false;

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <string_view>
 
 #include "model/catalogue.h"
-#include "sysid/diagnosis/search/scored.h"
 #include "sysid/evidence/comparison.h"
 #include "sysid/evidence/limits.h"
 #include "sysid/evidence/signature.h"
@@ -117,6 +117,27 @@ Veto veto_of(const std::vector<Record>& records, const Cause& cause, const Struc
     return veto;
   claim.predicts_worse = !(rmse_mm(left_out(with)) < rmse_mm(left_out(without)));
   return veto_of(claim);
+}
+
+bool put_nameable_first(std::vector<ScoredCandidate>& scored, const std::vector<Record>& records,
+                        const StructureFit& without, const std::function<bool(const ScoredCandidate&)>& gains,
+                        const LeftOutLosses& left_out, std::uint64_t seed) {
+  std::optional<BlockLosses> losses_without;  // the same for every candidate
+  const LeftOutLosses once = [&](const StructureFit& fit) {
+    if (&fit != &without) return left_out(fit);
+    if (!losses_without) losses_without = left_out(without);
+    return *losses_without;
+  };
+  for (auto best = scored.begin(); best != scored.end() && gains(*best); ++best) {
+    if (best != scored.begin() && !ties(scored.front(), *best, seed)) break;
+    const Veto veto = veto_of(records, best->candidate.cause, *best->candidate.fit, without, once, seed);
+    if (veto == Veto::none) {
+      std::rotate(scored.begin(), best, best + 1);
+      return true;
+    }
+    best->candidate.why_not = reason_of(veto);
+  }
+  return false;
 }
 
 }  // namespace softgrip::sysid

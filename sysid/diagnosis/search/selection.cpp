@@ -121,28 +121,18 @@ class Selector {
     return square(structure_of(fit.residual_mm, noise_).excess_mm);
   }
 
-  /// Puts a candidate first that meets all conditions of a name: the one that gains most, or one that ties
-  /// with it. False: there is none.
-  bool best_first(std::vector<Scored>& scored) const {
-    for (auto best = scored.begin(); best != scored.end() && !best->losses.empty(); ++best) {
-      const StructureFit& fit = *best->candidate.fit;
-      if (!is_gain(result_.extended_losses, best->losses, result_.extended, fit)) break;
-      if (best != scored.begin() && !ties(scored.front(), *best, options_.seed)) break;
-      const Veto veto = vetoed(best->candidate.cause, fit, result_.extended);
-      if (veto == Veto::none) {
-        std::rotate(scored.begin(), best, best + 1);
-        return true;
-      }
-      best->candidate.why_not = reason_of(veto);
-    }
-    return false;
+  [[nodiscard]] BlockLosses left_out(const StructureFit& fit) const {
+    return left_out_losses(data_.records, by_unit_, fit);
   }
 
-  [[nodiscard]] Veto vetoed(const Cause& cause, const StructureFit& with, const StructureFit& without) const {
-    return veto_of(
-        data_.records, cause, with, without,
-        [this](const StructureFit& fit) { return left_out_losses(data_.records, by_unit_, fit); },
-        options_.seed);
+  bool best_first(std::vector<Scored>& scored) const {
+    return put_nameable_first(
+        scored, data_.records, result_.extended,
+        [this](const Scored& one) {
+          return !one.losses.empty() &&
+                 is_gain(result_.extended_losses, one.losses, result_.extended, *one.candidate.fit);
+        },
+        [this](const StructureFit& fit) { return left_out(fit); }, options_.seed);
   }
 
   bool add_one() {
@@ -192,7 +182,10 @@ class Selector {
       Candidate& best = scored.front().candidate;
       const bool better =
           rmse_mm(scored.front().losses) < rmse_mm(result_.extended_losses) && best.cause != old;
-      const Veto veto = better ? vetoed(best.cause, *best.fit, without(i)) : Veto::none;
+      const Veto veto = better ? veto_of(
+                                     data_.records, best.cause, *best.fit, without(i),
+                                     [this](const StructureFit& fit) { return left_out(fit); }, options_.seed)
+                               : Veto::none;
       best.why_not = reason_of(veto);
       if (better && veto == Veto::none) {
         take(scored.front());
