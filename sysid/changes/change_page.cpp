@@ -127,7 +127,7 @@ Figure runs_figure(const JudgedChange& judged, bool explained) {
           stacked({chart})};
 }
 
-/// What the data cannot show, and the recording that would.
+/// The causes that the data cannot show, each with the recording that would.
 Table not_tested_table(const JudgedChange& judged) {
   Table table{"Not tested", {"cause", "to test it"}, {false, false}, {}};
   for (const auto& [id, recording] : judged.not_tested) table.rows.push_back({id, recording});

@@ -42,7 +42,7 @@ tl::expected<StructureFit, std::string> recalibrate(const SearchData& data, cons
   auto found = identify(data.records, data.given.model, wide);
   if (found) {
     FitPoint point{found->fitted, rest_starts(found->fitted, data.records)};
-    // What identification found out about unknown starts.
+    // The starts that identification has estimated.
     for (std::size_t k = 0; k < data.records.size(); ++k) point.starts[k] = found->scores[k].start;
     StructureFit other = fit_structure(data.records, {}, point);
     if (other.mean_square_mm2 < best.mean_square_mm2 * (1 - 1e-4)) best = std::move(other);
@@ -157,7 +157,7 @@ class Diagnostician {
     return {};
   }
 
-  /// What the displacement has shown already.
+  /// Removes the causes that the displacement has shown already.
   void take_out_named(ValveFindings& in_valve) {
     std::erase_if(in_valve.named, [&](const NamedCause& one) { return is_among(d_.causes, one.cause); });
   }
