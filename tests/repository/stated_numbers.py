@@ -53,10 +53,10 @@ def worlds():
                                     ("", "changed_worlds", CHANGED_WORLD)):
             file = f"{BLIND}{folder}{more}{name.removeprefix('fixed_') if more else name}.csv"
             counts[more] += len(re.findall(world, text(file), re.MULTILINE))
-    says = (f"{counts['']} worlds with fixed seeds are part of `scripts/test.sh`, and {counts['more_']} more of "
+    says = (f"{counts['']} cases with fixed seeds are part of `scripts/test.sh`, and {counts['more_']} more of "
             "`scripts/test.sh --all`")
-    if says not in one_line("docs/explanation/diagnosis.md"):
-        yield f"diagnosis.md does not say: {says}"
+    if says not in one_line("docs/reference/diagnosis-steps.md"):
+        yield f"diagnosis-steps.md does not say: {says}"
 
 
 def includes_of_ceres():

@@ -33,9 +33,9 @@
 namespace softgrip::sysid {
 namespace {
 
-/// What a part must take of the mean square that the others leave: no regulator is a dead time with a lag,
-/// and what makes up for that takes a part. In 16 textbook worlds none that is not there took more than 0.12,
-/// and none that is less than 0.27 at twice the noise (docs/explanation/diagnosis.md).
+/// Least share of the mean square that the others leave which a part must explain: no regulator is a dead
+/// time with a lag, and a part can absorb some of the difference. In 16 simulated textbook cases an absent
+/// part explained at most 0.12, and a present one at least 0.27 at twice the noise.
 constexpr double least_part = 0.2;
 /// The same for a second time constant, which is a detail of a lag and no name of its own.
 constexpr double least_detail = 0.02;
