@@ -20,13 +20,12 @@ sys.path.insert(0, str(ROOT / "tests/system"))
 
 HEAD = """# A morning at the bench
 
-What the screen says when something is wrong, and what to do then. The commands below were carried out by
-`scripts/morning.py`, which writes this page, with `softgrip-rig` in the place of the board; a test plays the morning again
-and compares the sentences. Times stand as hh:mm:ss, measured numbers are rounded, `[...]` stands for lines that are left
-out. `softgrip watch` says the same things live, and takes `s`, `v`, `r`, `a` and `g` as keys
-([commands](../reference/commands.md#with-a-daemon)). At 80 columns, while both fingers hold a part, and at 60, when a sensor was
-lost in such a hold and has come back (`scripts/watch_pictures.py` made the pictures of a terminal that was really drawn
-on):
+This page shows the output of softgrip for common faults, and what to do. `scripts/morning.py` ran the commands below, with
+`softgrip-rig` in place of the board, and wrote this page. A test repeats the page and compares the sentences. Times are
+shown as hh:mm:ss, measured numbers are rounded, and `[...]` marks omitted lines. `softgrip watch` shows the same state live.
+Its keys are `s`, `v`, `r`, `a` and `g` ([commands](../reference/commands.md#with-a-daemon)). The pictures show it at
+80 columns while both fingers hold a part, and at 60 columns after a sensor was lost in a hold and has come back
+(`scripts/watch_pictures.py` draws a real terminal):
 
 ![watch at 80 columns: both fingers hold a part](../pictures/watch-80.svg)
 
@@ -130,15 +129,15 @@ def play():
             return self.emulated.port
 
         def no_cable(self):
-            self.say("## The cable is not in\n\nsoftgripd was started before the board had its cable. Nothing is a "
-                     "fault yet; the status says what is being tried and how often.")
+            self.say("## The cable is not in\n\nsoftgripd was started before the board was connected. This is not "
+                     "a fault yet. The status shows the connection attempts and their interval.")
             bench.wait_for("slow attempts", lambda: self.softgripd.status()["bus"]["attempts"] >= 4)
             self.show_status()
-            self.say("The cable is put in:")
+            self.say("The cable is connected:")
 
         def cable_out(self):
-            self.say("## The cable comes out\n\nIdle, no part held. The fault latches; `acknowledge` is refused as long as "
-                     "its cause is there, and says so.")
+            self.say("## The cable comes out\n\nThe rig is idle and holds no part. The fault latches. "
+                     "`acknowledge` is refused while its cause is present, and the message names the cause.")
             self.emulated.ask("fault cable")
             self.softgripd.wait_for_state("faulted")
             bench.wait_for("attempts", lambda: self.softgripd.status()["bus"]["attempts"] >= 2)
@@ -146,9 +145,9 @@ def play():
                 channel["validity"] == "stale" for channel in self.softgripd.status()["channels"]))
             self.show_status()
             self.show(("acknowledge",))
-            self.say("One cable is one failure for the doctor; what hangs on it is not judged:")
+            self.say("The doctor reports one failure for the cable and does not check the parts that depend on it:")
             self.show_failures()
-            self.say("The cable is in again:")
+            self.say("The cable is connected again:")
             self.emulated.ask("clear cable")
             bench.wait_for("the cause to go", lambda: self.softgripd.status()["fault"]["present"] is None)
             self.show_status()
@@ -162,13 +161,14 @@ def play():
             self.show_status()
             self.emulated.ask("clear blind")
             bench.wait_for("the cause to go", lambda: self.softgripd.status()["fault"]["present"] is None)
-            self.say("It is plugged in again:")
+            self.say("The sensor is connected again:")
             self.show(("acknowledge",))
             self.softgripd.wait_for_state("idle")
 
         def stop_while_holding(self):
-            self.say("## Stopped while holding\n\nThe rig file says `holding: hold`: a stop keeps what is held. Pressure that "
-                     "stays on is loud, with the command that ends it; the ready lamp blinks.")
+            self.say("## Stopped while holding\n\nThe rig file has `holding: hold`, so a stop keeps the part held. "
+                     "The output warns of the remaining pressure and gives the command that vents it. The ready "
+                     "lamp blinks.")
             self.softgripd.start("hand_over")
             bench.wait_for("the hold", lambda: self.softgripd.results() == ["HOLDING", "HOLDING"])
             self.show(("stop",))
@@ -178,8 +178,8 @@ def play():
             self.softgripd.wait_for_state("idle")
 
         def part_lost(self):
-            self.say("## The part is lost\n\nSomebody pulls the part out of a running hold. The recipe says `on_fail: "
-                     "release`; the answer is PART LOST.")
+            self.say("## The part is lost\n\nThe part is pulled out of a running hold. The sequence has `on_fail: "
+                     "release`, and the result is PART LOST.")
             since = self.newest()
             self.softgripd.start("hand_over")
             bench.wait_for("the hold", lambda: self.softgripd.results() == ["HOLDING", "HOLDING"])
@@ -190,12 +190,12 @@ def play():
             self.emulated.ask("object stone")
 
         def wrong_recipe(self):
-            self.say("## A wrong recipe\n\nA misspelled key, a unit behind a number, a time below zero. All come at once, "
-                     "with their places, and nothing moves.")
+            self.say("## A wrong recipe\n\nThe sequence file has a misspelled key, a unit behind a number and a "
+                     "negative time. All errors are reported at once, with line and column, and nothing moves.")
             self.write("pick_nut.yaml", WRONG_RECIPE)
             self.page.append(f"```yaml\n{WRONG_RECIPE}```\n")
             self.show(("start", "pick_nut.yaml"))
-            self.say("These are mended. What the rig cannot do is named then:")
+            self.say("These errors are corrected. The next message names the motions that the rig cannot make:")
             text = WRONG_RECIPE
             for wrong, right in MENDED:
                 text = text.replace(wrong, right)
@@ -204,8 +204,8 @@ def play():
             self.assertEqual(self.softgripd.status()["state"], "idle")
 
         def crossed_sensors(self):
-            self.say("## Crossed sensors\n\nAfter the cables were tidied up the two displacement sensors are at each other's "
-                     "inputs. `doctor --move` moves one finger after the other and watches all sensors.")
+            self.say("## Crossed sensors\n\nThe two displacement sensors were connected to each other's inputs. "
+                     "`doctor --move` moves one finger after the other and reads all sensors.")
             self.softgripd.end()
             swap = ((r"sensor: \{input: 0\b", "sensor: {input: 99"), (r"sensor: \{input: 1\b", "sensor: {input: 0"),
                     (r"sensor: \{input: 99\b", "sensor: {input: 1"))
