@@ -23,9 +23,9 @@ sys.path.insert(0, str(ROOT / "tests/system"))
 
 ZONES = (("nearer by 4 to 8 mm", -8, -4), ("nearer by 0 to 4 mm", -4, 0), ("farther by 0 to 4 mm", 0, 4),
          ("farther by 4 to 8 mm", 4, 8.001))
-SLIPPED = "slips away when held"
-HEAD = ("part", "where", "fingers", "grips", "largest squeeze, median and most [kPa]", "answers",
-        "time to the answer, median and most [s]")
+SLIPPED = "pulled out when held"
+HEAD = ("part", "where", "fingers", "grips", "largest gripping pressure, median and most [kPa]", "results",
+        "time to the result, median and most [s]")
 
 
 parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -78,29 +78,30 @@ def page(groups, problems, off, wire):
     others = "".join(f"- {abs(percent)} % {'farther' if percent > 0 else 'less far'}: {summary(judged)}, "
                      f"{len(found)} promises broken.\n" for percent, (judged, found) in off.items())
     over_the_wire = "" if wire is None else f"""
-## Over the wire
+## Over the network
 
 The first {args.wire} of these trials again in real time, `softgripd` at 100 Hz against `softgrip-rig` over Modbus TCP,
-{args.side_by_side} rigs side by side; both fingers meet the part at the same place, and every fifth part is drawn out a second after it was held, which must be
-told. {summary(wire[0])}, {len(wire[1])}
+{args.side_by_side} rigs in parallel. Both fingers touch the part at the same place. Every fifth part is pulled out 1 s after HOLDING, and the result must
+be PART LOST. {summary(wire[0])}, {len(wire[1])}
 promises broken.
 
 {table(wire[0])}"""
     wanted = f"--seeds {args.seeds}" + (f" --wire {args.wire}" if args.wire else "")
-    return f"""# How gently the shipped recipe grips
+    return f"""# Gripping pressure of the shipped sequence
 
-Made by `scripts/gentle_grips.py {wanted} --page docs/reference/gentle-grips.md`:
-`config/sequences/pick_stone.yaml`, its two places moved to where each part is expected, on the simulated rig of
+This page was written by `scripts/gentle_grips.py {wanted} --page docs/reference/gentle-grips.md`:
+`config/sequences/pick_stone.yaml`, with its two places at the expected place of each part, on the simulated rig of
 `config/rig.yaml` in virtual time. The approach ends {gripping.APPROACH_MM} mm before that place, the grip searches to {gripping.REACH_MM} mm behind
-it. Each seed draws the part, one finger or two, and how far the part is from its place. Largest squeeze: the true pressure at the finger above what the free finger would need to rest where
-it truly was, from the first touch on ([what a squeeze is](sequence-file.md#touch-and-squeeze)). The recipe allows
+it. Each seed draws the part, one finger or two, and the distance of the part from its place. Largest gripping pressure: the true
+pressure at the finger minus the pressure that the free finger would need to rest at its true place, from the first contact on
+([gripping pressure](sequence-file.md#contact-and-gripping-pressure)). The sequence allows
 {ALLOWED_KPA:g} kPa; noise and the board's last bit may add {gripping.TOLERANCE_KPA:g}.
 
-{summary(groups)}, {len(problems)} promises broken: no squeeze above
-what the recipe allows, never HOLDING on an empty grip, never NO PART on a part.
+{summary(groups)}, {len(problems)} promises broken: no gripping pressure above
+the limit of the sequence, no HOLDING without a part, no NO PART with a part.
 
 {table(groups)}
-With fingers that move by so much more or less than the controller's model says, every third seed:
+Every third seed again, with fingers that move more or less than the controller's model predicts:
 
 {others}{over_the_wire}"""
 
@@ -123,7 +124,7 @@ def summary(groups):
     judged = [one for group in groups.values() for one in group]
     told = [answers[0] for one in judged for answers in one.answers]
     held = sum(answer == "HOLDING" for answer in told)
-    return f"{len(judged)} grips, the largest squeeze {max(one.peak_kpa for one in judged):.1f} kPa, {held} times HOLDING"
+    return f"{len(judged)} grips, largest gripping pressure {max(one.peak_kpa for one in judged):.1f} kPa, {held} times HOLDING"
 
 
 def main():

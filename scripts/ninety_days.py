@@ -8,7 +8,7 @@ hall goes with the hour and the weather (which stays for days) and the gain of t
 elsewhere each time, and the fingers wear a little. In the eventful life a leak begins and grows, a sensor is knocked out
 of place, a finger is replaced, another one softens, and a line that both fingers have in common begins to leak; what is
 mended is noted. Every recording is made by `softgrip run` on a rig with a thermometer. Its numbers are judged four times:
-with the temperature and without it, of both fingers together and of each as if it were alone. The exit code is 1 where
+with the temperature and without it, of both fingers together and of each judged alone. The exit code is 1 where
 something that happened was not noticed.
 """
 import argparse
@@ -259,44 +259,44 @@ def page(args, seen, eventful, healthy, wall_s):
         f"{sum(bool(told[temperature]['warnings']) for told in healthy)} of {args.healthy} |\n" for temperature in TOGETHER)
     lists = "".join(f"Alarms of both fingers together, {NAMES[t]}:\n\n{listed(healthy, t, 'false')}\n"
                     f"Warnings of the rig, {NAMES[t]}:\n\n{listed(healthy, t, 'warnings')}\n"
-                    f"Alarms of a finger judged as if it were alone, {NAMES[t]}:\n\n{listed(healthy, t, 'alone')}\n" for t in TOGETHER)
-    told = "".join(f"### {NAMES[t].capitalize()}\n\n| what happened | finger | on day | warned on day | "
-                   f"alarm on day | after grips | numbers in "
-                   f"alarm before it was mended | suspected that night | suspected before it was mended |\n"
+                    f"Alarms of a finger judged alone, {NAMES[t]}:\n\n{listed(healthy, t, 'alone')}\n" for t in TOGETHER)
+    told = "".join(f"### {NAMES[t].capitalize()}\n\n| change | finger | on day | warned on day | "
+                   f"alarm on day | after grips | indicators in "
+                   f"alarm before the repair | candidate faults that night | candidate faults before the repair |\n"
                    f"|---|---|---|---|---|---|---|---|---|\n{event_rows(seen[t])}\n"
-                   f"Alarms that nothing explains: {'; '.join(eventful[t]['false']) or 'none'}. Told without an alarm: "
+                   f"False alarms: {'; '.join(eventful[t]['false']) or 'none'}. Warnings without an alarm: "
                    f"{'; '.join(eventful[t]['warnings']) or 'nothing'}.\n\n" for t in TOGETHER)
     return f"""# Ninety days of a rig at work
 
-Made by `scripts/ninety_days.py --healthy {args.healthy} --seed {args.seed} --page docs/reference/ninety-days.md`, with
+This page was written by `scripts/ninety_days.py --healthy {args.healthy} --seed {args.seed} --page docs/reference/ninety-days.md`, with
 {len(HOURS)} grips a day of two fingers in virtual time: {(args.healthy + 1) * DAYS * len(HOURS)} recordings of `softgrip
-run`{took}. What becomes of a finger goes into its plant; `softgrip health` sees the recordings alone.
+run`{took}. The changes of a finger are simulated in its plant; `softgrip health` reads only the recordings.
 
-In every life: weather of {WEATHER_C:g} °C (standard deviation, correlated by {WEATHER_STAYS:g} from day to day), {DAY_C:g} °C within the day, a
-gain of {100 * GAIN_PER_C["left"]:g} (left) and {100 * GAIN_PER_C["right"]:g} (right) % per °C, parts that stand {PART_MM:g} mm elsewhere (standard deviation), wear of {-100 * WEAR_PER_DAY * DAYS:.1g} % in ninety
-days. The rig has one thermometer, noise {working_life.THERMOMETER_NOISE_C:g} °C. Every life is judged with its temperatures and again with the
-same numbers without them, as a rig that has no thermometer would be.
+Every life has weather of {WEATHER_C:g} °C (standard deviation, correlated by {WEATHER_STAYS:g} from day to day), {DAY_C:g} °C within the day, a
+gain of {100 * GAIN_PER_C["left"]:g} (left) and {100 * GAIN_PER_C["right"]:g} (right) % per °C, parts with a place that varies by {PART_MM:g} mm (standard deviation), and wear of {-100 * WEAR_PER_DAY * DAYS:.1g} % in ninety
+days. The rig has one thermometer, noise {working_life.THERMOMETER_NOISE_C:g} °C. Every life is judged with its temperatures and again
+without them, as for a rig without a thermometer.
 
-## What was noticed
+## Detected changes
 
-{told}Warned: the difference between the fingers was told, if only without an owner (`unclear`). `shared` is a change of the rig,
-not of a finger. On day 60 the left finger was replaced by one that is {100 * (NEW_FINGER - 1):.0f} % softer, which was noted; its charts
-began anew.
+{told}Warned: the difference between the fingers was reported, possibly without the finger that changed (`unclear`). `shared` is a change of
+the rig, not of a finger. On day 60 the left finger was replaced by one that is {100 * (NEW_FINGER - 1):.0f} % softer, which the maintenance
+record contains; its charts started again.
 
 ## Healthy days
 
-Lives of {DAYS} days in which nothing happens but weather and wear, two fingers each, nine numbers a finger. Stated for days
-that are independent of each other is one false alarm in 3650 points of a finger: of {2 * args.healthy} fingers {2 * args.healthy * DAYS / 3650:.2f}. Fingers that
-alarmed, and lives in which a change was told of the rig:
+Lives of {DAYS} days with weather and wear only, two fingers each, nine indicators per finger. For independent days the stated
+average is one false alarm in 3650 points of a finger: of {2 * args.healthy} fingers {2 * args.healthy * DAYS / 3650:.2f}. Fingers
+with an alarm, and lives with a reported change of the rig:
 
-| | fingers in alarm, judged together | fingers in alarm, each as if it were alone | lives with a warning of the rig |
+| | fingers in alarm, judged together | fingers in alarm, each judged alone | lives with a warning of the rig |
 |---|---|---|---|
 {counts}
-The gain was found to follow the temperature by {min(slopes, default=0):.4f} to {max(slopes, default=0):.4f} mm per °C.
+The estimated temperature coefficient of the gain is {min(slopes, default=0):.4f} to {max(slopes, default=0):.4f} mm per °C.
 
-{lists}An alarm that stands hides further ones of the same number. A shared change of the gain without a thermometer is the weather
-here: true, and no news. What these figures do not say: simulated fingers are all of one kind, follow the temperature of the
-hall at once, and the weather is the only thing that stays for days.
+{lists}An active alarm hides further ones of the same indicator. A shared change of the gain without a thermometer is the weather here: it is
+true, but not useful. Limits of these figures: the simulated fingers are all of one kind, they follow the temperature of the hall at
+once, and only the weather is correlated from day to day.
 """
 
 
