@@ -2,7 +2,7 @@
 
     rooms.py            fails where a folder with code is no room, where an arrow is drawn that no include needs, or
                         where the page's table does not say what rooms.cmake says
-    rooms.py --write    brings the page's first and last column up to date; what a room knows is written by hand
+    rooms.py --write    brings the page's first and last column up to date; the content of a room is written by hand
 """
 
 import pathlib
@@ -41,8 +41,8 @@ def included_by(folders):
 
 
 def table(known):
-    """The page's table; `known` says what a room knows, by folder."""
-    lines = ["| room | what it knows | may include |\n", "|---|---|---|\n"]
+    """The page's table; `known` is the content of each room, by folder."""
+    lines = ["| room | content | may include |\n", "|---|---|---|\n"]
     for folder, _, uses in rooms():
         lines.append(f"| `{folder}` | {known.get(folder, '')} | {', '.join(uses)} |\n")
     return "".join(lines)
