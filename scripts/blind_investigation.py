@@ -53,9 +53,9 @@ def page(results, command):
              f"Written by `{command}`: {sum(not r['poor'] for r in results)} ambiguous worlds of the campaign and "
              f"{sum(r['poor'] for r in results)} worlds that wrote one log of triangles alone. {len(asked)} first "
              "diagnoses were ambiguous with the truth among what they listed; these were investigated, with the world as "
-             "the rig and its sensor on a gauge. The gauge's target stands within 0.01 mm (standard deviation) of where it "
-             "should, a reading is the mean of 2 s, and the world's noise, quantisation, drift, disturbances and wrong "
-             "samples are in it.", "",
+             "the rig and its sensor on a gauge. The position of the gauge's target has an error of 0.01 mm (standard deviation). A "
+             "reading is the mean of 2 s, with the noise, quantisation, drift, disturbances and wrong samples of the "
+             "simulated case.", "",
              "| of the ambiguous verdicts | worlds, with the 95 % interval of the share |",
              "|---|---|",
              f"| resolved to the truth | {share(resolved, asked)} |",

@@ -209,7 +209,7 @@ def write(path, results, planned, command, variation):
               "", f"![Outcomes by hidden cause]({bars_path.name})", "",
               f"![What was named where something was hidden, in percent]({confusion_path.name})", "", "Found: named alone, or listed in an ambiguous verdict.", "",
               *detection_limits(results), "", *table(results), "",
-              "Right: the cause is named alone (a clean world: nothing is named and no structure is left; outside the "
+              "Right: the cause is named alone (a clean world: nothing is named and no error remains unexplained; outside the "
               "library: `unexplained`). Missed: nothing is named though something is there. Wrong: a name that is not "
               "there, alone or beside the right one."]
     path.write_text("\n".join(lines) + "\n")

@@ -106,15 +106,15 @@ def page(rows, command, planned, variation):
         lines.append(f"| strength {strength}: something else named | - | "
                      f"{interval(sum(r['outcome'] == 'wrong' for r in own), len(own))} | {len(own)} |")
     told = [one["held"] for r in changed for one in r["intervals"]]
-    lines.append(f"| 95 % intervals of numbers that hold the truth | 92 to 97 % | {interval(sum(told), len(told))} | {len(told)} |")
-    lines.append("| unchanged called unchanged | at least 98 % | "
+    lines.append(f"| 95 % intervals that contain the true value | 92 to 97 % | {interval(sum(told), len(told))} | {len(told)} |")
+    lines.append("| unchanged reported as unchanged | at least 98 % | "
                  f"{interval(sum(r['outcome'] == 'unchanged' for r in still), len(still))} | {len(still)} |")
     if len({row["baseline runs"] for row in rows}) > 1:
         lines += ["", "## By baseline runs", "", *smallest_found(changed), "", *table(changed, ("baseline runs", "strength"), OUTCOMES), "",
                   *table(still, ("baseline runs",), ("unchanged", "false_alarm", "unexplained"))]
     lines += ["", "## By family and columns", "", *table(changed, ("family", "columns", "strength"), OUTCOMES), "",
               *table(still, ("family", "columns"), ("unchanged", "false_alarm", "unexplained")), "",
-              "## By cause", "", *table(changed, ("cause", "strength"), OUTCOMES), "", "## What was named instead", "",
+              "## By cause", "", *table(changed, ("cause", "strength"), OUTCOMES), "", "## Names given instead", "",
               "| hidden | strength | family | columns | seed | outcome | verdict | named |", "|---|---|---|---|---|---|---|---|"]
     for row in sorted((r for r in changed + still if r["outcome"] not in ("first", "unchanged")), key=lambda r: r["cause"]):
         lines.append(f"| {row['cause']} | {row['strength']} | {row['family']} | {row['columns']} | {row['seed']} | "
@@ -128,8 +128,8 @@ def changing_text():
         "and whose later logs (campaign 1: other waveforms, other noise) have one cause in them, or none. Strength 1 is what",
         "the other campaigns call 8: an excess error of 8 times the noise of 0.04 mm; 0.15 of it is 0.048 mm. The later day",
         "has another zero and another temperature. `first`: the true cause is named first; `twin`: stiffening and a bent",
-        "scale for each other; `listed`: named after another or among the rivals; `unnamed`: something changed, nothing is",
-        "named; `missed`: called unchanged; `wrong`: only something else is named. Intervals are those of numbers that mean",
+        "scale for each other; `listed`: named after another or among the alternatives; `unnamed`: something changed, nothing is",
+        "named; `missed`: reported as unchanged; `wrong`: only something else is named. Intervals are those of numbers that mean",
         "the same in the world and in the answer, of true changes that are named first. The textbook family's valve is by",
         "the standard that the base's regulator is by (ISO 6358, a controller with an integral): what that is worth for",
         "a valve by another law, these worlds do not show."]

@@ -10,9 +10,9 @@ Each finger (tests/blind/textbook) is identified from a campaign of its own, twi
 softgripd's loop at 200 Hz follows the same sines on all four. First four PIDs try a sine of 0.2 Hz, as `softgrip tune`
 gives them for sensitivities of at most 2, 1.6, 1.3 and 1.15; the better two of them are kept. Then four controllers follow
 all sines: the identified model's feedforward with PID, the two PIDs, and the paper's scheme, which is the inverse of the
-Bouc-Wen element with PID, both with the gains of `softgrip tune`. What is told is the root mean square of reading minus
-reference, each reading against the reference of its own time, from the second cycle on, and the same without the sensor's
-noise, which comes after the motion and so adds its own mean square to every scheme's.
+Bouc-Wen element with PID, both with the gains of `softgrip tune`. The error is the root mean square of
+reading minus reference, each reading with the reference of its own time, from the second cycle on. The table also gives the error
+without the noise of the sensor, which adds its own mean square to every scheme.
 """
 import argparse
 import concurrent.futures

@@ -55,7 +55,7 @@ def summary(rows):
              within(among, most), among)
     line("without an effect: nothing named that the world does not have", "at least 97 %",
          share(sum(not r["wrong"] for r in clean), len(clean)), clean)
-    line("without an effect: no name and structure left (`unexplained`)", "-",
+    line("without an effect: no name and an unexplained error (`unexplained`)", "-",
          share(sum(r["outcome"] == "unexplained" for r in clean), len(clean)), clean)
     wanted = {8: "at least 90 %", 2: "at least 70 %"}
     for strength in sorted({r["strength"] for r in singles}, reverse=True):
@@ -142,7 +142,7 @@ def made(results, planned, command):
 
 
 INTRODUCTION = """\
-Worlds that share nothing with the models of softgrip: an ISO 6358 valve behind a PI spool with overlap and pilot
+Simulated cases that share nothing with the models of softgrip: an ISO 6358 valve behind a PI spool with overlap and pilot
 hysteresis, and fingers of five makes (generalised play operators, Maxwell-slip elements, Preisach relays, a tube of
 slices of rubber with a Prony series, play with fractional creep), creep over five decades, a slight curvature. Three
 logs each, readings with 0.04 mm, pressures with 0.05 kPa, supplies with 0.3 kPa of noise.
@@ -153,14 +153,13 @@ whole. Own physics is what a world has without an effect, found by taking the me
 changes more than a quarter of the noise: to name it is a finding and never wrong. Where the hidden cause is also own
 physics (a slower valve behind a valve that has a lag) the name counts as found.
 
-The diagnosis starts from a plain Bouc-Wen twin of another finger (`tests/blind/textbook/given.yaml`), as somebody has
-it who has identified one finger of a kind and bought the next; `--given commissioned` starts from what `softgrip
-identify --structure auto` makes of another campaign of the same finger before anything was hidden. Found: named, or
-among the alternatives of a name, whatever the verdict; a name finds one cause at most. Wrong: named although neither
-it nor any of its alternatives is there. The held-out error is that of `softgrip identify --structure auto` on
-interleaved blocks: from the measured pressure where it is recorded, else from the command; beside it stands what the
-diagnosis' own model leaves on its held-out blocks. Where the pressure is recorded it drives the finger
-(`--drive measured`), and the valve is judged by it."""
+The diagnosis starts from a plain Bouc-Wen model of another finger (`tests/blind/textbook/given.yaml`), as if one finger of
+a kind was identified and the next one bought. `--given commissioned` starts from the model of `softgrip identify --structure
+auto` for other logs of the same finger without the effect. Found: named, or among the alternatives of a name, for any verdict;
+a name finds one cause at most. Wrong: named although neither it nor any of its alternatives is present. The held-out error is
+that of `softgrip identify --structure auto` on interleaved blocks, from the measured pressure if it is recorded, otherwise from
+the command. The next column is the error of the diagnosis' own model on its held-out blocks. If the pressure is recorded, it
+drives the finger (`--drive measured`), and the valve is judged by it."""
 
 
 def write(path, results, planned, command, variation):

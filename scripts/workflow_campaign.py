@@ -96,11 +96,11 @@ def models(folders):
 
 def page(args, figures):
     rows = args.rows
-    lines = ["# The workflow beside a plain loop", "",
+    lines = ["# The workflow compared with a plain loop", "",
              f"Written by `scripts/workflow_campaign.py --work DIR --rows {rows} --cores {args.cores} --batch {args.batch} --page "
-             f"{args.page}` on {os.cpu_count()} processors, which others used, too: beside each "
-             "wall time stands the load (mean of its last minute). Each row is `softgrip identify --threads 1` of another simulated finger, 25 s at 20 Hz. Rows this "
-             "short are the workflow's worst case: what it adds per row is the same for rows of minutes.", "",
+             f"{args.page}` on {os.cpu_count()} processors, which other programs used, too. The "
+             "load is the mean of the last minute. Each row is `softgrip identify --threads 1` of another simulated finger, 25 s at 20 Hz. "
+             "Such short rows are the workflow's worst case: its overhead per row is the same for rows of minutes.", "",
              "| how | wall time | per row | load | models, hash over all |", "|---|---|---|---|---|"]
     for name, seconds, (digest, count), load in figures["ways"]:
         lines.append(f"| {name} | {seconds:.0f} s | {seconds / rows:.2f} s | {load:.1f} | {count}, `{digest}` |")

@@ -91,14 +91,15 @@ class BoucWen {
                 "gain of the hysteresis state at its zero; below the instantaneous gain of the whole "
                 "actuator where the model can be inverted",
                 Typical{0.2}, Within{0.0, 10.0}, Scale{0.1}, Neutral{0.0}),
-      parameter("gamma_per_kpa", "1/kPa",
-                "how fast the hysteresis state levels off, both ways alike (per mm^(exponent-1) besides)",
-                Typical{0.03}, Within{-10.0, 10.0}, Scale{0.02}),
+      parameter(
+          "gamma_per_kpa", "1/kPa",
+          "saturation rate of the hysteretic state, equal in both directions (also per mm^(exponent-1))",
+          Typical{0.03}, Within{-10.0, 10.0}, Scale{0.02}),
       parameter("eta_per_kpa", "1/kPa",
-                "how fast it levels off while it grows: the width of the loop (per mm^(exponent-1) besides)",
+                "saturation rate while the state grows: the width of the loop (also per mm^(exponent-1))",
                 Typical{0.03}, Within{0.0, 10.0}, Scale{0.02}),
-      parameter("exponent", "", "n, sharpness of the levelling off", Typical{1.0}, Within{1.0, 4.0},
-                Scale{1.0}, Whole{})};
+      parameter("exponent", "", "n, sharpness of the saturation", Typical{1.0}, Within{1.0, 4.0}, Scale{1.0},
+                Whole{})};
 
   BoucWen(std::span<const T> values, const Preparation&)
       : alpha_(values[0]),

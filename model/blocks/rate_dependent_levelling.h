@@ -12,8 +12,8 @@ class RateDependentLevelling : public BoucWenPart<T> {
  public:
   static constexpr BlockInfo info = block_info(
       "rate_dependent_levelling", Station::actuator, Kind::element, Inverse::implicit,
-      "Rate-dependent levelling",
-      "Loop width grows with rate beyond the viscous part: bouc_wen levels off sooner at high rates.",
+      "Rate-dependent saturation",
+      "The loop width grows with rate beyond the viscous part: bouc_wen saturates sooner at high rates.",
       "bouc_wen: eta counts eta (1 + levelling r/(r + rate)), settling r' = |p'| - r");
   static constexpr std::array parameters{
       parameter("levelling", "", "share by which eta of bouc_wen is larger at high rates", Typical{0.2},

@@ -67,7 +67,7 @@ void write_block(std::ostream& out, const BlockDescriptor& descriptor) {
   out << "\n### `" << info.id << "`: " << info.title << "\n\n" << info.meaning << "\n\n";
   out << "    " << info.equation << "\n\n";
   out << "Acts on: " << what_it_does(info.kind) << ". In the feedforward: " << how_undone(info.inverse) << "."
-      << (info.repeatable ? " May stand in a chain more than once." : "") << "\n\n";
+      << (info.repeatable ? " A chain may contain it more than once." : "") << "\n\n";
   out << "| key | unit | default | allowed | does nothing at | meaning |\n|---|---|---|---|---|---|\n";
   for (const ParameterSpec& spec : descriptor.parameters) write_parameter(out, spec);
   for (const ParameterSpec& spec : descriptor.repeated) write_parameter(out, spec);
@@ -79,14 +79,15 @@ void write_block(std::ostream& out, const BlockDescriptor& descriptor) {
 std::string page() {
   std::ostringstream out;
   out << "# Blocks\n\n"
-         "A model file lists blocks by station; the command walks them from top to bottom:\n\n"
+         "A model file lists blocks by station. The signal passes them from top to bottom:\n\n"
          "    command [kPa] -> valve -> actuator -> load -> sensor -> reading [mm]\n\n"
-         "u is the command, p the pressure, y a displacement that comes in, z what goes out, t the time of "
+         "u is the command, p the pressure, y the input displacement, z the output, t the time of "
          "the"
-         " campaign, ' a derivative with respect to time. Inside a station blocks stand by what they act on:"
-         " pressure, elements, displacement, reading. Every number of a block must be given,"
-         " but for those that say what is meant when they are left out; a model file refuses what is outside"
-         " the allowed range.\n\n"
+         " campaign, ' a derivative with respect to time. Inside a station, blocks are sorted by their input:"
+         " pressure, elements, displacement, reading. Every parameter of a block must be given,"
+         " except those with a default (may be left out). A model file with a value outside the allowed "
+         "range is"
+         " refused.\n\n"
          "This page is written by `model_blocks_page --write` from the declarations in `model/blocks/`.\n";
   Station station = Station::valve;
   bool first = true;
