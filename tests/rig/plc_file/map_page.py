@@ -11,7 +11,7 @@ PAGE = SOURCE / "docs/reference/plc-map.md"
 
 
 def table(rows):
-    lines = ["| address | register | one count | |", "|---|---|---|---|"]
+    lines = ["| address | register | one count | meaning |", "|---|---|---|---|"]
     for row in rows:
         lines.append(f"| {row['address']} | `{row['name']}` | {row.get('unit', '')} | {row['about']} |")
     return "\n".join(lines)
