@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Every file, link and program that the documents name exists, and no page has a heading twice: paths.py [--build BUILD_DIR]
 
-Read are README.md and docs/. A word of inline code or of a code block is taken for a path of the project where its first
+Read are the pages of the top folder and docs/. A word of inline code or of a code block is taken for a path of the project where its first
 folder is one; BUILD_DIR's ninja file says which programs there are under build/. `*`, `{a,b}` and CAPITALS (what the
 reader puts in) match whatever fits.
 """
@@ -18,7 +18,7 @@ from tree import ROOT
 
 
 def documents():
-    return [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
+    return [*sorted(ROOT.glob("*.md")), *sorted((ROOT / "docs").rglob("*.md"))]
 
 
 def names_and_folders():
