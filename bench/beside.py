@@ -150,7 +150,7 @@ class Study:
              f"{mm(self.extended['steps'])} mm, sp2 {mm(self.identified['validation']['rmse_mm']['sp2'])} → "
              f"{mm(self.extended['sp2'])} mm"),
             ("a log in the wrong unit, upside down, swapped", "a fit, or one that does not converge",
-             "named with the number that gave it away ([how](../how-to/import.md#what-is-doubted))"),
+             "named with the number that gave it away ([how](../how-to/import.md#plausibility-warnings))"),
             ("whether the numbers come out again", "whatever was kept by hand",
              "`softgrip report --verify`: hashes, call and every number ([how](../how-to/identify.md))")]
 
