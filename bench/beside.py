@@ -139,27 +139,27 @@ class Study:
             + ")" for cause in self.diagnosis["causes"])
         residuals = self.identified["residuals"]
         return [
-            ("how well beta is known (95 %)",
+            ("uncertainty of beta (95 %)",
              f"± {self.scipy['beta_ci95']:.2g} mm/kPa from the Jacobian, as if every sample were independent",
              f"± {half:.2g} mm/kPa: the residuals resemble each other (lag-1 correlation "
              f"{residuals['lag1_correlation']:.2f}), {residuals['effective_samples']:.0f} independent samples' worth"),
-            ("that the model has no inverse", f"nothing: beta {self.scipy['beta']:.3f}, alpha {self.scipy['alpha']:.3f} mm/kPa "
+            ("the model has no inverse", f"nothing: beta {self.scipy['beta']:.3f}, alpha {self.scipy['alpha']:.3f} mm/kPa "
              "are printed side by side", next((w for w in self.identified["warnings"] if "wrong way" in w), "-")),
             ("why", "nothing: the error is small", f"{self.diagnosis['verdict']}: {causes or '-'}"),
-            ("what naming it gains", "-", f"held out, steps {mm(self.identified['validation']['rmse_mm']['steps'])} → "
+            ("improvement by the named causes", "-", f"held out, steps {mm(self.identified['validation']['rmse_mm']['steps'])} → "
              f"{mm(self.extended['steps'])} mm, sp2 {mm(self.identified['validation']['rmse_mm']['sp2'])} → "
              f"{mm(self.extended['sp2'])} mm"),
-            ("a log in the wrong unit, upside down, swapped", "a fit, or one that does not converge",
-             "named with the number that gave it away ([how](../how-to/import.md#plausibility-warnings))"),
-            ("whether the numbers come out again", "whatever was kept by hand",
+            ("a log in the wrong unit, inverted, swapped", "a fit, or one that does not converge",
+             "named with the number that shows it ([how](../how-to/import.md#plausibility-warnings))"),
+            ("reproduction of the numbers", "files that were kept by hand",
              "`softgrip report --verify`: hashes, call and every number ([how](../how-to/identify.md))")]
 
     def page(self):
         return "\n".join([
-            "# Beside Octave and SciPy",
+            "# Compared with Octave and SciPy",
             "",
             "The demo's identification three times: in Octave with `lsqcurvefit` (the paper used MATLAB's), in Python with SciPy,",
-            "and with `softgrip`. One log is fitted (`tp1`), two are foretold (`steps`, `sp2`); 20 starts each. This page is",
+            "and with `softgrip`. One log is fitted (`tp1`), two are predicted (`steps`, `sp2`); 20 starts each. This page is",
             "written by `bench/beside.py`, with every number in it; it needs `scripts/packages.sh tests readers benchmarks`.",
             "",
             "## Steps",
@@ -173,7 +173,7 @@ class Study:
                  "the same", "`--starts 20`"),
                 ("fit", "`lsqcurvefit`", "`least_squares`", "`softgrip identify`"),
                 ("intervals", "from the Jacobian by hand", "from the Jacobian by hand", "in the report"),
-                ("foretell the other logs", "by hand", "by hand", "`--validate`"),
+                ("predict the other logs", "by hand", "by hand", "`--validate`"),
                 ("figures, series, report", "by hand", "by hand", "`report.html`, `series.csv`")]),
             "## Lines, time, errors",
             "",
@@ -183,10 +183,10 @@ class Study:
             f"whole program on all cores, median of {self.runs} runs; of a diagnosis, one run. The three fits are the same fit: the",
             "problem is small, and with a compiled simulator any of these optimisers solves it.",
             "",
-            "## What neither of them says",
+            "## Results that only softgrip gives",
             "",
             *table(["", "Octave and SciPy", "softgrip"], self.unsaid_rows()),
-            "## What comes out can be read",
+            "## Exported files can be read",
             "",
             "`softgrip export tp1.csv` as .mat and as wide CSV, read back:",
             "",

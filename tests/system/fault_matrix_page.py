@@ -2,28 +2,28 @@
 
 HEAD = """# Fault matrix
 
-Every fault in every phase of a grip, against the real daemon over real sockets: what it came to, how many cycles of the
-loop it took, and what the outputs did as the board had them. Made by
+This page shows every fault in every phase of a grip, against the real daemon over real sockets: the result, the number of cycles of the
+loop, and the outputs at the board. It was written by
 
 ```
 $ scripts/fault_matrix.sh --page
 ```
 
-from `tests/system/fault_matrix.yaml`, which says for every cell what must come of it; a cell that came to anything else
-is marked **WRONG** here and fails the command. A part of it runs with every test (`system.test_fault_matrix`).
+from `tests/system/fault_matrix.yaml`, which defines the required result of each cell. A cell with another result is marked **WRONG**
+and fails the command. A part of it runs with every test (`system.test_fault_matrix`).
 
-- **F103 20/22 vent**: this fault latched 20 cycles after its first effect, where 22 are allowed by the thresholds below;
-  then the outputs were vented. *board* says that the board's own watchdog did it because nothing could be written.
-  Counted are ticks in the recording, from the first message that was touched to the tick that latched.
+- **F103 20/22 vent**: this fault latched 20 cycles after its first effect, where 22 are allowed by the thresholds below. Then the
+  outputs were vented. *board*: the board's own watchdog vented them, because no write was possible. The cycles are ticks in the
+  recording, from the first affected message to the tick that latched.
 - **waits**: the daemon stays in `starting`, outputs at rest, and becomes idle when the cause is gone.
-- **ridden**: no fault, and the grip's result is what it would have been.
-- **unseen**: something is wrong and the software cannot know. The note says why, and what is the guard instead.
-- *spoiled*: what is written does not arrive as it was written, so no safe action of the daemon helps, only the means of
-  board and bench (relief valve, dump valve in the emergency-stop circuit).
+- **ridden**: no fault, and the grip has its normal result.
+- **unseen**: the software cannot detect the fault. The note gives the reason and the remaining protection.
+- *spoiled*: a write does not arrive unchanged, so no safe action of the daemon helps, only the protection of board and bench
+  (relief valve, dump valve in the emergency-stop circuit).
 
-With every cell it was checked that no output moved away from rest after the fault, that a fault is acknowledged once its cause is gone
-and moves nothing, that recordings are complete, no row missing between the first and the last but for ticks that the
-loop itself lost, and that the fault stands in `run.json`.
+Every cell also checks these conditions: no output moved away from rest after the fault; the fault is acknowledged once its cause is
+gone, and this moves nothing; recordings are complete, without a missing row except for ticks that the loop itself lost; and `run.json`
+contains the fault.
 """
 
 
@@ -58,8 +58,8 @@ def summary(results):
     worst = max(reactions, key=lambda m: m["cycles"] / m["bound"])
     tried = sum(r["attempts"] > 1 for r in results)
     return (f"{len(results)} cells: " + ", ".join(f"{n} {ends}" for ends, n in sorted(count.items())) +
-            f". Of {len(reactions)} reactions the one nearest to its bound took {worst['cycles']} of {worst['bound']} "
-            f"cycles. {tried} cells were tried a second time after the machine had stood still.")
+            f". {len(reactions)} reactions were measured; the one nearest to its bound took {worst['cycles']} of {worst['bound']} "
+            f"cycles. {tried} cells were repeated after a pause of the machine.")
 
 
 def page(table, results):

@@ -526,7 +526,7 @@ def files():
              columns={key: TRUTH[key] for key in BASIC} | {"pressure_command_kpa": [
                  COMMAND[49] if i == 50 else value for i, value in enumerate(COMMAND)]},
              says="keep the one before"),
-        File("duplicates.csv", "rows that stand twice",
+        File("duplicates.csv", "rows that occur twice",
              PLAIN.replace("\n1.5,", "\n1.49,61,99\n1.5,"), says="1 sample at the time of the one before left out",
              left_out={"repeated_time": 1}),
         File("hole.csv", "a hole in which the command changed unseen",
@@ -737,20 +737,19 @@ def outcome(file, folder):
     return "", f"{told['samples']} samples as they are", remarks
 
 
-HEAD = """# Foreign files
+HEAD = """# External files
 
-What `softgrip import` makes of files as other people have them. Made by
+This page shows how `softgrip import` converts external files. It was written by
 
 ```
 $ tests/system/foreign_files.py --page
 ```
 
-which writes every file, imports it, and compares each value with what it was made from: 1e-9 of a column's size at most,
-or refused with the reason and nothing written. A test holds this page against what comes of it
-(`system.test_import`). Where no options stand, the columns were proposed by their names and units and agreed to (`--yes`).
-[How to import](../how-to/import.md) has the rules.
+The script writes every file, imports it, and compares each value with the original: a deviation of at most 1e-9 of the column's size, or
+a refusal with the reason and without output. A test compares this page with the imports (`system.test_import`). Without options, the
+columns were proposed by their names and units and confirmed (`--yes`). [How to import](../how-to/import.md) has the rules.
 
-| file | what is in it | options | what comes of it | what is said |
+| file | content | options | result | messages |
 |---|---|---|---|---|
 """
 
