@@ -74,17 +74,17 @@ def cell(row):
 
 def page(results, verdicts, real, options):
     lines = ["# The demo's logs, all seven subsets", "",
-             f"The twin that the demo records has a transport delay of {real['transport_delay']} s and a valve lag of "
-             f"{real['valve_lag']} s; the model", "that is given has neither. Made by", "", "```",
+             f"The demo's finger has a transport delay of {real['transport_delay']} s and a valve lag of {real['valve_lag']} s. The given", "model has "
+             "neither. This page was written by", "", "```",
              "$ bench/demo_subsets.py --build build/release --page docs/reference/demo-subsets.md", "```", "",
              f"(`softgrip simulate` with `{' '.join(options)}`, `softgrip diagnose --model config/models/zhang2025.yaml`). "
-             "Where logs do not say", "whether the lag is there, the interval of the delay holds both answers.", "",
+             "If the", "logs do not show the presence of the lag, the interval of the delay contains both answers.", "",
              "| logs | verdict | transport delay | valve lag |", "|---|---|---|---|"]
     for subset, rows in results.items():
         lines.append(f"| {' + '.join(subset)} | {verdicts[subset]} | {cell(rows.get('transport_delay'))} | "
                      f"{cell(rows.get('valve_lag'))} |")
     wrong = complaints(results, real)
-    lines += ["", "Every interval holds the twin's number, and no more logs name less." if not wrong else "Wrong:"]
+    lines += ["", "Every interval contains the true value, and more logs never give fewer names." if not wrong else "Wrong:"]
     return "\n".join(lines + [f"- {sentence}" for sentence in wrong]) + "\n"
 
 

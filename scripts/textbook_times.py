@@ -78,15 +78,15 @@ def page(args, rows, command):
     median, longest = statistics.median(r["wall_s"] for r in rows), max(r["wall_s"] for r in rows)
     slowest = sorted(rows, key=lambda r: -r["wall_s"])[:5]
     return "\n".join([
-        "# How long a diagnosis takes", "",
+        "# Duration of a diagnosis", "",
         f"Written by `{command}`: {len(rows)} worlds of textbook physics, three "
         f"logs each, {statistics.median(r['samples'] for r in rows) / 3:.0f} samples in a log (median), {args.threads} "
         f"threads of {os.cpu_count()} processors, closed loop and report included.", "",
-        f"Wanted: median at most {WANTED['median']} s, longest at most {WANTED['longest']} s. Measured: {median:.1f} s and "
+        f"Required: median at most {WANTED['median']} s, longest at most {WANTED['longest']} s. Measured: {median:.1f} s and "
         f"{longest:.1f} s.", "",
         *table(("", "worlds", "median [s]", "longest [s]", "processor time, median [s]"), summary(rows)),
         *table(("stage", "share of the time"), shares(rows)),
-        "The five that took longest:", "",
+        "The five longest:", "",
         *table(("hidden", "strength", "make", "columns", "seed", "verdict", "took [s]"), [
             (" + ".join(r["causes"]) or "nothing", f"{r['strength']:g}", r["make"], r["columns"], r["seed"], r["verdict"],
              f"{r['wall_s']:.1f}") for r in slowest])])
