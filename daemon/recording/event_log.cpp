@@ -278,7 +278,7 @@ std::string sentences_of(control::RefusalCode refusal, const control::Fault& cau
                          const std::vector<std::string>& channel_names) {
   const control::RefusalText& text = control::text_of(refusal);
   if (refusal == control::RefusalCode::cause_persists && cause.code != control::FaultCode::none) {
-    return fmt::format("What caused a fault is still there: {}. {} Then acknowledge again.",
+    return fmt::format("The cause of a fault is still present: {}. {} Then acknowledge again.",
                        title_of(cause, channel_names), control::info_of(cause.code).remedy);
   }
   return fmt::format("{}{}{}", text.meaning, text.next.empty() ? "" : " ", text.next);
