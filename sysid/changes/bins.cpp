@@ -12,10 +12,21 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Shares of all bins at which classes of haste end.
+/// Shares of all bins at which classes of the input rate end.
 constexpr std::array class_ends{0.4, 0.7, 0.9};
 
-/// The spread of what is left, by class of haste.
+/// Of the finite values; the zero of a run is a number of its own.
+void subtract_mean(std::vector<double>& series) {
+  double sum = 0, count = 0;
+  for (const double v : series) {
+    if (!std::isfinite(v)) continue;
+    sum += v;
+    count += 1;
+  }
+  for (double& v : series) v -= sum / std::max(count, 1.0);
+}
+
+/// The spread of the residual, by class of the input rate.
 void add_classes(const Binned& residual, const Binned& haste, Whitener& whitener) {
   const WhiteRows rows(residual, haste, whitener);
   const Eigen::VectorXd white = rows(residual);
@@ -76,19 +87,13 @@ std::vector<double> binned(const Record& record, const std::vector<double>& seri
   return sum;
 }
 
-Whitener whitener_of(const Binned& residual, const Binned& haste, std::size_t order) {
+Whitener whitener_of(Binned residual, const Binned& haste, std::size_t order) {
+  for (std::vector<double>& series : residual) subtract_mean(series);
   Eigen::VectorXd correlation = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(order) + 1);
   for (const std::vector<double>& series : residual) {
-    double mean = 0, count = 0;
-    for (const double v : series) {
-      if (!std::isfinite(v)) continue;
-      mean += v;
-      count += 1;
-    }
-    mean /= std::max(count, 1.0);
     for (Eigen::Index lag = 0; lag < correlation.size(); ++lag) {
       for (std::size_t i = static_cast<std::size_t>(lag); i < series.size(); ++i) {
-        const double product = (series[i] - mean) * (series[i - static_cast<std::size_t>(lag)] - mean);
+        const double product = series[i] * series[i - static_cast<std::size_t>(lag)];
         if (std::isfinite(product)) correlation(lag) += product;
       }
     }

@@ -42,7 +42,7 @@ struct Whitener {
 
 /// By Yule's and Walker's equations from a residual; every record's mean is taken away first.
 /// @param haste  of the same bins.
-[[nodiscard]] Whitener whitener_of(const Binned& residual, const Binned& haste, std::size_t order);
+[[nodiscard]] Whitener whitener_of(Binned residual, const Binned& haste, std::size_t order);
 
 /// The rows of a residual that can be whitened: those with enough finite bins before them.
 class WhiteRows {

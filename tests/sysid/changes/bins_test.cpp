@@ -50,6 +50,20 @@ TEST(Bins, AnAutoregressionIsMadeWhite) {
   EXPECT_NEAR(white.head(n).dot(white.tail(n)) / static_cast<double>(n), 0, 0.05);
 }
 
+TEST(Bins, TheZeroOfARunDoesNotWidenTheSpread) {
+  std::mt19937 random(5);
+  std::normal_distribution<double> normal(0, 0.5);
+  Binned residual(2, std::vector<double>(4000)), haste(2, std::vector<double>(4000, 0.0));
+  for (auto& series : residual) {
+    double last = 0;
+    for (double& v : series) {
+      last = 0.5 * last + normal(random);
+      v = last + 35;
+    }
+  }
+  EXPECT_NEAR(whitener_of(residual, haste, 3).spread_at(0), 0.5, 0.02);
+}
+
 TEST(Bins, WhatIsHastyHasASpreadOfItsOwn) {
   std::mt19937 random(4);
   std::normal_distribution<double> normal(0, 1);
