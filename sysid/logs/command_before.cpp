@@ -40,12 +40,23 @@ double median_mm(const Log& log, std::size_t first, std::size_t last) {
   return readings.empty() ? std::numeric_limits<double>::quiet_NaN() : median_of(std::span(readings));
 }
 
-std::optional<double> by_pressure(const Log& log, double range_kpa) {
+/// The command of the log that is nearest to a pressure. A pressure beyond all of them stays as it is.
+double command_near(double pressure_kpa, const std::vector<double>& commands, double least_kpa,
+                    double most_kpa) {
+  if (pressure_kpa < least_kpa || pressure_kpa > most_kpa) return pressure_kpa;
+  return *std::min_element(commands.begin(), commands.end(), [pressure_kpa](double a, double b) {
+    return std::abs(a - pressure_kpa) < std::abs(b - pressure_kpa);
+  });
+}
+
+std::optional<double> by_pressure(const Log& log, double least_kpa, double most_kpa) {
+  const double range_kpa = most_kpa - least_kpa;
   const double before_kpa = log.pressure_kpa.front();
   const double way_kpa = log.pressure_command_kpa.front() - before_kpa;
   if (!(std::abs(way_kpa) > far * range_kpa)) return {};
   for (std::size_t i = 1; i < stands_for(log, range_kpa); ++i) {
-    if ((log.pressure_kpa[i] - before_kpa) / way_kpa > on_its_way) return before_kpa;
+    if ((log.pressure_kpa[i] - before_kpa) / way_kpa > on_its_way)
+      return command_near(before_kpa, log.pressure_command_kpa, least_kpa, most_kpa);
   }
   return {};
 }
@@ -68,7 +79,7 @@ std::optional<double> pressure_before_kpa(const Log& log) {
   const auto [least, most] =
       std::minmax_element(log.pressure_command_kpa.begin(), log.pressure_command_kpa.end());
   if (log.pressure_kpa.empty()) return by_displacement(log, *least, *most);
-  return by_pressure(log, *most - *least);
+  return by_pressure(log, *least, *most);
 }
 
 Log with_command_before(const Log& log, double before_kpa) {

@@ -7,9 +7,11 @@
 
 namespace softgrip::sysid {
 
-/// Where the pressure stood when the log began [kPa], if that was not where its first command asks it to be.
-/// The measured pressure lies a tenth of the command's range and more away from it and comes at least half of
-/// the way while the command stands. Nothing of a pressure that stays away (another zero, another unit).
+/// The command before the log began [kPa], if the pressure was not yet at the first command.
+/// The measured pressure differs from the first command by 10 % of the command's range or more, and moves at
+/// least half of the way to it while the command is constant. No value if the pressure stays away (another
+/// zero, another unit). Within the range of the commands the result is the command of the log that is nearest
+/// to the measured pressure: the log does not show the response to any other.
 ///
 /// Without a measured pressure the displacement shows it: it moves by a fifth of its range and more while the
 /// first command stands. The pressure then was at the lowest command if the displacement rises, otherwise at

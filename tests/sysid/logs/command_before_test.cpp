@@ -41,6 +41,15 @@ TEST(CommandBefore, IsWhereTheMeasuredPressureStillWas) {
   EXPECT_GT(*vented, 75) << "as well where the command was set down";
 }
 
+TEST(CommandBefore, IsACommandThatTheLogContains) {
+  Log log = begun_at_a_step(7);
+  for (std::size_t i = 250; i < log.size(); ++i) log.pressure_command_kpa[i] = i % 200 < 100 ? 0 : 60;
+  const auto before_kpa = pressure_before_kpa(log);
+  ASSERT_TRUE(before_kpa);
+  EXPECT_GT(log.pressure_kpa.front(), 5);
+  EXPECT_EQ(*before_kpa, 0) << "the log does not show the response to a command between its two";
+}
+
 TEST(CommandBefore, ALogThatBeginsAtRestHasNone) {
   EXPECT_FALSE(pressure_before_kpa(begun_at_a_step(60)));
   EXPECT_FALSE(pressure_before_kpa(begun_at_a_step(58))) << "a regulator's error";
