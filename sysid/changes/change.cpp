@@ -11,6 +11,7 @@
 #include "base/thread_budget.h"
 #include "sysid/changes/change_search.h"
 #include "sysid/changes/change_size.h"
+#include "sysid/changes/drive_choice.h"
 #include "sysid/changes/echo_fit.h"
 #include "sysid/diagnosis/causes/outliers.h"
 #include "sysid/diagnosis/causes/thermal_gain.h"
@@ -37,8 +38,8 @@ struct Prepared {
   OutlierEvidence outliers;
 };
 
-Prepared prepared(std::vector<Record> records) {
-  Prepared p{std::move(records), {}};
+Prepared driven_records(const std::vector<Log>& logs, Drive drive, const ChangeOptions& options) {
+  Prepared p{make_records(logs, {.drive = drive, .held = options.held}), {}};
   p.outliers = hide_outliers(p.records, measured_noise_mm(p.records));
   return p;
 }
@@ -398,6 +399,12 @@ void warn(const std::vector<Log>& healthy, const std::vector<Log>& later,
         "pressure_kpa is recorded in one of the two only: the valve and the finger are judged as one");
 }
 
+std::string unused_pressure(const Base& by_pressure, const Base& by_command) {
+  return "The command predicts healthy runs that were left out better than the measured pressure does (" +
+         significant(by_command.left_mm, 2) + " and " + significant(by_pressure.left_mm, 2) +
+         " mm RMS): pressure_kpa is not used";
+}
+
 /// Isolated wrong samples are counted, not fitted.
 void judge_outliers(const OutlierEvidence& healthy, const OutlierEvidence& later, double noise_mm,
                     ChangeDiagnosis& diagnosis) {
@@ -462,19 +469,32 @@ tl::expected<ChangeDiagnosis, std::string> diagnose_change(const std::vector<Log
     return Failure(objection);
   ChangeDiagnosis diagnosis;
   warn(healthy, later, diagnosis.warnings);
-  const bool pressure = has_pressure(healthy) && has_pressure(later);
-  const RecordOptions record{.drive = pressure ? Drive::measured : Drive::command, .held = options.held};
-  const Prepared before = prepared(make_records(healthy, record));
-  const Prepared after = prepared(make_records(later, record));
-  judge_outliers(before.outliers, after.outliers, measured_noise_mm(after.records), diagnosis);
   const ThreadBudget budget(options.threads);
   const BaseOptions base{options.given, options.seed, options.threads, options.progress};
+  const auto fitted = [&](const Prepared& before, Drive drive) {
+    return fit_base(before.records, Judged::displacement, drive, base);
+  };
+  bool pressure = has_pressure(healthy) && has_pressure(later);
+  Prepared before = driven_records(healthy, pressure ? Drive::measured : Drive::command, options);
+  Base finger_base = fitted(before, pressure ? Drive::measured : Drive::command);
+  if (pressure) {
+    Prepared commanded = driven_records(healthy, Drive::command, options);
+    Base by_command = fitted(commanded, Drive::command);
+    if (command_predicts_better(by_command, finger_base, options.seed)) {
+      diagnosis.warnings.push_back(unused_pressure(finger_base, by_command));
+      pressure = false;
+      before = std::move(commanded);
+      finger_base = std::move(by_command);
+    }
+  }
+  const Prepared after = driven_records(later, finger_base.drive, options);
+  judge_outliers(before.outliers, after.outliers, measured_noise_mm(after.records), diagnosis);
   if (pressure) {
     Judge valve(fit_base(pressure_records(healthy, options.held), Judged::pressure, Drive::command, base),
                 options, true);
     valve.judge(pressure_records(later, options.held), diagnosis);
   }
-  Judge finger(fit_base(before.records, Judged::displacement, record.drive, base), options, pressure);
+  Judge finger(std::move(finger_base), options, pressure);
   finger.judge(after.records, diagnosis);
   add_intervals(diagnosis);
   std::stable_sort(diagnosis.causes.begin(), diagnosis.causes.end(),

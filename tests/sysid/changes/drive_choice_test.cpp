@@ -1,0 +1,76 @@
+#include "sysid/changes/drive_choice.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+
+#include "sysid/changes/change.h"
+#include "tests/sysid/changes/finger.h"
+
+namespace softgrip::sysid::drive_choice_test {
+namespace {
+
+using test::Finger;
+using test::logs_of;
+
+Base base_of(const std::vector<Log>& healthy, Drive drive) {
+  return fit_base(make_records(healthy, {.drive = drive}), Judged::displacement, drive, {});
+}
+
+/// A gauge in the pipe, as on an actuator that a flow moves: it shows how fast the command changes.
+std::vector<Log> with_gauge_in_the_pipe(std::vector<Log> logs) {
+  std::mt19937 random(11);
+  std::normal_distribution<double> noise(0, 0.2);
+  for (Log& log : logs) {
+    log.pressure_kpa.assign(log.size(), 20);
+    for (std::size_t i = 1; i < log.size(); ++i)
+      log.pressure_kpa[i] =
+          20 + 10 * (log.pressure_command_kpa[i] - log.pressure_command_kpa[i - 1]) + noise(random);
+  }
+  return logs;
+}
+
+bool is_unused(const ChangeDiagnosis& d) {
+  return std::any_of(d.warnings.begin(), d.warnings.end(), [](const std::string& warning) {
+    return warning.find("pressure_kpa is not used") != std::string::npos;
+  });
+}
+
+TEST(DriveChoice, ThePressureOfTheFingerDrivesIt) {
+  const std::vector<Log> healthy = logs_of({.valve_lag_s = 0.3}, 1, true);
+  EXPECT_FALSE(
+      command_predicts_better(base_of(healthy, Drive::command), base_of(healthy, Drive::measured), 1));
+}
+
+TEST(DriveChoice, TheCommandDrivesWhatTheGaugeDoesNotShow) {
+  const std::vector<Log> healthy = with_gauge_in_the_pipe(logs_of({}, 1));
+  const Base by_command = base_of(healthy, Drive::command), by_pressure = base_of(healthy, Drive::measured);
+  EXPECT_LT(by_command.left_mm, 0.5 * by_pressure.left_mm);
+  EXPECT_TRUE(command_predicts_better(by_command, by_pressure, 1));
+}
+
+TEST(DriveChoice, AChangeIsFoundAlthoughTheGaugeDoesNotShowWhatMovesTheFinger) {
+  const auto healthy = with_gauge_in_the_pipe(logs_of({}, 1));
+  const auto d = diagnose_change(healthy, with_gauge_in_the_pipe(logs_of({.gain = 0.2 * 1.05}, 5)));
+  ASSERT_TRUE(d) << d.error();
+  EXPECT_TRUE(is_unused(*d));
+  ASSERT_FALSE(d->causes.empty()) << change_sentence(*d);
+  EXPECT_EQ(d->causes[0].id, "ageing");
+  EXPECT_NEAR(d->causes[0].size.value, 5, 0.6);
+  EXPECT_EQ(d->readings.size(), 1U) << "the gauge is not judged either";
+  const auto same = diagnose_change(healthy, with_gauge_in_the_pipe(logs_of({}, 5)));
+  ASSERT_TRUE(same) << same.error();
+  EXPECT_EQ(same->verdict, ChangeVerdict::unchanged) << change_sentence(*same);
+}
+
+TEST(DriveChoice, AUsefulPressureIsUsed) {
+  const auto d =
+      diagnose_change(logs_of({.valve_lag_s = 0.3}, 1, true), logs_of({.valve_lag_s = 0.3}, 5, true));
+  ASSERT_TRUE(d) << d.error();
+  EXPECT_FALSE(is_unused(*d));
+  EXPECT_EQ(d->readings.size(), 2U);
+}
+
+}  // namespace
+}  // namespace softgrip::sysid::drive_choice_test
