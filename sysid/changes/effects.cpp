@@ -15,7 +15,7 @@
 #include "model/blocks/thermal_gain.h"
 #include "model/catalogue.h"
 #include "model/named.h"
-#include "sysid/changes/causes_of_the_air.h"
+#include "sysid/changes/causes_without_block.h"
 #include "sysid/diagnosis/causes/thermal_gain.h"
 
 namespace softgrip::sysid {
@@ -127,7 +127,7 @@ class Collector {
     effect.appears = cause.appears;
     return effect;
   }
-  static Effect form_of(const CauseOfTheAir& cause) {
+  static Effect form_of(const CauseWithoutBlock& cause) {
     Effect effect;
     effect.id = effect.form = cause.id;
     effect.title = cause.title;

@@ -1,13 +1,13 @@
 #include "sysid/changes/next_steps.h"
 
-#include "sysid/changes/causes_of_the_air.h"
+#include "sysid/changes/causes_without_block.h"
 #include "sysid/diagnosis/causes/cause.h"
 
 namespace softgrip::sysid {
 namespace {
 
 WhenChanged when_changed(std::string_view cause_id) {
-  for (const CauseOfTheAir& cause : causes_of_the_air) {
+  for (const CauseWithoutBlock& cause : causes_without_block) {
     if (cause.id == cause_id) return cause.when_changed;
   }
   const std::optional<Cause> cause = find_cause(cause_id);
@@ -18,8 +18,8 @@ WhenChanged when_changed(std::string_view cause_id) {
 
 std::vector<std::string_view> changes() {
   std::vector<std::string_view> ids;
-  ids.reserve(causes_of_the_air.size() + all_causes().size());
-  for (const CauseOfTheAir& cause : causes_of_the_air) ids.push_back(cause.id);
+  ids.reserve(causes_without_block.size() + all_causes().size());
+  for (const CauseWithoutBlock& cause : causes_without_block) ids.push_back(cause.id);
   for (const Cause& cause : all_causes()) {
     if (!cause.when_changed.words.empty()) ids.push_back(cause.id);
   }

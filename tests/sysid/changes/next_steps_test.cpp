@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "model/catalogue.h"
-#include "sysid/changes/causes_of_the_air.h"
+#include "sysid/changes/causes_without_block.h"
 #include "sysid/diagnosis/causes/cause.h"
 
 namespace softgrip::sysid::next_steps_test {
@@ -13,7 +13,7 @@ namespace {
 
 TEST(NextSteps, EveryCauseHasTwoThingsToDoAndPlainWords) {
   std::vector<std::string_view> ids;
-  for (const CauseOfTheAir& cause : causes_of_the_air) ids.push_back(cause.id);
+  for (const CauseWithoutBlock& cause : causes_without_block) ids.push_back(cause.id);
   for (const Cause& cause : all_causes()) {
     // Of a base, and what a leak may be taken for: no changes.
     if (cause.id != "hysteresis_shape" && cause.id != "pressure_scale") ids.push_back(cause.id);

@@ -9,13 +9,13 @@
 
 namespace softgrip::sysid {
 
-struct CauseOfTheAir {
+struct CauseWithoutBlock {
   std::string_view id, title;
   WhenChanged when_changed;
   Appears appears = Appears::anywhere;
 };
 
-inline constexpr CauseOfTheAir blocked_line{
+inline constexpr CauseWithoutBlock blocked_line{
     "blocked_line",
     "Blocked line",
     {"the line to the finger lets less air through",
@@ -25,7 +25,7 @@ inline constexpr CauseOfTheAir blocked_line{
      {SizedBy::Of::number, "more time to fill", "s", "filling_s"}},
     Appears::moving};
 
-inline constexpr CauseOfTheAir leak{
+inline constexpr CauseWithoutBlock leak{
     causes::Leak::id,
     "Leak",
     {"pressure is lost while it should hold",
@@ -37,6 +37,6 @@ inline constexpr CauseOfTheAir leak{
      {SizedBy::Of::number, "pressure lost in a second with the line shut", "kPa", "loss_kpa_per_s"}},
     Appears::held};
 
-inline constexpr std::array causes_of_the_air{leak, blocked_line};
+inline constexpr std::array causes_without_block{leak, blocked_line};
 
 }  // namespace softgrip::sysid
