@@ -239,6 +239,7 @@ void spread(Base& base) {
     count += 1;
   }
   const double free = std::max(1.0, count - 1);
+  base.zero_mm = count > 0 ? zeros / count : 0;
   base.gain_spread = std::max(least_gain_spread, count > 0 ? std::sqrt(gains / count) : 0);
   base.zero_spread_mm =
       std::max(least_zero_share * base.span_mm,

@@ -47,6 +47,7 @@ struct Base {
   double left_mm = 0;         ///< what the base leaves of units that are left out, about their means
   double span_mm = 0;
   double gain_spread = 0;  ///< from unit to unit of the healthy logs, relative
+  double zero_mm = 0;      ///< mean of the healthy readings minus the prediction
   double zero_spread_mm = 0;
   double bin_s = 0.05;
   Whitener whitener;

@@ -1,5 +1,5 @@
 #pragma once
-// What is wrong with the air itself: no cause of a model of a finger, but of what becomes of one.
+// Causes of a change that no block of a model describes: the air supply, and the load.
 
 #include <array>
 #include <string_view>
@@ -37,6 +37,19 @@ inline constexpr CauseWithoutBlock leak{
      {SizedBy::Of::number, "pressure lost in a second with the line shut", "kPa", "loss_kpa_per_s"}},
     Appears::held};
 
-inline constexpr std::array causes_without_block{leak, blocked_line};
+/// A weight or a preload changes gain and zero at once. The readings do not separate it from a change of the
+/// finger itself beside another zero.
+inline constexpr CauseWithoutBlock payload{
+    "payload",
+    "Payload",
+    {"a weight or a preload acts on the finger",
+     {"Remove everything that is attached to the finger or touches it, and record the same log again.",
+      "Record one log in which the finger points down and one in which it points up: a weight changes "
+      "sides."},
+     {},
+     {SizedBy::Of::span, "gain at full pressure, on average", "%", {}, 100}},
+    Appears::displaced};
+
+inline constexpr std::array causes_without_block{leak, blocked_line, payload};
 
 }  // namespace softgrip::sysid

@@ -9,10 +9,12 @@
 #include "base/numbers.h"
 #include "base/statistics.h"
 #include "base/thread_budget.h"
+#include "sysid/changes/causes_without_block.h"
 #include "sysid/changes/change_search.h"
 #include "sysid/changes/change_size.h"
 #include "sysid/changes/drive_choice.h"
 #include "sysid/changes/echo_fit.h"
+#include "sysid/diagnosis/causes/ageing.h"
 #include "sysid/diagnosis/causes/outliers.h"
 #include "sysid/diagnosis/causes/thermal_gain.h"
 #include "sysid/diagnosis/residual/noise.h"
@@ -305,6 +307,13 @@ class Judge {
     return std::nullopt;
   }
 
+  /// Whether a zero [mm] differs from those of the healthy runs by more than another healthy run's may.
+  [[nodiscard]] bool is_another_zero(double zero_mm) const {
+    const auto units = static_cast<double>(base_.units.count());
+    return std::abs(zero_mm - base_.zero_mm) >
+           t_quantile(units - 1) * base_.zero_spread_mm * std::sqrt(1 + 1 / units);
+  }
+
   [[nodiscard]] ChangeCause cause_of(const LaterReadings& readings, const std::vector<ScoredEffect>& ranked,
                                      const Ties& ties, const Eigen::VectorXd& without,
                                      const std::vector<FittedEffect>& found) const {
@@ -325,6 +334,10 @@ class Judge {
       if (ties(ranked.front(), ranked[i]) && vetoed(readings, ranked[i], without, found) == Veto::none)
         cause.rivals.push_back(ranked[i].fit.fitted.effect.id);
     }
+    if ((cause.id == causes::Ageing::WithTime::id ||
+         std::count(cause.rivals.begin(), cause.rivals.end(), causes::Ageing::WithTime::id) > 0) &&
+        is_another_zero(readings.slack(with(found, best)).zero_mm))
+      cause.rivals.emplace_back(payload.id);
     cause.effect_mm = rms_of(added);
     cause.full_pressure_mm = at_full_pressure(readings, added);
     cause.size = size_of(readings, best, cause.full_pressure_mm);

@@ -31,6 +31,20 @@ TEST(Change, AnotherInputAndAnotherZeroAreNoChange) {
   EXPECT_NEAR(d.readings.back().zero_mm, 0.4, 0.03);
 }
 
+/// A weight changes gain and zero at once; a gain alone is no weight.
+TEST(Change, AnotherGainBesideAnotherZeroMayBeAWeight) {
+  const auto may_be_a_weight = [](const Finger& later) {
+    const ChangeDiagnosis d = changed(later);
+    EXPECT_FALSE(d.causes.empty()) << change_sentence(d);
+    if (d.causes.empty()) return false;
+    EXPECT_EQ(d.causes[0].id, "ageing");
+    const auto& rivals = d.causes[0].rivals;
+    return std::count(rivals.begin(), rivals.end(), "payload") == 1;
+  };
+  EXPECT_TRUE(may_be_a_weight({.gain = 0.2 * 0.95, .zero_mm = -0.4}));
+  EXPECT_FALSE(may_be_a_weight({.gain = 0.2 * 0.95}));
+}
+
 TEST(Change, AZeroIsFoundInLogsWhoseThinnedRecordsEndABinSooner) {
   std::vector<Log> healthy = logs_of({}, 1), later = logs_of({.zero_mm = 0.4}, 5);
   for (std::vector<Log>* const logs : {&healthy, &later}) {
