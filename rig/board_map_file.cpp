@@ -50,9 +50,9 @@ class BoardReader {
     map_.name = in.text("name");
     map_.source = in.text("source");
     map_.address_base = static_cast<int>(in.integer("address_base", 0, 1));
-    map_.word_order = in.choice("word_order", {"high_first", "low_first"}) == 0
-                          ? drivers::WordOrder::high_first
-                          : drivers::WordOrder::low_first;
+    map_.word_order = word_order(in);
+    map_.max_registers = static_cast<std::uint16_t>(
+        in.optional_integer("max_registers", 1, drivers::max_read_registers).value_or(map_.max_registers));
     map_.has_fc23 = in.boolean("fc23");
     map_.readable_gap = static_cast<std::uint16_t>(in.optional_integer("readable_gap", 0, 120).value_or(0));
     if (const Node* node = in.child("inputs", !in.has("outputs"))) inputs(*node);
@@ -65,10 +65,19 @@ class BoardReader {
     }
     check_directions(in);
     check_fc23(in);
+    check_max_registers(in);
     return std::move(map_);
   }
 
  private:
+  static drivers::WordOrder word_order(MapReader& in) {
+    std::vector<std::string> names;
+    for (int order = 0; order <= static_cast<int>(drivers::WordOrder::low_first_bytes_swapped); ++order) {
+      names.emplace_back(drivers::name_of(static_cast<drivers::WordOrder>(order)));
+    }
+    return static_cast<drivers::WordOrder>(in.choice("word_order", names));
+  }
+
   /// The address on the wire of what the file calls `address`.
   std::uint16_t address(MapReader& in, std::int64_t registers) {
     const std::int64_t base = map_.address_base;
@@ -316,6 +325,19 @@ class BoardReader {
     if (map_.outputs.registers.function != fc_write_registers) {
       in.report("fc23", "function 23 writes several registers: the outputs' function must be 16");
     }
+  }
+
+  /// A number that two requests read may be half of one moment and half of the next.
+  void check_max_registers(MapReader& in) {
+    if (!in.good("max_registers")) return;
+    std::uint16_t least = 1;
+    if (map_.has_inputs()) least = std::max(least, words_of(map_.inputs.registers.kind));
+    if (map_.has_outputs()) least = std::max(least, words_of(map_.outputs.registers.kind));
+    const auto& tripped = map_.watchdog.tripped;
+    if (tripped && tripped->function >= fc_read_holding) least = std::max(least, tripped->count);
+    if (map_.max_registers >= least) return;
+    in.report("max_registers", "`max_registers` is " + std::to_string(map_.max_registers) + ", but " +
+                                   std::to_string(least) + " registers must be read in one request");
   }
 
   const document::Document& document_;

@@ -17,8 +17,16 @@ namespace softgrip::drivers {
 
 /// What one number looks like in registers.
 enum class RegisterKind : std::uint8_t { uint16, int16, uint32, int32, float32 };
-/// Which word of a number of two registers comes first (the lower address).
-enum class WordOrder : std::uint8_t { high_first, low_first };
+/// Which word of a number of two registers comes first (the lower address), and whether the two bytes of
+/// every register are swapped.
+enum class WordOrder : std::uint8_t {
+  high_first,
+  low_first,
+  high_first_bytes_swapped,
+  low_first_bytes_swapped,
+};
+/// As the board file writes them.
+[[nodiscard]] std::string_view name_of(WordOrder order) noexcept;
 /// What a terminal carries. A pressure generator's "terminal" is its air port: it is told kilopascals.
 enum class ElectricalUnit : std::uint8_t { volt, milliampere, kilopascal };
 
@@ -136,6 +144,8 @@ struct BoardMap {
   WordOrder word_order = WordOrder::high_first;
   TerminalBlock inputs;
   TerminalBlock outputs;
+  /// Most registers in one request; 125 is what the specification allows a read.
+  std::uint16_t max_registers = 125;
   /// Function code 23 writes the outputs and reads the inputs in one transaction.
   bool has_fc23 = false;
   /// Registers between two blocks that may be read along to save a transaction; the board must serve them.

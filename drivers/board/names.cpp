@@ -43,6 +43,20 @@ std::string_view name_of(RegisterKind kind) noexcept {
   return "unknown";
 }
 
+std::string_view name_of(WordOrder order) noexcept {
+  switch (order) {
+    case WordOrder::high_first:
+      return "high_first";
+    case WordOrder::low_first:
+      return "low_first";
+    case WordOrder::high_first_bytes_swapped:
+      return "high_first_bytes_swapped";
+    case WordOrder::low_first_bytes_swapped:
+      return "low_first_bytes_swapped";
+  }
+  return "unknown";
+}
+
 std::string_view name_of(ElectricalUnit unit) noexcept {
   switch (unit) {
     case ElectricalUnit::volt:

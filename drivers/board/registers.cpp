@@ -8,17 +8,28 @@
 namespace softgrip::drivers {
 namespace {
 
+bool is_high_first(WordOrder order) noexcept {
+  return order == WordOrder::high_first || order == WordOrder::high_first_bytes_swapped;
+}
+
+/// A register as this machine counts it, or as the board carries it: the same either way.
+std::uint16_t ordered(std::uint16_t word, WordOrder order) noexcept {
+  const bool swapped =
+      order == WordOrder::high_first_bytes_swapped || order == WordOrder::low_first_bytes_swapped;
+  return swapped ? static_cast<std::uint16_t>(word << 8 | word >> 8) : word;
+}
+
 std::uint32_t joined(std::span<const std::uint16_t> words, WordOrder order) noexcept {
-  const std::uint32_t first = words[0];
-  const std::uint32_t second = words[1];
-  return order == WordOrder::high_first ? first << 16 | second : second << 16 | first;
+  const std::uint32_t first = ordered(words[0], order);
+  const std::uint32_t second = ordered(words[1], order);
+  return is_high_first(order) ? first << 16 | second : second << 16 | first;
 }
 
 void split(std::uint32_t value, WordOrder order, std::span<std::uint16_t> words) noexcept {
-  const auto high = static_cast<std::uint16_t>(value >> 16);
-  const auto low = static_cast<std::uint16_t>(value & 0xffffU);
-  words[0] = order == WordOrder::high_first ? high : low;
-  words[1] = order == WordOrder::high_first ? low : high;
+  const std::uint16_t high = ordered(static_cast<std::uint16_t>(value >> 16), order);
+  const std::uint16_t low = ordered(static_cast<std::uint16_t>(value & 0xffffU), order);
+  words[0] = is_high_first(order) ? high : low;
+  words[1] = is_high_first(order) ? low : high;
 }
 
 template <class Whole>
@@ -34,9 +45,9 @@ Whole saturated(double raw) noexcept {
 double decode(std::span<const std::uint16_t> words, RegisterKind kind, WordOrder order) noexcept {
   switch (kind) {
     case RegisterKind::uint16:
-      return words[0];
+      return ordered(words[0], order);
     case RegisterKind::int16:
-      return static_cast<std::int16_t>(words[0]);
+      return static_cast<std::int16_t>(ordered(words[0], order));
     case RegisterKind::uint32:
       return joined(words, order);
     case RegisterKind::int32:
@@ -50,10 +61,10 @@ double decode(std::span<const std::uint16_t> words, RegisterKind kind, WordOrder
 void encode(double raw, RegisterKind kind, WordOrder order, std::span<std::uint16_t> words) noexcept {
   switch (kind) {
     case RegisterKind::uint16:
-      words[0] = saturated<std::uint16_t>(raw);
+      words[0] = ordered(saturated<std::uint16_t>(raw), order);
       return;
     case RegisterKind::int16:
-      words[0] = static_cast<std::uint16_t>(saturated<std::int16_t>(raw));
+      words[0] = ordered(static_cast<std::uint16_t>(saturated<std::int16_t>(raw)), order);
       return;
     case RegisterKind::uint32:
       split(saturated<std::uint32_t>(raw), order, words);

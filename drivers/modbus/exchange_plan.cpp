@@ -21,16 +21,28 @@ bool is_bits(std::uint8_t function) {
   return function <= MODBUS_FC_READ_DISCRETE_INPUTS;
 }
 
-std::uint32_t most_readable(std::uint8_t function) {
-  return is_bits(function) ? max_read_bits : max_read_registers;
+std::uint32_t most_readable(const BoardMap& map, std::uint8_t function) {
+  return is_bits(function) ? max_read_bits : std::min(max_read_registers, map.max_registers);
 }
 
-/// The smallest range of a block that holds all the numbers `indices`. What lies between belongs to the
-/// block, so the board serves it.
-Range covering(const RegisterBlock& block, const std::vector<std::size_t>& indices) {
-  const auto [first, last] = std::minmax_element(indices.begin(), indices.end());
-  return {block.function, block.address_of(*first),
-          static_cast<std::uint32_t>(block.address_of(*last) + words_of(block.kind))};
+/// Adds the ranges that hold the numbers `indices` of a block: as few as the map allows, and no number torn.
+/// What lies between belongs to the block, so the board serves it.
+void cover(const BoardMap& map, const RegisterBlock& block, std::vector<std::size_t> indices,
+           std::vector<Range>& ranges) {
+  std::sort(indices.begin(), indices.end());
+  const std::uint32_t most = most_readable(map, block.function);
+  std::optional<Range> open;
+  for (const std::size_t index : indices) {
+    const std::uint32_t begin = block.address_of(index);
+    const std::uint32_t end = begin + words_of(block.kind);
+    if (open && end - open->begin > most) {
+      ranges.push_back(*open);
+      open.reset();
+    }
+    if (!open) open = Range{block.function, begin, end};
+    open->end = end;
+  }
+  if (open) ranges.push_back(*open);
 }
 
 /// Registers of [begin, end) that no block of the map declares as readable by `function`.
@@ -61,7 +73,7 @@ std::vector<ReadStep> merged(const BoardMap& map, std::vector<Range> ranges) {
       const std::uint32_t end = std::max(last.end, range.end);
       const bool gap_allowed = range.begin <= last.end ||
                                undeclared(map, range.function, last.end, range.begin) <= map.readable_gap;
-      if (gap_allowed && end - last.begin <= most_readable(range.function)) {
+      if (gap_allowed && end - last.begin <= most_readable(map, range.function)) {
         last.end = end;
         continue;
       }
@@ -106,11 +118,11 @@ std::vector<ReadStep> plan_reads(const BoardMap& map, const std::vector<std::siz
                                  const std::vector<std::size_t>& outputs) {
   std::vector<Range> ranges;
   if (!inputs.empty()) {
-    ranges.push_back(covering(map.inputs.registers, inputs));
-    if (map.input_status.has_value()) ranges.push_back(covering(map.input_status->registers, inputs));
+    cover(map, map.inputs.registers, inputs, ranges);
+    if (map.input_status.has_value()) cover(map, map.input_status->registers, inputs, ranges);
   }
   if (!outputs.empty()) {
-    if (map.read_back.has_value()) ranges.push_back(covering(map.read_back->registers, outputs));
+    if (map.read_back.has_value()) cover(map, map.read_back->registers, outputs, ranges);
     if (map.watchdog.tripped.has_value()) {
       const BoardWatchdog::Tripped& tripped = *map.watchdog.tripped;
       ranges.push_back(
@@ -135,7 +147,8 @@ void plan_writes(const BoardMap& map, const std::vector<ChannelWiring>& wiring, 
             [&](std::size_t a, std::size_t b) { return wiring[a].valve.output < wiring[b].valve.output; });
   const RegisterBlock& block = map.outputs.registers;
   const std::uint16_t words = words_of(block.kind);
-  const std::uint16_t most = map.has_fc23 ? max_fc23_write_registers : max_write_registers;
+  const std::uint16_t most =
+      std::min(map.max_registers, map.has_fc23 ? max_fc23_write_registers : max_write_registers);
   for (const std::size_t channel : order) {
     const std::uint16_t address = block.address_of(wiring[channel].valve.output);
     plan.channels[channel].output_word = plan.output_words;

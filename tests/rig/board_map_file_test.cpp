@@ -147,6 +147,8 @@ TEST(BoardMapFile, MistakesAreFoundWhereTheyStand) {
   const std::vector<Mistake> mistakes{
       {"fc23: false\n", "", "fc23", "name: test"},
       {"word_order: high_first", "word_order: big", "high_first", "big"},
+      {"word_order: high_first", "word_order: high_first_bytes_swaped", "high_first_bytes_swapped", "swaped"},
+      {"word_order: high_first", "word_order: high_first\nmax_registers: 126", "125", "max_registers: 126"},
       {"  function: 4\n  address: 1\n", "  function: 16\n  address: 1\n", "3, 4", "function: 16"},
       {"  function: 4\n  address: 1\n", "  function: 4\n  address: 0\n", "address", "address: 0"},
       {"  address: 1\n  count: 6", "  address: 65536\n  count: 6", "beyond the last register", "65536"},
@@ -179,6 +181,15 @@ TEST(BoardMapFile, Function23NeedsHoldingRegistersAndFunction16) {
   const Result result = read(text);
   ASSERT_EQ(result.problems.size(), 2U) << result.problems.format();
   for (const document::Problem& problem : result.problems.list()) EXPECT_EQ(problem.at.line, 5);
+}
+
+TEST(BoardMapFile, ARequestMustHoldAWholeNumber) {
+  std::string text = changed("fc23: false", "fc23: false\nmax_registers: 1");
+  text.replace(text.find("kind: uint16"), 12, "kind: int32");
+  const Result result = read(text);
+  ASSERT_EQ(result.problems.size(), 1U) << result.problems.format();
+  EXPECT_NE(result.problems.list()[0].message.find("2 registers"), std::string::npos);
+  EXPECT_EQ(result.problems.list()[0].at.line, 6);
 }
 
 TEST(BoardMapFile, Function6CannotWriteTwoRegisters) {

@@ -14,7 +14,8 @@ namespace {
 
 constexpr std::array kinds{RegisterKind::uint16, RegisterKind::int16, RegisterKind::uint32,
                            RegisterKind::int32, RegisterKind::float32};
-constexpr std::array orders{WordOrder::high_first, WordOrder::low_first};
+constexpr std::array orders{WordOrder::high_first, WordOrder::low_first, WordOrder::high_first_bytes_swapped,
+                            WordOrder::low_first_bytes_swapped};
 
 double there_and_back(double raw, RegisterKind kind, WordOrder order) {
   std::array<std::uint16_t, 2> words{};
@@ -34,6 +35,21 @@ TEST(Registers, KnownBits) {
   EXPECT_EQ(words, (std::array<std::uint16_t, 2>{0xbfc0, 0x0000}));
   EXPECT_EQ(decode(std::array<std::uint16_t, 2>{0x0000, 0xbfc0}, RegisterKind::float32, WordOrder::low_first),
             -1.5);
+}
+
+TEST(Registers, SwappedBytes) {
+  std::array<std::uint16_t, 2> words{};
+  encode(100000, RegisterKind::uint32, WordOrder::high_first_bytes_swapped, words);
+  EXPECT_EQ(words, (std::array<std::uint16_t, 2>{0x0100, 0xa086}));
+  encode(100000, RegisterKind::uint32, WordOrder::low_first_bytes_swapped, words);
+  EXPECT_EQ(words, (std::array<std::uint16_t, 2>{0xa086, 0x0100}));
+  encode(-1.5, RegisterKind::float32, WordOrder::low_first_bytes_swapped, words);
+  EXPECT_EQ(words, (std::array<std::uint16_t, 2>{0x0000, 0xc0bf}));
+  for (const WordOrder order : {WordOrder::high_first_bytes_swapped, WordOrder::low_first_bytes_swapped}) {
+    encode(-2, RegisterKind::int16, order, words);
+    EXPECT_EQ(words[0], 0xfeff) << "of one register, too";
+    EXPECT_EQ(decode(std::array<std::uint16_t, 1>{0x3412}, RegisterKind::uint16, order), 0x1234);
+  }
 }
 
 TEST(Registers, WholeKindsRoundTripAndSaturate) {

@@ -69,6 +69,21 @@ TEST(ExchangePlan, NoReadBeyondTheLimitOfTheProtocol) {
   EXPECT_EQ(plan_exchange(map, test::two_fingers(false)).reads, (std::vector<ReadStep>{{3, 0, 125}}));
 }
 
+TEST(ExchangePlan, NoRequestBeyondTheLimitOfTheBoardAndNoNumberTorn) {
+  BoardMap map = plain_map();
+  map.max_registers = 3;
+  map.inputs.registers.kind = RegisterKind::float32;
+  map.outputs.registers.kind = RegisterKind::float32;
+  const ExchangePlan plan = plan_exchange(map, test::two_fingers(true));  // inputs 0, 1, 4 and 5
+  EXPECT_EQ(plan.writes, (std::vector<WriteStep>{{16, 100, 2, 0}, {16, 102, 2, 2}}));
+  EXPECT_EQ(plan.reads, (std::vector<ReadStep>{{3, 0, 2}, {3, 2, 2}, {3, 8, 2}, {3, 10, 2}}));
+  EXPECT_EQ(plan.channels[1].displacement, (Slot{1, 0}));
+  EXPECT_EQ(plan.channels[1].pressure, (Slot{3, 0}));
+  map.max_registers = 4;
+  EXPECT_EQ(plan_exchange(map, test::two_fingers(true)).reads, (std::vector<ReadStep>{{3, 0, 4}, {3, 8, 4}}))
+      << "registers without a wire are read only if that saves a request";
+}
+
 TEST(ExchangePlan, FunctionsAreNotMixed) {
   BoardMap map = plain_map();
   map.read_back = ReadBack{.registers = {4, 2, 4, RegisterKind::uint16}, .tolerance_raw = 0};

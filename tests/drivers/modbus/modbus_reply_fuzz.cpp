@@ -62,7 +62,7 @@ void judge_all(std::span<const std::uint8_t> data, Choices& choices) {
   for (std::size_t i = 0; i + 1 < data.size(); i += 2) words.push_back(word_at(data, i));
   BoardMap map;
   map.inputs.registers.kind = static_cast<RegisterKind>(choices.byte() % 5);
-  map.word_order = choices.byte() % 2 == 0 ? WordOrder::high_first : WordOrder::low_first;
+  map.word_order = static_cast<WordOrder>(choices.byte() % 4);
   map.inputs.scaling = {0, -10, 65535, 10};
   map.input_status = StatusBlock{.registers = {}, .ok = {0}, .over = {1}, .under = {2}};
   const InputWiring wiring{.input = 0,
