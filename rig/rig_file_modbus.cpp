@@ -49,6 +49,55 @@ std::optional<drivers::BoardMap> read_map(Context& context, MapReader& reader) {
   return map;
 }
 
+/// Reads the settings of the session beyond the specification. The deadlines are read later.
+drivers::LinkHabits read_habits(Context& context, MapReader& reader) {
+  drivers::LinkHabits habits;
+  habits.settle_s = reader.optional_number("settle_s", {0, 30}).value_or(0);
+  habits.repeat_after_s = reader.optional_number("repeat_after_s", {0.001, 1}).value_or(0);
+  const auto note = [&](std::string_view key, double value_s, std::string_view deadline) {
+    if (reader.good(key)) context.waits.push_back({reader.where(key), key, value_s, deadline});
+  };
+  note("settle_s", habits.settle_s, "connect_deadline_s");
+  note("repeat_after_s", habits.repeat_after_s, "exchange_deadline_s");
+  return habits;
+}
+
+/// Checks that each waiting time is below the deadline to which it belongs.
+void check_waits(Context& context) {
+  const RigFile& rig = context.rig;
+  for (const Context::Wait& wait : context.waits) {
+    const bool connecting = wait.deadline == "connect_deadline_s";
+    const double longest_s =
+        connecting ? seconds(rig.reconnect.connect_deadline.count()) : rig.loop.exchange_deadline_s;
+    if (wait.value_s < longest_s) continue;
+    context.problems.add(context.document.problem(
+        wait.at,
+        "`" + std::string(wait.key) + "` is not below `" + std::string(wait.deadline) + "` (" +
+            written(longest_s) +
+            " s): " + (connecting ? "no session could be opened" : "nothing would ever be repeated"),
+        connecting ? "raise `connect_deadline_s`: it spans connecting, settling and the first requests"
+                   : "the deadline spans all requests of an exchange"));
+  }
+}
+
+/// Reads the acceptance of answers without a transaction id. The user must state the risk.
+void read_numbering(MapReader& reader, drivers::TcpAddress& address) {
+  constexpr std::string_view key = "accept_no_transaction_id";
+  constexpr std::string_view words = "a late answer may pass for the answer to a later request";
+  const auto said = reader.optional_text(key);
+  if (!said) return;
+  address.numbered = false;
+  if (*said == words) return;
+  reader.report(key, "this does not say what is accepted",
+                "write " + std::string(key) + ": \"" + std::string(words) + "\"");
+}
+
+void read_framing(MapReader& reader, drivers::TcpAddress& address) {
+  address.rtu_framing = reader.optional_choice("framing", {"tcp", "rtu"}).value_or(0) == 1;
+  if (!address.rtu_framing) return read_numbering(reader, address);
+  address.silence_s = reader.optional_number("silence_s", {0, 1}).value_or(address.silence_s);
+}
+
 /// The modules of a board: `map` and `unit` (on a network `host` and `port` too) beside the other keys for a
 /// single one, or a list under `modules`, each with a name.
 class ModulesReader {
@@ -81,9 +130,14 @@ class ModulesReader {
     const auto map = read_map(context_, reader);
     if (map) module.map = *map;
     module.name = name.empty() ? module.map.name : name;
-    if (!serial_) module.link = link_of(read_address(reader));
+    bool rtu = serial_;
+    if (!serial_) {
+      const drivers::TcpAddress address = read_address(reader);
+      rtu = address.rtu_framing;
+      module.link = link_of(reader, address);
+    }
     module.unit = static_cast<std::uint8_t>(
-        reader.integer("unit", serial_ ? 1 : 0, serial_ ? largest_rtu_unit : largest_tcp_unit));
+        reader.integer("unit", rtu ? 1 : 0, rtu ? largest_rtu_unit : largest_tcp_unit));
     const auto same = [&](const ModbusModuleSettings& other) {
       return other.link == module.link && other.unit == module.unit;
     };
@@ -97,18 +151,27 @@ class ModulesReader {
     settings_.modules.push_back(std::move(module));
   }
 
-  static drivers::TcpAddress read_address(MapReader& reader) {
+  drivers::TcpAddress read_address(MapReader& reader) {
     drivers::TcpAddress address;
     address.host = read_host(reader);
     address.port = static_cast<std::uint16_t>(reader.integer("port", 1, 65535));
+    address.habits = read_habits(context_, reader);
+    read_framing(reader, address);
     return address;
   }
 
-  /// Modules behind one address share a session.
-  std::size_t link_of(const drivers::TcpAddress& address) {
+  /// Modules behind one address share a session, and so what the session needs.
+  std::size_t link_of(MapReader& reader, const drivers::TcpAddress& address) {
     auto& links = settings_.links;
-    const auto found = std::find(links.begin(), links.end(), drivers::ModbusAddress(address));
-    if (found != links.end()) return static_cast<std::size_t>(found - links.begin());
+    for (std::size_t link = 0; link < links.size(); ++link) {
+      const auto& other = std::get<drivers::TcpAddress>(links[link]);
+      if (other.host != address.host || other.port != address.port) continue;
+      if (other != address) {
+        reader.report("port", "another module at this host and port states other keys of the session",
+                      "state `settle_s`, `repeat_after_s`, `framing` and what belongs to it alike for both");
+      }
+      return link;
+    }
     links.emplace_back(address);
     return links.size() - 1;
   }
@@ -154,7 +217,7 @@ void read_adapter_latency(MapReader& reader, drivers::SerialLine& line) {
               "echo 1 > " + found->path + " (for good: a udev rule, ATTR{device/latency_timer}=\"1\")");
 }
 
-drivers::SerialLine read_line(const Context& context, MapReader& reader) {
+drivers::SerialLine read_line(Context& context, MapReader& reader) {
   drivers::SerialLine line;
   line.device = reader.text("device");
   if (reader.good("device") && line.device.front() != '/') {
@@ -173,6 +236,13 @@ drivers::SerialLine read_line(const Context& context, MapReader& reader) {
   line.turnaround_s = reader.number("turnaround_s", {0, 1});
   read_adapter_latency(reader, line);
   line.echo = reader.optional_boolean("echo").value_or(false);
+  line.habits = read_habits(context, reader);
+  const double usual_s = line.turnaround_s + line.adapter_latency_s;
+  if (reader.good("repeat_after_s") && line.habits.repeat_after_s <= usual_s) {
+    reader.report("repeat_after_s",
+                  "`repeat_after_s` is not above the " + written(usual_s) +
+                      " s that a module and the adapter take: requests would meet answers on the line");
+  }
   advise_on_name(reader, line.device);
   return line;
 }
@@ -184,6 +254,7 @@ void read_modbus_tcp(Context& context, const Node& node) {
   ModbusSettings settings;
   ModulesReader(context, settings, false).read(reader);
   read_timing(context, reader);
+  check_waits(context);
   context.rig.board = std::move(settings);
 }
 
@@ -193,6 +264,7 @@ void read_modbus_rtu(Context& context, const Node& node) {
   settings.links.emplace_back(read_line(context, reader));
   ModulesReader(context, settings, true).read(reader);
   read_timing(context, reader);
+  check_waits(context);
   context.rig.board = std::move(settings);
 }
 

@@ -55,6 +55,15 @@ struct Context {
   /// Where the files that the rig names come from; null: from the disk.
   const std::vector<InputFile>* stored = nullptr;
 
+  /// A time of the session with a Modbus board that must be below a deadline, which is read later.
+  struct Wait {
+    document::Location at;
+    std::string_view key;
+    double value_s = 0;
+    std::string_view deadline;
+  };
+  std::vector<Wait> waits{};
+
   [[nodiscard]] double period_s() const { return 1 / rig.settings.rate_hz; }
 };
 

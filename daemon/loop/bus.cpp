@@ -12,11 +12,16 @@ using drivers::BusStatus;
 
 namespace {
 
+/// The board has answered what it was asked, and be it that it refuses.
+bool is_answer(BusStatus status) noexcept {
+  return status != BusStatus::disconnected && status != BusStatus::closed_at_once &&
+         status != BusStatus::timed_out && status != BusStatus::bad_reply;
+}
+
 /// After these the board may still send what belongs to an old question, or waits for the greeting that only
 /// a new session brings: the session is not used again.
 bool loses_session(BusStatus status) noexcept {
-  return status == BusStatus::disconnected || status == BusStatus::timed_out ||
-         status == BusStatus::bad_reply || status == BusStatus::watchdog_tripped;
+  return !is_answer(status) || status == BusStatus::watchdog_tripped;
 }
 
 }  // namespace
@@ -26,6 +31,7 @@ FaultCode fault_of(BusStatus status) noexcept {
     case BusStatus::ok:
       return FaultCode::none;
     case BusStatus::disconnected:
+    case BusStatus::closed_at_once:
       return FaultCode::bus_down;
     case BusStatus::timed_out:
       return FaultCode::bus_timed_out;
@@ -130,7 +136,6 @@ bool Bus::ensure_session() noexcept {
     session_ = Session::opened;
     statistics_.sessions.add();
     told_clients_ = false;
-    tell(BusEvent::Kind::connected, status);
     return true;
   }
   put_off_next_attempt();
@@ -156,14 +161,20 @@ void Bus::exchange() noexcept {
                       std::chrono::nanoseconds(nanoseconds(loop_.exchange_deadline_s)));
   const Nanoseconds ended = clock_.now();
   statistics_.exchanges.add();
+  if (session_ == Session::opened && is_answer(status)) {
+    session_ = Session::answered;
+    tell(BusEvent::Kind::connected, BusStatus::ok);
+  }
   if (status != BusStatus::ok) {
     if (loses_session(status)) {
       // A board whose every session fails at its first exchange must not be connected to in every cycle.
-      if (session_ == Session::opened) put_off_next_attempt();
+      if (session_ != Session::proven) put_off_next_attempt();
       session_ = Session::none;
     }
     ++report_.health.consecutive_failures;
+    const bool another = told_failed_;
     note_failure(status);
+    if (another && status == BusStatus::closed_at_once) note_refusal(status);
     return;
   }
   report_.outputs_kpa = written_kpa_;

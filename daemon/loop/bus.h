@@ -82,9 +82,10 @@ class Bus {
 
   /// With the board.
   enum class Session : std::uint8_t {
-    none,    // to be opened when the next attempt is due
-    opened,  // connect() succeeded
-    proven,  // and an exchange in it was good
+    none,      // to be opened when the next attempt is due
+    opened,    // connect() succeeded
+    answered,  // and the board has answered an exchange in it
+    proven,    // and an exchange in it was good
   };
 
   BusReport report_;

@@ -45,7 +45,7 @@ struct BusReport {
 /// From the bus to the log: something changed.
 struct BusEvent {
   enum class Kind : std::uint8_t {
-    connected,       ///< a session was opened
+    connected,       ///< the board has answered in a new session
     failed,          ///< the first failure after a good exchange; `status` and `detail` say what
     recovered,       ///< the first good exchange after failures
     loop_silent,     ///< no new commands from the loop: the safe outputs are written

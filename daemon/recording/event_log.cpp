@@ -30,7 +30,7 @@ using enum Severity;
 
 /// In the order of BusEvent::Kind.
 constexpr std::array<Words, 7> bus_words{{
-    {"bus_connected", information, "A session with the board is up."},
+    {"bus_connected", information, "A session with the board is up: the board answers."},
     {"bus_failed", error, ""},
     {"bus_recovered", information, "The board answers again."},
     {"loop_silent", error, "No commands from the loop: the safe outputs are written."},

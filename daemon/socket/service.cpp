@@ -113,8 +113,8 @@ void Service::pump() {
     EventEntry entry = describe(event);
     entry.time_s = seconds(event.at - origin_);
     const bool fails = event.kind == BusEvent::Kind::failed || event.kind == BusEvent::Kind::not_connected;
-    if (fails) bus_failure_ = entry.text;
-    if (event.kind == BusEvent::Kind::recovered) bus_failure_.clear();
+    if (fails) bus_failure_ = {entry.code, entry.text};
+    if (event.kind == BusEvent::Kind::recovered) bus_failure_ = {};
     log_.add(std::move(entry));
   }
   for (PanelEvent event; wires_.panel_events.pop(event);) {

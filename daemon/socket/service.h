@@ -67,8 +67,13 @@ class Service {
     return request != 0 && request == sequence_request_ && ending_.request != request;
   }
 
-  /// The first failure since the last good exchange, in a sentence; empty while the board answers.
-  [[nodiscard]] const std::string& bus_failure() const noexcept { return bus_failure_; }
+  /// The first failure since the last good exchange, or why no session can be opened again: the name of its
+  /// BusStatus, and a sentence. Both empty while the board answers.
+  struct BusFailure {
+    std::string kind;
+    std::string text;
+  };
+  [[nodiscard]] const BusFailure& bus_failure() const noexcept { return bus_failure_; }
   [[nodiscard]] const std::vector<std::string>& channel_names() const noexcept { return channel_names_; }
 
   /// The newest state of the loop.
@@ -98,7 +103,7 @@ class Service {
   std::shared_ptr<const LoadedSequence> sequence_;
   std::uint32_t sequence_request_ = 0;
   Ending ending_;
-  std::string bus_failure_;
+  BusFailure bus_failure_;
   std::uint64_t events_dropped_ = 0;  // told so far
 };
 

@@ -57,9 +57,14 @@ Json rig_file_of(const Provenance& provenance) {
   return nullptr;
 }
 
+/// Returns null without a text.
+Json text_or_null(std::string_view text, bool is_there) {
+  return is_there ? Json(text) : Json(nullptr);
+}
+
 Json json_of_bus(const StatusSources& sources, const control::BusHealth& health) {
   const BusStatistics& bus = sources.bus;
-  const std::string& failure = sources.service.bus_failure();
+  const Service::BusFailure& failure = sources.service.bus_failure();
   return {{"board", sources.board},
           {"connected", health.connected},
           {"fault", json_of_fault(health.fault)},
@@ -67,12 +72,8 @@ Json json_of_bus(const StatusSources& sources, const control::BusHealth& health)
           {"answered", bus.exchange.summary().count > 0},
           {"attempts", bus.attempts.load(std::memory_order_relaxed)},
           {"retry_s", seconds(bus.retry_pause.load(std::memory_order_relaxed))},
-          {"failure", failure.empty() ? Json(nullptr) : Json(failure)}};
-}
-
-/// Null where nothing binds.
-Json text_or_null(std::string_view text, bool is_there) {
-  return is_there ? Json(text) : Json(nullptr);
+          {"failure_kind", text_or_null(failure.kind, !failure.kind.empty())},
+          {"failure", text_or_null(failure.text, !failure.text.empty())}};
 }
 
 Json json_of_channel(const control::ChannelSettings& settings, const control::ChannelOutput& channel) {

@@ -23,6 +23,7 @@ enum class BusStatus : std::uint8_t {
   write_refused,     ///< the read-back says that the output did not follow
   overwritten,       ///< the outputs are not what the last exchange left there: somebody else writes, too
   watchdog_tripped,  ///< the board's own watchdog holds the outputs at their safe value
+  closed_at_once,    ///< the other end took the connection and closed it before its first answer
 };
 [[nodiscard]] const char* name_of(BusStatus status) noexcept;
 

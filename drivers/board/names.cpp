@@ -11,6 +11,8 @@ const char* name_of(BusStatus status) noexcept {
       return "ok";
     case BusStatus::disconnected:
       return "disconnected";
+    case BusStatus::closed_at_once:
+      return "closed_at_once";
     case BusStatus::timed_out:
       return "timed_out";
     case BusStatus::bad_reply:

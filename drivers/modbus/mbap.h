@@ -13,6 +13,7 @@ namespace softgrip::drivers {
 
 /// Transaction id, protocol id, length (two bytes each), unit id.
 inline constexpr std::size_t mbap_size = 7;
+inline constexpr std::size_t mbap_unit = 6;  ///< index of the unit id
 
 /// Writes the header in front of the PDU of `pdu_size` bytes that begins at frame[mbap_size]; returns the
 /// size of the frame.

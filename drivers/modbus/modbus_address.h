@@ -8,9 +8,23 @@
 
 namespace softgrip::drivers {
 
+/// Settings of a session beyond the specification, for some boards and gateways.
+struct LinkHabits {
+  /// Time after the link is opened until the first request is sent: some boards ignore earlier ones.
+  double settle_s = 0;
+  /// Time after which a request without a byte of an answer is sent again, within the deadline; 0: never.
+  double repeat_after_s = 0;
+
+  bool operator==(const LinkHabits&) const = default;
+};
+
 struct TcpAddress {
   std::string host;  ///< numeric address, IPv4 or IPv6; no name is resolved in the bus thread
   std::uint16_t port = 502;
+  LinkHabits habits{};
+  bool numbered = true;        ///< answers carry the transaction id of their request
+  bool rtu_framing = false;    ///< RTU frames, as a serial server hands them on; nothing is numbered then
+  double silence_s = 1.75e-3;  ///< between two of those
 
   bool operator==(const TcpAddress&) const = default;
 };
@@ -29,6 +43,7 @@ struct SerialLine {
   double turnaround_s = 0;       ///< what a module needs to answer beyond the silence; for the budget
   double adapter_latency_s = 0;  ///< what the adapter holds an answer back; for the budget
   bool echo = false;             ///< the adapter hears itself: everything sent comes back first
+  LinkHabits habits{};
 
   bool operator==(const SerialLine&) const = default;
 };

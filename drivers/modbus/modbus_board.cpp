@@ -12,8 +12,8 @@ namespace softgrip::drivers {
 namespace {
 
 bool ends_a_session(BusStatus status) noexcept {
-  return status == BusStatus::disconnected || status == BusStatus::timed_out ||
-         status == BusStatus::bad_reply;
+  return status == BusStatus::disconnected || status == BusStatus::closed_at_once ||
+         status == BusStatus::timed_out || status == BusStatus::bad_reply;
 }
 
 }  // namespace
@@ -73,16 +73,23 @@ struct ModbusBoard::Parts {
   void fill(std::span<Reading> readings) const noexcept;
 };
 
+/// Links settle together: each waits for what is left of its own time.
+///
 /// A link that leads to no outputs may stay closed: exchanges then give the outputs what is asked, and fail
 /// when they come to read.
 BusStatus ModbusBoard::Parts::open(Nanoseconds deadline) noexcept {
   close();
-  for (std::size_t link = 0; link < links.size(); ++link) {
-    const BusStatus status = links[link]->open(deadline);
-    if (status == BusStatus::ok) continue;
-    say(status, links[link]->detail());
-    if (drives_outputs(link)) return status;
-  }
+  const auto each_link = [&](BusStatus (ModbusLink::*step)(Nanoseconds) noexcept) {
+    for (std::size_t link = 0; link < links.size(); ++link) {
+      const BusStatus status = (links[link].get()->*step)(deadline);
+      if (status == BusStatus::ok) continue;
+      say(status, links[link]->detail());
+      if (drives_outputs(link)) return status;
+    }
+    return BusStatus::ok;
+  };
+  if (const BusStatus status = each_link(&ModbusLink::open); status != BusStatus::ok) return status;
+  if (const BusStatus status = each_link(&ModbusLink::settle); status != BusStatus::ok) return status;
   for (ModbusModule& module : modules) {
     if (!links[module.settings().link]->is_open()) continue;
     if (const BusStatus status = module.set_up(deadline); status != BusStatus::ok) {

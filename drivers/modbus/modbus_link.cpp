@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <modbus/modbus.h>
+#include <poll.h>
 #include <sys/ioctl.h>
 #include <sys/select.h>
 #include <unistd.h>
@@ -13,8 +14,10 @@
 #include "base/clock.h"
 #include "base/descriptor_wait.h"
 #include "base/errno_text.h"
+#include "base/time.h"
 #include "drivers/modbus/exception_text.h"
 #include "drivers/modbus/modbus_rtu_link.h"
+#include "drivers/modbus/modbus_rtu_tcp_link.h"
 #include "drivers/modbus/modbus_tcp_link.h"
 
 namespace softgrip::drivers {
@@ -26,8 +29,6 @@ static_assert(MODBUS_MAX_ADU_LENGTH <= max_frame);
 // byte that is not did not come, or cannot be told from it: of a wrong beginning less is judged then.
 constexpr std::uint8_t filler = 0xff;
 
-constexpr int whole_frame = 0;  // in the place of an errno
-
 Descriptor selectable_descriptor() noexcept {
   Descriptor place(::open("/dev/null", O_RDONLY | O_CLOEXEC));
   return place.get() < FD_SETSIZE ? std::move(place) : Descriptor();
@@ -36,11 +37,6 @@ Descriptor selectable_descriptor() noexcept {
 std::span<const std::uint8_t> without_filler(std::span<const std::uint8_t> bytes) noexcept {
   while (!bytes.empty() && bytes.back() == filler) bytes = bytes.first(bytes.size() - 1);
   return bytes;
-}
-
-bool more_came(int descriptor) noexcept {
-  int waiting = 0;
-  return ::ioctl(descriptor, FIONREAD, &waiting) == 0 && waiting > 0;
 }
 
 /// With a byte time-out of 0 libmodbus' response time-out ends the whole reply.
@@ -52,7 +48,12 @@ void set_deadline(modbus_t* context, Nanoseconds left) noexcept {
 
 }  // namespace
 
-ModbusLink::ModbusLink(_modbus* context) noexcept : context_(context), place_(selectable_descriptor()) {
+ModbusLink::ModbusLink(_modbus* context, const LinkHabits& habits, bool on_network) noexcept
+    : context_(context),
+      on_network_(on_network),
+      settle_(nanoseconds(habits.settle_s)),
+      repeat_after_(nanoseconds(habits.repeat_after_s)),
+      place_(selectable_descriptor()) {
   ::modbus_set_byte_timeout(context_, 0, 0);
 }
 
@@ -69,10 +70,52 @@ BusStatus ModbusLink::open(Nanoseconds deadline) noexcept {
   close();
   if (context_ == nullptr)
     return refuse(BusStatus::disconnected, "connecting", "libmodbus takes no such address");
+  answered_ = false;
+  repeats_ = 0;
+  expect_more_answers();
   const BusStatus status = connect(deadline);
   if (status != BusStatus::ok) return status;
+  opened_at_ = monotonic_now();
   if (put_where_select_finds_it()) return BusStatus::ok;
   return fail(BusStatus::disconnected, "connecting", "every descriptor below 1024 is taken");
+}
+
+BusStatus ModbusLink::settle(Nanoseconds deadline) noexcept {
+  return drain(opened_at_ + settle_, deadline, "waiting until the board has settled");
+}
+
+/// Discards received bytes until a point in time. Fails at once if the link is ended meanwhile.
+BusStatus ModbusLink::drain(Nanoseconds until, Nanoseconds deadline, const char* what) noexcept {
+  while (monotonic_now() < until) {
+    if (monotonic_now() >= deadline) return fail(BusStatus::timed_out, what, "the deadline passed");
+    const Waited waited = wait_for(descriptor(), POLLIN, std::min(until, deadline));
+    if (waited == Waited::failed) return fail(BusStatus::disconnected, what, text_of_errno(errno));
+    if (waited == Waited::timed_out) continue;
+    std::size_t got = 0;
+    const BusStatus status = read_some(incoming_, what, got);
+    if (status != BusStatus::ok) return status;
+  }
+  return BusStatus::ok;
+}
+
+/// A board that serves no further client may accept the connection first. Cable and address are right then.
+BusStatus ModbusLink::ended(const char* what) noexcept {
+  if (!on_network_) return fail(BusStatus::disconnected, what, "the device is gone");
+  if (answered_) return fail(BusStatus::disconnected, what, "the other end is gone");
+  return fail(BusStatus::closed_at_once, what,
+              "the other end took the connection and closed it before its first answer: it may serve no "
+              "further client");
+}
+
+BusStatus ModbusLink::read_some(std::span<std::uint8_t> bytes, const char* what, std::size_t& got) noexcept {
+  const ssize_t count = ::read(descriptor(), bytes.data(), bytes.size());
+  if (count == 0 || (count < 0 && errno == ECONNRESET)) return ended(what);
+  if (count < 0 && errno != EAGAIN && errno != EINTR) {
+    return fail(BusStatus::disconnected, what, text_of_errno(errno));
+  }
+  got = static_cast<std::size_t>(std::max<ssize_t>(0, count));
+  heard_at_ = monotonic_now();
+  return BusStatus::ok;
 }
 
 bool ModbusLink::put_where_select_finds_it() noexcept {
@@ -115,39 +158,86 @@ BusStatus ModbusLink::wait_until_ready(short events, Nanoseconds deadline, const
 
 BusStatus ModbusLink::ask(std::uint8_t unit, const ModbusRequest& request, Nanoseconds deadline) noexcept {
   data_ = {};
+  exception_code_ = 0;
   if (!is_open()) return BusStatus::disconnected;
   const std::size_t size = build(unit, request, outgoing_);
   if (size == 0) return fail(BusStatus::bad_reply, "asking", "no such Modbus request");
   const auto frame = std::span<const std::uint8_t>(outgoing_).first(size);
-  if (const BusStatus status = before_asking(deadline); status != BusStatus::ok) return status;
-  const Nanoseconds asked_at = monotonic_now();
-  if (const BusStatus status = send(frame, deadline); status != BusStatus::ok) return status;
+  BusStatus status = drain(quiet_until_, deadline, "waiting for a second answer to a repeated request");
+  if (status == BusStatus::ok) status = before_asking(deadline);
+  if (status == BusStatus::ok) status = send_until_heard(frame, deadline);
+  if (status != BusStatus::ok) return status;
   int error = whole_frame;
   const ModbusReply reply = receive(unit, request, frame, deadline, error);
-  last_round_trip_ = heard_at_ - asked_at;
+  last_round_trip_ = heard_at_ - asked_at_;
   return conclude(reply, error, unit, request);
 }
 
-/// What came, judged; `error` says why it may be less than a frame.
-ModbusReply ModbusLink::receive(std::uint8_t unit, const ModbusRequest& request,
-                                std::span<const std::uint8_t> asked, Nanoseconds deadline,
-                                int& error) noexcept {
-  incoming_.fill(filler);
+/// Sends the request, and again while no byte of an answer comes.
+BusStatus ModbusLink::send_until_heard(std::span<const std::uint8_t> frame, Nanoseconds deadline) noexcept {
+  first_asked_at_ = monotonic_now();
+  for (repeats_ = 0;; ++repeats_) {
+    asked_at_ = monotonic_now();
+    if (const BusStatus status = send(frame, deadline); status != BusStatus::ok) return status;
+    const Nanoseconds again = monotonic_now() + sending_time(frame.size()) + repeat_after_;
+    if (repeat_after_ == 0 || again >= deadline) return BusStatus::ok;
+    const Waited waited = wait_for(descriptor(), POLLIN, again);
+    if (waited == Waited::ready) return BusStatus::ok;
+    if (waited == Waited::failed)
+      return fail(BusStatus::disconnected, "waiting for the reply", text_of_errno(errno));
+  }
+}
+
+/// Each repetition of a request may get an answer of its own. A numbered answer is recognised when it comes.
+/// Any other could pass for the answer to the next request, so that request waits until it has come.
+void ModbusLink::expect_more_answers() noexcept {
+  stale_ = repeats_;
+  const bool quiet = repeats_ > 0 && !numbers_answers();
+  quiet_until_ = quiet ? heard_at_ + (heard_at_ - first_asked_at_) : 0;
+}
+
+ModbusLink::Received ModbusLink::hear(std::span<std::uint8_t> buffer, std::uint8_t unit,
+                                      const ModbusRequest& request, std::span<const std::uint8_t> asked,
+                                      Nanoseconds deadline) noexcept {
   const Nanoseconds left = deadline - monotonic_now();
   int size = -1;
   errno = ETIMEDOUT;
   if (left > 0) {
     set_deadline(context_, left);
-    size = ::modbus_receive_confirmation(context_, incoming_.data());
+    size = ::modbus_receive_confirmation(context_, buffer.data());
   }
-  error = size > 0 ? whole_frame : size == 0 ? EMBBADSLAVE : errno;
+  const int error = size > 0 ? whole_frame : size == 0 ? EMBBADSLAVE : errno;
   heard_at_ = monotonic_now();
-  const auto bytes = std::span<const std::uint8_t>(incoming_);
-  const ModbusReply reply = judge(
-      size > 0 ? bytes.first(static_cast<std::size_t>(size)) : without_filler(bytes), unit, request, asked);
-  const bool answers =
-      reply.state == ModbusReply::State::complete || reply.state == ModbusReply::State::exception;
-  return answers && more_came(descriptor()) ? defective(ReplyDefect::trailing) : reply;
+  const auto bytes = size > 0 ? std::span<const std::uint8_t>(buffer).first(static_cast<std::size_t>(size))
+                              : without_filler(buffer);
+  return {judge(bytes, unit, request, asked), error, bytes};
+}
+
+/// Returns the judged answer; `error` gives the reason if it is less than a frame.
+ModbusReply ModbusLink::receive(std::uint8_t unit, const ModbusRequest& request,
+                                std::span<const std::uint8_t> asked, Nanoseconds deadline,
+                                int& error) noexcept {
+  Received heard;
+  for (bool old = true; old;) {
+    incoming_.fill(filler);
+    heard = hear(incoming_, unit, request, asked, deadline);
+    old = heard.reply.defect == ReplyDefect::transaction && stale_ > 0 && answers_previous(heard.bytes);
+    if (old) --stale_;
+  }
+  error = heard.error;
+  // Behind a repeated request what waits may be the second answer.
+  const bool alone = repeats_ > 0 || !is_answer(heard.reply) || drop_strays();
+  return alone ? heard.reply : defective(ReplyDefect::trailing);
+}
+
+/// False: what follows the answer may be another one.
+bool ModbusLink::drop_strays() noexcept {
+  int waiting = 0;
+  if (::ioctl(descriptor(), FIONREAD, &waiting) != 0 || waiting <= 0) return true;
+  const auto count = static_cast<std::size_t>(waiting);
+  std::array<std::uint8_t, 8> strays;
+  return count <= std::min(most_stray(), strays.size()) &&
+         ::read(descriptor(), strays.data(), count) == static_cast<ssize_t>(count);
 }
 
 /// A reply that broke off.
@@ -158,7 +248,7 @@ BusStatus ModbusLink::name_failure(int error) noexcept {
     case ETIMEDOUT:
       return fail(BusStatus::timed_out, what, "the deadline passed");
     case ECONNRESET:
-      return fail(BusStatus::disconnected, what, "the other end is gone");
+      return ended(what);
     case EMBBADCRC:
       return fail(BusStatus::bad_reply, "receiving", text_of(ReplyDefect::checksum));
     default:
@@ -172,14 +262,23 @@ BusStatus ModbusLink::name_failure(int error) noexcept {
 
 BusStatus ModbusLink::conclude(const ModbusReply& reply, int error, std::uint8_t unit,
                                const ModbusRequest& request) noexcept {
+  if (reply.state == ModbusReply::State::defective && reply.defect == ReplyDefect::unit) {
+    std::array<char, 64> who{};
+    std::snprintf(who.data(), who.size(), "%s: %u in place of %u", text_of(reply.defect),
+                  static_cast<unsigned>(incoming_[unit_place()]), static_cast<unsigned>(unit));
+    return fail(BusStatus::bad_reply, "receiving", who.data());
+  }
   if (reply.state == ModbusReply::State::defective) {
     return fail(BusStatus::bad_reply, "receiving", text_of(reply.defect));
   }
   if (error != whole_frame || reply.state == ModbusReply::State::incomplete) return name_failure(error);
+  answered_ = true;
+  expect_more_answers();
   if (reply.state == ModbusReply::State::complete) {
     data_ = reply.data;
     return BusStatus::ok;
   }
+  exception_code_ = reply.exception_code;
   std::snprintf(detail_.data(), detail_.size(), "unit %u refused function %u at %u: %s (exception %u)",
                 static_cast<unsigned>(unit), static_cast<unsigned>(request.function),
                 static_cast<unsigned>(request.address), text_of_exception(reply.exception_code),
@@ -188,7 +287,10 @@ BusStatus ModbusLink::conclude(const ModbusReply& reply, int error, std::uint8_t
 }
 
 std::unique_ptr<ModbusLink> make_link(const ModbusAddress& address) {
-  if (const auto* tcp = std::get_if<TcpAddress>(&address)) return std::make_unique<ModbusTcpLink>(*tcp);
+  if (const auto* tcp = std::get_if<TcpAddress>(&address)) {
+    if (tcp->rtu_framing) return std::make_unique<ModbusRtuTcpLink>(*tcp);
+    return std::make_unique<ModbusTcpLink>(*tcp);
+  }
   return std::make_unique<ModbusRtuLink>(std::get<SerialLine>(address));
 }
 

@@ -50,6 +50,10 @@ struct ModbusReply {
 /// Bytes of a reply that is complete or an exception.
 [[nodiscard]] std::size_t pdu_size_of(const ModbusReply& reply, const ModbusRequest& request) noexcept;
 
+[[nodiscard]] inline bool is_answer(const ModbusReply& reply) noexcept {
+  return reply.state == ModbusReply::State::complete || reply.state == ModbusReply::State::exception;
+}
+
 [[nodiscard]] inline ModbusReply defective(ReplyDefect defect) noexcept {
   return {.state = ModbusReply::State::defective, .defect = defect};
 }

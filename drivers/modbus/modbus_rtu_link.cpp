@@ -16,15 +16,14 @@
 #include "base/errno_text.h"
 #include "base/grid.h"
 #include "base/time.h"
-#include "drivers/modbus/rtu_frame.h"
 #include "drivers/modbus/serial_device.h"
 
 namespace softgrip::drivers {
+
 ModbusRtuLink::ModbusRtuLink(SerialLine line)
-    : ModbusLink(new_context(line)),
-      line_(std::move(line)),
-      character_(nanoseconds(character_s(line_))),
-      silence_(nanoseconds(drivers::silence_s(line_))) {}
+    : ModbusRtuFraming(new_context(line), line.habits, false, nanoseconds(character_s(line)),
+                       nanoseconds(drivers::silence_s(line))),
+      line_(std::move(line)) {}
 
 BusStatus ModbusRtuLink::connect(Nanoseconds deadline) noexcept {
   std::optional<UnclearDevice> unclear;
@@ -45,63 +44,7 @@ BusStatus ModbusRtuLink::connect(Nanoseconds deadline) noexcept {
                   unclear ? unclear->hint.c_str() : "");
     return refuse(BusStatus::disconnected, what.data(), why.data());
   }
-  heard_at_ = monotonic_now();
-  return answer_may_come_ ? listen(deadline) : BusStatus::ok;
-}
-
-/// Reads what the line holds after it was found ready.
-BusStatus ModbusRtuLink::read_some(std::span<std::uint8_t> bytes, const char* what,
-                                   std::size_t& got) noexcept {
-  const ssize_t count = ::read(descriptor(), bytes.data(), bytes.size());
-  if (count == 0) return fail(BusStatus::disconnected, what, "the device is gone");
-  if (count < 0 && errno != EAGAIN && errno != EINTR) {
-    return fail(BusStatus::disconnected, what, text_of_errno(errno));
-  }
-  got = static_cast<std::size_t>(std::max<ssize_t>(0, count));
-  heard_at_ = monotonic_now();
-  return BusStatus::ok;
-}
-
-/// Lets pass what still belongs to the session before: a module may be about to answer, and its answer may be
-/// as long as a frame can be. Ends with silence.
-BusStatus ModbusRtuLink::listen(Nanoseconds deadline) noexcept {
-  const Nanoseconds longest_frame = static_cast<Nanoseconds>(max_rtu_frame) * character_;
-  const Nanoseconds usual = nanoseconds(line_.turnaround_s + line_.adapter_latency_s);
-  Nanoseconds end = std::min(monotonic_now() + longest_frame + usual + silence_,
-                             monotonic_now() + (deadline - monotonic_now()) / 2);
-  while (monotonic_now() < end) {
-    if (monotonic_now() >= deadline)
-      return fail(BusStatus::bad_reply, "listening", "the line does not fall silent");
-    const Waited waited = wait_for(descriptor(), POLLIN, std::min(end, deadline));
-    if (waited == Waited::failed) return fail(BusStatus::disconnected, "listening", text_of_errno(errno));
-    if (waited == Waited::timed_out) continue;
-    std::array<std::uint8_t, max_rtu_frame> passing;
-    std::size_t got = 0;
-    const BusStatus status = read_some(passing, "listening", got);
-    if (status != BusStatus::ok) return status;
-    end = std::max(end, heard_at_ + silence_);
-  }
-  answer_may_come_ = false;
-  return BusStatus::ok;
-}
-
-std::size_t ModbusRtuLink::build(std::uint8_t unit, const ModbusRequest& request, Frame& frame) noexcept {
-  last_size_ = size_of(request);
-  return ::modbus_set_slave(context(), unit) == 0 ? build_rtu_request(request, unit, frame) : 0;
-}
-
-BusStatus ModbusRtuLink::before_asking(Nanoseconds deadline) noexcept {
-  const Nanoseconds quiet = heard_at_ + silence_;
-  if (quiet > deadline) return fail(BusStatus::timed_out, "waiting for silence", "the deadline passed");
-  if (quiet > monotonic_now()) sleep_until(quiet);
-  pollfd line{.fd = descriptor(), .events = POLLIN, .revents = 0};
-  if (::poll(&line, 1, 0) == 0) return BusStatus::ok;
-  std::array<std::uint8_t, 1> first{};
-  std::size_t got = 0;
-  const BusStatus status = read_some(first, "before asking", got);
-  if (status != BusStatus::ok || got == 0) return status;
-  return fail(BusStatus::bad_reply, "before asking",
-              "bytes came that nobody asked for, a late or repeated reply");
+  return listen(nanoseconds(line_.turnaround_s + line_.adapter_latency_s), deadline);
 }
 
 BusStatus ModbusRtuLink::send(std::span<const std::uint8_t> frame, Nanoseconds deadline) noexcept {
@@ -128,17 +71,11 @@ BusStatus ModbusRtuLink::take_echo(std::span<const std::uint8_t> frame, Nanoseco
   return BusStatus::ok;
 }
 
-ModbusReply ModbusRtuLink::judge(std::span<const std::uint8_t> bytes, std::uint8_t unit,
-                                 const ModbusRequest& request,
-                                 std::span<const std::uint8_t> asked) const noexcept {
-  return parse_rtu_reply(bytes, request, unit, asked);
-}
-
 /// What modules and adapter needed beside bytes and silence. A module answers after a silence of its own, by
 /// which it knows that the question is over.
 Nanoseconds ModbusRtuLink::answer_time(Nanoseconds round_trip) const noexcept {
-  const auto bytes = static_cast<Nanoseconds>(last_size_.request + last_size_.reply + 2 * rtu_overhead);
-  return std::max<Nanoseconds>(0, round_trip - bytes * character_ - silence_);
+  const auto bytes = static_cast<Nanoseconds>(last_size().request + last_size().reply + 2 * rtu_overhead);
+  return std::max<Nanoseconds>(0, round_trip - bytes * character() - silence());
 }
 
 Board::Budget ModbusRtuLink::cost(std::span<const TransactionSize> transactions,
@@ -147,7 +84,7 @@ Board::Budget ModbusRtuLink::cost(std::span<const TransactionSize> transactions,
   std::size_t bytes = 0;
   for (const TransactionSize& size : transactions) bytes += size.request + size.reply + 2 * rtu_overhead;
   const double wire_s = static_cast<double>(bytes) * character_s(line_);
-  const double silences_s = 2 * count * seconds(silence_);
+  const double silences_s = 2 * count * seconds(silence());
   const bool known = measured().count() > 0;
   const double answer_s = known ? measured().median_s() : line_.turnaround_s + line_.adapter_latency_s;
 
@@ -164,7 +101,7 @@ Board::Budget ModbusRtuLink::cost(std::span<const TransactionSize> transactions,
   cost.exchange_s = wire_s + silences_s + count * answer_s;
   cost.explanation = format_of(line_) + ", " + plan + ": " + number(bytes) + " bytes " +
                      milliseconds(wire_s) + " + " + number(2 * transactions.size()) + " silences of " +
-                     milliseconds(seconds(silence_)) + " " + milliseconds(silences_s) + " + " +
+                     milliseconds(seconds(silence())) + " " + milliseconds(silences_s) + " + " +
                      number(transactions.size()) + (transactions.size() == 1 ? " answer" : " answers") +
                      " of " + milliseconds(answer_s) + " (" + source + ")";
   return cost;

@@ -1,112 +1,57 @@
 #include "drivers/modbus/modbus_tcp_link.h"
 
-#include <arpa/inet.h>
 #include <modbus/modbus.h>
-#include <netinet/in.h>
-#include <netinet/tcp.h>
 #include <poll.h>
-#include <sys/socket.h>
 
-#include <cerrno>
-#include <cstring>
 #include <utility>
 
 #include "base/errno_text.h"
+#include "drivers/modbus/big_endian.h"
 #include "drivers/modbus/mbap.h"
+#include "drivers/modbus/tcp_socket.h"
 
 namespace softgrip::drivers {
-namespace {
-
-// A dead peer is noticed by the exchange's own deadline; these only keep the kernel from holding on to a
-// connection whose other end is gone while nobody asks anything.
-constexpr int keepalive_idle_s = 2;
-constexpr int keepalive_interval_s = 1;
-constexpr int keepalive_probes = 3;
-constexpr unsigned user_timeout_ms = 3000;
-
-void set_option(int socket, int level, int name, int value) noexcept {
-  // Best effort: a session without these options is slower or later noticed dead, not wrong.
-  (void)::setsockopt(socket, level, name, &value, sizeof value);
-}
-
-/// The size of the address, or 0 if the host is no numeric one.
-socklen_t parse_address(const TcpAddress& from, sockaddr_storage& address) noexcept {
-  sockaddr_in v4{.sin_family = AF_INET, .sin_port = htons(from.port), .sin_addr = {}, .sin_zero = {}};
-  sockaddr_in6 v6{};
-  v6.sin6_family = AF_INET6;
-  v6.sin6_port = v4.sin_port;
-  if (::inet_pton(AF_INET, from.host.c_str(), &v4.sin_addr) == 1) {
-    std::memcpy(&address, &v4, sizeof v4);
-    return sizeof v4;
-  }
-  if (::inet_pton(AF_INET6, from.host.c_str(), &v6.sin6_addr) != 1) return 0;
-  std::memcpy(&address, &v6, sizeof v6);
-  return sizeof v6;
-}
-
-/// A connection attempt to a port of this machine where nobody listens can be answered by its own socket,
-/// when the kernel happens to pick that port as the local one.
-bool talks_to_itself(int socket) noexcept {
-  sockaddr_storage local{};
-  sockaddr_storage peer{};
-  socklen_t local_size = sizeof local;
-  socklen_t peer_size = sizeof peer;
-  return ::getsockname(socket, reinterpret_cast<sockaddr*>(&local), &local_size) == 0 &&
-         ::getpeername(socket, reinterpret_cast<sockaddr*>(&peer), &peer_size) == 0 &&
-         local_size == peer_size && std::memcmp(&local, &peer, local_size) == 0;
-}
-
-void set_options(int socket) noexcept {
-  set_option(socket, IPPROTO_TCP, TCP_NODELAY, 1);
-  set_option(socket, SOL_SOCKET, SO_KEEPALIVE, 1);
-  set_option(socket, IPPROTO_TCP, TCP_KEEPIDLE, keepalive_idle_s);
-  set_option(socket, IPPROTO_TCP, TCP_KEEPINTVL, keepalive_interval_s);
-  set_option(socket, IPPROTO_TCP, TCP_KEEPCNT, keepalive_probes);
-  set_option(socket, IPPROTO_TCP, TCP_USER_TIMEOUT, user_timeout_ms);
-}
-
-}  // namespace
 
 // libmodbus is handed an open socket: the address of its context stands for none.
 ModbusTcpLink::ModbusTcpLink(TcpAddress address)
-    : ModbusLink(::modbus_new_tcp("127.0.0.1", 1)), address_(std::move(address)) {}
+    : ModbusLink(::modbus_new_tcp("127.0.0.1", 1), address.habits, true), address_(std::move(address)) {}
 
 BusStatus ModbusTcpLink::connect(Nanoseconds deadline) noexcept {
-  sockaddr_storage address{};
-  const socklen_t address_size = parse_address(address_, address);
-  if (address_size == 0) return fail(BusStatus::disconnected, "connecting", "not a numeric address");
-  const int opened = ::socket(address.ss_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
-  if (opened < 0) return fail(BusStatus::disconnected, "opening a socket", text_of_errno(errno));
-  ::modbus_set_socket(context(), opened);
-  set_options(opened);
-  if (::connect(opened, reinterpret_cast<const sockaddr*>(&address), address_size) != 0 &&
-      errno != EINPROGRESS) {
-    return fail(BusStatus::disconnected, "connecting", text_of_errno(errno));
-  }
-  if (const BusStatus status = wait_until_ready(POLLOUT, deadline, "connecting"); status != BusStatus::ok) {
-    return status;
-  }
-  int error = 0;
-  socklen_t size = sizeof error;
-  if (::getsockopt(opened, SOL_SOCKET, SO_ERROR, &error, &size) != 0) error = errno;
-  if (error == 0 && talks_to_itself(opened)) error = ECONNREFUSED;
-  return error == 0 ? BusStatus::ok : fail(BusStatus::disconnected, "connecting", text_of_errno(error));
+  TcpConnection made = connect_tcp(address_, deadline);
+  if (!made.socket) return refuse(made.status, "connecting", made.why);
+  ::modbus_set_socket(context(), made.socket.release());
+  return BusStatus::ok;
 }
 
 std::size_t ModbusTcpLink::build(std::uint8_t unit, const ModbusRequest& request, Frame& frame) noexcept {
   return build_request(request, ++transaction_, unit, frame);
 }
 
+/// Without numbers a late answer can be recognised only before the next request.
+BusStatus ModbusTcpLink::before_asking(Nanoseconds) noexcept {
+  pollfd socket{.fd = descriptor(), .events = POLLIN, .revents = 0};
+  if (address_.numbered || ::poll(&socket, 1, 0) == 0) return BusStatus::ok;
+  std::array<std::uint8_t, 1> first{};
+  std::size_t got = 0;
+  const BusStatus status = read_some(first, "before asking", got);
+  if (status != BusStatus::ok || got == 0) return status;
+  return fail(BusStatus::bad_reply, "before asking", unasked);
+}
+
 BusStatus ModbusTcpLink::send(std::span<const std::uint8_t> frame, Nanoseconds) noexcept {
-  // One question is under way at a time: a socket that does not take 260 bytes is stuck.
-  const ssize_t sent = ::send(descriptor(), frame.data(), frame.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
-  if (sent == static_cast<ssize_t>(frame.size())) return BusStatus::ok;
-  return fail(BusStatus::disconnected, "sending", text_of_errno(sent < 0 ? errno : ENOBUFS));
+  const int error = send_whole(descriptor(), frame);
+  if (error == 0) return BusStatus::ok;
+  return is_closed(error) ? ended("sending") : fail(BusStatus::disconnected, "sending", text_of_errno(error));
 }
 
 ModbusReply ModbusTcpLink::judge(std::span<const std::uint8_t> bytes, std::uint8_t unit,
                                  const ModbusRequest& request, std::span<const std::uint8_t>) const noexcept {
-  return parse_reply(bytes, request, transaction_, unit);
+  const bool any = !address_.numbered && bytes.size() >= 2;
+  return parse_reply(bytes, request, any ? word_at(bytes, 0) : transaction_, unit);
+}
+
+bool ModbusTcpLink::answers_previous(std::span<const std::uint8_t> bytes) const noexcept {
+  return bytes.size() >= 2 && word_at(bytes, 0) == static_cast<std::uint16_t>(transaction_ - 1);
 }
 
 Board::Budget ModbusTcpLink::cost(std::span<const TransactionSize> transactions,

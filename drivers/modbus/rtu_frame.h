@@ -16,6 +16,9 @@ inline constexpr std::size_t max_rtu_frame = 1 + max_pdu + 2;
 /// What a frame has beside the question or answer: unit id and CRC [bytes].
 inline constexpr std::size_t rtu_overhead = 3;
 
+/// One byte less than the shortest answer, an exception [bytes].
+inline constexpr std::size_t max_stray_bytes = rtu_overhead + exception_pdu_size - 1;
+
 /// CRC-16 of the specification: polynomial 0xA001 (reflected), starting from 0xFFFF. Sent low byte first.
 [[nodiscard]] std::uint16_t crc16(std::span<const std::uint8_t> bytes) noexcept;
 

@@ -313,6 +313,41 @@ TEST_F(BusTest, ThatNoSessionCanBeOpenedAgainIsToldOnceIfItIsForAnotherReason) {
   }
 }
 
+/// A board that takes connections and closes them is no board that has answered.
+TEST_F(BusTest, ASessionIsToldOfOnceTheBoardHasAnsweredInIt) {
+  const auto told = [this] {
+    std::vector<std::pair<BusEvent::Kind, BusStatus>> list;
+    for (BusEvent event; wires_.bus_events.pop(event);) list.emplace_back(event.kind, event.status);
+    return list;
+  };
+  using Told = decltype(told());
+  using Kind = BusEvent::Kind;
+  command(12, 0, true);
+  board_.next_connect = BusStatus::disconnected;
+  board_.said = "connecting: Connection refused";
+  step();
+  EXPECT_EQ(told(), (Told{{Kind::failed, BusStatus::disconnected}}));
+  board_.next_connect = BusStatus::ok;
+  board_.next_exchange = BusStatus::closed_at_once;
+  board_.said = "waiting for the reply: closed";
+  for (int i = 0; i < 5; ++i) {
+    clock_.advance(60 * ns_per_s);
+    step();
+  }
+  EXPECT_EQ(told(), (Told{{Kind::not_connected, BusStatus::closed_at_once}})) << "once";
+  EXPECT_EQ(fault(), FaultCode::bus_down);
+  EXPECT_FALSE(wires_.bus.value().health.connected);
+  board_.next_exchange = BusStatus::exception;
+  for (int i = 0; i < 3; ++i) {
+    clock_.advance(60 * ns_per_s);
+    step();
+  }
+  EXPECT_EQ(told(), (Told{{Kind::connected, BusStatus::ok}})) << "it answers, and be it that it refuses";
+  board_.next_exchange = BusStatus::ok;
+  step();
+  EXPECT_EQ(told(), (Told{{Kind::recovered, BusStatus::ok}}));
+}
+
 TEST_F(BusTest, AnotherClientThatFeedsTheWatchdogIsToldOnceASession) {
   const std::vector<BusEvent::Kind> none;
   command(12, 0, true);

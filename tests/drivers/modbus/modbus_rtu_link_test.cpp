@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -192,12 +193,98 @@ TEST(ModbusRtuLink, WhatIsNotTheAnswer) {
              BusStatus::bad_reply, "checksum");
   expect_end(ask_once([](ScriptedLine& line, const Bytes& request) {
                Bytes reply = good_reply(request);
-               reply.push_back(0);
+               reply.resize(reply.size() + 5);  // as many as the shortest answer has
                line.send(reply);
              }),
              BusStatus::bad_reply, "bytes follow");
   expect_end(ask_once([](ScriptedLine& line, const Bytes& request) { line.send(request); }),
              BusStatus::bad_reply, "returns what is sent");
+}
+
+// Fewer bytes than any answer has cannot be one to another question: they are noise.
+TEST(ModbusRtuLink, StrayBytesAreThrownAway) {
+  for (const std::uint8_t stray : std::initializer_list<std::uint8_t>{0x00, 0xff, 0x01, 0x04}) {
+    for (const auto& [before, behind] :
+         {std::pair<std::size_t, std::size_t>{1, 0}, {2, 0}, {4, 0}, {0, 1}, {0, 4}, {1, 1}, {3, 2}}) {
+      const Outcome outcome = ask_once([&](ScriptedLine& line, const Bytes& request) {
+        Bytes bytes(before, stray);
+        for (const std::uint8_t byte : good_reply(request)) bytes.push_back(byte);
+        bytes.resize(bytes.size() + behind, stray);
+        line.send(bytes);
+      });
+      EXPECT_EQ(outcome.status, BusStatus::ok)
+          << before << " before, " << behind << " behind, " << int{stray} << ": " << outcome.detail;
+      EXPECT_TRUE(outcome.open_after);
+    }
+  }
+}
+
+TEST(ModbusRtuLink, AsManyBytesAsAnAnswerHasAreNoStrayBytes) {
+  expect_end(ask_once(
+                 [](ScriptedLine& line, const Bytes& request) {
+                   Bytes bytes(5, 0);
+                   for (const std::uint8_t byte : good_reply(request)) bytes.push_back(byte);
+                   line.send(bytes);
+                 },
+                 listening_long()),
+             BusStatus::bad_reply, "unit");
+}
+
+TEST(ModbusRtuLink, StrayBytesBetweenTwoQuestionsAreThrownAway) {
+  ScriptedLine line([&](ScriptedLine& self, const Bytes& request, std::size_t) {
+    self.send(good_reply(request));
+    self.wait(20ms);
+    self.send({0, 0xff, 0});
+  });
+  ModbusRtuLink link(line_at(line.device()));
+  ASSERT_EQ(link.open(now() + generous), BusStatus::ok);
+  for (int i = 0; i < 3; ++i) {
+    ASSERT_EQ(link.ask(1, read_two, now() + generous), BusStatus::ok) << link.detail();
+    EXPECT_TRUE(right(link));
+    ScriptedLine::wait(60ms);
+  }
+}
+
+TEST(ModbusRtuLink, ALostRequestIsRepeatedAndASecondAnswerIsNotBelieved) {
+  for (const bool lost : {true, false}) {
+    ScriptedLine line([lost](ScriptedLine& self, const Bytes& request, std::size_t index) {
+      if (index == 0 && lost) return;
+      if (index == 0) self.wait(130ms);  // as if it had been late; what is asked meanwhile is answered, too
+      const std::size_t one = 8;
+      for (std::size_t at = 0; at + one <= request.size(); at += one) {
+        const auto first = request.begin() + static_cast<std::ptrdiff_t>(at);
+        self.send(good_reply(Bytes(first, first + one)));
+      }
+    });
+    SerialLine settings = line_at(line.device());
+    settings.habits.repeat_after_s = 0.05;
+    ModbusRtuLink link(settings);
+    ASSERT_EQ(link.open(now() + generous), BusStatus::ok);
+    ASSERT_EQ(link.ask(1, read_two, now() + generous), BusStatus::ok) << link.detail();
+    EXPECT_TRUE(right(link));
+    ASSERT_EQ(link.ask(1, {.function = 4, .address = 9, .count = 2}, now() + generous), BusStatus::ok)
+        << link.detail();
+    EXPECT_EQ(word_at(link.data(), 0), 1009) << "not the second answer to the question before";
+    EXPECT_TRUE(link.is_open());
+  }
+}
+
+// The greeting of a module that starts is no answer.
+TEST(ModbusRtuLink, NothingIsSentBeforeTheSettleTimeIsOver) {
+  std::atomic<Nanoseconds> first_request{0};
+  ScriptedLine line([&](ScriptedLine& self, const Bytes& request, std::size_t index) {
+    if (index == 0) first_request = now();
+    self.send(good_reply(request));
+  });
+  SerialLine settings = line_at(line.device());
+  settings.habits.settle_s = 0.2;
+  ModbusRtuLink link(settings);
+  const Nanoseconds before = now();
+  ASSERT_EQ(link.open(before + generous), BusStatus::ok);
+  line.send({'r', 'e', 'a', 'd', 'y', '\r', '\n'});
+  ASSERT_EQ(link.settle(before + generous), BusStatus::ok) << link.detail();
+  ASSERT_EQ(link.ask(1, read_two, now() + generous), BusStatus::ok) << link.detail();
+  EXPECT_GE(first_request - before, 200'000'000);
 }
 
 TEST(ModbusRtuLink, AnAdapterThatEchoesIsToldOf) {

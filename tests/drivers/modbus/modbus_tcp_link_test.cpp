@@ -12,9 +12,12 @@
 #include <sys/time.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <csignal>
 #include <random>
 #include <string>
+#include <thread>
+#include <utility>
 
 #include "base/clock.h"
 #include "drivers/modbus/big_endian.h"
@@ -230,7 +233,8 @@ TEST(ModbusTcpLink, NoReplyAtAll) {
 
 TEST(ModbusTcpLink, HungUpBeforeTheReply) {
   const Outcome outcome = ask_once([](Peer& peer, const Bytes&) { peer.hang_up(); });
-  expect_poisoned(outcome, BusStatus::disconnected, slack);
+  expect_poisoned(outcome, BusStatus::closed_at_once, slack);
+  EXPECT_NE(outcome.detail.find("closed it before its first answer"), std::string::npos) << outcome.detail;
 }
 
 TEST(ModbusTcpLink, HungUpInTheMiddleOfTheReply) {
@@ -240,12 +244,112 @@ TEST(ModbusTcpLink, HungUpInTheMiddleOfTheReply) {
     peer.send(reply);
     peer.hang_up();
   });
-  expect_poisoned(outcome, BusStatus::disconnected, slack);
+  expect_poisoned(outcome, BusStatus::closed_at_once, slack);
 }
 
 TEST(ModbusTcpLink, ResetByThePeer) {
   const Outcome outcome = ask_once([](Peer& peer, const Bytes&) { peer.reset(); });
-  expect_poisoned(outcome, BusStatus::disconnected, slack);
+  expect_poisoned(outcome, BusStatus::closed_at_once, slack);
+}
+
+TEST(ModbusTcpLink, AnEndBehindAnAnswerIsNoConnectionThatWasClosedAtOnce) {
+  ScriptedServer server([](Peer& peer, const Bytes& request, std::size_t index) {
+    if (index == 0) {
+      answer_well(peer, request);
+    } else {
+      peer.hang_up();
+    }
+  });
+  ModbusTcpLink session(TcpAddress{"127.0.0.1", server.port()});
+  ASSERT_EQ(session.open(now() + generous), BusStatus::ok);
+  ASSERT_EQ(session.ask(1, read_four, now() + generous), BusStatus::ok);
+  EXPECT_EQ(session.ask(1, read_four, now() + generous), BusStatus::disconnected);
+  ASSERT_EQ(session.open(now() + generous), BusStatus::ok);
+  EXPECT_EQ(session.ask(1, read_four, now() + generous), BusStatus::closed_at_once) << "a new connection";
+}
+
+/// A server that takes a connection, sends `greeting`, and closes it if `closes`.
+class Greeter {
+ public:
+  Greeter(const std::string& greeting, bool closes) {
+    listener_ = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    socklen_t size = sizeof address;
+    EXPECT_EQ(::bind(listener_, reinterpret_cast<sockaddr*>(&address), size), 0);
+    EXPECT_EQ(::listen(listener_, 4), 0);
+    EXPECT_EQ(::getsockname(listener_, reinterpret_cast<sockaddr*>(&address), &size), 0);
+    port = ntohs(address.sin_port);
+    thread_ = std::thread([this, greeting, closes] {
+      socket_ = ::accept(listener_, nullptr, nullptr);
+      if (socket_ < 0) return;
+      EXPECT_EQ(::send(socket_, greeting.data(), greeting.size(), MSG_NOSIGNAL),
+                static_cast<ssize_t>(greeting.size()));
+      if (closes) ::close(std::exchange(socket_, -1));
+    });
+  }
+  Greeter(const Greeter&) = delete;
+  Greeter& operator=(const Greeter&) = delete;
+  Greeter(Greeter&&) = delete;
+  Greeter& operator=(Greeter&&) = delete;
+  ~Greeter() {
+    thread_.join();
+    if (socket_ >= 0) ::close(socket_);
+    ::close(listener_);
+  }
+  std::uint16_t port = 0;
+
+ private:
+  int listener_ = -1;
+  int socket_ = -1;
+  std::thread thread_;
+};
+
+TcpAddress settling(std::uint16_t port, double settle_s) {
+  return {.host = "127.0.0.1", .port = port, .habits = {.settle_s = settle_s}};
+}
+
+TEST(ModbusTcpLink, NothingIsSentBeforeTheSettleTimeIsOver) {
+  std::atomic<Nanoseconds> first_request{0};
+  ScriptedServer server([&](Peer& peer, const Bytes& request, std::size_t index) {
+    if (index == 0) first_request = now();
+    answer_well(peer, request);
+  });
+  ModbusTcpLink session(settling(server.port(), 0.2));
+  const Nanoseconds before = now();
+  ASSERT_EQ(session.open(before + generous), BusStatus::ok);
+  ASSERT_EQ(session.settle(before + generous), BusStatus::ok) << session.detail();
+  ASSERT_EQ(session.ask(1, read_four, now() + generous), BusStatus::ok) << session.detail();
+  EXPECT_GE(first_request - before, 200'000'000);
+  EXPECT_EQ(session.settle(now() - 1), BusStatus::ok) << "once: it is over";
+}
+
+TEST(ModbusTcpLink, ASettleTimeDoesNotExtendTheDeadline) {
+  ScriptedServer server([](Peer&, const Bytes&, std::size_t) {});
+  ModbusTcpLink session(settling(server.port(), 30));
+  const Nanoseconds before = now();
+  ASSERT_EQ(session.open(before + generous), BusStatus::ok);
+  EXPECT_EQ(session.settle(before + deadline), BusStatus::timed_out);
+  EXPECT_LT(now() - before, deadline + slack);
+  EXPECT_FALSE(session.is_open());
+}
+
+TEST(ModbusTcpLink, AConnectionThatIsClosedWhileItSettlesIsNotWaitedFor) {
+  const Greeter server("", true);
+  ModbusTcpLink session(settling(server.port, 30));
+  ASSERT_EQ(session.open(now() + generous), BusStatus::ok);
+  const Nanoseconds before = now();
+  EXPECT_EQ(session.settle(before + generous), BusStatus::closed_at_once);
+  EXPECT_LT(now() - before, generous / 2);
+}
+
+TEST(ModbusTcpLink, WhatComesWhileItSettlesAnswersNothing) {
+  const Greeter server("ready\r\n", false);
+  ModbusTcpLink session(settling(server.port, 0.2));
+  ASSERT_EQ(session.open(now() + generous), BusStatus::ok);
+  ASSERT_EQ(session.settle(now() + generous), BusStatus::ok) << session.detail();
+  EXPECT_EQ(session.ask(1, read_four, now() + deadline), BusStatus::timed_out) << session.detail();
 }
 
 TEST(ModbusTcpLink, ExceptionsKeepTheSession) {
@@ -369,6 +473,88 @@ TEST(ModbusTcpLink, AHalfOpenSessionTimesOut) {
   EXPECT_EQ(session.ask(1, read_four, before + deadline), BusStatus::timed_out);
   EXPECT_LT(now() - before, deadline + slack);
   EXPECT_EQ(session.ask(1, read_four, now() + deadline), BusStatus::disconnected);
+}
+
+TcpAddress repeating(std::uint16_t port, bool numbered = true) {
+  return {.host = "127.0.0.1", .port = port, .habits = {.repeat_after_s = 0.05}, .numbered = numbered};
+}
+
+// The repeated request is the same frame, so it writes the same output values.
+TEST(ModbusTcpLink, ALostRequestIsRepeatedBeforeTheSessionIsGivenUp) {
+  std::vector<Bytes> asked;
+  ScriptedServer server([&](Peer& peer, const Bytes& request, std::size_t index) {
+    asked.push_back(request);
+    if (index > 0) answer_well(peer, request);
+  });
+  ModbusTcpLink session(repeating(server.port()));
+  ASSERT_EQ(session.open(now() + generous), BusStatus::ok);
+  ASSERT_EQ(session.ask(1, read_four, now() + generous), BusStatus::ok) << session.detail();
+  EXPECT_TRUE(is_answer(session, read_four));
+  ASSERT_GE(asked.size(), 2U);
+  EXPECT_EQ(asked[0], asked[1]);
+  EXPECT_EQ(server.sessions(), 1U);
+}
+
+// The next session, which writes the safe outputs, begins no later than without the repetition.
+TEST(ModbusTcpLink, RepeatingDoesNotExtendTheDeadline) {
+  std::atomic<std::size_t> asked{0};
+  ScriptedServer server([&](Peer&, const Bytes&, std::size_t) { ++asked; });
+  ModbusTcpLink session(repeating(server.port()));
+  ASSERT_EQ(session.open(now() + generous), BusStatus::ok);
+  const Nanoseconds before = now();
+  EXPECT_EQ(session.ask(1, read_four, before + 220'000'000), BusStatus::timed_out);
+  EXPECT_LT(now() - before, 220'000'000 + slack);
+  EXPECT_FALSE(session.is_open());
+  EXPECT_GE(asked, 2U);
+}
+
+/// A board that is slow once: its answers to the request and to its repetitions all come.
+void answer_late_once(Peer& peer, const Bytes& request, std::size_t index, bool numbered) {
+  if (index == 0) peer.wait(130ms);
+  Bytes reply = test::registers_reply(request, register_value);
+  if (!numbered) test::set_word(reply, 0, 0);
+  peer.send(reply);
+}
+
+TEST(ModbusTcpLink, ASecondAnswerToARepeatedRequestIsNeverTakenForALaterOne) {
+  for (const bool numbered : {true, false}) {
+    ScriptedServer server([numbered](Peer& peer, const Bytes& request, std::size_t index) {
+      answer_late_once(peer, request, index, numbered);
+    });
+    ModbusTcpLink session(repeating(server.port(), numbered));
+    ASSERT_EQ(session.open(now() + generous), BusStatus::ok);
+    for (std::uint16_t i = 0; i < 4; ++i) {
+      const ModbusRequest request{.function = 3, .address = static_cast<std::uint16_t>(i * 50), .count = 4};
+      ASSERT_EQ(session.ask(1, request, now() + generous), BusStatus::ok) << i << ": " << session.detail();
+      ASSERT_TRUE(is_answer(session, request)) << i;
+    }
+    EXPECT_EQ(server.sessions(), 1U);
+  }
+}
+
+TEST(ModbusTcpLink, AnswersWithoutTheTransactionIdAreTakenOnlyWhereThatIsAccepted) {
+  ScriptedServer server([](Peer& peer, const Bytes& request, std::size_t index) {
+    Bytes reply = test::registers_reply(request, register_value);
+    test::set_word(reply, 0, 0);
+    peer.send(reply);
+    if (index != 3) return;
+    peer.wait(30ms);
+    peer.send(reply);
+  });
+  ModbusTcpLink strict(TcpAddress{"127.0.0.1", server.port()});
+  ASSERT_EQ(strict.open(now() + generous), BusStatus::ok);
+  EXPECT_EQ(strict.ask(1, read_four, now() + generous), BusStatus::bad_reply);
+  strict.close();
+  ModbusTcpLink lenient(TcpAddress{.host = "127.0.0.1", .port = server.port(), .numbered = false});
+  ASSERT_EQ(lenient.open(now() + generous), BusStatus::ok);
+  for (int i = 0; i < 3; ++i) {
+    ASSERT_EQ(lenient.ask(1, read_four, now() + generous), BusStatus::ok) << lenient.detail();
+    EXPECT_TRUE(is_answer(lenient, read_four));
+  }
+  std::this_thread::sleep_for(200ms);
+  EXPECT_EQ(lenient.ask(1, read_four, now() + generous), BusStatus::bad_reply)
+      << "a second answer waits there";
+  EXPECT_NE(std::string(lenient.detail()).find("nobody asked"), std::string::npos) << lenient.detail();
 }
 
 TEST(ModbusTcpLink, ADeadlineInThePastFailsAtOnce) {

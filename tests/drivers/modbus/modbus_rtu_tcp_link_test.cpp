@@ -1,0 +1,59 @@
+// RTU frames on a TCP connection, against a server that ends connections. The contents of frames are tested
+// with the emulator (tests/simulation/emulator/board_habits_test.cpp) and on a line
+// (modbus_rtu_link_test.cpp).
+
+#include "drivers/modbus/modbus_rtu_tcp_link.h"
+
+#include <gtest/gtest.h>
+
+#include <cerrno>
+#include <string>
+
+#include "base/clock.h"
+#include "drivers/modbus/tcp_socket.h"
+#include "tests/drivers/modbus/scripted_server.h"
+
+namespace softgrip::drivers::modbus_rtu_tcp_link_test {
+namespace {
+
+constexpr Nanoseconds generous = 5'000'000'000;
+constexpr ModbusRequest read_two{.function = 4, .address = 3, .count = 2};
+
+TcpAddress rtu_at(std::uint16_t port) {
+  return {.host = "127.0.0.1", .port = port, .rtu_framing = true, .silence_s = 0.004};
+}
+
+TEST(ModbusRtuTcpLink, AConnectionThatIsClosedBeforeItsFirstAnswerIsNamed) {
+  // The request is shorter than a header and the length that it is taken for: the server waits for more, and
+  // ends.
+  auto server = std::make_unique<test::ScriptedServer>([](test::Peer&, const test::Bytes&, std::size_t) {});
+  ModbusRtuTcpLink link(rtu_at(server->port()));
+  ASSERT_EQ(link.open(monotonic_now() + generous), BusStatus::ok) << link.detail();
+  server.reset();
+  EXPECT_EQ(link.ask(1, read_two, monotonic_now() + generous), BusStatus::closed_at_once) << link.detail();
+  EXPECT_FALSE(link.is_open());
+  EXPECT_EQ(link.open(monotonic_now() + generous), BusStatus::disconnected);
+  EXPECT_NE(std::string(link.detail()).find("refused"), std::string::npos) << link.detail();
+}
+
+TEST(ModbusRtuTcpLink, TheCostHasTheSilences) {
+  const std::vector<TransactionSize> pair{{5, 5}, {5, 4}};
+  const ModbusRtuTcpLink link(rtu_at(1));
+  const Board::Budget cost = link.cost(pair, "plan");
+  EXPECT_NEAR(cost.exchange_s, 2 * 0.15e-3 + 2 * 4e-3, 1e-6);
+  EXPECT_NE(cost.explanation.find("8 ms"), std::string::npos) << cost.explanation;
+  EXPECT_EQ(link.describe(), "127.0.0.1:1 (RTU frames)");
+}
+
+TEST(TcpSocket, WhatIsNoConnectionSaysWhy) {
+  EXPECT_STREQ(connect_tcp({.host = "board.example", .port = 502}, monotonic_now() + generous).why,
+               "not a numeric address");
+  EXPECT_EQ(connect_tcp({.host = "127.0.0.1", .port = 1}, monotonic_now() + generous).status,
+            BusStatus::disconnected);
+  EXPECT_TRUE(is_closed(EPIPE));
+  EXPECT_FALSE(is_closed(EAGAIN));
+  EXPECT_EQ(send_whole(-1, {}), EBADF);
+}
+
+}  // namespace
+}  // namespace softgrip::drivers::modbus_rtu_tcp_link_test
