@@ -82,13 +82,13 @@ bool Emulator::tripped() const noexcept {
                      [](const EmulatedBoard& board) { return board.tripped(); });
 }
 
-Reply Emulator::serve(Nanoseconds now, const Request& request, std::size_t link) {
+Reply Emulator::serve(Nanoseconds now, const Request& request, std::size_t link, Nanoseconds opened_at) {
   advance(now);
   EmulatedBoard* const board = board_at(link, request.unit);
   // On a serial line everybody hears everything, and answers only what is meant for him.
   if (board == nullptr && wire_ == Wire::rtu) return {};
   ++requests_;
-  const auto index = wire_fault();
+  const auto index = wire_fault(request, now - opened_at);
   if (index) faults_.count_reply(*index);
   Bytes pdu{request.pdu[0]};
   if (!index || carried_out(faults_.faults()[*index].kind)) {
@@ -146,9 +146,10 @@ void Emulator::move_to(Nanoseconds moment) {
   now_ = moment;
 }
 
-std::optional<std::size_t> Emulator::wire_fault() const {
+std::optional<std::size_t> Emulator::wire_fault(const Request& request, Nanoseconds connected_for) const {
   for (std::size_t i = 0; i < faults_.faults().size(); ++i) {
-    if (faults_.active(i) && on_the_wire(faults_.faults()[i].kind)) return i;
+    const FaultSpec& fault = faults_.faults()[i];
+    if (faults_.active(i) && on_the_wire(fault.kind) && touches(fault, request, connected_for)) return i;
   }
   return std::nullopt;
 }

@@ -45,8 +45,10 @@ class Emulator {
 
   /// Moves on. Not before an earlier `now`.
   void advance(Nanoseconds now);
-  /// A request that arrives at `now` on a link, and what becomes of it.
-  [[nodiscard]] Reply serve(Nanoseconds now, const Request& request, std::size_t link = 0);
+  /// A request that arrives at `now` on a link, over a connection that was opened at `opened_at`, and what
+  /// becomes of it.
+  [[nodiscard]] Reply serve(Nanoseconds now, const Request& request, std::size_t link = 0,
+                            Nanoseconds opened_at = 0);
   /// Sets the number of clients that are connected to a link.
   void count_clients(std::size_t clients, std::size_t link);
   /// Whether new connections are let in.
@@ -61,6 +63,7 @@ class Emulator {
   /// Called at every point of the grid.
   void on_grid(std::function<void()> observer) { observer_ = std::move(observer); }
 
+  [[nodiscard]] Wire wire() const noexcept { return wire_; }
   [[nodiscard]] Nanoseconds now() const noexcept { return now_; }
   [[nodiscard]] const std::vector<Finger>& fingers() const noexcept { return fingers_; }
   [[nodiscard]] const std::vector<EmulatedBoard>& modules() const noexcept { return boards_; }
@@ -74,7 +77,8 @@ class Emulator {
 
  private:
   [[nodiscard]] Nanoseconds next_stop(Nanoseconds now) const;
-  [[nodiscard]] std::optional<std::size_t> wire_fault() const;
+  [[nodiscard]] std::optional<std::size_t> wire_fault(const Request& request,
+                                                      Nanoseconds connected_for) const;
   void move_to(Nanoseconds moment);
   void take_commands();
   void apply_faults();

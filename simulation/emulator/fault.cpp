@@ -5,16 +5,18 @@
 #include <utility>
 
 #include "document/reader.h"
+#include "drivers/modbus/modbus_request.h"
 #include "simulation/plant/fault_reader.h"
 
 namespace softgrip::simulation {
 namespace {
 
-constexpr std::array<std::string_view, 18> kind_names{
-    "lost_request",   "no_reply",      "late_reply",        "dripped_reply",  "cut_reply",
-    "repeated_reply", "wrong_unit",    "wrong_transaction", "wrong_length",   "exception_reply",
-    "disconnect",     "ignored_write", "sensor_stuck",      "sensor_jumping", "sensor_out_of_range",
-    "line_blocked",   "line_leaking",  "object_removed"};
+constexpr std::array<std::string_view, 21> kind_names{
+    "lost_request",   "no_reply",       "late_reply",          "dripped_reply", "cut_reply",
+    "repeated_reply", "wrong_unit",     "wrong_transaction",   "wrong_length",  "exception_reply",
+    "settling",       "few_registers",  "stray_bytes",         "disconnect",    "ignored_write",
+    "sensor_stuck",   "sensor_jumping", "sensor_out_of_range", "line_blocked",  "line_leaking",
+    "object_removed"};
 
 constexpr double longest_s = 86400;
 
@@ -36,6 +38,16 @@ void read_own_keys(FaultSpec& fault, document::MapReader& map) {
       break;
     case FaultKind::exception_reply:
       fault.code = static_cast<std::uint8_t>(map.integer("code", 1, 255));
+      break;
+    case FaultKind::settling:
+      fault.settle_s = map.number("settle_s", up_to(60));
+      break;
+    case FaultKind::few_registers:
+      fault.most = static_cast<std::uint16_t>(map.integer("most", 1, drivers::max_read_registers));
+      break;
+    case FaultKind::stray_bytes:
+      fault.before = static_cast<std::uint16_t>(map.integer("before", 0, drivers::max_pdu));
+      fault.behind = static_cast<std::uint16_t>(map.integer("behind", 0, drivers::max_pdu));
       break;
     case FaultKind::sensor_jumping:
       fault.interval_s = map.number("interval_s", {shortest_s, 60});

@@ -35,6 +35,9 @@ enum class FaultKind : std::uint8_t {
   wrong_transaction,  ///< transaction id one too high
   wrong_length,       ///< the header announces one byte more than there is
   exception_reply,    ///< Modbus exception `code`; nothing is carried out
+  settling,           ///< requests within settle_s after the connection was opened never arrive
+  few_registers,      ///< a request for more than `most` registers: exception 3
+  stray_bytes,        ///< `before` bytes before each reply, `behind` bytes behind it
   disconnect,         ///< connections are closed and new ones closed at once
   // of the board
   ignored_write,  ///< writes are answered and have no effect
@@ -70,6 +73,10 @@ struct FaultSpec {
   double delay_s = 0;
   double interval_s = 0;
   std::uint8_t code = 0;
+  double settle_s = 0;
+  std::uint16_t most = 0;
+  std::uint16_t before = 0;
+  std::uint16_t behind = 0;
   LineFault line;      ///< line_blocked, line_leaking
   SensorFault sensor;  ///< sensor_stuck, sensor_jumping, sensor_out_of_range
 };

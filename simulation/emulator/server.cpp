@@ -101,7 +101,7 @@ void Server::plug_line() {
     sockets_.end = std::move(*end);
   }
   const WireTime wire_time = sockets_.end->wire_time();
-  clients_.push_back({Connection(sockets_.end->take(), wire_time), 0});
+  clients_.push_back({Connection(sockets_.end->take(), wire_time), 0, now()});
 }
 
 Nanoseconds Server::now() const {
@@ -120,8 +120,9 @@ std::chrono::nanoseconds Server::timeout() const {
 
 void Server::serve(Client& client, short events, bool& open) {
   if ((events & (POLLIN | POLLHUP | POLLERR)) != 0) {
-    open = client.connection.receive(
-        [&](const Request& request) { return emulator_.serve(now(), request, client.link); });
+    open = client.connection.receive([&](const Request& request) {
+      return emulator_.serve(now(), request, client.link, client.opened_at);
+    });
   }
   open = open && client.connection.send_due(Clock::now()) && emulator_.reachable();
 }
@@ -130,7 +131,9 @@ void Server::accept_modbus(std::size_t link) {
   Descriptor client = entrances_[link].accept(now());
   // While the cable is cut, and beyond what poll() should watch, a client is let in and shown out.
   if (client && emulator_.reachable() && clients_.size() < max_modbus_clients) {
-    clients_.push_back({Connection(std::move(client)), link});
+    const bool rtu = emulator_.wire() == Wire::rtu;  // over TCP, as serial servers hand it on
+    clients_.push_back(
+        {rtu ? Connection(std::move(client), WireTime{}) : Connection(std::move(client)), link, now()});
   }
 }
 

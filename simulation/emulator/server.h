@@ -53,6 +53,7 @@ class Server {
   struct Client {
     Connection connection;
     std::size_t link = 0;
+    Nanoseconds opened_at = 0;
   };
   void serve(Client& client, short events, bool& open);
   void read_control(ControlClient& client);

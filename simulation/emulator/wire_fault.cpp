@@ -1,9 +1,13 @@
 #include "simulation/emulator/wire_fault.h"
 
+#include <modbus/modbus.h>
+
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 
 #include "base/time.h"
+#include "drivers/modbus/rtu_frame.h"
 #include "simulation/emulator/wire.h"
 
 namespace softgrip::simulation {
@@ -24,7 +28,7 @@ Reply dripped(const Bytes& whole, double interval_s) {
 Reply longer_than_it_is(Wire wire, const Request& request, const Bytes& pdu) {
   Bytes whole = frame_on(wire, request.transaction, request.unit, pdu);
   if (wire == Wire::rtu) {
-    whole.push_back(0);
+    whole.resize(whole.size() + drivers::max_stray_bytes + 1);
     return at_once(std::move(whole));
   }
   const auto length = static_cast<std::uint16_t>(word_at(whole, 4) + 1);
@@ -40,15 +44,44 @@ Reply of_another_question(Wire wire, const Request& request, const Bytes& pdu) {
   return at_once(std::move(whole));
 }
 
+/// Registers that a request reads or writes, the larger number of both. Bits do not count.
+std::size_t most_registers_in(const Bytes& pdu) noexcept {
+  constexpr std::size_t counted = 5;  // function, address, count
+  constexpr std::size_t counted_twice = 9;
+  switch (pdu[0]) {
+    case MODBUS_FC_READ_HOLDING_REGISTERS:
+    case MODBUS_FC_READ_INPUT_REGISTERS:
+    case MODBUS_FC_WRITE_MULTIPLE_REGISTERS:
+      return pdu.size() < counted ? 0 : word_at(pdu, 3);
+    case MODBUS_FC_WRITE_AND_READ_REGISTERS:
+      return pdu.size() < counted_twice ? 0 : std::max(word_at(pdu, 3), word_at(pdu, 7));
+    default:
+      return 0;
+  }
+}
+
+Reply between_strays(const FaultSpec& fault, const Bytes& whole) {
+  Bytes bytes(fault.before, 0);
+  bytes.insert(bytes.end(), whole.begin(), whole.end());
+  bytes.resize(bytes.size() + fault.behind, 0);
+  return at_once(std::move(bytes));
+}
+
 }  // namespace
 
 Reply good_reply(Wire wire, const Request& request, const Bytes& pdu) {
   return at_once(frame_on(wire, request.transaction, request.unit, pdu));
 }
 
+bool touches(const FaultSpec& fault, const Request& request, Nanoseconds connected_for) noexcept {
+  if (fault.kind == FaultKind::settling) return connected_for < nanoseconds(fault.settle_s);
+  if (fault.kind == FaultKind::few_registers) return most_registers_in(request.pdu) > fault.most;
+  return true;
+}
+
 bool carried_out(FaultKind kind) noexcept {
   return kind != FaultKind::lost_request && kind != FaultKind::exception_reply &&
-         kind != FaultKind::disconnect;
+         kind != FaultKind::settling && kind != FaultKind::few_registers && kind != FaultKind::disconnect;
 }
 
 Reply spoiled_reply(Wire wire, const FaultSpec& fault, const Request& request, const Bytes& pdu) {
@@ -57,6 +90,7 @@ Reply spoiled_reply(Wire wire, const FaultSpec& fault, const Request& request, c
   switch (fault.kind) {
     case FaultKind::lost_request:
     case FaultKind::no_reply:
+    case FaultKind::settling:
       return {};
     case FaultKind::late_reply:
       return {{{std::chrono::nanoseconds{nanoseconds(fault.delay_s)}, whole}}, false};
@@ -74,6 +108,10 @@ Reply spoiled_reply(Wire wire, const FaultSpec& fault, const Request& request, c
       return longer_than_it_is(wire, request, pdu);
     case FaultKind::exception_reply:
       return good_reply(wire, request, exception_reply(request.pdu[0], fault.code));
+    case FaultKind::few_registers:
+      return good_reply(wire, request, exception_reply(request.pdu[0], MODBUS_EXCEPTION_ILLEGAL_DATA_VALUE));
+    case FaultKind::stray_bytes:
+      return between_strays(fault, whole);
     case FaultKind::disconnect:
       return {{}, true};
     default:

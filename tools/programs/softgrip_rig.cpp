@@ -39,6 +39,7 @@ void add_options(CLI::App& program, Options& options) {
       .add_option("--rtu", options.rtu,
                   "Modbus RTU on this serial device; a path that does not exist becomes a pseudo-terminal")
       ->excludes(tcp);
+  program.add_flag("--rtu-over-tcp", options.rtu_over_tcp, "Modbus RTU frames on the TCP port");
   program.add_option("--baud", options.baud, "Of the line [9600, or the rig file's]")
       ->check(number_between(1200, 1000000));
   program.add_option("--format", options.format,

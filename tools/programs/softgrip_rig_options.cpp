@@ -1,5 +1,6 @@
 #include "tools/programs/softgrip_rig_options.h"
 
+#include <algorithm>
 #include <filesystem>
 
 #include "base/files.h"
@@ -150,6 +151,9 @@ std::optional<ExitCode> place(const Options& options, Setup& setup) {
     return std::nullopt;
   }
   setup.line.reset();
+  const bool rtu = std::any_of(setup.addresses.begin(), setup.addresses.end(),
+                               [](const drivers::TcpAddress& address) { return address.rtu_framing; });
+  if (rtu || options.rtu_over_tcp) setup.emulator.wire = modbus::Wire::rtu;
   if (setup.addresses.empty()) setup.addresses.push_back({.host = options.bind, .port = usual_port});
   for (std::size_t i = 0; i < setup.addresses.size(); ++i) {
     drivers::TcpAddress& address = setup.addresses[i];

@@ -24,6 +24,7 @@ struct Options {
   bool allow_network = false;
   std::optional<std::uint16_t> port;  ///< default: the rig file's, or 1502
   std::string rtu;                    ///< serial device in the place of the network
+  bool rtu_over_tcp = false;          ///< RTU frames on the network
   std::optional<std::uint32_t> baud;  ///< of the line; these default to the rig file's, or 9600 8N1
   std::optional<std::string> format;
   std::optional<double> turnaround_s;

@@ -36,6 +36,9 @@ TEST(FaultsFile, ReadsEveryKind) {
   - {name: h, kind: wrong_transaction}
   - {name: i, kind: wrong_length}
   - {name: j, kind: exception_reply, code: 4}
+  - {name: s, kind: settling, settle_s: 1.5}
+  - {name: t, kind: few_registers, most: 4}
+  - {name: u, kind: stray_bytes, before: 1, behind: 2}
   - {name: k, kind: disconnect}
   - {name: l, kind: ignored_write}
   - {name: m, kind: sensor_stuck, channel: right}
@@ -45,17 +48,21 @@ TEST(FaultsFile, ReadsEveryKind) {
   - {name: q, kind: line_leaking, share: 0.3}
   - {name: r, kind: object_removed}
 )");
-  ASSERT_EQ(faults.size(), 18U);
+  ASSERT_EQ(faults.size(), 21U);
   for (std::size_t i = 0; i < faults.size(); ++i) EXPECT_EQ(static_cast<std::size_t>(faults[i].kind), i);
   EXPECT_EQ(faults[0].at_s, 1);
   EXPECT_EQ(faults[0].for_s, 2);
   EXPECT_EQ(faults[1].replies, 3U);
   EXPECT_EQ(faults[2].delay_s, 0.2);
   EXPECT_EQ(faults[9].code, 4);
-  EXPECT_EQ(faults[12].channel, 1U);
-  EXPECT_EQ(faults[13].sensor.value_mm, -3);
-  EXPECT_FALSE(faults[15].channel);
-  EXPECT_EQ(faults[16].line.share, 0.3);
+  EXPECT_EQ(faults[10].settle_s, 1.5);
+  EXPECT_EQ(faults[11].most, 4);
+  EXPECT_EQ(faults[12].before, 1);
+  EXPECT_EQ(faults[12].behind, 2);
+  EXPECT_EQ(faults[15].channel, 1U);
+  EXPECT_EQ(faults[16].sensor.value_mm, -3);
+  EXPECT_FALSE(faults[18].channel);
+  EXPECT_EQ(faults[19].line.share, 0.3);
 }
 
 TEST(FaultsFile, SaysWhatIsWrongAndWhere) {

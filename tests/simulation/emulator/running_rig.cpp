@@ -41,6 +41,8 @@ RunningRig::RunningRig(const RunningRigSettings& settings) {
   emulated.wire = settings.wire;
   emulated.wiring = *default_wiring(settings.maps, settings.channels);
   emulated.plants = plants(settings.channels);
+  emulated.faults = settings.habits;
+  if (settings.rtu_over_tcp) emulated.wire = Wire::rtu;
   if (settings.wire == Wire::rtu) {
     drivers::SerialLine line = settings.line;
     line.device = new_line_name();
@@ -69,6 +71,7 @@ RunningRig::RunningRig(const RunningRigSettings& settings) {
   sockets.signals = Descriptor{pipe[0]};
   stop_ = Descriptor{pipe[1]};
   emulator_ = std::make_unique<Emulator>(std::move(emulated));
+  for (const FaultSpec& habit : settings.habits) emulator_->trigger(habit.name, 0);
   thread_ = std::thread(
       [this, sockets = std::move(sockets)]() mutable { Server(*emulator_, std::move(sockets)).run([] {}); });
 }

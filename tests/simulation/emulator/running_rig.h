@@ -17,6 +17,8 @@ struct RunningRigSettings {
   Wire wire = Wire::tcp;                ///< on a network every module is a host of its own
   drivers::SerialLine line;             ///< of a serial line; the device is made up
   std::size_t channels = 2;
+  std::vector<FaultSpec> habits{};  ///< faults that are there from the start
+  bool rtu_over_tcp = false;        ///< on a network: RTU frames
 };
 
 /// Fingers of the bench twin without noise, as default_wiring() wires them. On a serial line the modules have

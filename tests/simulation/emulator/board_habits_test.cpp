@@ -1,0 +1,221 @@
+// Boards and gateways with habits, over real sockets and lines. The emulator has the habit, and the driver
+// reaches it only with the key for the habit.
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+#include <string>
+
+#include "base/clock.h"
+#include "rig/board_map_file.h"
+#include "tests/simulation/emulator/running_rig.h"
+
+namespace softgrip::simulation::board_habits_test {
+namespace {
+
+using namespace std::chrono_literals;
+using drivers::BusStatus;
+using drivers::ModbusBoard;
+using drivers::ModbusSettings;
+using test::RunningRig;
+using test::RunningRigSettings;
+
+constexpr auto deadline = 150ms;
+constexpr auto generous = 5s;
+
+drivers::BoardMap shipped(const std::string& name) {
+  document::Problems problems;
+  return *rig::load_board_map(SOFTGRIP_SOURCE_DIR "/config/boards/" + name, problems);
+}
+
+RunningRigSettings rig_with(FaultSpec habit) {
+  habit.name = "habit";
+  RunningRigSettings settings;
+  settings.maps = {shipped("softgrip-sim.yaml")};
+  settings.maps[0].watchdog.timeout_s = 60;  // a busy machine pauses
+  settings.maps[0].setup.clear();
+  settings.names = {"sim"};
+  settings.habits = {std::move(habit)};
+  return settings;
+}
+
+FaultSpec settling(double settle_s) {
+  FaultSpec habit = fault_of(FaultKind::settling);
+  habit.settle_s = settle_s;
+  return habit;
+}
+
+struct Client {
+  explicit Client(const ModbusSettings& settings) : board(settings), readings(settings.wiring.size()) {}
+  BusStatus exchange(double kpa, std::chrono::nanoseconds within = generous) {
+    return board.exchange(std::vector<double>(readings.size(), kpa), readings, within);
+  }
+  ModbusBoard board;
+  std::vector<model::Reading> readings;
+};
+
+/// The board ignores requests in the first 0.4 s of a connection. The settle time delays no safe value: the
+/// board would ignore every write in that time, and each new connection starts the 0.4 s again.
+TEST(BoardHabits, ABoardThatIgnoresWhatComesFirstIsReachedBehindItsSettleTime) {
+  RunningRig rig(rig_with(settling(0.4)));
+  ModbusSettings settings = rig.board();
+  settings.probes = 0;
+  Client unsettled(settings);
+  const MonotonicClock clock;
+  const Nanoseconds before = clock.now();
+  while (clock.now() - before < 1'000'000'000) {
+    ASSERT_EQ(unsettled.board.connect(generous), BusStatus::ok);
+    ASSERT_EQ(unsettled.exchange(0, deadline), BusStatus::timed_out) << "the board needs no settle time";
+  }
+  std::get<drivers::TcpAddress>(settings.links[0]).habits.settle_s = 0.4;
+  Client settled(settings);
+  for (int session = 0; session < 2; ++session) {  // the first session, and one that is opened again
+    ASSERT_EQ(settled.board.connect(generous), BusStatus::ok) << settled.board.detail();
+    ASSERT_EQ(settled.exchange(10 + session), BusStatus::ok) << settled.board.detail();
+  }
+  EXPECT_NEAR(rig.stop().modules()[0].output(0), 1.1, 1e-3) << "volts";
+}
+
+TEST(BoardHabits, TheSettleTimeIsPartOfTheDeadlineForConnecting) {
+  RunningRig rig(rig_with(settling(0)));
+  ModbusSettings settings = rig.board();
+  std::get<drivers::TcpAddress>(settings.links[0]).habits.settle_s = 20;
+  ModbusBoard board(settings);
+  const MonotonicClock clock;
+  const Nanoseconds before = clock.now();
+  EXPECT_EQ(board.connect(200ms), BusStatus::timed_out);
+  EXPECT_LT(clock.now() - before, 10'000'000'000);
+  EXPECT_NE(std::string(board.detail()).find("settled"), std::string::npos) << board.detail();
+}
+
+/// One lost request does not end the connection, and the exchange ends within its own deadline. The time
+/// until safe outputs are written does not increase.
+TEST(BoardHabits, ALostRequestIsRepeatedWithinTheDeadline) {
+  FaultSpec habit = fault_of(FaultKind::lost_request);
+  habit.replies = 1;
+  for (const double repeat_after_s : {0.0, 0.03}) {
+    RunningRig rig(rig_with(habit));
+    ModbusSettings settings = rig.board();
+    settings.probes = 0;
+    std::get<drivers::TcpAddress>(settings.links[0]).habits.repeat_after_s = repeat_after_s;
+    Client client(settings);
+    ASSERT_EQ(client.board.connect(generous), BusStatus::ok);
+    const auto expected = repeat_after_s > 0 ? BusStatus::ok : BusStatus::timed_out;
+    EXPECT_EQ(client.exchange(10, 1s), expected) << client.board.detail();
+  }
+}
+
+TEST(BoardHabits, AGatewayThatReturnsAnotherTransactionIdIsTakenOnlyWhereThatIsAccepted) {
+  RunningRig rig(rig_with(fault_of(FaultKind::wrong_transaction)));
+  ModbusSettings settings = rig.board();
+  EXPECT_EQ(Client(settings).board.connect(generous), BusStatus::bad_reply);
+  std::get<drivers::TcpAddress>(settings.links[0]).numbered = false;
+  Client client(settings);
+  ASSERT_EQ(client.board.connect(generous), BusStatus::ok) << client.board.detail();
+  for (int i = 0; i < 20; ++i) ASSERT_EQ(client.exchange(10), BusStatus::ok) << client.board.detail();
+}
+
+RunningRigSettings serial_server(FaultSpec habit) {
+  RunningRigSettings settings = rig_with(std::move(habit));
+  settings.rtu_over_tcp = true;
+  return settings;
+}
+
+ModbusSettings with_rtu_frames(ModbusSettings settings) {
+  std::get<drivers::TcpAddress>(settings.links[0]).rtu_framing = true;
+  return settings;
+}
+
+TEST(BoardHabits, RtuFramesOverTcp) {
+  RunningRig rig(serial_server(settling(0)));
+  ModbusSettings settings = rig.board();
+  EXPECT_EQ(Client(settings).board.connect(deadline), BusStatus::timed_out) << "these are no RTU frames";
+  settings = with_rtu_frames(settings);
+  Client client(settings);
+  ASSERT_EQ(client.board.connect(generous), BusStatus::ok) << client.board.detail();
+  for (int i = 0; i < 20; ++i) ASSERT_EQ(client.exchange(20), BusStatus::ok) << client.board.detail();
+  EXPECT_EQ(client.readings[0].validity, model::Validity::valid);
+  EXPECT_NE(client.board.describe().find("RTU frames"), std::string::npos);
+  settings.modules[0].unit = 9;
+  EXPECT_EQ(Client(settings).board.connect(deadline), BusStatus::timed_out) << "there is no unit 9";
+  EXPECT_NEAR(rig.stop().modules()[0].output(0), 2, 1e-3) << "volts";
+}
+
+TEST(BoardHabits, RtuFramesThatAreRepeatedOrWrongEndTheSession) {
+  for (const FaultKind kind : {FaultKind::repeated_reply, FaultKind::wrong_unit, FaultKind::wrong_transaction,
+                               FaultKind::wrong_length}) {
+    RunningRig rig(serial_server(fault_of(kind)));
+    Client client(with_rtu_frames(rig.board()));
+    EXPECT_EQ(client.board.connect(1s), BusStatus::bad_reply)
+        << name_of(kind) << ": " << client.board.detail();
+  }
+}
+
+/// On a serial line, and behind a serial server.
+TEST(BoardHabits, StrayBytesAreThrownAway) {
+  FaultSpec habit = fault_of(FaultKind::stray_bytes);
+  habit.before = 1;
+  habit.behind = 2;
+  RunningRigSettings on_a_line = rig_with(habit);
+  on_a_line.wire = Wire::rtu;
+  on_a_line.line.baud = 115200;
+  for (const RunningRigSettings& settings : {on_a_line, serial_server(habit)}) {
+    RunningRig rig(settings);
+    Client client(settings.rtu_over_tcp ? with_rtu_frames(rig.board()) : rig.board());
+    ASSERT_EQ(client.board.connect(generous), BusStatus::ok) << client.board.detail();
+    for (int i = 0; i < 20; ++i) ASSERT_EQ(client.exchange(10), BusStatus::ok) << i << client.board.detail();
+  }
+}
+
+/// Sixteen registers of inputs and four of outputs, four at a time: no number torn, no reading of another
+/// input.
+TEST(BoardHabits, ABoardThatTakesFewRegistersGetsSeveralRequests) {
+  FaultSpec habit = fault_of(FaultKind::few_registers);
+  habit.most = 4;
+  RunningRigSettings settings = rig_with(habit);
+  settings.channels = 4;
+  RunningRig rig(settings);
+  ModbusSettings reached = rig.board();
+  Client greedy(reached);
+  EXPECT_EQ(greedy.board.connect(generous), BusStatus::exception);
+  EXPECT_NE(std::string(greedy.board.detail()).find("(exception 3)"), std::string::npos);
+  reached.modules[0].map.max_registers = 4;
+  Client modest(reached);
+  ASSERT_EQ(modest.board.connect(generous), BusStatus::ok) << modest.board.detail();
+  for (int i = 0; i < 20; ++i) ASSERT_EQ(modest.exchange(30), BusStatus::ok) << modest.board.detail();
+  const Emulator& emulator = rig.stop();
+  for (std::size_t channel = 0; channel < 4; ++channel) {
+    EXPECT_NEAR(emulator.modules()[0].output(channel), 3, 1e-3) << "volts of output " << channel;
+    EXPECT_EQ(modest.readings[channel].validity, model::Validity::valid);
+    EXPECT_NEAR(modest.readings[channel].displacement_mm,
+                emulator.fingers()[channel].plant().displacement_mm(), 1);
+    EXPECT_NEAR(modest.readings[channel].pressure_kpa, emulator.fingers()[channel].plant().pressure_kpa(), 5);
+  }
+}
+
+TEST(BoardHabits, ABoardThatSwapsTheBytesOfItsRegistersIsReadByItsWordOrder) {
+  for (const auto order :
+       {drivers::WordOrder::high_first_bytes_swapped, drivers::WordOrder::low_first_bytes_swapped}) {
+    RunningRigSettings settings = rig_with(settling(0));
+    settings.maps[0].word_order = order;
+    RunningRig rig(settings);
+    ModbusSettings reached = rig.board();
+    {
+      Client right(reached);
+      ASSERT_EQ(right.board.connect(generous), BusStatus::ok) << right.board.detail();
+      ASSERT_EQ(right.exchange(20), BusStatus::ok) << right.board.detail();
+      EXPECT_EQ(right.readings[0].validity, model::Validity::valid);
+      EXPECT_NEAR(right.readings[0].displacement_mm, 0, 1);
+    }
+    reached.modules[0].map.word_order = drivers::WordOrder::high_first;
+    Client wrong(reached);
+    ASSERT_EQ(wrong.board.connect(generous), BusStatus::ok) << wrong.board.detail();
+    (void)wrong.exchange(0);
+    const bool believed = wrong.readings[0].validity == model::Validity::valid;
+    EXPECT_FALSE(believed && std::abs(wrong.readings[0].displacement_mm) < 1) << drivers::name_of(order);
+  }
+}
+
+}  // namespace
+}  // namespace softgrip::simulation::board_habits_test
