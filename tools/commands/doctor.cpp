@@ -18,6 +18,7 @@
 #include "tools/command_line/configuration.h"
 #include "tools/command_line/terminal.h"
 #include "tools/commands/commands.h"
+#include "tools/commissioning/bus_examination.h"
 #include "tools/commissioning/daemon_examination.h"
 #include "tools/commissioning/gateway_examination.h"
 #include "tools/commissioning/machine.h"
@@ -84,12 +85,15 @@ void look_myself(const rig::RigFile& rig, bool move, doctor::Findings& findings)
     return;
   }
   const MonotonicClock clock;
-  const auto board = daemon::make_board(rig, clock);
+  auto board = daemon::make_board(rig, clock);
   doctor::examine_description(rig, *board, findings);
   doctor::examine_gpio(rig, findings);
   daemon::Signals signals;
   doctor::examine_rig(
       rig, *board, clock, [&signals] { return signals.first() != 0; }, move, {}, findings);
+  if (signals.first() != 0 || !doctor::wants_bus_examination(findings)) return;
+  board.reset();
+  doctor::examine_bus(rig, findings);
 }
 
 ExitCode conclude(const DoctorOptions& options, const doctor::Examination& examination,

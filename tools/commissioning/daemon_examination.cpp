@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "tools/commissioning/bus_advice.h"
+
 namespace softgrip::tools::doctor {
 namespace {
 
@@ -122,7 +124,7 @@ void judge_bus(const Json& status, const Json& statistics, Findings& findings) {
                   fmt::format("{}; not connected, tried {:.0f} times, every {:.2g} s{}", text,
                               number_in(bus, "attempts"), number_in(bus, "retry_s"),
                               failure.empty() ? "" : ". " + failure),
-                  "power, cable and address of the board; softgripd reconnects");
+                  std::string(bus_advice(text_in(bus, "failure_kind"))) + "; softgripd reconnects");
   } else if (failures > 1e-3 * exchanges) {
     findings.warn("board", text,
                   "the bus loses exchanges: cable, termination, a second master, a rate too high");

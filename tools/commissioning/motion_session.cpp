@@ -90,7 +90,8 @@ struct MotionSession::Line {
   [[nodiscard]] const daemon::BusReport& report() const noexcept { return wires.bus.value(); }
   void take_events() noexcept {
     for (daemon::BusEvent event; wires.bus_events.pop(event);) {
-      if (event.kind == daemon::BusEvent::Kind::failed) failed = event;
+      const bool again = event.kind == daemon::BusEvent::Kind::not_connected;
+      if (again || event.kind == daemon::BusEvent::Kind::failed) failed = event;
     }
   }
 };
@@ -123,7 +124,8 @@ MotionSession::Expected<void> MotionSession::connect() {
   line_->take_events();
   grid_ = Grid(clock_.now(), grid_.period());
   if (open) return {};
-  return tl::unexpected(MotionFailure{FailureKind::bus, board_.describe() + ": " + complaint()});
+  return tl::unexpected(
+      MotionFailure{FailureKind::bus, board_.describe() + ": " + complaint(), line_->failed.status});
 }
 
 /// Publishes the commands as the loop does, and steps the bus once, at the next point of the grid.
@@ -164,11 +166,12 @@ std::string MotionSession::complaint() const {
 std::optional<MotionFailure> MotionSession::bus_failure() const {
   const control::FaultCode fault = line_->report().health.fault;
   if (fault == control::FaultCode::board_watchdog_tripped) {
-    return MotionFailure{FailureKind::bus, complaint() + ". The board has vented, so the motion has ended"};
+    return MotionFailure{FailureKind::bus, complaint() + ". The board has vented, so the motion has ended",
+                         drivers::BusStatus::watchdog_tripped};
   }
   const bool down = silent_cycles_ >= rig_.settings.faults.bus_down_cycles;
   if (!down && !control::inhibits(fault)) return std::nullopt;
-  return MotionFailure{FailureKind::bus, complaint()};
+  return MotionFailure{FailureKind::bus, complaint(), line_->failed.status};
 }
 
 tl::unexpected<MotionFailure> MotionSession::end(MotionFailure failure) {

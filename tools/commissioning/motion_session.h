@@ -54,6 +54,7 @@ struct MotionFailure {
   };
   Kind kind = Kind::bus;
   std::string text;
+  drivers::BusStatus status = drivers::BusStatus::ok;  ///< `bus`: of what it failed
 };
 
 /// The sensors of a channel that must give valid readings while it moves.

@@ -10,6 +10,7 @@
 #include "base/numbers.h"
 #include "daemon/recording/csv_row.h"
 #include "rig/rig_file.h"
+#include "tools/commissioning/bus_advice.h"
 #include "tools/commissioning/crossing.h"
 #include "tools/commissioning/motion.h"
 
@@ -18,12 +19,12 @@ namespace {
 
 constexpr double ms_per_s = 1e3;
 
-std::string advice_for_silence(const rig::RigFile& rig) {
+std::string advice_for_silence(const rig::RigFile& rig, drivers::BusStatus status) {
   if (std::holds_alternative<simulation::SimulatedBoardSettings>(rig.board))
     return "look at `events` of the rig file";
   if (std::holds_alternative<drivers::IioSettings>(rig.board))
     return "compare `device` and `channel` in the rig file with the converters of this computer";
-  return "check power and cable of the board, its address in the rig file, and that no other master holds it";
+  return std::string(bus_advice(drivers::name_of(status)));
 }
 
 /// True if a look at the sensors, which writes the rest pressures, could drop a part that is still held.
@@ -128,7 +129,7 @@ void failed(const MotionFailure& failure, const rig::RigFile& rig, const std::st
     case MotionFailure::Kind::stopped:
       return findings.fail(name, failure.text, "run it again to the end");
     case MotionFailure::Kind::bus:
-      return findings.fail(name, failure.text, advice_for_silence(rig));
+      return findings.fail(name, failure.text, advice_for_silence(rig, failure.status));
     case MotionFailure::Kind::blind:
       return findings.fail(name, failure.text, "check the sensor's display and its wire");
     case MotionFailure::Kind::beyond:
@@ -256,7 +257,7 @@ void examine_rig(const rig::RigFile& rig, drivers::Board& board, const Clock& cl
                  bool move, const MoveSettings& settings, Findings& findings) {
   MotionSession session(rig, board, clock, std::move(stop));
   if (const auto connected = session.connect(); !connected) {
-    findings.fail("board", connected.error().text, advice_for_silence(rig));
+    failed(connected.error(), rig, "board", findings);
     return leave_channels(rig, "the board does not answer", findings);
   }
   if (!move && may_hold_a_part(rig)) {

@@ -16,6 +16,8 @@
 #include "tests/daemon/temporary_folder.h"
 #include "tests/tools/passing_board.h"
 #include "tests/tools/virtual_time.h"
+#include "tools/commissioning/bus_advice.h"
+#include "tools/commissioning/bus_examination.h"
 #include "tools/commissioning/daemon_examination.h"
 #include "tools/commissioning/machine.h"
 #include "tools/commissioning/motion.h"
@@ -331,6 +333,18 @@ TEST_F(DoctorTest, AWrongSignOfTheSensor) {
   judge_motion(rig_, 0, rest, motion, {}, findings_);
   expect("finger left", Verdict::fail, "moved -5.00 mm");
   EXPECT_NE(finding("finger left").advice.find("sign"), std::string::npos);
+}
+
+TEST_F(DoctorTest, WhatToDoFollowsFromWhatTheBusKnows) {
+  EXPECT_NE(bus_advice("closed_at_once").find("no further client"), std::string_view::npos);
+  EXPECT_NE(bus_advice("exception").find("board map"), std::string_view::npos);
+  EXPECT_NE(bus_advice("timed_out").find("settle_s"), std::string_view::npos);
+  EXPECT_EQ(bus_advice("disconnected"), bus_advice("a kind of another version"));
+  EXPECT_FALSE(wants_bus_examination(findings_));
+  findings_.warn("board", "", "");
+  EXPECT_FALSE(wants_bus_examination(findings_));
+  findings_.fail("sensor left", "", "");
+  EXPECT_TRUE(wants_bus_examination(findings_));
 }
 
 TEST_F(DoctorTest, ARateBeyondTheBusBudget) {

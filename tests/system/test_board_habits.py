@@ -1,0 +1,147 @@
+"""Boards with habits that people report: what status, events and doctor say of them."""
+
+import json
+
+import bench
+
+
+class BoardHabits(bench.BenchTest):
+    def habit(self, kind, *arguments):
+        """An emulator with this habit from the start."""
+        emulator = self.emulator("--faults", self.write("habit.yaml", f"faults:\n  - {{name: it, kind: {kind}}}\n"),
+                                 *arguments)
+        emulator.ask("fault it")
+        return emulator
+
+    def kinds(self, daemon):
+        return [event["kind"] for event in daemon.events()]
+
+    def test_a_connection_that_is_closed_at_once_is_none(self):
+        emulator = self.habit("disconnect")
+        rig = self.rig(emulator.port)
+        finding = next(f for f in json.loads(self.softgrip("doctor", "--rig", rig, "--json", expect=6).stdout)["findings"]
+                       if f["name"] == "board")
+        self.assertIn("closed it before its first answer", finding["text"])
+        self.assertIn("no further client", finding["advice"])
+        daemon = self.daemon(rig)
+        bench.wait_for("what happens", lambda: daemon.status()["bus"]["failure_kind"] == "closed_at_once")
+        bench.wait_for("more attempts", lambda: daemon.status()["bus"]["attempts"] > 3)
+        status = daemon.status()["bus"]
+        self.assertFalse(status["connected"])
+        self.assertIn("closed it before its first answer", status["failure"])
+        self.assertNotIn("bus_connected", self.kinds(daemon))
+        self.assertIn("closed it before", " ".join(self.softgrip("status").stdout.split()))
+        finding = next(f for f in json.loads(self.softgrip("doctor", "--json", expect=6).stdout)["findings"]
+                       if f["name"] == "board")
+        self.assertIn("no further client", finding["advice"])
+        emulator.ask("clear it")
+        daemon.wait_for_state("idle")
+        self.assertIn("bus_connected", self.kinds(daemon))
+        self.assertIsNone(daemon.status()["bus"]["failure_kind"])
+
+    def test_a_board_that_ignores_what_comes_first_needs_its_settle_time(self):
+        emulator = self.habit("settling, settle_s: 0.6")
+        changes = [(r"connect_deadline_s: [\d.]+", "connect_deadline_s: 3")]
+        self.assertNotIn("settle_s", self.rig(emulator.port, changes).read_text())
+        daemon = self.daemon(self.rig(emulator.port, changes))
+        bench.wait_for("attempts", lambda: daemon.status()["bus"]["attempts"] > 2, patience_s=30)
+        self.assertEqual(daemon.status()["state"], "starting")
+        daemon.end()
+        changes = [(r"connect_deadline_s: [\d.]+", "connect_deadline_s: 3\n    settle_s: 0.6")]
+        daemon = self.daemon(self.rig(emulator.port, changes))
+        daemon.wait_for_state("idle")
+        emulator.ask("clear it")
+
+    def board(self, name, *changes):
+        """The emulator's own board map with changes, as config/boards/NAME.yaml."""
+        text = (self.folder / "config/boards/softgrip-sim.yaml").read_text().replace("timeout_s: 0.2", "timeout_s: 2")
+        for old, new in changes:
+            self.assertIn(old, text)
+            text = text.replace(old, new)
+        (self.folder / f"config/boards/{name}.yaml").write_text(text)
+        return name
+
+    def described(self, port, board, session=""):
+        """A rig with this board map and these keys of the session."""
+        return self.rig(port, [(r"map: boards/adam-6024.yaml", f"map: boards/{board}.yaml"), (r"unit: 1", "unit: 1" + session)])
+
+    def examined(self, described, emulated, *arguments, fault="", session=""):
+        """What the doctor says of a board that is not as its map says."""
+        if fault:
+            arguments += ("--faults", self.write("fault.yaml", f"faults:\n  - {{name: it, kind: {fault}}}\n"))
+        emulator = self.emulator(*arguments, board=emulated)
+        if fault:
+            emulator.ask("fault it")
+        report = json.loads(self.softgrip("doctor", "--rig", self.described(emulator.port, described, session), "--json",
+                                          expect=6).stdout)
+        found = [f for f in report["findings"] if f["name"].startswith("modbus ")]
+        self.assertEqual(len(found), 1, report)
+        self.assertEqual(found[0]["verdict"], "fail")
+        return found[0]
+
+    def assert_says(self, finding, text, advice):
+        self.assertIn(text, finding["text"])
+        self.assertIn(advice, finding["advice"])
+
+    def test_the_doctor_says_the_word_order(self):
+        plain = self.board("plain")
+        for order in ("low_first", "high_first_bytes_swapped", "low_first_bytes_swapped"):
+            with self.subTest(order):
+                other = self.board(order, ("word_order: high_first", f"word_order: {order}"))
+                self.assert_says(self.examined(plain, other), "make no sense as `high_first`", f"word_order: {order}")
+
+    def test_the_doctor_says_addresses_that_are_off_by_one(self):
+        inputs = "function: 3\n  address: 0\n  count: 8"
+        at = {n: self.board(f"at_{n}", (inputs, inputs.replace("0", str(n)))) for n in (1, 400, 401)}
+        self.assert_says(self.examined(at[1], self.board("plain")), "one register lower", "address_base: 1")
+        self.assert_says(self.examined(at[400], at[401]), "one register higher, from 401 on, it answers", "by one")
+
+    def test_the_doctor_says_what_an_exception_means(self):
+        plain = self.board("plain")
+        self.assert_says(self.examined(plain, plain, "--unit", "3"), "(exception 11); unit id 3 answers", "unit: 3")
+        self.assert_says(self.examined(plain, plain, fault="few_registers, most: 8"), "(exception 3); 8 registers",
+                         "max_registers: 8")
+        self.assert_says(self.examined(plain, plain, fault="exception_reply, code: 1"), "(exception 1)", "with its manual")
+        self.assert_says(self.examined(plain, plain, fault="exception_reply, code: 4"), "(exception 4)", "fails by itself")
+
+    def test_the_doctor_says_what_a_gateway_does(self):
+        plain = self.board("plain")
+        self.assert_says(self.examined(plain, plain, "--rtu-over-tcp"), "the other framing", "framing: rtu")
+        self.assert_says(self.examined(plain, plain, fault="wrong_transaction"), "its answers are right",
+                         "accept_no_transaction_id")
+
+    def test_a_rig_that_says_its_habits_works(self):
+        plain = self.board("plain")
+        few = self.board("few", ("fc23: true", "fc23: true\nmax_registers: 8"))
+        risk = 'accept_no_transaction_id: "a late answer may pass for the answer to a later request"'
+        for board, session, kind, arguments in (
+                (plain, "framing: rtu", "stray_bytes, before: 1, behind: 2", ("--rtu-over-tcp",)),
+                (plain, risk, "wrong_transaction", ()),
+                (few, "repeat_after_s: 0.02", "few_registers, most: 8", ())):
+            with self.subTest(kind):
+                emulator = self.emulator("--faults", self.write("f.yaml", f"faults:\n  - {{name: it, kind: {kind}}}\n"),
+                                         *arguments, board=board)
+                emulator.ask("fault it")
+                daemon = self.daemon(self.described(emulator.port, board, f"\n    {session}"))
+                daemon.wait_for_state("idle")
+                self.assertEqual(daemon.end(), 0)
+
+    def check(self, session):
+        return self.softgrip("check", self.described(1502, self.board("plain"), session), expect=3).stderr
+
+    def test_what_cannot_be_is_refused_where_it_stands(self):
+        for session, message in (
+                ("settle_s: 0.5", "`settle_s` is not below `connect_deadline_s` (0.5 s)"),
+                ("settle_s: -1", "`settle_s`"),
+                ("repeat_after_s: 0.15", "`repeat_after_s` is not below `exchange_deadline_s` (0.15 s)"),
+                ("framing: ascii", "`framing` must be `tcp` or `rtu`"),
+                ("silence_s: 0.01", "silence_s"),
+                ("accept_no_transaction_id: yes", "does not say what is accepted")):
+            with self.subTest(session):
+                told = self.check(f"\n    {session}")
+                self.assertRegex(told, r"test_rig.yaml:14:\d+: ")
+                self.assertIn(message, told)
+
+
+if __name__ == "__main__":
+    bench.main()

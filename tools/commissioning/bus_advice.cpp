@@ -1,0 +1,45 @@
+#include "tools/commissioning/bus_advice.h"
+
+#include <algorithm>
+#include <array>
+
+#include "drivers/board/board.h"
+
+namespace softgrip::tools::doctor {
+namespace {
+
+using drivers::BusStatus;
+
+struct BusAdvice {
+  BusStatus status;
+  std::string_view text;
+};
+
+constexpr std::array<BusAdvice, 5> bus_advices{{
+    {BusStatus::disconnected,
+     "check power and cable of the board, its address in the rig file, and that no other master holds it"},
+    {BusStatus::closed_at_once,
+     "the board can be reached and serves no further client: end the other programs that are connected to "
+     "it, "
+     "or wait until it drops a connection that was cut"},
+    {BusStatus::timed_out,
+     "check power and cable of the board and `unit` in the rig file; a board that ignores what comes first "
+     "after a connection needs `settle_s`"},
+    {BusStatus::bad_reply,
+     "look for a second master or a gateway that mixes replies; check `unit` in the rig file"},
+    {BusStatus::exception,
+     "the board is reached and refuses the request: compare function, address and count in the board map "
+     "with "
+     "its manual"},
+}};
+
+}  // namespace
+
+std::string_view bus_advice(std::string_view failure_kind) noexcept {
+  const auto* const found = std::find_if(
+      bus_advices.begin(), bus_advices.end(),
+      [failure_kind](const BusAdvice& advice) { return drivers::name_of(advice.status) == failure_kind; });
+  return found == bus_advices.end() ? bus_advices.front().text : found->text;
+}
+
+}  // namespace softgrip::tools::doctor
