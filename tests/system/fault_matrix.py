@@ -150,6 +150,8 @@ class Cell:
                          (r"directory: /tmp/softgrip-runs", f"directory: {self.folder}/runs"),
                          (r"path: /tmp/softgrip.sock", f"path: {self.folder}/softgripd.sock")):
             text = re.sub(old, new, text)
+        text, count = re.subn(r"\bunit: 1\b", f"unit: 1\n    {self.fault.get('session', '')}", text)
+        require(count == 1, "rig_tcp.yaml has no unit")
         path = self.folder / "config" / "matrix.yaml"
         path.write_text(text + (digital_lines.SECTION if self.has_lines() else ""))
         return path
@@ -176,6 +178,15 @@ class Cell:
             self.rig_path = serial_rig.rig_file(self.folder, self.rate)
             self.emulator = serial_rig.Emulator(self.folder, self.rig_path, *arguments)
             self.processes.append(self.emulator)
+            self.proxy = serial_rig.Watcher(self.emulator)
+            return
+        if "map" in self.fault:
+            with (self.folder / "config" / "boards" / "adam-6024.yaml").open("a") as board:
+                board.write(f"\n{self.fault['map']}\n")
+        if self.fault.get("rig") == "rtu_over_tcp":
+            self.emulator = serial_rig.Shared(self.folder, "--rtu-over-tcp", *arguments)
+            self.processes.append(self.emulator)
+            self.rig_path = self.rig_file(self.emulator.port)
             self.proxy = serial_rig.Watcher(self.emulator)
             return
         if self.vacuum:
@@ -523,7 +534,8 @@ def main():
     table = Table()
 
     def wanted(name, phase):
-        if arguments.vacuum and (table.faults[name].get("rig") == "serial" or (name, phase) in NOT_BELOW_REST):
+        other_rig = table.faults[name].get("rig") in ("serial", "rtu_over_tcp") or "map" in table.faults[name]
+        if arguments.vacuum and (other_rig or (name, phase) in NOT_BELOW_REST):
             return False
         return not arguments.cells or any(c in (name, f"{name}/{phase}", f"/{phase}") for c in arguments.cells)
 

@@ -37,9 +37,20 @@ def rig_file(folder, rate_hz, *changes):
     return path
 
 
-class Emulator(bench.Emulator):
-    """softgrip-rig at the device that the rig file names. Its control socket has one client at a time: who watches asks
-    through this one."""
+class Shared(bench.Emulator):
+    """Its control socket has one client at a time: who watches asks through this one."""
+
+    def __init__(self, folder, *arguments):
+        self.one_at_a_time = threading.Lock()
+        super().__init__(folder, *arguments)
+
+    def ask(self, line):
+        with self.one_at_a_time:
+            return super().ask(line)
+
+
+class Emulator(Shared):
+    """softgrip-rig at the device that the rig file names."""
 
     def __init__(self, folder, rig, *arguments):
         self.control_path = folder / "softgrip-rig.sock"
@@ -49,10 +60,6 @@ class Emulator(bench.Emulator):
             self.control_path, *arguments], folder)
         bench.wait_for("the line", lambda: "listening on" in self.output(), pause_s=0.05)
         self.control = bench.Lines(self.control_path)
-
-    def ask(self, line):
-        with self.one_at_a_time:
-            return super().ask(line)
 
 
 class Watcher:

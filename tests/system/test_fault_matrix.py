@@ -30,6 +30,10 @@ class FaultMatrix(unittest.TestCase):
     def test_wire_while_holding(self):
         self.check("blocked_channel/holding")
 
+    def test_habits_of_boards(self):
+        self.check("settling/connect", "request_repeated/closing", "requests_repeated/holding", "no_transaction_id/closing",
+                   "few_registers/closing", "stray_bytes_over_tcp/holding")
+
     def test_outputs_that_are_not_what_was_written(self):
         self.check("asymmetric_information/closing", "received_by_some_only/venting")
 
