@@ -1,6 +1,7 @@
 #pragma once
-// Causes: what a diagnosis may name. All that is known of one stands in its own file in this folder (form.h
-// says what that is), and registry.h lists them; here is what the rest of the diagnosis asks.
+// Declares the causes that a diagnosis may name. Each cause is defined in its own file in this folder (form.h
+// documents the format), and registry.h lists them. This header is the interface to the rest of the
+// diagnosis.
 
 #include <algorithm>
 #include <cstddef>
@@ -18,20 +19,23 @@ namespace softgrip::sysid {
 
 /// A block by which a cause extends a model.
 struct CauseForm {
-  std::size_t type = 0;    ///< index in model::catalogue()
-  bool free_form = false;  ///< as many numbers as it takes to follow anything slow: a fit finds each of them
-                           ///< from zero, so that no look at a start tells what it is worth
-  /// Where fits begin, spread over what is plausible at these scales, within the declared bounds.
+  std::size_t type = 0;  ///< index in model::catalogue()
+  /// The form has as many parameters as it needs to follow any slow signal. A fit finds each from zero, so a
+  /// scan of its start does not show its value.
+  bool free_form = false;
+  /// Returns the start points of fits: they cover the plausible range at these scales, within the declared
+  /// bounds.
   std::vector<model::BlockSpec> (*starts)(const Scales& scales) = nullptr;
-  /// Whether a block of the type has this form; nullptr: any has.
+  /// Returns true if the block has this form. nullptr: every block of the type has it.
   bool (*holds)(const model::BlockSpec& block) = nullptr;
-  /// Whether a fit may move value `index`. A calibration range or a ceiling that the data do not reach stays
-  /// where the start put it.
+  /// Returns true if a fit may move value `index`. A calibration range or a ceiling that the data do not
+  /// reach keeps its start value.
   bool (*is_fitted)(std::size_t index) = nullptr;
-  /// Within what a fit may move value `index`, besides its declared bounds: as far as the block is still what
-  /// it is called.
+  /// Returns the range in which a fit may move value `index`, in addition to its declared bounds. Beyond this
+  /// range the block would represent a different effect.
   Range (*range)(std::size_t index, const Scales& scales, const model::Model& model) = nullptr;
-  /// What a sensor of this shape shows at a displacement [mm]; nullptr where it is none (sensor_shape).
+  /// Returns the reading of a sensor of this shape at a displacement [mm]. nullptr: the form is not a static
+  /// sensor (sensor_shape).
   double (*shown_mm)(const model::BlockSpec& block, double displacement_mm) = nullptr;
 };
 
@@ -55,34 +59,36 @@ struct Cause {
   WhenChanged when_changed;
 
   [[nodiscard]] constexpr bool is_static_sensor() const { return !sensor_shape.empty(); }
-  /// Whether its numbers may hold a share of the other's.
+  /// Returns true if the parameters of this cause may absorb part of the effect of `other`.
   [[nodiscard]] constexpr bool is_confounded_with(const Cause& other) const {
     return std::find(confounded_with.begin(), confounded_with.end(), other.id) != confounded_with.end();
   }
   constexpr bool operator==(const Cause& other) const { return id == other.id; }
 };
 
-/// All causes, in the order in which the signal meets their first forms.
+/// Returns all causes, in the order in which the signal passes their first forms.
 [[nodiscard]] std::span<const Cause> all_causes();
 [[nodiscard]] std::optional<Cause> find_cause(std::string_view id);
-/// The cause of which this block type is a form, or nullptr: the base structure and the sensor's random error
-/// are no causes.
+/// Returns the cause that has this block type as a form. Returns nullptr for the base structure and for the
+/// random error of the sensor, which are not causes.
 [[nodiscard]] const Cause* cause_of(std::size_t block_type);
 
-/// The form in which a block of one of the cause's types stands.
+/// Returns the form of the cause that matches the block.
 [[nodiscard]] const CauseForm& form_of(const Cause& cause, const model::BlockSpec& block);
-/// The same of a block of any of these causes; nullptr: it is of none of them.
+/// Returns the form of the block among all of these causes, or nullptr if none of them has it.
 [[nodiscard]] const CauseForm* form_among(std::span<const Cause> causes, const model::BlockSpec& block);
 
-/// Where the cause stands in a model, in whichever form, or nothing.
+/// Returns the position of the cause in a model, in any of its forms, or an empty value.
 [[nodiscard]] std::optional<std::size_t> position_of(const model::Model& model, const Cause& cause);
-/// The model without it.
+/// Returns the model without the cause.
 [[nodiscard]] model::Model without(model::Model model, const Cause& cause);
 
-/// Why the data cannot answer for this cause ("needs a temperature_c column that varies"), or empty.
+/// Returns the reason why the data cannot test this cause ("needs a temperature_c column that varies"), or an
+/// empty string.
 [[nodiscard]] std::string unanswerable(const Cause& cause, const Scales& scales);
 
-/// The starts of all forms. Empty for a cause that is not found by fitting a trajectory.
+/// Returns the start points of all forms. The list is empty for a cause that is not found by fitting a
+/// trajectory.
 [[nodiscard]] std::vector<model::BlockSpec> starts_of(const Cause& cause, const Scales& scales);
 
 }  // namespace softgrip::sysid

@@ -1,6 +1,6 @@
 #pragma once
-// What a cause's file says, and the helpers to say it by parameter name. docs/how-to/add-a-cause.md shows
-// one.
+// Defines the format of a cause's file, with helpers that name its parameters. docs/how-to/add-a-cause.md
+// shows an example.
 //
 // A cause is a struct in a file of its own. One with a single form is that form; one with several lists them
 // as `using Forms = List<...>`. The first form's block gives the cause its id, title and station; a
@@ -8,9 +8,9 @@
 //
 // A form is a struct derived from FormOf<a block>:
 //   static Starts starts(const Scales&);                   from where fits begin; at least one
-//   static Bounds bounds(const Scales&, const model::Model&);  beyond which the block would be something else
-//                                                          by another name, and pass as a rival that is none
-//   static constexpr std::array<Parameter, N> fitted{...}; what a fit moves; all parameters, where left out
+//   static Bounds bounds(const Scales&, const model::Model&);  limits beyond which the block would duplicate
+//                                                          another effect as a false alternative
+//   static constexpr std::array<Parameter, N> fitted{...}; parameters that a fit moves; default: all
 //   static bool holds(const model::BlockSpec&);            where several forms share a block: whether it is
 //                                                          this one
 //   static constexpr bool free_form = true;                it can follow anything slow: named only where no
@@ -18,22 +18,22 @@
 //
 // A cause must say:
 //   static constexpr WhenChanged when_changed{words, {step, step}, {{{number, way}, ...}}, size};
-//                                                          for who stands beside the rig that it has come
-//                                                          upon; the numbers of a recorded grip that it
-//                                                          moves (health_sign.h), and by what its size is
-//                                                          told (SizedBy), which may be left out
+//                                                          for the operator of a rig that has acquired it;
+//                                                          the indicators of a recorded grip that it moves
+//                                                          (health_sign.h); optionally, the quantity that
+//                                                          states its size (SizedBy)
 //
 // A cause may say, besides:
-//   static constexpr Column needs = ...;                   a column without which nothing can be told
-//   static constexpr std::array advice{Advice::...};       what tells it from others where no waveform does
-//   static constexpr std::string_view twin = "...";        gives the same readings whatever the command
+//   static constexpr Column needs = ...;                   the column that its test requires
+//   static constexpr std::array advice{Advice::...};       actions that separate it if no waveform does
+//   static constexpr std::string_view twin = "...";        a cause with equal readings for every command
 //   static constexpr std::array<std::string_view, N> counterparts{...};
-//       what the sensor may be instead of the actuator or the load, or the reverse, as asked
+//       sensor causes that may replace an actuator or load cause, or the reverse, in the order of testing
 //   static constexpr std::array<std::string_view, N> confounded_with{...};
-//       where one of these may be there too, the number is less certain than its fit says
+//       causes that increase the uncertainty of its parameters beyond that of its fit, if they are present
 //   static constexpr bool is_stop = true;                  holds the readings back at a place
 //   static constexpr bool parts_twins = true;
-//       remembers, between actuator and sensor: twins before it and behind it differ
+//       has memory, between actuator and sensor: equal causes before and behind it give different readings
 //   static constexpr bool is_ideal = true;
 //       no mechanism is quite like it: among causes that tie and have as many numbers, the other one is named
 //   static constexpr std::string_view sensor_shape = "...";
@@ -58,16 +58,15 @@
 
 namespace softgrip::sysid {
 
-/// What somebody can do to tell causes apart that no waveform does. Two causes that share one are told apart
-/// by it.
+/// Actions that separate causes where no waveform can. An action separates two causes that share it.
 enum class Advice : std::uint8_t {
   change_load,         ///< change the load, move the object, or hold the sensor against a gauge
   leave_vented,        ///< leave the finger vented for an hour and read its zero
   record_temperature,  ///< record the temperature
-  vary_temperature,    ///< the same, and that whatever the other cause is
+  vary_temperature,    ///< record the temperature and vary it, with any other cause
 };
 
-/// What somebody checks of a change, and how it follows from what was fitted.
+/// The quantity that an operator checks after a change, and its relation to the fitted parameters.
 struct SizedBy {
   enum class Of : std::uint8_t {
     full_pressure,  ///< what it does at the highest pressures
@@ -83,16 +82,16 @@ struct SizedBy {
   double factor = 1;
 };
 
-/// For who stands beside a rig whose finger has got the cause since it was healthy. Empty: it is none that
-/// comes.
+/// Instructions for the operator if a finger has acquired the cause since it was healthy. Empty: the cause
+/// does not develop over time.
 struct WhenChanged {
   std::string_view words;                      ///< "the finger rings"
   std::array<std::string_view, 2> next_steps;  ///< what a person can do about it, the quicker first
   HealthSigns signs{};                         ///< how recorded grips show it; none: they do not
-  SizedBy size{};                              ///< what it is measured by
+  SizedBy size{};                              ///< quantity that states the size
 };
 
-/// Between what a value may be.
+/// The range of a value.
 struct Range {
   double lower = -std::numeric_limits<double>::infinity();
   double upper = std::numeric_limits<double>::infinity();
@@ -102,13 +101,13 @@ struct Range {
 template <class... T>
 struct List {};
 
-/// What all forms have; Block is the class template of the block.
+/// Common members of all forms. Block is the class template of the block.
 template <template <class> class Block>
 struct FormOf {
   using BlockType = Block<double>;
   static constexpr std::string_view id = BlockType::info.id;
 
-  /// A parameter of the block by its name: one that the block does not have is an error of the compiler.
+  /// Selects a parameter of the block by name. An unknown name is a compile-time error.
   struct Parameter {
     std::size_t index;
     // NOLINTNEXTLINE(google-explicit-constructor): so that a name can be written where a parameter is meant.
@@ -135,7 +134,8 @@ struct FormOf {
   };
   using Bounds = std::vector<Bound>;
 
-  /// The block with these values; the others do nothing or, where they cannot, are typical.
+  /// Returns the block with these values. All other values are neutral or, if the block has no neutral value,
+  /// typical.
   [[nodiscard]] static Values start(std::initializer_list<Value> given) {
     Values values;
     for (const model::ParameterSpec& spec : Block<double>::parameters)
@@ -144,7 +144,7 @@ struct FormOf {
     return values;
   }
 
-  /// Every combination of these values, the last named varying fastest.
+  /// Returns all combinations of these values. The last axis varies fastest.
   [[nodiscard]] static Starts every(std::initializer_list<Axis> axes) {
     Starts all{start({})};
     for (const Axis& axis : axes) {

@@ -1,5 +1,5 @@
 #pragma once
-// The few numbers by which a recorded grip is scored, and how a cause moves them.
+// Defines the indicators that are computed from a recorded grip, and how a cause moves them.
 
 #include <array>
 #include <cstddef>
@@ -8,16 +8,16 @@
 
 namespace softgrip::sysid {
 
-/// Of one finger in one recorded run.
+/// Indicators of one finger in one recorded run.
 enum class HealthNumber : std::uint8_t {
   gain,           ///< displacement at full pressure, as free motion shows it
-  zero,           ///< reading at rest before the first motion, beyond the base
-  lag,            ///< by how much free motion comes later than the base says
-  creep,          ///< how much farther than the base it goes on while its pressure stands still
-  loop_width,     ///< how much higher than the base it is on its way back
+  zero,           ///< reading at rest before the first motion, relative to the baseline
+  lag,            ///< delay of free motion relative to the baseline
+  creep,          ///< additional motion at constant pressure, relative to the baseline
+  loop_width,     ///< additional displacement during unloading, relative to the baseline
   pressure_loss,  ///< command minus measured pressure while it holds
-  leak,           ///< by how much the measured pressure falls per second while the command stands still
-  contact,        ///< reading at the touch
+  leak,           ///< decrease of the measured pressure per second at constant command
+  contact,        ///< reading at contact
   time_to_grip,   ///< from the first step to HOLDING
 };
 inline constexpr std::size_t health_numbers = 9;
@@ -42,15 +42,15 @@ inline constexpr std::array<HealthNumberInfo, health_numbers> health_number_info
   return health_number_infos[static_cast<std::size_t>(number)];
 }
 
-/// Which way a number goes.
+/// Direction in which an indicator moves.
 enum class Moves : std::uint8_t { not_at_all, up, down, either_way };
 
-/// One number that a cause moves.
+/// One indicator that a cause moves.
 struct HealthSign {
   HealthNumber number = HealthNumber::gain;
   Moves moves = Moves::not_at_all;
 };
-/// Those that a cause moves; the rest of the array stays as it is.
+/// The indicators that a cause moves. Unused elements keep their default values.
 using HealthSigns = std::array<HealthSign, 4>;
 
 }  // namespace softgrip::sysid

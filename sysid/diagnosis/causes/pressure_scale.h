@@ -1,5 +1,5 @@
 #pragma once
-// The scale of the valve or of the pressure's sensor is another than was entered.
+// The scale of the valve or of the pressure sensor differs from the configured scale.
 
 #include "model/blocks/pressure_scale.h"
 #include "sysid/diagnosis/causes/form.h"
@@ -10,7 +10,7 @@ namespace softgrip::sysid::causes {
 /// displacements it is a gain.
 struct PressureScale : FormOf<model::PressureScale> {
   static constexpr bool found_by_fitting = false;
-  /// As a change it is a leak's or the finger's: nothing recorded tells them apart.
+  /// As a change, it looks like a leak or a change of the finger. No recorded quantity separates them.
   static constexpr WhenChanged when_changed{};
 };
 

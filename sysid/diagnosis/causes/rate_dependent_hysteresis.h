@@ -48,7 +48,7 @@ struct RateDependentHysteresis {
     static typename Form::Bounds bounds(const Scales& s, const model::Model&) {
       return {// A loop that is wider by the same at all rates of the data is only wider.
               {"rate_kpa_per_s", 0.05 * s.largest_kpa, 20 * s.largest_kpa},
-              // What looks back farther is not a rate but a history.
+              // A longer memory describes the history of the pressure, not its rate.
               {"settling_s", 0.5 * s.sample_s, 0.5}};
     }
   };

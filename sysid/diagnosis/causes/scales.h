@@ -1,5 +1,5 @@
 #pragma once
-// What the data say about the sizes at which causes can work.
+// Defines the sizes at which causes can act, as the data show them.
 
 #include <algorithm>
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace softgrip::sysid {
 
-/// A column of a log without which some causes cannot be told.
+/// A log column that some causes require.
 enum class Column : std::uint8_t { none, temperature_c, supply_kpa };
 
 /// "temperature_c", "supply_kpa"
@@ -24,28 +24,28 @@ struct Scales {
   double span_mm = 0;             ///< of the displacement
   double largest_kpa = 0;         ///< of the drive
   double campaign_s = 0;          ///< all records together
-  double sample_s = 0;            ///< shortest usual interval between readings that are told apart
+  double sample_s = 0;            ///< shortest usual interval between distinct readings
   double largest_supply_kpa = 0;  ///< 0: no such column
   bool has_temperature = false;   ///< and it varies
   bool has_supply = false;        ///< and it varies
   bool has_valve = true;          ///< false: the measured pressure drives the model
-  /// What stands out of the residual's spectrum, the clearest first.
+  /// The significant lines in the spectrum of the residual, most significant first.
   std::vector<Line> residual_lines;
 
-  /// The shortest time in which a finger runs in or a sensor warms up. What settles within seconds is how a
-  /// log begins, or creep.
+  /// Returns the shortest time in which a finger runs in or a sensor warms up. Faster effects belong to the
+  /// start of a log or to creep.
   [[nodiscard]] double soonest_s() const {
     return std::max(0.02 * campaign_s, std::min(10.0, 0.4 * campaign_s));
   }
-  /// Of the finger over all pressures.
+  /// Returns the gain of the finger over its whole pressure range.
   [[nodiscard]] double gain_mm_per_kpa() const { return largest_kpa > 0 ? span_mm / largest_kpa : 1; }
-  /// Whether the column is there and varies.
+  /// Returns true if the column exists and varies.
   [[nodiscard]] bool has(Column column) const {
     return column == Column::none || (column == Column::temperature_c ? has_temperature : has_supply);
   }
 };
 
-/// The scales of a campaign, but for the residual's peaks.
+/// Returns the scales of a campaign, without the peaks of the residual.
 [[nodiscard]] Scales scales_of(const std::vector<Record>& records);
 
 }  // namespace softgrip::sysid

@@ -1,5 +1,5 @@
 #pragma once
-// The zero of the sensor wanders: steadily, while it warms up, to and fro, or as it likes.
+// The zero of the sensor drifts: steadily, during warm-up, sinusoidally, or along a piecewise linear curve.
 
 #include <algorithm>
 #include <cmath>
@@ -24,7 +24,7 @@ struct SensorDrift {
       {{{HealthNumber::zero, Moves::either_way}, {HealthNumber::contact, Moves::either_way}}},
       {SizedBy::Of::largest, "the zero wanders by up to", "mm"}};
 
-  /// One way.
+  /// The zero drifts at a constant rate.
   struct Steady : FormOf<model::SensorDrift> {
     static Starts starts(const Scales& s) {
       const double rate = 3600 * 0.05 * s.span_mm / s.campaign_s;
@@ -32,7 +32,7 @@ struct SensorDrift {
     }
   };
 
-  /// While it warms up.
+  /// The zero drifts while the sensor warms up.
   struct WarmUp : FormOf<model::SensorWarmUp> {
     static Starts starts(const Scales& s) {
       return every(
@@ -44,7 +44,7 @@ struct SensorDrift {
     }
   };
 
-  /// To and fro.
+  /// The zero oscillates slowly.
   struct Wander : FormOf<model::SensorWander> {
     /// Waves of every phase, small and not so small.
     static Starts starts(const Scales& s) {
@@ -61,14 +61,14 @@ struct SensorDrift {
       }
       return starts;
     }
-    /// It turns a dozen times in a campaign at most; of a slower one than three campaigns only the trend
-    /// shows.
+    /// The zero completes at most 12 periods in a campaign. If the period exceeds three campaigns, only the
+    /// trend is visible.
     static Bounds bounds(const Scales& s, const model::Model&) {
       return {{"wander_period_s", s.campaign_s / 12, 3 * s.campaign_s}};
     }
   };
 
-  /// As it likes, from knot to knot.
+  /// The zero follows a piecewise linear curve.
   struct Knots : FormOf<model::SensorFreeDrift> {
     static constexpr bool free_form = true;
     static constexpr std::array<Parameter, 0> fitted{};

@@ -8,7 +8,7 @@ namespace softgrip::sysid::causes {
 
 struct TransportDelay : FormOf<model::TransportDelay> {
   static constexpr std::array<std::string_view, 1> confounded_with{"valve_lag"};
-  /// Whatever comes later by so little comes more slowly, too.
+  /// An effect that delays the response by less than this also slows it down.
   static constexpr bool is_ideal = true;
   static constexpr Appears appears = Appears::moving;
   static constexpr WhenChanged when_changed{

@@ -1,5 +1,5 @@
 #pragma once
-// Causes that give the same readings whatever the command.
+// Finds causes that give the same readings for every command.
 
 #include <optional>
 #include <vector>
@@ -9,18 +9,19 @@
 
 namespace softgrip::sysid {
 
-/// The cause that bends the readings as `cause` does, at the other end of the load: stiffening and sensor
-/// nonlinearity are both some function of displacement, and which function each is, nobody knows beforehand.
-/// How well the one form of each that the catalogue has meets the data says nothing about where the bend is.
-/// Empty where a block with memory stands between the two in `model` (Cause::parts_twins): a bend before it
-/// and a bend behind it differ.
+/// Returns the cause that has the same effect as `cause` at the other end of the load. Stiffening and sensor
+/// nonlinearity are both unknown functions of displacement. Therefore the fit of each catalogue form does not
+/// show where the nonlinearity is. Returns an empty value if `model` has a block with memory between the two
+/// positions (Cause::parts_twins). In that case the two causes give different readings.
 [[nodiscard]] std::optional<Cause> twin_of(const Cause& cause, const model::Model& model);
 
-/// What the sensor may be instead of the actuator or the load, or the reverse, in the order in which it is
-/// asked; empty for a cause that bends nothing.
+/// Returns the sensor causes that may explain the effect instead of an actuator or load cause, or the
+/// reverse. They are in the order in which they are tested. The list is empty for a cause without a static
+/// nonlinearity.
 [[nodiscard]] std::vector<Cause> sensor_counterparts(const Cause& cause);
 
-/// Whether no command can tell the two apart, as far as `model` is right about the rest.
+/// Returns true if no command can separate the two causes. The result assumes that the rest of `model` is
+/// correct.
 [[nodiscard]] bool are_twins(const Cause& one, const Cause& other, const model::Model& model);
 
 }  // namespace softgrip::sysid

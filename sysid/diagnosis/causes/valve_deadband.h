@@ -33,9 +33,9 @@ struct ValveDeadband {
       return starts;
     }
 
-    /// The misfit has a minimum wherever the staircase gains or loses a
-    /// step on the way to the largest pressure: starts a step apart leave none out, down to bands of 1/60 of
-    /// it. Smaller ones differ by little more than their size.
+    /// The model error has a minimum wherever the stick-slip motion gains or loses a step on the way to the
+    /// largest pressure. Starts that are one step apart cover all minima, down to bands of 1/60 of the
+    /// largest pressure. The effects of smaller bands differ by little more than their size.
     static std::vector<double> bands_kpa(const Scales& s) {
       std::vector<double> bands;
       for (int steps = 5; steps < 60; ++steps) bands.push_back(s.largest_kpa / steps);

@@ -1,12 +1,12 @@
 #pragma once
-// What counts as clear, in every sentence, table and figure.
+// Defines when an effect is significant, for every sentence, table and figure.
 
 namespace softgrip::sysid {
 
-/// Whether an effect is drawn and worded. One rule for all: chance alone would show it less than once in
-/// fifty, and it is worth a twentieth of the error's structure. What is looked at beside others comes
-/// adjusted for that. Stricter than the 5 % that are aimed at: in short logs with a long memory the blocks
-/// are fewer memories long than wanted, and the tests are a little too easily impressed.
+/// Returns true if an effect is large enough to be drawn and described. Its p-value must be below 0.02, and
+/// it must explain at least 5 % of the unexplained error. For effects that are tested together, pass the
+/// adjusted p-value. The limit is stricter than the intended 5 %: in short logs with a long correlation time,
+/// the blocks are too short and the tests reject too often.
 [[nodiscard]] constexpr bool is_clear(double p_value, double share_percent) {
   constexpr double once_in_fifty = 0.02;
   constexpr double a_twentieth_percent = 5;

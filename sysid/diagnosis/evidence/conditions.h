@@ -1,5 +1,5 @@
 #pragma once
-// Conditions: what was going on at a sample, by which an error may differ.
+// Computes the conditions at a sample on which an error may depend.
 
 #include <cstddef>
 #include <cstdint>
@@ -10,13 +10,13 @@
 
 namespace softgrip::sysid {
 
-/// What the pressure does at a sample.
+/// State of the pressure at a sample.
 enum class Branch : std::uint8_t { rest, loading, hold, unloading };
 [[nodiscard]] const char* name_of(Branch branch);
 
-/// What a record's drive has been through, by sample.
+/// History of a record's drive, by sample.
 struct DriveHistory {
-  std::vector<double> rate_kpa_per_s;  ///< slope over a tenth of a second, 0 where the pressure stands
+  std::vector<double> rate_kpa_per_s;  ///< slope over 0.1 s, 0 at constant pressure
   std::vector<Branch> branch;
   std::vector<bool> falling;          ///< the last motion was downwards
   std::vector<double> dwell_s;        ///< since the pressure stopped; NaN while it moves
@@ -28,7 +28,7 @@ struct DriveHistory {
 };
 [[nodiscard]] DriveHistory history_of(const Record& record);
 
-/// Samples of all records that have a reading, every so many of each, one after the other.
+/// Samples of all records that have a reading, thinned evenly and concatenated.
 struct Samples {
   std::vector<std::size_t> record;
   std::vector<std::size_t> index;  ///< in its record
@@ -36,10 +36,10 @@ struct Samples {
 
   [[nodiscard]] std::size_t size() const noexcept { return record.size(); }
 };
-/// About `most` samples. Those where any of `residual_mm` is NaN are left out.
+/// Returns about `most` samples. Samples with a NaN in `residual_mm` are omitted.
 [[nodiscard]] Samples pooled_samples(const std::vector<Record>& records,
                                      const std::vector<std::vector<double>>& residual_mm, std::size_t most);
-/// The values of `by_record` at the samples.
+/// Returns the values of `by_record` at the samples.
 [[nodiscard]] std::vector<double> pooled(const Samples& samples,
                                          const std::vector<std::vector<double>>& by_record);
 
@@ -51,10 +51,11 @@ struct Condition {
   std::vector<double> value;  ///< by sample; NaN: does not apply
   bool logarithmic = false;
   std::vector<std::string> categories;  ///< names of the values 0, 1, ...; empty: a number
-  /// Which of `groups` a sample belongs to: their curves are told apart (loading, unloading).
+  /// The element of `groups` to which a sample belongs. The curves of the groups are kept separate (loading,
+  /// unloading).
   std::vector<std::uint8_t> group;
   std::vector<std::string> groups;
-  std::string why_not;  ///< why nothing can be said, or empty
+  std::string why_not;  ///< reason why the condition was not tested, or empty
 };
 
 /// branch, cycle, amplitude, rate, dwell, history, position, loop (position by the direction of the last

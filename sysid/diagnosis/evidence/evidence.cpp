@@ -20,11 +20,11 @@ constexpr std::size_t most_samples = 12000;
 constexpr std::size_t most_bins = 10;
 constexpr std::size_t fewest_in_bin = 20;
 constexpr std::size_t draws = 1999;
-/// A block is so many memories long, at least, and there are so many blocks, at least.
+/// Smallest block length in correlation times and in seconds, and smallest number of blocks.
 constexpr double memories_per_block = 8;
 constexpr double shortest_block_s = 4;
 constexpr std::size_t fewest_blocks = 12;
-/// Below this share of the noise's variance there is no structure to be divided among conditions.
+/// Below this share of the noise variance, there is no unexplained error to divide among conditions.
 constexpr double worth = 0.01;
 
 /// Integral of the autocorrelation of what is not white: from the first lag on, relative to it.

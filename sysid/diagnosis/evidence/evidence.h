@@ -1,13 +1,13 @@
 #pragma once
-// Where a model is wrong: what is left of the readings, by condition, with tests that stay honest when
-// neighbouring errors resemble each other.
+// Locates the error of a model: the residual by condition. The tests remain valid if neighbouring errors are
+// correlated.
 //
-// The samples are cut into blocks longer than the residual's memory. A conditional mean's interval is that of
-// a mean of clusters (Liang and Zeger 1986). Whether conditional means differ is tested by giving whole
-// blocks random signs (the wild bootstrap, Liu 1988, on blocks): if the error does not depend on the
-// condition, a block's error might as well have had the other sign; correlation inside a block and unequal
-// spread stay as they were. The share of the structure that a condition explains is judged on blocks whose
-// own samples are not in the means.
+// The samples are cut into blocks longer than the correlation time of the residual. The interval of a
+// conditional mean is that of a mean of clusters (Liang and Zeger 1986). Differences between conditional
+// means are tested with random signs of whole blocks (wild bootstrap, Liu 1988, on blocks). If the error does
+// not depend on the condition, both signs of a block's error are equally likely. The test preserves the
+// correlation inside a block and unequal variances. The share that a condition explains is evaluated on
+// blocks whose own samples are not in the means.
 
 #include <cstddef>
 #include <cstdint>
@@ -21,7 +21,7 @@
 
 namespace softgrip::sysid {
 
-/// The residual where a condition has about one value.
+/// The residual in a narrow range of a condition.
 struct ConditionBin {
   double value = 0;  ///< mean of the condition
   std::string label;
@@ -33,13 +33,13 @@ struct ConditionBin {
   double rms_mm = 0;
 };
 
-/// What a condition has to do with a residual.
+/// Dependence of a residual on one condition.
 struct ConditionEvidence {
   Condition condition;  ///< without its samples
   std::vector<ConditionBin> bins;
   double share_percent = 0;  ///< of the structural variance, on blocks outside the means; 0 if negative
-  double p_value = 1;        ///< that means differ so much by chance
-  double p_adjusted = 1;     ///< for looking at all conditions (Holm 1979)
+  double p_value = 1;        ///< probability of such a difference between means by chance
+  double p_adjusted = 1;     ///< adjusted for testing all conditions (Holm 1979)
   bool clear = false;        ///< is_clear(p_adjusted, share_percent)
 };
 
@@ -73,7 +73,7 @@ struct ResidualEvidence {
                                                 const std::vector<Condition>& conditions, double noise_mm,
                                                 std::uint64_t seed);
 
-/// A sign that recalibration bent the model to swallow something that is not in its structure.
+/// A sign that the refit absorbed an effect outside its structure and became unphysical.
 struct UnphysicalSign {
   std::string id;  ///< "wrong_way_first", "stiffness_near_zero", "creep_beyond_data", "at_bound"
   std::string sentence;
@@ -83,7 +83,7 @@ struct UnphysicalSign {
 [[nodiscard]] std::vector<UnphysicalSign> unphysical_signs(const model::Model& model,
                                                            const std::vector<Record>& records);
 
-/// The model as given, recalibrated and extended.
+/// The residuals of the given, refitted and extended models.
 struct Evidence {
   ResidualEvidence as_given;
   ResidualEvidence recalibrated;

@@ -90,8 +90,8 @@ void add_curve(const Periodogram& p, SpectrumEvidence& evidence) {
   }
 }
 
-/// The level around bin b without its own lobe: the higher median of its two sides, for a misfit's spectrum
-/// is steep. 0 where there is too little on a side.
+/// Returns the level around bin b without its own lobe. The level is the higher median of the two sides,
+/// because the spectrum of a model error is steep. Returns 0 if a side has too few bins.
 double level_around(const Periodogram& p, std::size_t b, std::size_t padding) {
   const std::size_t reach = around * padding, width = lobe * padding;
   std::vector<double> low, high;
@@ -104,7 +104,7 @@ double level_around(const Periodogram& p, std::size_t b, std::size_t padding) {
   return high.size() < fewest ? below : std::max(below, median_of(std::span(high)));
 }
 
-/// The command itself has a line there: whatever answers to it has one too.
+/// Returns true if the command itself has a line there. Every response to it then has one too.
 bool driven(const Periodogram& drive, std::size_t b, std::size_t padding) {
   constexpr double stands_out = 10;
   const std::size_t width = lobe * padding;

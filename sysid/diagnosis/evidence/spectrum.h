@@ -1,5 +1,5 @@
 #pragma once
-// The spectrum of a residual, and whether a line stands out of it.
+// Computes the spectrum of a residual and tests it for a significant line.
 
 #include <vector>
 
@@ -8,9 +8,9 @@
 
 namespace softgrip::sysid {
 
-/// Periodograms with a Hann window, summed over the records, on about a hundred frequencies evenly spaced in
-/// their logarithm. A line's power is compared with the median of its neighbourhood, so that the slow
-/// structure of a misfit is no line.
+/// Computes periodograms with a Hann window and sums them over the records. About 100 frequencies are spaced
+/// evenly on a logarithmic scale. The power of a line is compared with the median of its neighbourhood.
+/// Therefore slow model errors do not count as lines.
 /// @param structural_mm2  variance beyond the noise; 0: no shares.
 [[nodiscard]] SpectrumEvidence spectrum_of(const std::vector<Record>& records,
                                            const std::vector<std::vector<double>>& residual_mm,

@@ -12,9 +12,9 @@
 namespace softgrip::sysid {
 namespace {
 
-/// A branch that would move the finger by so many times its span is a stiffness near zero.
+/// A branch has a stiffness near zero if it would move the finger by more than this multiple of its span.
 constexpr double spans_of_a_branch = 3;
-/// A time constant longer than so much of the longest log is not seen in it.
+/// The data do not show a time constant longer than this share of the longest log.
 constexpr double share_of_log = 1.0;
 
 void add_branches(const model::Model& model, const std::vector<Record>& records,

@@ -18,15 +18,15 @@ namespace {
 
 /// Beyond this a separation is as good as certain, and more of it is worth nothing.
 constexpr double certain_sigma = 40;
-/// Rivals that are followed for each cause.
+/// Number of alternatives that are tested for each cause.
 constexpr std::size_t most_rivals = 4;
-/// Waveforms whose separation is confirmed by true fits.
+/// Number of waveforms whose separation is confirmed by nonlinear fits.
 constexpr std::size_t confirmed = 2;
 constexpr double usual_slew_kpa_per_s = 300;
-/// What a rig needs before it starts: to find rest.
+/// Time that a rig needs before the start, to find rest.
 constexpr double rest_before_s = 10;
 
-/// The causes that could stand in one place.
+/// The alternative causes for one position.
 struct Contest {
   std::vector<Hypothesis> hypotheses;  ///< what is named first
   std::vector<std::string> ids;
@@ -49,7 +49,7 @@ std::vector<Cause> next_best(const NamedCause& named) {
   return causes;
 }
 
-/// Why there is no pair to be told apart.
+/// Returns the reason why there is no pair to separate.
 std::string without_pairs(const Diagnosis& d) {
   std::string open;
   for (const NamedCause& named : d.causes) {
@@ -242,7 +242,7 @@ class Designer {
     result_.predicted_separation_sigma = least;
   }
 
-  /// Whether a gauge would tell what no waveform does.
+  /// Returns true if a gauge can separate the pair and no waveform can.
   [[nodiscard]] bool asks_for_gauge(const Pair& pair, const AdviceFacts& facts) const {
     const auto one = find_cause(contests_[pair.contest].ids[pair.one]);
     const auto other = find_cause(contests_[pair.contest].ids[pair.other]);

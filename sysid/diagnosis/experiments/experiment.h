@@ -1,6 +1,6 @@
 #pragma once
-// The next experiment: the waveform of the menu on which rivals that explain the data alike would differ
-// most, after each rival had every chance to explain what the other predicts.
+// Designs the next experiment. It selects the waveform of the menu on which alternatives that explain the
+// data equally well differ most. Each alternative is first refitted to the prediction of the other.
 
 #include <optional>
 #include <string>
@@ -16,64 +16,65 @@ namespace softgrip::sysid {
 struct ExperimentOptions {
   /// Not set: the largest pressure of the logs, 300 kPa/s.
   std::optional<RigLimits> limits;
-  /// Also where the verdict has no rivals: then against the next best candidates.
+  /// Also design an experiment if the verdict has no alternatives, against the next best candidates.
   bool always = false;
   /// The rig can record the valve's pressure, but the logs do not have it (for advice).
   bool pressure_recorded = false;
   double most_minutes = 10;
-  /// Menu entries that were run already: not proposed again.
+  /// Menu entries that were already played; they are not proposed again.
   std::vector<std::string> done;
   unsigned threads = 0;
 };
 
-/// How far two structures would be apart.
+/// Predicted distance between two structures.
 struct Separation {
   std::string one;
   std::string other;
-  /// Root of the sum of squares of what remains between them, in standard deviations of the noise, as
-  /// correlated as the noise was found: the smaller one of `one` being true and `other` refitted and of the
-  /// reverse.
+  /// Root of the sum of squares of the remaining difference, in standard deviations of the noise. The noise
+  /// has its estimated correlation. The value is the smaller of two cases: `one` is true and `other` is
+  /// refitted, or the reverse.
   double sigma = 0;
 };
 
-/// One entry of the menu, judged.
+/// One evaluated entry of the menu.
 struct JudgedWaveform {
   Waveform waveform;
   double minutes = 0;  ///< with the rest before it
   std::vector<Separation> separations;
-  double merit = 0;  ///< what is learnt per minute
+  double merit = 0;  ///< information per minute
 };
 
-/// The sensor against known positions: for rivals that no waveform tells apart and that make other sensors.
+/// A check of the sensor at known positions. It separates alternatives with different sensor shapes if no
+/// waveform can.
 struct ProposedGaugeCheck {
   std::vector<double> positions_mm;    ///< in the order in which they are read
   std::vector<std::string> separates;  ///< ids of causes
   double minutes = 0;
 };
 
-/// What to do next.
+/// The proposed next experiment.
 struct NextExperiment {
   std::optional<JudgedWaveform> best;
-  std::vector<std::string> separates;             ///< ids that `best` tells apart
-  double predicted_separation_sigma = 0;          ///< the smallest among the pairs that it tells apart
+  std::vector<std::string> separates;             ///< ids that `best` separates
+  double predicted_separation_sigma = 0;          ///< smallest separation among the pairs that it separates
   std::vector<JudgedWaveform> menu;               ///< all that was judged
-  std::optional<ProposedGaugeCheck> gauge_check;  ///< empty where it helps nobody or was made already
-  /// What no waveform can do: a column to be recorded, a load to be changed. Sentences.
+  std::optional<ProposedGaugeCheck> gauge_check;  ///< empty if it separates no causes or was already made
+  /// Actions that no waveform can replace: a column to record, a load to change. Full sentences.
   std::vector<std::string> advice;
 };
 
-/// Beside diagnosis.json, where a gauge check is proposed: a gauge file that waits for its readings.
+/// Name of an empty gauge file next to diagnosis.json, written if a gauge check is proposed.
 inline constexpr const char* gauge_positions_file = "gauge_positions.csv";
 
-/// Pairs nearer than this are not told apart.
+/// Pairs with a smaller separation are indistinguishable.
 inline constexpr double separation_needed_sigma = 5;
 
-/// Empty where the verdict asks for none.
+/// Returns an empty design if the verdict needs no experiment.
 [[nodiscard]] NextExperiment design_experiment(const Diagnosis& diagnosis, const ExperimentOptions& options);
 
 /// A sequence file of one pressure step, as softgripd reads it. @param channel  "" for all of the rig.
 [[nodiscard]] std::string sequence_yaml(const NextExperiment& experiment, const std::string& channel = "");
-/// The same of any entry of the menu.
+/// Returns the sequence file of any entry of the menu.
 [[nodiscard]] std::string sequence_yaml(const Waveform& waveform, const std::string& channel);
 
 /// Fills in next_experiment and gauge_check (null without one) and experiment_advice of a diagnosis.json.

@@ -19,7 +19,7 @@ constexpr const char* vary_temperature =
     "nor "
     "drift";
 
-/// What tells the two apart where no waveform does.
+/// Returns a way to separate the two causes without a waveform.
 std::string instead_of_waveform(const Cause& one, const Cause& other, const std::string& names,
                                 bool gauge_made) {
   if (has(one, Advice::change_load) && has(other, Advice::change_load)) {

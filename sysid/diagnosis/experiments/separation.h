@@ -1,5 +1,5 @@
 #pragma once
-// How far apart two fitted structures would be on a record that does not exist yet.
+// Computes the distance between two fitted structures on a record that does not exist yet.
 
 #include <vector>
 
@@ -10,19 +10,19 @@
 
 namespace softgrip::sysid {
 
-/// A structure that could be true, and what the existing records say about its parameters.
+/// A structure that may be true, and the information of the existing records about its parameters.
 class Hypothesis {
  public:
   /// `records` outlives this.
   Hypothesis(const std::vector<Record>& records, StructureFit fit, const NoiseModel& noise);
 
   [[nodiscard]] const StructureFit& fit() const noexcept { return fit_; }
-  /// What it predicts for a record that starts from rest.
+  /// Returns the prediction for a record that starts from rest.
   [[nodiscard]] std::vector<double> prediction(const Record& record) const;
-  /// Distance [noise deviations] that remains to `truth_mm` (the other's prediction on `record`) when the
-  /// parameters move as far as the existing records let them: linearised.
+  /// Returns the distance [noise deviations] that remains to `truth_mm` (the other's prediction on `record`).
+  /// The parameters move as far as the existing records permit. The model is linearised.
   [[nodiscard]] double linear_distance(const Record& record, const std::vector<double>& truth_mm) const;
-  /// The same after a few true iterations of a fit over the existing records and the new one.
+  /// Returns the distance after a few nonlinear iterations of a fit to the existing records and the new one.
   [[nodiscard]] double refitted_distance(const Record& record, const std::vector<double>& truth_mm) const;
 
  private:
@@ -33,7 +33,8 @@ class Hypothesis {
   Eigen::MatrixXd information_;  ///< about the model's parameters, the records' starts eliminated
 };
 
-/// A series as its innovations, in deviations of them: white where the noise is as modelled.
+/// Returns the innovations of a series in units of their standard deviation. They are white if the noise
+/// model is correct.
 [[nodiscard]] std::vector<double> whitened(const std::vector<double>& series, const NoiseModel& noise);
 
 }  // namespace softgrip::sysid

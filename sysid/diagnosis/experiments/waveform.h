@@ -6,7 +6,7 @@
 
 namespace softgrip::sysid {
 
-/// What a rig may be asked to do.
+/// Limits of a rig for commands.
 struct RigLimits {
   double pressure_max_kpa = 60;
   double slew_kpa_per_s = 300;

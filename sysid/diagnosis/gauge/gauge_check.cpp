@@ -20,18 +20,18 @@ namespace {
 /// sensor goes on where another one ends.
 constexpr double beyond_share = 0.05;
 constexpr double beyond_noise = 10;
-/// Of what the hypotheses differ by.
+/// Share of the difference between two hypotheses.
 constexpr double tolerated_share = 0.2;
-/// Of the logs' noise: a departure so small is none to any log.
+/// Share of the logs' noise. No log can show a smaller departure.
 constexpr double never_matters = 0.25;
-/// Of the logs' readings that the gauge's must cover.
+/// Share of the range of the logs that the gauge readings must cover.
 constexpr double least_covered_share = 0.5;
 /// Normal deviate of 1 in 1000, one-sided.
 constexpr double deviate = 3.09;
 
 using Line = std::pair<double, double>;  // value at 0, slope
 
-/// Of chi-square, by Wilson and Hilferty 1931.
+/// Returns the limit of chi-square, approximated as in Wilson and Hilferty 1931.
 double chi_square_limit(double freedom) {
   if (freedom < 1) return std::numeric_limits<double>::infinity();
   const double v = 2 / (9 * freedom);

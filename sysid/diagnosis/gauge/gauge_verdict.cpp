@@ -14,19 +14,19 @@
 namespace softgrip::sysid {
 namespace {
 
-/// A bend of which no log could tell is not worth a warning: as a share of the logs' noise.
+/// Smallest nonlinearity that gives a warning, as a share of the logs' noise. No log can show a smaller one.
 constexpr double worth_telling = 0.5;
 
-/// A cause that may stand in one place of the selection.
+/// A possible cause for one position of the selection.
 struct Standing {
   Cause cause;
   StructureFit fit;
-  bool implied = false;  ///< no rival of the logs' verdict: only the gauge may bring it in
+  bool implied = false;  ///< no alternative of the logs' verdict: only the gauge may add it
 };
 
 /// One explanation of the logs: of every place one cause.
 struct Explanation {
-  std::vector<std::size_t> standing;  ///< by place, index among those that may stand there
+  std::vector<std::size_t> standing;  ///< by position, index among the possible causes there
   std::size_t shape = 0;
 };
 
@@ -61,7 +61,7 @@ class Weighing {
     const GaugeScales scales = gauge_scales(data_.records, question_.noise_mm);
     explain(false);
     evidence_.check = check_gauge(question_.file.readings, shapes_, scales);
-    // What the logs have ruled out comes back only where nothing that they left fits.
+    // A cause that the logs ruled out returns only if no remaining one fits.
     const std::size_t left_by_logs = shapes_.size();
     if (evidence_.check.outcome == GaugeOutcome::unexplained) explain(true);
     if (shapes_.size() > left_by_logs)
@@ -102,7 +102,8 @@ class Weighing {
     return fit_without_cause(data_.records, selection_.extended, selection_.chosen[place].cause);
   }
 
-  /// Every combination of what may stand, with the sensor that it makes; those with implied causes besides.
+  /// Lists every combination of possible causes with the sensor that it makes, optionally with the implied
+  /// causes.
   void explain(bool with_implied) {
     std::vector<std::size_t> at(places_.size(), 0);
     explanations_.clear();
@@ -144,7 +145,7 @@ class Weighing {
     return shapes_.size() - 1;
   }
 
-  /// Whether some explanation that the gauge leaves has this in its place.
+  /// Returns true if an explanation that the gauge permits has this cause in its position.
   [[nodiscard]] bool survives(std::size_t place, std::size_t standing) const {
     return std::any_of(explanations_.begin(), explanations_.end(), [&](const Explanation& e) {
       return e.standing[place] == standing && !evidence_.check.fits[e.shape].ruled_out;
@@ -178,8 +179,8 @@ class Weighing {
     replace(now);
   }
 
-  /// The rivals of a place are those that are left beside the first; of one that only the gauge brought in,
-  /// it is what the logs had named.
+  /// Keeps the remaining alternatives of a position. If only the gauge added the first cause, the cause that
+  /// the logs named becomes its alternative.
   void keep(std::size_t place, const std::vector<std::size_t>& left, bool brought_in) {
     ChosenCause& chosen = selection_.chosen[place];
     const std::vector<Standing>& standing = places_[place];
@@ -260,7 +261,7 @@ class Weighing {
     return "at its end at " + significant(end.shape.at(1e6), 3) + " mm";
   }
 
-  /// Whether the logs' own verdict leaves open what the sensor is.
+  /// Returns true if the logs alone do not determine the sensor.
   [[nodiscard]] bool is_asked() const {
     return std::any_of(places_.begin(), places_.end(), [](const std::vector<Standing>& standing) {
       return std::any_of(standing.begin(), standing.end(), [&](const Standing& s) {

@@ -1,6 +1,6 @@
 #pragma once
-// What a gauge check of the sensor does to a selection of causes: rivals that it rules out go, and where the
-// named cause is ruled out, the one that is left takes its place.
+// Applies a gauge check of the sensor to a selection of causes. It removes the alternatives that the gauge
+// rules out. If it rules out the named cause, the remaining alternative replaces it.
 
 #include <cstdint>
 #include <string>
@@ -14,26 +14,26 @@ namespace softgrip::sysid {
 struct GaugeEvidence {
   GaugeFile file;
   GaugeCheck check;
-  std::vector<std::string> ruled_out;  ///< ids of causes that stood and do not stand any more
-  bool replaced = false;               ///< a named cause gave its place to another one
-  std::string sentence;                ///< what the gauge shows
+  std::vector<std::string> ruled_out;  ///< ids of the causes that the gauge ruled out
+  bool replaced = false;               ///< another cause replaced a named cause
+  std::string sentence;                ///< result of the gauge check
 };
 
 struct GaugeQuestion {
   const GaugeFile& file;
   double noise_mm = 0;  ///< of the logs
   std::uint64_t seed = 1;
-  /// False: the fits of the rivals are of other records; what is named and its rivals stay.
+  /// False: the alternatives were fitted to other records. The named causes and their alternatives stay.
   bool may_replace = true;
 };
 
-/// Whether a gauge could tell: the two make sensors of different static shapes.
+/// Returns true if a gauge can separate the two causes: they make sensors of different static shapes.
 [[nodiscard]] bool gauge_tells_apart(const Cause& one, const Cause& other);
 
-/// What the readings of a campaign know of its sensor.
+/// Returns the information of a campaign about its sensor.
 [[nodiscard]] GaugeScales gauge_scales(const std::vector<Record>& records, double noise_mm);
 
-/// @param warnings  gets what a reader of the verdict must know besides.
+/// @param warnings  receives additional warnings for the verdict.
 [[nodiscard]] GaugeEvidence weigh_gauge(const GaugeQuestion& question, const SearchData& data,
                                         const Division& division, Selection& selection,
                                         std::vector<std::string>& warnings);

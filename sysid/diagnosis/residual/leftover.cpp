@@ -7,11 +7,11 @@ namespace {
 
 /// Share of the recalibrated model's excess, as a mean square.
 constexpr double may_be_left = 0.15;
-/// Less may be left where it stands clearly above the noise: then the data could have shown the cause whole,
-/// and did not. What is smaller than these may have to do with the form of an equation alone.
+/// Limits for a remaining error clearly above the noise. In that case the data could have shown the whole
+/// cause, but did not. A smaller remainder may result from the form of an equation alone.
 struct Leftover {
-  double noises;  ///< above so many times the noise
-  double share;   ///< so much may be left
+  double noises;  ///< applies above this multiple of the noise
+  double share;   ///< largest permitted share
 };
 constexpr std::array clear_leftovers{Leftover{3, 0.05}, Leftover{5, 0.02}};
 

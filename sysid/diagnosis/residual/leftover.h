@@ -1,13 +1,13 @@
 #pragma once
-// How much a set of causes may leave and still be called the cause.
+// Limits the unexplained error that a set of causes may leave.
 
 #include "sysid/diagnosis/residual/noise.h"
 
 namespace softgrip::sysid {
 
-/// Whether what is left of a structure is too much: beyond it something else is at work, or the cause has
-/// another form.
-/// @param before  what the recalibrated model leaves.
+/// Returns true if the unexplained error is too large. In that case another effect is present, or the cause
+/// has a different form.
+/// @param before  unexplained error of the refitted model.
 [[nodiscard]] bool leaves_too_much(const Structure& left, const Structure& before, double noise_mm);
 
 }  // namespace softgrip::sysid

@@ -31,7 +31,7 @@ double measured_noise_mm(const std::vector<Record>& records) {
   constexpr double inflation = 20.0;
   std::vector<double> sizes;
   for (const Record& record : records) {
-    // Where the sensor is slower than the log, hardly four readings stand side by side.
+    // If the sensor is slower than the log, hardly any four readings are adjacent.
     const std::vector<double> readings = readings_alone(record.reading_mm);
     const bool is_slow = 5 * readings.size() < 4 * record.reading_mm.size();
     add_third_differences(is_slow ? readings : record.reading_mm, sizes);
@@ -77,9 +77,9 @@ Structure structure_of(const std::vector<std::vector<double>>& residual_mm, doub
     if (pairs[lag] > 0) sum += product[lag] / pairs[lag] / mean_square;
   }
   structure.slow_correlation = sum / lags;
-  // Of white noise the mean of 25 lags has a deviation of 1/sqrt(25 n). Less than a hundredth of the variance
-  // is not worth a name, whatever its significance; a mean square above the noise is structure too, by more
-  // than what the noise itself is known to.
+  // The mean of 25 lags of white noise has a deviation of 1/sqrt(25 n). Less than 1 % of the variance is not
+  // reported, regardless of its significance. A mean square above the noise also counts as unexplained error,
+  // if the difference exceeds the uncertainty of the noise.
   const double worth = 0.01;
   const double known_to = 4 * std::sqrt(6.0 / static_cast<double>(count));
   structure.present = structure.slow_correlation > worth + 4 / std::sqrt(lags * static_cast<double>(count)) ||

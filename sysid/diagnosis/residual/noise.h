@@ -1,5 +1,5 @@
 #pragma once
-// The readings' noise, measured from the data alone, and whether a residual is more than that noise.
+// Measures the noise of the readings from the data alone, and tests a residual against it.
 
 #include <vector>
 
@@ -7,11 +7,11 @@
 
 namespace softgrip::sysid {
 
-/// Standard deviation of what changes from sample to sample without order [mm], by third differences: smooth
-/// motion does not count, quantisation does, single wrong samples do not.
+/// Returns the standard deviation of the random changes from sample to sample [mm], from third differences.
+/// Smooth motion and single wrong samples do not contribute; quantisation does.
 [[nodiscard]] double measured_noise_mm(const std::vector<Record>& records);
 
-/// What is left in a residual beyond the noise.
+/// The unexplained error: the part of a residual beyond the noise.
 struct Structure {
   double excess_mm = 0;         ///< root of mean square minus noise squared, 0 where that is negative
   double slow_correlation = 0;  ///< mean autocorrelation over the first lags (about a quarter of a second)

@@ -15,9 +15,10 @@ namespace {
 /// A reading against the median of its four neighbours has a deviation of about 1.15 of the noise; beyond
 /// this many a normal one falls less than once in ten million.
 constexpr double beyond = 6.0;
-/// What adds less than this share of the noise is not worth a name: a few corners of a motion may pass.
+/// Outliers that add less than this share of the noise are not reported, because they may be corners of a
+/// motion.
 constexpr double worth = 0.25;
-/// Fewer than that many could be anything.
+/// A smaller number of outliers is not significant.
 constexpr std::size_t fewest = 5;
 
 double neighbours_median(const std::vector<double>& y, std::size_t i) {
@@ -31,12 +32,12 @@ double motion(const std::vector<double>& y, std::size_t i) {
   return std::abs(0.5 * (y[i + 1] + y[i + 2]) - 0.5 * (y[i - 1] + y[i - 2]));
 }
 
-/// Neighbours are looked at this far to either side; so many must be there on each.
+/// Distance to which neighbours are used on each side, and the number required on each side.
 constexpr std::size_t reach = 3;
 constexpr std::size_t fewest_neighbours = 2;
-/// What stands alone is so many times as far off as its neighbours are among each other.
+/// A reading is isolated if its deviation exceeds this multiple of the spread of its neighbours.
 constexpr double alone = 4.0;
-/// No clock, latency or corner is known better than to so many samples.
+/// Uncertainty of clocks, latencies and corners, in samples.
 constexpr double timing_samples = 1.5;
 
 /// Median of the neighbours (readings or residuals), and how far they lie from it: the second largest

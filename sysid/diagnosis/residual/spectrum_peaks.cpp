@@ -42,8 +42,8 @@ std::vector<Complex> on_one_grid(const std::vector<Record>& records,
   return x;
 }
 
-/// (how far above the median of its neighbourhood, bin) of every local maximum, the clearest first. A line
-/// stands out against its neighbourhood, not against the slow structure of a misfit.
+/// Returns (ratio to the median of its neighbourhood, bin) of every local maximum, most significant first.
+/// The neighbourhood as reference excludes slow model errors.
 std::vector<std::pair<double, std::size_t>> peaks_of(const std::vector<double>& power, std::size_t lowest) {
   std::vector<std::pair<double, std::size_t>> peaks;
   std::vector<double> near;

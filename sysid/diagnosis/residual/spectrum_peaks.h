@@ -1,5 +1,5 @@
 #pragma once
-// Where a search for a steady oscillation begins.
+// Finds the start points of a search for a steady oscillation.
 
 #include <algorithm>
 #include <cstddef>
@@ -16,16 +16,17 @@ struct Line {
   double cosine_mm = 0;
 };
 
-/// What is slower than this in a campaign of such a length is a wandering zero and no oscillation [Hz].
+/// Returns the lowest frequency of an oscillation [Hz] in a campaign of this length. A slower variation is a
+/// drift of the zero.
 [[nodiscard]] inline double slowest_oscillation_hz(double campaign_s) {
   return std::max(0.2, 10 / std::max(campaign_s, 1.0));
 }
 
-/// So many a search for causes looks at.
+/// Number of lines that a search for causes tests.
 inline constexpr std::size_t looked_at_lines = 3;
 
-/// The lines that stand out against their neighbourhood in the residual's spectrum over the whole campaign,
-/// the clearest first.
+/// Returns the significant lines in the spectrum of the residual over the whole campaign, most significant
+/// first. Each is compared with its neighbourhood.
 /// @param residual_mm  by record, as long as the record; NaN where there is no reading.
 [[nodiscard]] std::vector<Line> spectrum_peaks(const std::vector<Record>& records,
                                                const std::vector<std::vector<double>>& residual_mm,

@@ -50,7 +50,7 @@ double relative_gain(const Record& record, const std::vector<double>& prediction
   return gain > 0.1 ? gain : 1;
 }
 
-/// The model of an actuator that moves so many times as far.
+/// Returns the actuator model with its motion multiplied by `gain`.
 model::Model amplified(model::Model model, double gain) {
   if (const auto at = model::position_of<model::BoucWen>(model)) {
     model.blocks[*at].values[0] *= gain;
@@ -62,7 +62,7 @@ model::Model amplified(model::Model model, double gain) {
   return model;
 }
 
-/// RMSE if every log had numbers of its own: the structure fitted to each alone, from where it stands.
+/// Returns the RMSE if the structure is fitted to every log separately, from the common fit.
 double rmse_apart_mm(const std::vector<Record>& records, const StructureFit& fit) {
   double squares = 0, count = 0;
   for (std::size_t k = 0; k < records.size(); ++k) {

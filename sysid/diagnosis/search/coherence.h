@@ -1,5 +1,5 @@
 #pragma once
-// Whether logs belong to a model at all, and to each other.
+// Tests whether a model fits the logs at all, and whether the logs are consistent with each other.
 
 #include <optional>
 #include <string>
@@ -10,16 +10,14 @@
 
 namespace softgrip::sysid {
 
-/// A sentence where a recalibrated model is not about these readings: it explains less than a fifth of their
-/// variance.
+/// Returns a warning if the refitted model explains less than 20 % of the variance of the readings.
 [[nodiscard]] std::optional<std::string> why_not_about(const std::vector<Record>& records,
                                                        const StructureFit& recalibrated);
 
-/// A sentence where several logs are each explained far better (a tenth of the mean square) by numbers of
-/// their own than by common ones: logs of two rigs, or of one that was changed.
-/// @param together_mm2  what common numbers leave, with the causes that were found: a drift too makes
-/// strangers
-///                      of logs, and explains them.
+/// Returns a warning if the logs are inconsistent: they come from two rigs, or the rig changed between them.
+/// Separate parameters for each log must then leave at most 10 % of the common mean square.
+/// @param together_mm2  mean square of the common fit with the causes that were found. A drift makes logs
+/// inconsistent too, but a cause explains it.
 [[nodiscard]] std::optional<std::string> strangers_among(const std::vector<Record>& records,
                                                          const StructureFit& recalibrated,
                                                          double together_mm2);

@@ -1,5 +1,5 @@
 #pragma once
-// Causes that take a share of each other's numbers (Cause::confounded_with): asked for by themselves.
+// Fits causes that can absorb part of each other's effect (Cause::confounded_with), each as a separate test.
 
 #include <vector>
 
@@ -8,14 +8,15 @@
 
 namespace softgrip::sysid {
 
-/// A structure with one more cause, which is confounded with one that it had.
+/// A structure with one more cause that is confounded with one of its causes.
 struct Confounded {
   Cause cause;
   StructureFit fit;
   BlockLosses losses;  ///< held out
 };
 
-/// What is confounded with a cause of the structure and does not stand in it yet, fitted beside all of them.
+/// Fits each cause that is confounded with a cause of the structure and is not yet part of it. All causes are
+/// fitted together.
 [[nodiscard]] std::vector<Confounded> fit_confounded(const SearchData& data, const StructureFit& structure,
                                                      const Division& division);
 

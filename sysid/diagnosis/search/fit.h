@@ -26,16 +26,17 @@ struct FitEffort {
   bool hold_starts = false;  ///< the records begin as they do at the point from which the fit starts
 };
 
-/// The flat indices that a fit of this structure moves: all of the base but exponents, what stands where it
-/// was put, and k0 where the hysteresis has an instantaneous gain; and what the causes' forms say.
+/// Returns the flat indices that a fit of this structure moves. In the base these are all parameters except
+/// exponents and fixed values, and k0 if the hysteresis has an instantaneous gain. The forms of the causes
+/// define the rest.
 [[nodiscard]] std::vector<std::size_t> fitted_indices(const model::Model& model,
                                                       const std::vector<Cause>& causes);
 
-/// What a fit of this structure moves, within the ranges of the causes' forms.
+/// Returns the fit space of this structure, within the ranges of the causes' forms.
 [[nodiscard]] FitSpace structure_space(const std::vector<Record>& records, const model::Model& model,
                                        const std::vector<Cause>& causes);
 
-/// The numbers of one cause alone, within the ranges of its form; the rest of the point stays.
+/// Returns the parameters of one cause, within the ranges of its form. All other parameters stay fixed.
 [[nodiscard]] FitSpace cause_space(const std::vector<Record>& records, const FitPoint& point,
                                    const Cause& cause);
 
@@ -43,21 +44,21 @@ struct FitEffort {
 [[nodiscard]] StructureFit fit_structure(const std::vector<Record>& records, std::vector<Cause> causes,
                                          const FitPoint& from, const FitEffort& effort = {});
 
-/// The same point without fitting.
+/// Evaluates the structure at this point, without a fit.
 [[nodiscard]] StructureFit evaluate_structure(const std::vector<Record>& records, std::vector<Cause> causes,
                                               const FitPoint& point);
 
-/// The same model; of the starts, what the records leave open is fitted to all readings.
+/// Keeps the model and fits the undetermined initial states to all readings.
 [[nodiscard]] StructureFit fit_starts(const std::vector<Record>& records, std::vector<Cause> causes,
                                       const FitPoint& point);
 
-/// The readings without what the causes of a point's model do to them.
+/// Returns the readings without the effects of these causes in the model of `point`.
 [[nodiscard]] std::vector<Record> without_effects(std::vector<Record> records, const FitPoint& point,
                                                   const std::vector<Cause>& causes);
 
-/// The structure without one of its causes, as it stands: its residuals are still those with the cause.
+/// Removes one cause from the structure without a refit. The residuals are still those with the cause.
 [[nodiscard]] StructureFit without_cause(StructureFit fit, const Cause& cause);
-/// The same, fitted again from there.
+/// Removes one cause from the structure and fits the rest again from there.
 [[nodiscard]] StructureFit fit_without_cause(const std::vector<Record>& records, const StructureFit& fit,
                                              const Cause& cause);
 

@@ -7,8 +7,8 @@
 namespace softgrip::sysid {
 namespace {
 
-/// The state in which a log begins is no part of the model's structure: without the first block it could not
-/// be told, and the rest would be simulated from anywhere.
+/// The initial state of a log is not part of the model structure. Without the first block it would be
+/// undetermined, and the simulation of the rest would start from an arbitrary state.
 constexpr FitEffort refit{.most_iterations = 8, .tolerance = 1e-6, .hold_starts = true};
 
 }  // namespace

@@ -17,14 +17,14 @@ namespace {
 
 constexpr std::size_t most_tracks = 40;
 constexpr std::size_t most_landings = 24;
-/// Of courses that stand nearer to each other [in resolutions] one is followed: their number is there for
-/// such as differ.
+/// Of all path hypotheses closer together than this [resolutions], only one is followed. Thus the limited
+/// number covers different paths.
 constexpr double same_place = 1;
-/// A course that is behind by so much of squared error [in squares of what the resolution makes] is given up.
+/// A path is given up if its squared error exceeds the best by this [squares of the error of one resolution].
 constexpr double hopeless_resolutions = 4000;
-/// Samples without a jump after which courses are compared again.
+/// Number of samples without a jump after which the paths are compared again.
 constexpr std::size_t look_again = 32;
-/// A jump is resolved well where the command moves by less than this share of the band during its sample.
+/// The jump time is well resolved if the command moves by less than this share of the band during the sample.
 constexpr double slow_share = 0.2;
 
 constexpr std::size_t no_jump = std::numeric_limits<std::size_t>::max();
@@ -74,8 +74,8 @@ class Tracks {
   std::size_t count_ = 0;
 };
 
-/// Takes whole samples out of a transport delay, and says how many: a jump is seen in as many samples later,
-/// and no course can be told from another one before.
+/// Removes whole samples from a transport delay and returns their number. The readings show a jump only after
+/// that number of samples. Until then the paths are indistinguishable.
 std::size_t take_whole_samples(model::Model& model, const Record& record) {
   model::BlockSpec* delay = model::find_block<model::TransportDelay>(model);
   if (delay == nullptr || record.sample_time_s <= 0) return 0;
@@ -148,7 +148,8 @@ class JumpTracker {
     if (!std::isnan(error)) track.cost_mm2 += error * error;
   }
 
-  /// Where a valve that stands at `held` may stand after the command went from `from` to `to`, if it jumped.
+  /// Returns the possible positions of a valve at `held` after a jump while the command went from `from` to
+  /// `to`.
   const std::vector<double>& landings_of(double held, double from, double to) {
     landings_.clear();
     if (from == to) {
@@ -169,7 +170,7 @@ class JumpTracker {
     return landings_;
   }
 
-  /// Keeps the best, of those that stand in the same place one.
+  /// Keeps the best paths, and only one path per position.
   void prune() {
     order_.resize(next_.size());
     std::iota(order_.begin(), order_.end(), std::size_t{0});

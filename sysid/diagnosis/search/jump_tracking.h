@@ -1,11 +1,11 @@
 #pragma once
-// Where a sticking valve stood, sample by sample, as the readings show it.
+// Tracks the position of a sticking valve, sample by sample, from the readings.
 //
-// A valve that sticks and jumps starts each jump from where the last one ended, so small differences in the
-// moments of jumps add up: after some tens of them nobody can tell from the command alone where in its
-// staircase it is. The readings tell. Several courses of the valve are followed side by side, each with a
-// chain of its own behind it, and those that meet the readings best are kept (a beam search through jump or
-// no jump, as in Viterbi's algorithm).
+// A valve with stick-slip starts each jump at the end of the last one, so small errors of the jump times
+// accumulate. After several tens of jumps, the command alone no longer determines the position of the valve.
+// The readings determine it. A beam search follows several path hypotheses of the valve in parallel, each
+// with its own chain behind the valve. It decides at each sample between jump and no jump, as in Viterbi's
+// algorithm, and keeps the hypotheses that fit the readings best.
 
 #include <cstddef>
 #include <limits>
@@ -16,32 +16,33 @@
 
 namespace softgrip::sysid {
 
-/// Shares of the band between which a valve breaks loose: it never jumps before the first, always by the
-/// second. A command that differs by less leaves it where it is; when it jumps it goes to the command.
+/// Shares of the band between which a valve breaks loose. The valve never jumps below the first share and
+/// always jumps at the second. A smaller command difference leaves the valve at rest. After a jump, the valve
+/// is at the command.
 inline constexpr double breaks_loose_from = 0.7;
 inline constexpr double breaks_loose_by = 1.4;
 
-/// A course of the valve through one record.
+/// A path hypothesis of the valve through one record.
 struct ValveCourse {
   std::vector<double> held_kpa;  ///< at the end of every sample's step
-  /// How far the command had gone from where the valve stood when it jumped [kPa]: of jumps whose moment the
-  /// readings resolve well (the command moved little during their sample).
+  /// Distances between the command and the valve position at the jumps [kPa]. Only jumps are listed whose
+  /// time the readings resolve well: the command moved little during their sample.
   std::vector<double> distances_kpa;
-  double sum_of_squares_mm2 = 0;  ///< reading minus the answer of the chain behind the valve
+  double sum_of_squares_mm2 = 0;  ///< reading minus the response of the chain behind the valve
 };
 
-/// The course that meets the readings best.
-/// @param point  the chain behind the valve and its start in every record; without a dead band of its own.
+/// Returns the path that fits the readings best.
+/// @param point  the chain behind the valve and its initial state in every record; without its own dead band.
 /// @param index  of the record.
 /// @param band_kpa  > 0.
-/// @param resolution_kpa  > 0: differences in pressure that the readings cannot show.
-/// @param worth_mm2  a course that leaves more is not followed to its end: an infinite sum of squares, and
-///                   nothing else.
+/// @param resolution_kpa  > 0: pressure differences that the readings cannot resolve.
+/// @param worth_mm2  the search stops for a path that exceeds this sum of squares. It then returns only an
+/// infinite sum of squares.
 [[nodiscard]] ValveCourse track_jumps(const Record& record, std::size_t index, const FitPoint& point,
                                       double band_kpa, double resolution_kpa,
                                       double worth_mm2 = std::numeric_limits<double>::infinity());
 
-/// The record with where the valve stood as its drive.
+/// Returns the record with the valve position as its drive.
 [[nodiscard]] Record driven_by(const Record& record, const ValveCourse& course);
 
 }  // namespace softgrip::sysid

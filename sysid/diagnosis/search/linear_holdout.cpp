@@ -12,10 +12,10 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Of the diagonal of the normal matrix.
+/// Share of the diagonal of the normal matrix.
 constexpr double block_damping = 1e-3;
 
-/// Row ranges of a block's readings, and of those too near to it to be fitted.
+/// Row ranges of a block's readings, and of the readings too near to it to be fitted.
 struct BlockRows {
   Eigen::Index first, last, hidden_first, hidden_last;
 };

@@ -1,5 +1,5 @@
 #pragma once
-// Held-out evidence of a structure with many numbers, without refitting it block by block.
+// Computes held-out losses of a structure with many parameters without a refit per block.
 
 #include <vector>
 
@@ -7,8 +7,9 @@
 
 namespace softgrip::sysid {
 
-/// What held_out_losses() says, where the numbers' answer to missing readings is taken as linear: one
-/// Gauss-Newton step from the fit to all readings, damped along directions that the data hardly show.
+/// Computes held_out_losses() under the assumption that the parameters respond linearly to missing readings.
+/// It makes one Gauss-Newton step from the fit to all readings. The step is damped along directions that the
+/// data hardly determine.
 /// @param fit  at or near its optimum.
 [[nodiscard]] BlockLosses linear_held_out_losses(const std::vector<Record>& records, const Division& division,
                                                  const StructureFit& fit);

@@ -24,15 +24,16 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Candidates that are judged held out: the best looks, and of them those that leave at most so many times
-/// the best one's mean square. A base that has bent itself hides half of a cause, never nearly all.
+/// Limits of the candidates that are judged on held-out blocks: the best medium fits whose mean square is at
+/// most this multiple of the best one. A base whose refit absorbed part of a cause hides half of it, never
+/// nearly all.
 constexpr std::size_t most_finalists = 5;
 constexpr double hopeless_ratio = 4;
-/// Of base and cause, each fitted beside the other.
+/// Number of alternating fits of base and cause, each with the other fixed.
 constexpr int turns = 2;
 constexpr int look_iterations = 15;
-/// A fit begins where the base answers to the cause best; a base that is not linear by far goes too far at
-/// once.
+/// A fit starts where the base responds best to the cause. For a strongly nonlinear base, the full linear
+/// step is too large.
 constexpr std::array answers{1.0, 0.5, 0.2, 0.0};
 /// By how much, as a log ratio of a block's losses, a cause is ahead of one that it clearly beats: a contact
 /// and a sensor that clips are 0.01 apart, in every block (textbook worlds).
@@ -43,11 +44,11 @@ constexpr double in_most_blocks = 0.15;
 constexpr double little_elastic = 0.3;
 /// Causes that a named one does not clearly beat.
 constexpr std::size_t most_undecided = 2;
-/// What a further cause must take of what was left before it, as mean squares beyond the noise: a second
-/// effect is met by its own cause nearly whole.
+/// Smallest share of the remaining mean square beyond the noise that a further cause must remove. The correct
+/// cause removes a second effect almost entirely.
 constexpr double most_of_the_rest = 0.6;
 
-/// Residuals over the numbers of one cause, less what the base could take away of them.
+/// Residuals as a function of the parameters of one cause, without the part that the base can absorb.
 class ResidualsBesideBase final : public Residuals {
  public:
   ResidualsBesideBase(const Scan& base, const std::vector<Record>& records, const FitSpace& of_the_cause)
@@ -73,7 +74,7 @@ class ResidualsBesideBase final : public Residuals {
   std::unique_ptr<Residuals> inner_;
 };
 
-/// One cause upon a base, on thinned records.
+/// One cause on a base, fitted to thinned records.
 struct Look {
   FitPoint beside;  ///< the base where it was, and the cause's numbers
   Eigen::VectorXd left;
@@ -230,7 +231,7 @@ class SelectorUpon {
     return scored;
   }
 
-  /// A base whose operators make up for a backlash is far from where it stands with one.
+  /// A base whose operators compensate for a backlash is far from its optimum with a backlash.
   [[nodiscard]] std::optional<ScoredCandidate> slack_as_backlash() const {
     const FitPoint& point = result_.extended.point;
     if (elastic_share(point.model) > little_elastic) return std::nullopt;
@@ -284,7 +285,7 @@ class SelectorUpon {
            (gain.lower > 0 || ratio.lower > 0);
   }
 
-  /// The best of what was tried in one place, if it stands there.
+  /// Accepts the best candidate for one position if its evidence is sufficient.
   bool take(const std::vector<ScoredCandidate>& scored) {
     const ScoredCandidate& best = scored.front();
     ChosenCause chosen =
@@ -298,8 +299,8 @@ class SelectorUpon {
     return true;
   }
 
-  /// The first cause was chosen, and its base fitted, while the second was missing. Whether each is worth its
-  /// place beside the other, fitted alone from where both stand; one that is not is gone.
+  /// The first cause was chosen, and its base fitted, without the second. Each cause is fitted alone from the
+  /// common fit and compared with both. A cause that is not worth its place is removed.
   bool both_stay(const BlockLosses& beside_the_first) {
     const Cause first = result_.extended.causes.front(), second = result_.extended.causes.back();
     ScoredCandidate first_alone = alone(first, second);
@@ -321,7 +322,7 @@ class SelectorUpon {
     return is_gain(before, result_.extended_losses, further_share_mm2(before));
   }
 
-  /// One of two fitted without the other, from where both stand.
+  /// Returns one of two causes fitted without the other, from the common fit.
   [[nodiscard]] ScoredCandidate alone(const Cause& cause, const Cause& other) const {
     FitPoint rest = result_.extended.point;
     rest.model = without(std::move(rest.model), other);
@@ -339,7 +340,7 @@ class SelectorUpon {
     take(in_first_place_);
   }
 
-  /// What one more cause must take of what was there before it [mean square].
+  /// Returns the smallest reduction of the remaining mean square by one more cause.
   [[nodiscard]] double share_worth_mm2() const {
     return result_.chosen.empty() ? 0 : further_share_mm2(result_.extended_losses);
   }
@@ -358,7 +359,8 @@ class SelectorUpon {
     return beyond_noise_mm2(result_.extended_losses) > std::max(least_mm2, share_worth_mm2());
   }
 
-  /// By itself or as one of a few: what it does not clearly beat is a rival. More than a few settle nothing.
+  /// Returns true if the candidate wins alone or with a few alternatives. A candidate that it does not
+  /// clearly beat is an alternative. More than a few alternatives give no decision.
   [[nodiscard]] bool stands(ChosenCause& chosen, const std::vector<ScoredCandidate>& scored) const {
     const ScoredCandidate& best = scored.front();
     const auto beats = [&](const BlockLosses& losses) {

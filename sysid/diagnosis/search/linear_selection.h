@@ -1,12 +1,12 @@
 #pragma once
-// Choosing causes upon a base with many numbers of its own (play operators, a creep ladder). Beside a cause
-// the base answers linearly, so that only the cause's few numbers are searched.
+// Selects causes on a base with many parameters of its own (play operators, a Kelvin-Voigt chain). The base
+// responds linearly next to a cause, so the search covers only the few parameters of the cause.
 
 #include "sysid/diagnosis/search/selection.h"
 
 namespace softgrip::sysid {
 
-/// Of a fit of base and causes that begins where choosing them ended.
+/// Effort of the final fit of base and causes, which starts at the result of the selection.
 inline constexpr FitEffort finishing_effort{.most_iterations = 15, .tolerance = 1e-6};
 
 /// @param base  the base fitted to data.records.

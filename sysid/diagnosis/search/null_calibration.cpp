@@ -20,7 +20,7 @@ namespace {
 constexpr FitEffort recalibration{.most_iterations = 12, .tolerance = 1e-6};
 constexpr std::size_t burn_in = 500;
 
-/// What drives a residual that is taken for noise.
+/// The innovations of a residual that is treated as noise.
 struct Innovations {
   NoiseModel model;
   std::vector<double> samples_mm;

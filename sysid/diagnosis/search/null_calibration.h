@@ -1,5 +1,5 @@
 #pragma once
-// How often the whole search would name a cause where there is none, on these very inputs.
+// Estimates how often the whole search names a cause in data without a cause, for the measured inputs.
 
 #include <cstddef>
 #include <cstdint>
@@ -11,21 +11,21 @@
 
 namespace softgrip::sysid {
 
-/// A gain that nulls reach more often than this is none.
+/// A reduction is not significant if the null data reach it with a higher probability than this.
 inline constexpr double null_level = 0.05;
-/// So many campaigns can show a p-value of `null_level`.
+/// Number of campaigns that can give a p-value of `null_level`.
 inline constexpr std::size_t enough_nulls = 19;
 
-/// Campaigns in which the recalibrated model is the truth, searched like the measured one.
+/// Result of the search on campaigns that the refitted model generates.
 struct NullCalibration {
   std::size_t campaigns = 0;
   std::size_t named = 0;            ///< in which the search named something
-  double largest_gain_percent = 0;  ///< of what it named, held out
-  /// (1 + campaigns with at least the measured gain) / (1 + campaigns): the smallest that can be told is
+  double largest_gain_percent = 0;  ///< largest held-out error reduction of the named causes
+  /// (1 + campaigns with at least the measured reduction) / (1 + campaigns). The smallest possible value is
   /// 1/(1 + campaigns).
   double p_value = 1;
 
-  /// The gain is one that the search makes out of noise as well, or may be.
+  /// Returns true if the search reaches this error reduction in data without a cause too often.
   [[nodiscard]] bool reach_the_gain() const { return campaigns >= enough_nulls && p_value > null_level; }
 };
 
@@ -35,10 +35,11 @@ struct NullOptions {
   std::function<void(std::size_t done)> progress;  ///< from any thread, never from two at once
 };
 
-/// Every campaign has the measured one's inputs; its readings are the recalibrated model's prediction plus an
-/// autoregressive process like the recalibrated residual, driven by resampled innovations of it (the residual
-/// bootstrap, Freedman 1984). So whatever is left of correlation in the residual is taken for noise.
-/// @param gain_percent  what the search gained on the measured data, held out.
+/// Simulates campaigns with the measured inputs. The readings are the prediction of the refitted model plus
+/// an autoregressive process that resembles the refitted residual. Resampled innovations of the residual
+/// drive the process (residual bootstrap, Freedman 1984). Therefore all remaining correlation of the residual
+/// counts as noise.
+/// @param gain_percent  held-out error reduction on the measured data.
 [[nodiscard]] NullCalibration calibrate_on_nulls(const SearchData& data, const StructureFit& recalibrated,
                                                  double gain_percent, const Division& division,
                                                  const NullOptions& options);

@@ -1,6 +1,6 @@
 #pragma once
-// Judging many starts of a candidate without fitting any: what the effect of a start adds to the prediction,
-// with the base answering linearly.
+// Ranks many starts of a candidate without a fit of each. It adds the effect of a start to the prediction and
+// lets the base respond linearly.
 
 #include <span>
 #include <vector>
@@ -25,14 +25,16 @@ class Scan {
   Scan(const std::vector<Record>& records, const std::vector<Cause>& causes, FitPoint place);
 
   [[nodiscard]] const FitPoint& place() const noexcept { return place_; }
-  /// False where the prediction or its derivatives are not finite: nothing can be said from here.
+  /// False: the prediction or its derivatives are not finite, so no start can be ranked from here.
   [[nodiscard]] bool usable() const noexcept { return usable_; }
-  /// What mean square the structure with this block would reach [mm^2]; infinity when it cannot be told.
+  /// Returns the mean square that the structure with this block would reach [mm^2], or infinity if it is
+  /// undetermined.
   [[nodiscard]] double mean_square_with(const model::BlockSpec& block) const;
-  /// Columns over all readings without what the structure's own parameters could take away.
+  /// Returns the columns over all readings after projection: without the part that the structure's own
+  /// parameters can absorb.
   [[nodiscard]] Eigen::MatrixXd left_of(const Eigen::MatrixXd& columns) const;
-  /// The place, its numbers moved within their bounds by a `share` of what would take away all that they can
-  /// of a residual, if they were linear.
+  /// Returns the place after its parameters moved within their bounds. The move is a `share` of the linear
+  /// step that removes as much of a residual as they can.
   [[nodiscard]] FitPoint answer_to(const Eigen::VectorXd& residual, double share) const;
 
  private:
@@ -45,16 +47,16 @@ class Scan {
   Eigen::MatrixXd jacobian_;
   Eigen::LDLT<Eigen::MatrixXd> normal_;
   Eigen::VectorXd residual_;  ///< prediction minus reading
-  Eigen::VectorXd left_;      ///< of it
+  Eigen::VectorXd left_;      ///< the part that the structure cannot absorb
 };
 
-/// Starts of a cause that are looked at.
+/// Smallest number of starts of a cause that are tested.
 inline constexpr std::size_t fewest_looks = 2;
 
-/// The most promising starts of a cause, best first and its free form last: one of every form that the cause
-/// has, since the form with more numbers always promises more, and one from every place, since a base that
-/// was recalibrated to swallow the effect and one that was not lead to different valleys. The next best ones
-/// make up for what is missing to `fewest`.
+/// Returns the most promising starts of a cause, best first and its free form last. Every form of the cause
+/// is included, because a form with more parameters always promises more. Every place is included too: a base
+/// whose refit absorbed the effect and a base that did not lead to different minima. The next best starts
+/// fill the list up to `fewest`.
 [[nodiscard]] std::vector<FitPoint> best_starts(std::span<const Scan> scans, const Cause& cause,
                                                 const Scales& scales, std::size_t fewest);
 

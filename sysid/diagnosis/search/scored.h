@@ -1,5 +1,5 @@
 #pragma once
-// Candidates judged on held-out blocks, and what the others say of the one that was chosen.
+// Judges candidates on held-out blocks and compares the chosen one with the others.
 
 #include <cstdint>
 #include <vector>
@@ -10,9 +10,9 @@
 
 namespace softgrip::sysid {
 
-/// What one more cause must take of the excess of what stands without any, as a mean square. Less makes up
-/// for the form of an equation that the first cause does not quite have: a finger that softens, ages or bends
-/// by another law than the catalogue's leaves up to some percent, and any second block takes part of that.
+/// Smallest share of the excess mean square of the model without causes that a further cause must remove. A
+/// smaller reduction can result from an inexact form of the first cause. A finger that softens, ages or bends
+/// by a law outside the catalogue leaves up to a few percent. Any second block absorbs part of that.
 inline constexpr double one_more_share = 0.05;
 
 struct ScoredCandidate {
@@ -20,14 +20,14 @@ struct ScoredCandidate {
   BlockLosses losses;  ///< empty: too far behind to be judged
 };
 
-/// A form that can follow anything slow is named only where no law explains nearly as much, and is no rival
-/// of one that does.
+/// Returns true for a form that can follow any slow signal. It is named only if no physical law explains
+/// nearly as much, and it is not an alternative to such a law.
 [[nodiscard]] bool is_free_form(const ScoredCandidate& scored);
-/// The same of a cause that the model has.
+/// Returns true if the cause has a free form in the model.
 [[nodiscard]] bool has_free_form(const model::Model& model, const Cause& cause);
 
-/// Whether another candidate explains as much as the best one: it loses less in more than 1 of 20 draws of
-/// the held-out blocks.
+/// Returns true if the other candidate explains the data as well as the best one. Its loss must be smaller in
+/// more than 1 of 20 resamples of the held-out blocks.
 [[nodiscard]] bool ties(const ScoredCandidate& best, const ScoredCandidate& other, std::uint64_t seed);
 
 /// The structures with and without a chosen cause.
@@ -39,12 +39,12 @@ struct ChosenBetween {
   std::uint64_t seed;
 };
 
-/// Gains, inclusion and rivals of a cause.
-/// @param scored  what was tried in its place.
+/// Computes error reductions, inclusion frequency and alternatives of a cause.
+/// @param scored  the candidates that were tested in its place.
 [[nodiscard]] ChosenCause weigh(const Cause& cause, const ChosenBetween& between,
                                 const std::vector<ScoredCandidate>& scored);
 
-/// For the report.
+/// Describes the candidates for the report.
 [[nodiscard]] std::vector<CandidateScore> describe(const std::vector<ScoredCandidate>& scored,
                                                    const BlockLosses& before, std::uint64_t seed);
 

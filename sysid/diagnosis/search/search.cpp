@@ -20,20 +20,20 @@ namespace {
 constexpr double look_interval_s = 0.02;
 /// Which of the causes may be the best shows on fewer samples.
 constexpr double glance_interval_s = 0.04;
-/// A first look at every start, then a longer one at those that may become the best or a rival.
+/// Coarse fits of every start, then medium fits of those that may become the best or an alternative.
 constexpr FitEffort glance{.most_iterations = 8, .tolerance = 1e-5};
 constexpr FitEffort look{.most_iterations = 12, .tolerance = 1e-5};
-/// So many causes are looked at for longer, and all whose glance leaves less than so many times the best
-/// one's.
+/// Number of causes that get a medium fit. All causes whose coarse fit leaves less than this multiple of the
+/// best one also get it.
 constexpr std::size_t always_looked_at = 7;
 constexpr double worth_a_look = 1.5;
 constexpr FitEffort full{.most_iterations = 40, .tolerance = 1e-8};
-/// Looks that are followed to the end.
+/// Number of medium fits that are continued to a full fit.
 constexpr std::size_t followed = 2;
 /// By what share of the mean square a form with more numbers must be better.
 constexpr double more_numbers_gain = 0.02;
-/// So many candidates are followed to the end, first on thinned records, then of these so many on all
-/// samples, whatever the others do; more when they are as near.
+/// Number of candidates that always get a full fit: first on thinned records, then on all samples. More
+/// candidates get one if they are as near.
 constexpr std::size_t always_followed = 5;
 constexpr double near_enough = 1.4;
 constexpr std::size_t always_finished = 4;
@@ -51,12 +51,12 @@ void sort_and_keep(std::vector<StructureFit>& fits, std::size_t count) {
 std::vector<Scan> places(const SearchData& data, const StructureFit& current) {
   std::vector<Scan> scans;
   scans.emplace_back(data.glimpsed, current.causes, current.point);
-  // Recalibration may have walked far from the truth to swallow the effect.
+  // The refit may be far from the true parameters because it absorbed the effect.
   if (current.causes.empty()) scans.emplace_back(data.glimpsed, current.causes, data.given);
   return scans;
 }
 
-/// The best glances at one candidate, on thinned records, best first.
+/// Returns the best coarse fits of one candidate, on thinned records, best first.
 std::vector<StructureFit> glances(const SearchData& data, const StructureFit& current,
                                   std::span<const Scan> scans, const Cause& cause) {
   std::vector<Cause> causes = current.causes;
@@ -69,7 +69,7 @@ std::vector<StructureFit> glances(const SearchData& data, const StructureFit& cu
   return fits;
 }
 
-/// The best looks, from where the glances ended.
+/// Returns the best medium fits, from the ends of the coarse fits.
 std::vector<StructureFit> looks(const SearchData& data, const std::vector<StructureFit>& from) {
   std::vector<StructureFit> fits;
   fits.reserve(from.size());
@@ -97,7 +97,8 @@ StructureFit follow(const SearchData& data, const std::vector<StructureFit>& fro
   return best;
 }
 
-/// The candidates upon one structure, narrowed down: what little effort shows to be far behind gets no more.
+/// Narrows down the candidates on one structure. A candidate that is far behind after a small effort gets no
+/// more.
 class CandidateFitter {
  public:
   CandidateFitter(const SearchData& data, const StructureFit& current, const CandidateSearch& search)
@@ -119,7 +120,7 @@ class CandidateFitter {
   }
 
  private:
-  /// Every cause that may be asked for and that the structure lacks.
+  /// Returns every permitted cause that the structure lacks.
   [[nodiscard]] std::vector<Candidate> wanted() const {
     std::vector<Candidate> list;
     for (const Cause& cause : search_.only.empty() ? all_causes() : std::span(search_.only)) {
@@ -151,7 +152,7 @@ class CandidateFitter {
     });
   }
 
-  /// The leader is followed first: how far behind another explanation a cause is cannot be told before.
+  /// The leader is fitted first, because the comparison with another explanation needs its full fit.
   bool is_hopeless() {
     if (!search_.is_hopeless) return false;
     leader_ = ranking().front();

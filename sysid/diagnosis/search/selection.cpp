@@ -16,13 +16,14 @@ namespace {
 
 /// Candidates that are refitted without held-out blocks.
 constexpr std::size_t finalists = 4;
-/// A smaller effect must take at least so much, and leave no more than so much of what was left before it:
-/// what makes up for a form does not meet it whole.
+/// A smaller effect must remove at least this share, and leave at most this share of the previous remainder.
+/// A cause that only compensates for a form does not remove the whole remainder.
 constexpr double small_share = 0.01;
 constexpr double left_by_a_small_one = 0.1;
-/// How much more than another explanation the best of one more cause may leave for the others to be followed.
+/// Largest ratio of the best further cause to another explanation [mean square] for which the other
+/// candidates are fitted.
 constexpr double near_the_other = 1.25;
-/// So many times the noise, as mean squares, is explained.
+/// An error below this multiple of the noise [mean square] counts as explained.
 constexpr double near_the_noise = 2;
 
 class Selector {
@@ -94,8 +95,8 @@ class Selector {
     return scored;
   }
 
-  /// Whether another explanation leaves far less than the best of one more cause; none leaves less than
-  /// the noise.
+  /// Returns true if another explanation leaves far less than the best further cause. No explanation leaves
+  /// less than the noise.
   bool is_far_behind(double best_mm2) {
     if (best_mm2 <= near_the_noise * square(noise_)) return false;
     if (!to_beat_mm2_) to_beat_mm2_ = options_.to_beat_mm2();
@@ -156,8 +157,7 @@ class Selector {
     without_.clear();
   }
 
-  /// The structure without one of its causes. It is refitted, and judged, once for as long as the structure
-  /// stands.
+  /// Returns the structure without one of its causes. It is refitted and judged once per structure.
   const StructureFit& without(std::size_t index) {
     if (result_.extended.causes.size() == 1) return result_.base;
     std::optional<StructureFit>& fit = without_[index].fit;
@@ -189,7 +189,7 @@ class Selector {
       best.why_not = reason_of(veto);
       if (better && veto == Veto::none) {
         take(scored.front());
-        // It stands last now; the others were searched with the old one.
+        // The cause is last now. The other causes were searched with the previous one.
         fresh_[result_.extended.causes.size() - 1] = std::move(scored);
         return;
       }
@@ -197,7 +197,7 @@ class Selector {
     }
   }
 
-  /// What was added beside a cause that was then replaced may have nothing left to do.
+  /// Removes a cause that has no effect after another cause was replaced.
   bool drop_idle_one() {
     std::size_t least = 0;
     for (std::size_t i = 1; i < result_.extended.causes.size(); ++i) {
@@ -209,8 +209,8 @@ class Selector {
     return true;
   }
 
-  /// What is confounded with a cause takes little beside it, and is all the same why its number is wrong:
-  /// here a gain is enough that no draw of blocks doubts.
+  /// A confounded cause removes little error beside the other, but it explains why the parameter of the other
+  /// is wrong. Therefore a reduction in all block resamples is sufficient here.
   bool add_confounded() {
     result_.undecided = fit_confounded(data_, result_.extended, division_);
     for (Confounded& one : result_.undecided) {
@@ -241,8 +241,8 @@ class Selector {
   const SelectionOptions& options_;
   Division by_unit_;
   Selection result_;
-  std::optional<double> to_beat_mm2_;  ///< of another explanation, once it was asked for
-  /// The structure without one cause: its fit, and what it loses held out, as far as they were asked for.
+  std::optional<double> to_beat_mm2_;  ///< of another explanation, once computed
+  /// The structure without one cause: its fit and its held-out losses, as far as they were computed.
   struct Without {
     std::optional<StructureFit> fit;
     std::optional<BlockLosses> losses;

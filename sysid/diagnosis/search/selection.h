@@ -1,5 +1,6 @@
 #pragma once
-// Choosing causes: stepwise, on held-out blocks, with swaps, keeping every rival that explains as much.
+// Selects causes stepwise on held-out blocks, with swaps. It keeps every alternative that explains the data
+// equally well.
 
 #include <cstdint>
 #include <functional>
@@ -13,7 +14,7 @@
 
 namespace softgrip::sysid {
 
-/// How one candidate did, for the report.
+/// Result of one candidate, for the report.
 struct CandidateScore {
   Cause cause;
   std::string why_not;         ///< it could not be fitted, or why it was not kept
@@ -25,12 +26,12 @@ struct CandidateScore {
 /// One cause of the selected set.
 struct ChosenCause {
   Cause cause;
-  std::vector<Cause> rivals;               ///< each explains as much in its place, or is its twin
-  Spread gain_percent;                     ///< held out, of the whole set over the set without it
+  std::vector<Cause> rivals;  ///< each explains the data equally well, or is indistinguishable from the cause
+  Spread gain_percent;        ///< held-out error reduction of the whole set relative to the set without it
   std::vector<CandidateScore> candidates;  ///< those tried in its place, best first
-  Spread gain_mm2;                         ///< what the held-out mean square falls by with it
-  /// How often, over bootstrapped blocks, a structure with the cause loses less than the best without it;
-  /// shared with a twin, which would lose the same.
+  Spread gain_mm2;                         ///< decrease of the held-out mean square with the cause
+  /// Bootstrap inclusion frequency: share of block resamples in which a structure with the cause has a lower
+  /// loss than the best one without it. Indistinguishable causes share it, because their losses are equal.
   double inclusion = 0;
 };
 
@@ -43,45 +44,46 @@ struct Selection {
   BlockLosses base_losses;
   BlockLosses extended_losses;
   Structure base_structure;
-  Structure left;                     ///< in the extended structure's residual
-  std::vector<Confounded> undecided;  ///< beside the extended structure, and no clear gain over it
+  Structure left;  ///< in the extended structure's residual
+  /// fitted next to the extended structure, without a significant reduction
+  std::vector<Confounded> undecided;
 };
 
-/// Nothing chosen yet.
+/// Returns a selection without causes.
 [[nodiscard]] Selection selection_from(StructureFit base, BlockLosses losses, double noise_mm);
 
-/// What a cause upon another base must take of the mean square, in squares of the noise: no base has the form
-/// of the finger's loop but for a rest, of which one cause or another takes a part in worlds that do not have
-/// it.
+/// Smallest reduction of the mean square by a cause on another base, in squares of the noise. No base matches
+/// the hysteresis loop of a finger exactly. A cause can absorb part of this remaining error even if it is
+/// absent.
 struct LeastTaken {
-  double anyhow;          ///< however it is spread over the blocks
-  double in_most_blocks;  ///< where the blocks' losses fall by a tenth and more, most of them
+  double anyhow;          ///< for any distribution over the blocks
+  double in_most_blocks;  ///< if the losses of most blocks fall by at least 10 %
 };
-/// From the command the rest is the valve's, too: 0.1 to 1.4 of it are taken in vain; what is hidden at twice
-/// the noise takes 1.9 to 12 (textbook worlds, and worlds with a lag that differs between filling and
-/// venting).
+/// Limits for a model that is driven by the command. The remaining error then includes the valve. Absent
+/// causes absorb 0.1 to 1.4 of it. Hidden causes at twice the noise absorb 1.9 to 12. The values come from
+/// textbook test cases and from cases whose lag differs between filling and venting.
 inline constexpr LeastTaken from_the_command{.anyhow = 1.5, .in_most_blocks = 1.5};
-/// From the measured pressure 20 textbook worlds without an effect have 0.54 taken in vain, 0.36 in most
-/// blocks; a backlash, an asymmetric loop and a loop that depends on the rate, hidden at twice the noise,
-/// take 0.2 to 1.5.
+/// Limits for a model that is driven by the measured pressure. In 20 textbook test cases without an effect,
+/// absent causes absorb 0.54, and 0.36 in most blocks. A hidden backlash, asymmetric loop or rate-dependent
+/// loop at twice the noise absorbs 0.2 to 1.5.
 inline constexpr LeastTaken from_the_measured_pressure{.anyhow = 1.0, .in_most_blocks = 0.4};
 
 struct SelectionOptions {
-  /// Three at once meet almost any curve, named or not: what two leave is said to be unexplained. The
-  /// extended model can be diagnosed again.
+  /// Three causes together can fit almost any curve. Therefore the remainder of two causes is reported as
+  /// unexplained. The extended model can be diagnosed again.
   std::size_t most_causes = 2;
   std::uint64_t seed = 1;
   std::function<void(const std::string&)> progress;
-  /// Told the selection where one cause stands and leaves structure.
+  /// Called with the selection if one cause is established and unexplained error remains.
   std::function<void(const Selection&)> one_cause_stands;
-  /// What another explanation leaves as a mean square: a second cause is followed to the end only where it
-  /// comes near. Asked once at most, after one_cause_stands, and not where the looks come as near to the
-  /// noise as that. Infinity: there is no other.
+  /// Returns the mean square that another explanation leaves. A second cause is fitted to the end only if it
+  /// comes near this value. It is called at most once, after one_cause_stands, and only if the scans do not
+  /// come as near to the noise. Infinity: there is no other explanation.
   std::function<double()> to_beat_mm2;
-  /// The base fitted to other readings of the same records. Empty: it stays as it is but for what it answers
-  /// linearly.
+  /// Fits the base to other readings of the same records. Empty: the base stays fixed except for its linear
+  /// response.
   std::function<FitPoint(const std::vector<Record>&)> base_again;
-  LeastTaken least_taken = from_the_command;  ///< by each cause upon another base
+  LeastTaken least_taken = from_the_command;  ///< by each cause on another base
 };
 
 /// @param base  the base structure fitted to data.records.

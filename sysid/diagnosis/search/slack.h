@@ -1,6 +1,6 @@
 #pragma once
-// Play operators of which none follows a reversal at once stand still first, as a backlash behind them does:
-// either makes up for the other.
+// Play operators without an immediate response to a reversal behave like operators followed by a backlash.
+// Each can compensate for the other.
 
 #include <optional>
 
@@ -8,13 +8,13 @@
 
 namespace softgrip::sysid {
 
-/// What share of the weight of the model's play operators follows the pressure at once, 0 to 1; 1 where it
-/// has none.
+/// Returns the weighted share of the model's play operators that follow the pressure at once, 0 to 1. The
+/// value is 1 if the model has no play operator.
 [[nodiscard]] double elastic_share(const model::Model& model);
 
-/// Where a search for a backlash may begin: every operator follows sooner, by the threshold of the first that
-/// is not elastic, and a backlash as wide as what that one moves meanwhile stands behind them. Nothing where
-/// there is no such operator, or a backlash already.
+/// Returns a start point for a backlash search. Every operator follows earlier, by the threshold of the first
+/// operator that is not elastic. A backlash follows the operators; its width is the motion of that operator
+/// in the meantime. Returns an empty value if no such operator exists or the model already has a backlash.
 [[nodiscard]] std::optional<model::Model> with_slack_as_backlash(const model::Model& model);
 
 }  // namespace softgrip::sysid

@@ -16,15 +16,15 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Bands that are tried stand so far apart; the tracker allows for more.
+/// Ratio of neighbouring trial bands; the tracker tolerates a larger one.
 constexpr double next_band = 1.3;
 /// As shares of the largest pressure.
 constexpr double narrowest = 0.004, widest = 0.25;
-/// The band and what stands behind the valve are estimated in turns, until the band stays and what is left
-/// does, as shares.
+/// The band and the chain behind the valve are estimated in turns. The iteration ends if the relative changes
+/// of the band and the remaining error are below these limits.
 constexpr int most_rounds = 20;
 constexpr double band_stays = 5e-4, rest_stays = 0.01;
-/// After so many of them the distances of a band scatter less than by chance.
+/// Number of rounds after which the distances of a true band scatter less than by chance.
 constexpr int rounds_of_chance = 6;
 /// A sum that is larger by more than rounding can make it.
 constexpr double clearly_more = 1 + 1e-9;
@@ -45,8 +45,8 @@ Courses track_all(const std::vector<Record>& records, const FitPoint& point, dou
   return all;
 }
 
-/// The band whose courses leave least, the first of those that leave as little. A band that has already left
-/// more than another one in all is not followed further.
+/// Returns the band whose paths leave the smallest error, or the first of equal ones. A band that already
+/// exceeds the total of another band is not followed further.
 double best_band(const std::vector<Record>& records, const FitPoint& point, const std::vector<double>& bands,
                  double resolution_kpa, unsigned threads) {
   std::vector<double> left(bands.size(), std::numeric_limits<double>::infinity());
@@ -106,8 +106,8 @@ std::vector<Record> driven(const std::vector<Record>& records, const Courses& co
   return all;
 }
 
-/// What the staircase comes to that begins with a band; nothing where there are too few jumps or their
-/// distances come by chance.
+/// Iterates from a start band to a stick-slip motion. Returns an empty value if there are too few jumps or
+/// their distances are random.
 std::optional<Staircase> staircase_from(const std::vector<Record>& records, const StructureFit& behind,
                                         double band_kpa, double resolution_kpa, unsigned threads) {
   Staircase found;
@@ -165,8 +165,8 @@ std::optional<Staircase> find_staircase(const std::vector<Record>& records, cons
   const std::vector<double> bands = bands_of(scales, resolution_kpa);
   if (bands.empty()) return std::nullopt;
   const double band_kpa = best_band(records, behind.point, bands, resolution_kpa, threads);
-  // With jumps over half the band a course comes nearly everywhere, and leaves less than the right one as
-  // long as what stands behind the valve is not known well.
+  // With jumps over half the band, a path can reach nearly every position. It then leaves less error than the
+  // right one until the chain behind the valve is known well.
   for (const double start_kpa : {band_kpa, 2 * band_kpa}) {
     auto found = staircase_from(records, behind, start_kpa, resolution_kpa, threads);
     if (found && is_a_band(*found, resolution_kpa) && found->fit.mean_square_mm2 < behind.mean_square_mm2)

@@ -13,10 +13,10 @@
 namespace softgrip::sysid {
 namespace {
 
-/// What a course leaves [in noises] that is a jump off here and there.
+/// Remaining error of a path with a few wrong jumps [multiples of the noise].
 constexpr double a_jump_off = 0.5;
 
-/// The cause in its smooth form: what is left of all staircases in the mean.
+/// Returns the cause in its smooth form: the mean of all stick-slip motions.
 Cause dragged_along(Cause dead_band) {
   constexpr std::size_t play = model::block_type<model::ValveDeadband>();
   const auto form = std::find_if(dead_band.forms.begin(), dead_band.forms.end(),
@@ -25,7 +25,8 @@ Cause dragged_along(Cause dead_band) {
   return dead_band;
 }
 
-/// A structure with the dead band in its smooth form. A model without one has swallowed the valve's mean lag.
+/// Returns a structure with the dead band in its smooth form. A model without one has absorbed the mean lag
+/// of the valve.
 std::optional<StructureFit> with_mean_of_staircases(const SearchData& data, const StructureFit& selected,
                                                     const Cause& dead_band) {
   if (position_of(selected.point.model, dead_band)) return selected;
@@ -33,8 +34,8 @@ std::optional<StructureFit> with_mean_of_staircases(const SearchData& data, cons
   return fits.empty() ? std::nullopt : std::move(fits.front().fit);
 }
 
-/// The law that meets best what the mean of the staircases leaves: a second effect that was not selected
-/// while the first cause had to stand for both.
+/// Returns the cause that best explains the remainder of the mean stick-slip motion. It is a second effect
+/// that was not selected while the first cause had to represent both.
 std::optional<StructureFit> with_second_effect(const SearchData& data, const StructureFit& beside) {
   std::optional<StructureFit> best;
   for (Candidate& candidate : fit_candidates(data, beside)) {
@@ -44,8 +45,8 @@ std::optional<StructureFit> with_second_effect(const SearchData& data, const Str
   return best;
 }
 
-/// Of two causes that were selected while the staircase was missing one may have stood in for it: it leaves
-/// no less beside it.
+/// Removes a substitute for the stick-slip motion. If two causes were selected without it, one of them may be
+/// unnecessary: the fit without it leaves no more error.
 Staircase without_stand_in(const SearchData& data, Staircase found, double noise_mm) {
   if (found.fit.causes.size() < 2) return found;
   const std::vector<Cause> causes = found.fit.causes;
@@ -56,13 +57,13 @@ Staircase without_stand_in(const SearchData& data, Staircase found, double noise
   return found;
 }
 
-/// The staircase that leaves least, of those in front of several structures.
+/// Keeps the stick-slip motion with the smallest remaining error among those in front of several structures.
 class BestStaircase {
  public:
   BestStaircase(const SearchData& data, const Cause& dead_band, double noise_mm)
       : data_(data), dead_band_(dead_band), noise_mm_(noise_mm) {}
 
-  /// @param beside  a structure with the mean of the staircases in front.
+  /// @param beside  a structure with the mean of the stick-slip motions in front.
   void look(const std::optional<StructureFit>& beside) {
     if (!beside) return;
     auto found = find_staircase(data_.records, without_cause(*beside, dead_band_), noise_mm_, data_.threads);
@@ -70,7 +71,7 @@ class BestStaircase {
     if (!found || (best_ && found->fit.mean_square_mm2 > best_->fit.mean_square_mm2)) return;
     best_ = std::move(found);
   }
-  /// Whether it leaves no more than a jump off here and there.
+  /// Returns true if at most a few jumps are wrong.
   [[nodiscard]] bool meets_all() const {
     return best_ && structure_of(best_->fit.residual_mm, noise_mm_).excess_mm < a_jump_off * noise_mm_;
   }
@@ -83,9 +84,9 @@ class BestStaircase {
   std::optional<Staircase> best_;
 };
 
-/// The staircase in front of the base, or of all that was selected: whichever leaves less. A cause that was
-/// selected without one may be a second effect, or stand in for the staircase itself. Where there is neither,
-/// in front of the base and a second effect.
+/// Returns the stick-slip motion in front of the base or of the whole selection, with the smaller remaining
+/// error. A cause that was selected without it may be a second effect or a substitute for the motion. If
+/// neither is found, a third attempt combines the base with a second effect.
 std::optional<Staircase> staircase_before(const SearchData& data, const Selection& plain,
                                           const Cause& dead_band, double noise_mm) {
   BestStaircase staircase(data, dead_band, noise_mm);
@@ -97,14 +98,14 @@ std::optional<Staircase> staircase_before(const SearchData& data, const Selectio
   return staircase.best();
 }
 
-/// The base alone, fitted to records whose drive is where the valve stood.
+/// Returns the base alone, fitted to records whose drive is the valve position.
 StructureFit base_behind(const Staircase& found) {
   StructureFit base = found.fit;
   for (const Cause& cause : found.fit.causes) base = without_cause(base, cause);
   return found.fit.causes.empty() ? base : fit_structure(found.records, {}, base.point);
 }
 
-/// With the valve in front again.
+/// Returns the point with the valve in front again.
 template <template <class> class Valve>
 FitPoint with_valve(const FitPoint& behind, double band_kpa) {
   FitPoint point = behind;
@@ -112,7 +113,8 @@ FitPoint with_valve(const FitPoint& behind, double band_kpa) {
   return point;
 }
 
-/// What can be foretold from the command alone: the staircase as long as it is in step, or else its mean.
+/// Extends the model with an effect that the command alone predicts. This is the stick-slip motion while it
+/// stays in step, or its mean otherwise.
 void extend(Selection& selection, const SearchData& data, const StructureFit& behind, const Cause& dead_band,
             double band_kpa, const Division& division) {
   std::vector<Cause> causes{dead_band};
@@ -143,7 +145,7 @@ std::optional<StaircaseSelection> select_behind_staircase(const SearchData& data
   driven.threads = data.threads;
   StructureFit base = base_behind(*found);
   driven.scales.residual_lines = spectrum_peaks(driven.records, base.residual_mm);
-  // What a course that is a jump off here and there leaves is no second cause.
+  // The remainder of a path with a few wrong jumps is no second cause.
   SelectionOptions behind = options;
   if (!leaves_too_much(structure_of(base.residual_mm, noise_mm), plain.base_structure, noise_mm))
     behind.most_causes = 0;

@@ -1,5 +1,5 @@
 #pragma once
-// Choosing causes where the valve sticks and jumps.
+// Selects causes if the valve shows stick-slip.
 
 #include <cstddef>
 #include <optional>
@@ -10,28 +10,27 @@
 
 namespace softgrip::sysid {
 
-/// A staircase in numbers.
+/// Numbers that describe a stick-slip motion.
 struct StaircaseEvidence {
   double band_kpa = 0;
   Interval band_ci95;
   std::size_t jumps = 0;       ///< that the band was estimated from
   double scatter = 0;          ///< of the distances of these jumps, standard deviation over mean
   double heldout_rmse_mm = 0;  ///< with the moments of the jumps taken from the readings
-  Spread gain_percent;         ///< of that over the recalibrated model, held out
+  Spread gain_percent;         ///< held-out error reduction relative to the refitted model
 };
 
 struct StaircaseSelection {
-  /// The dead band first, then what was found behind it. `extended` and its losses are simulated from the
-  /// command alone; what is `left`, and the causes' gains, with the moments of the jumps taken from the
-  /// readings.
+  /// The dead band first, then the causes behind it. `extended` and its losses are simulated from the command
+  /// alone. `left` and the reductions of the causes use the jump times from the readings.
   Selection selection;
   StaircaseEvidence evidence;
 };
 
-/// Looks for a staircase in front of what was selected, then for one more cause behind it. Nothing where
-/// there is no staircase, or where the model has a dead band already.
-/// @param plain  what was selected without it.
-/// @param options  of the search behind it.
+/// Searches for stick-slip in front of the selected structure, then for one more cause behind it. Returns an
+/// empty value if there is no stick-slip, or if the model already has a dead band.
+/// @param plain  the selection without stick-slip.
+/// @param options  of the search behind the valve.
 [[nodiscard]] std::optional<StaircaseSelection> select_behind_staircase(const SearchData& data,
                                                                         const Selection& plain,
                                                                         double noise_mm,

@@ -15,15 +15,15 @@
 namespace softgrip::sysid {
 namespace {
 
-/// What a cause may leave of the mean square beyond the noise because its form is a little off: softening in
-/// the worlds of tests/blind leaves 0.009. A loop of another shape that passes for a cause leaves 0.1
-/// (textbook worlds).
+/// Largest share of the mean square beyond the noise that the correct cause may leave because its form is
+/// inexact. Softening in the test cases of tests/blind leaves 0.009. A hysteresis loop of another shape that
+/// resembles a cause leaves 0.1 (textbook test cases).
 constexpr double left_by_its_own_cause = 0.03;
-/// Above so many times the noise what another base leaves may be a small effect: a finger's own form leaves
-/// between a half and one (textbook worlds without an effect).
+/// Above this multiple of the noise, the remainder of another base may be a small effect. The form of a
+/// finger alone leaves 0.5 to 1 (textbook test cases without an effect).
 constexpr double worth_asking = 0.5;
 
-/// Of what is left held out, by a base that is not kept.
+/// Largest ratio of the held-out remainder of a rejected base.
 constexpr double about_as_well = 1.1;
 
 }  // namespace

@@ -1,5 +1,6 @@
 #pragma once
-// When a richer base is asked for, and whether it is the answer (base_findings.h looks for it).
+// Decides when a richer base is searched for, and if it explains the data better (base_findings.h searches
+// for it).
 
 #include <optional>
 #include <string>
@@ -9,42 +10,45 @@
 
 namespace softgrip::sysid {
 
-/// Structure below so many times the noise is none that matters.
+/// An unexplained error below this multiple of the noise is negligible.
 inline constexpr double worth_a_look = 0.2;
-/// What was missing leaves, once it is there, no more than so much of the mean square that stood without it.
+/// Largest share of the mean square that remains if a missing base is added.
 inline constexpr double left_by_what_was_missing = 0.25;
 
-/// Where another base is what is missing, one cause may make up for most of it, never for nearly all.
+/// Returns true if the base may be incomplete. One cause can then compensate for most of the error, but never
+/// for nearly all of it.
 /// @param one_cause  the best selection of one cause on the given base.
 [[nodiscard]] bool may_lack_a_base(const Selection& one_cause, double noise_mm);
 
-/// Whether a base that is not kept does about as well as what was selected upon the given one, with
-/// hysteresis of another shape and without an asymmetric loop.
+/// Returns true if the rejected base has hysteresis of another shape, no asymmetric loop, and about the same
+/// loss as the selection on the given base.
 /// @param selected  held-out losses of the selection.
 [[nodiscard]] bool another_shape_will_do(const BaseFindings& base, const BlockLosses& selected);
-/// Makes hysteresis of another shape a rival of an asymmetric loop, where one is named.
+/// Adds hysteresis of another shape as an alternative to an asymmetric loop, if one is named.
 void add_another_shape(std::vector<NamedCause>& named);
 
-/// A base that is asked for at most once. Refers to its data, which outlive it.
+/// Searches for another base, at most once. Refers to its data, which must outlive it.
 class AnotherBase {
  public:
   AnotherBase(const SearchData& data, BaseQuestion question);
 
-  /// Where no cause on the given base explains the data, the base itself may be the finding. A sentence where
-  /// logs are of different fingers, for which none is looked for.
+  /// Searches for another base if no cause on the given base explains the data. Returns a sentence, without a
+  /// search, if the logs come from different fingers.
   [[nodiscard]] std::optional<std::string> ask(const Selection& selection, const StructureFit& recalibrated);
-  /// Goes on upon what was found, and keeps it where it then explains more than the selection does.
+  /// Continues the search for causes on the found base. Keeps the base only if it then explains more than the
+  /// selection.
   void go_on(const Selection& selection);
   void drop() { found_.reset(); }
-  /// What the base that was not kept has to say of the names upon the given one: another_shape_will_do().
+  /// Adds the alternatives that the rejected base supports to the named causes; see another_shape_will_do().
   void add_rivals(std::vector<NamedCause>& named) const;
 
   [[nodiscard]] bool is_found() const { return found_.has_value(); }
-  /// Of one that is found.
+  /// Requires is_found().
   [[nodiscard]] BaseFindings& found() { return *found_; }
-  /// Infinite where none is found [mm^2].
+  /// Returns the mean square of the found base [mm^2], or infinity without one.
   [[nodiscard]] double mean_square_mm2() const;
-  /// Whether one is found that explains the data and leaves far less structure than the selection does.
+  /// Returns true if a base is found that explains the data and leaves far less unexplained error than the
+  /// selection.
   [[nodiscard]] bool settles(const Selection& selection) const;
 
  private:

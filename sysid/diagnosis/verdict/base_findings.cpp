@@ -25,17 +25,19 @@ namespace {
 constexpr double worth_having = 0.9;
 /// Where a cause was missing a choice of the ridge and of the simplest structure says little.
 constexpr double most_ridge = 1e-5;
-/// What is missed of a cause that is there, in squares of the noise: 1.9 to 100 where one is hidden at twice
-/// and at eight times the noise, 0.001 to 0.5 of those that are not there (60 textbook worlds).
+/// Smallest error increase if a present cause is removed, in squares of the noise. The values are 1.9 to 100
+/// for causes hidden at 2 and 8 times the noise, and 0.001 to 0.5 for absent causes (60 textbook test cases).
 constexpr double least_missed = 1;
-/// Upon another base some of the causes may leave so many times what all of them leave upon the given one.
+/// On another base, some of the causes may leave at most this multiple of the remainder of all of them on the
+/// given base.
 constexpr double as_good_with_fewer = 1.25;
-/// Of the published element's search: its recalibration has searched, and it is only to be seen whether it is
-/// far behind.
+/// Starts for the published element. Its refit was already a search, and this one only tests if it is far
+/// behind.
 constexpr std::size_t published_starts = 6;
 
-/// Whether the richer base foretells the second halves of the logs from the first clearly better than the
-/// given one; a given one that moves the wrong way first is none of a finger, however well it follows one.
+/// Returns true if the richer base, fitted to the first halves of the logs, predicts the second halves
+/// significantly better than the given one. A given base with an inverse response is never accepted, because
+/// no finger has one.
 bool foretells_better(const std::vector<Record>& records, const StructureTrial& chosen, const FitPoint& given,
                       Drive drive) {
   if (beta_over_gain(given.model) > 1) return true;
@@ -53,8 +55,9 @@ double slowest_branch_s(const model::Model& model) {
   return slowest_s;
 }
 
-/// From where on creep is slow for a base that has branches of its own. What was missing may have made them
-/// look faster than they are, and a recalibration without a slower branch gives them its time constant.
+/// Returns the time constant from which creep is slow for a base with its own branches. A missing component
+/// may have made the branches too fast. A refit without a slower branch gives them the time constant of that
+/// component.
 double slow_from_s(const SearchData& data, const model::Model& recalibrated) {
   double longest_s = 0;
   for (const Record& record : data.records) longest_s = std::max(longest_s, record.length_s());
@@ -62,7 +65,7 @@ double slow_from_s(const SearchData& data, const model::Model& recalibrated) {
   return std::max(longest_s / 10, std::min(2 * slowest_s, longest_s));
 }
 
-/// A structure that foretells better, and what it is without its ingredients.
+/// A structure with a better prediction, and the same structure without each of its components.
 struct BetterStructure {
   StructureTrial chosen;
   std::vector<WithoutIngredient> ablation;
@@ -78,7 +81,7 @@ std::optional<BetterStructure> better_structure(const std::vector<Record>& recor
   return BetterStructure{chosen, ablation_of(records, choice, options, named_ingredients())};
 }
 
-/// What a cause is confounded with may have been the base's answer to it.
+/// Returns true if the base may have absorbed a cause that is confounded with the finding.
 bool is_confounded(const NamedCause& finding, const std::vector<Cause>& causes) {
   return std::any_of(causes.begin(), causes.end(),
                      [&](const Cause& cause) { return cause.is_confounded_with(finding.cause); });
@@ -108,14 +111,14 @@ void renumber(BaseFindings& found, const SearchData& data) {
   }
 }
 
-/// The structure fitted to the readings as they are, and its time constants off their grid: a cause upon them
-/// would be given what moving them gains.
+/// Fits the structure to the original readings with free time constants. Otherwise a cause would absorb the
+/// error of the time-constant grid.
 StructureFit fit_off_grid(const StructureTrial& trial, const SearchData& data, Drive drive) {
   return fit_structure(data.records, {}, fit_again(trial, data.records, drive), finishing_effort);
 }
 
-/// A bend that the simplest of the structures that are as good left out is judged as the other ingredients
-/// are.
+/// Judges a nonlinearity that the simplest equally good structure omits in the same way as the other
+/// components.
 /// @param straight  the base without it.
 void name_the_bend(BaseFindings& found, StructureTrial straight, const BaseSearch& search) {
   const StructureFit fit = fit_off_grid(straight, search.data, search.question.drive);
@@ -123,7 +126,8 @@ void name_the_bend(BaseFindings& found, StructureTrial straight, const BaseSearc
   name_ingredients(found, {{Ingredient::characteristic, std::move(straight)}}, search);
 }
 
-/// What a base may do beside a cause it may do alone, or the cause would be given what that gains.
+/// Gives the base alone the same freedom as the base with a cause. Otherwise the cause would receive the
+/// reduction from that freedom.
 void free_the_base(BaseFindings& found, const StructureTrial& as_beside_causes, const BaseSearch& search) {
   const auto& [data, plain, question] = search;
   const bool is_free = found.chosen.structure == as_beside_causes.structure &&
@@ -148,7 +152,7 @@ void free_the_base(BaseFindings& found, const StructureTrial& as_beside_causes, 
   renumber(found, data);
 }
 
-/// What stands by itself now is no other explanation of an ingredient.
+/// Removes a cause from the alternatives of a component if it is now named itself.
 void take_back_rivals(BaseFindings& found) {
   for (NamedCause& finding : found.named) {
     std::erase_if(finding.rivals, [&](const Cause& rival) {
@@ -172,7 +176,7 @@ void drop_what_is_not_missed(StructureFit& with, BlockLosses& losses, std::vecto
   });
 }
 
-/// Whether the causes upon the base are some, and not all, of those that were selected on the given one.
+/// Returns true if the causes on the base are a proper subset of the selection on the given base.
 bool has_some_of(const BaseFindings& found, const Selection& plain) {
   const std::vector<Cause>&some = found.fit.causes, &all = plain.extended.causes;
   const auto is_in_all = [&](const Cause& cause) {
@@ -181,7 +185,8 @@ bool has_some_of(const BaseFindings& found, const Selection& plain) {
   return !some.empty() && some.size() < all.size() && std::all_of(some.begin(), some.end(), is_in_all);
 }
 
-/// Upon a base with many numbers every fit is dear, and thinned records say as well which cause is there.
+/// On a base with many parameters every fit is expensive. Thinned records show equally well which cause is
+/// present.
 Selection select_among_thinned(const FitPoint& base, const SearchData& data, const BaseQuestion& question,
                                const SelectionOptions& options) {
   SearchData thinned = data;

@@ -1,6 +1,6 @@
 #pragma once
-// Structure is a finding too: where no cause on the given base explains the data, a richer base is looked for
-// (sysid/structure), and each of its ingredients that gains on held-out blocks is named.
+// Searches for a richer base if no cause on the given base explains the data (sysid/structure). Each
+// component of it that reduces the held-out error is named.
 
 #include <cstddef>
 #include <cstdint>
@@ -21,7 +21,7 @@ struct BaseFindings {
   StructureTrial chosen;  ///< the richer base, as it was found or as it is beside causes
   bool off_grid = false;  ///< `fit` is of the readings as they are, its time constants where they are best
   std::string description;
-  BlockLosses losses;                ///< held out, on the division that was asked for
+  BlockLosses losses;                ///< held out, on the given division
   std::vector<NamedCause> named;     ///< at full inclusion
   std::vector<NamedCause> possible;  ///< below it
 };
@@ -35,35 +35,37 @@ struct BaseQuestion {
   std::function<void(const std::string&)> progress;
 };
 
-/// Where a base is looked for, and what was selected on the given one.
+/// Inputs of a search for a base, with the selection on the given base.
 struct BaseSearch {
   const SearchData& data;
   const Selection& plain;
   const BaseQuestion& question;
 };
 
-/// Nothing where no richer base foretells clearly better than the given one what comes after the readings
-/// that both were fitted to.
+/// Returns an empty value if no richer base predicts the readings after the fitted ones significantly better
+/// than the given base.
 [[nodiscard]] std::optional<BaseFindings> find_base(const BaseSearch& search);
 
-/// What may stand upon a richer base. No base is a finger's own, and what makes up for that takes a part.
+/// Limits for causes on a richer base. No base matches a finger exactly, and a cause can absorb part of the
+/// difference.
 struct CausesUpon {
-  std::size_t most;    ///< so many causes
-  double least_share;  ///< of what the base leaves, as a mean square, they must take together
-  bool parts;          ///< those that take less are told as a part of it
+  std::size_t most;    ///< largest number of causes
+  double least_share;  ///< smallest share of the base's remaining mean square that they must remove together
+  bool parts;          ///< causes that remove less are reported as partial explanations
 };
 inline constexpr CausesUpon upon_much_left{2, 0.3, true};
-/// Where the base leaves little, its form is most of it; from the command, the valve's too.
+/// If the base leaves little error, most of it is due to its form. With the command as input, the form of the
+/// valve contributes too.
 inline constexpr CausesUpon upon_little_left{1, 0.65, false};
 inline constexpr CausesUpon upon_little_left_measured{1, 0.35, false};
 
-/// Goes on with the search for causes upon a richer base, and adds what it finds.
+/// Continues the search for causes on a richer base, and adds its results.
 void find_causes_upon(BaseFindings& found, const BaseSearch& search, const CausesUpon& allowed);
 
-/// Whether a richer base, with what stands upon it, leaves clearly less held out than what was selected on
-/// the given one; or as little, where that is unphysical; or not much more with some of the same causes,
-/// where that leaves more than the noise.
-/// @param plain_explains  whether the selection on the given base leaves little enough to be named.
+/// Returns true if the richer base and its causes have a significantly lower held-out loss than the selection
+/// on the given base. An equal loss is sufficient if the selection is unphysical. A slightly higher loss is
+/// sufficient with a subset of the same causes, if the selection leaves more than the noise.
+/// @param plain_explains  true if the selection on the given base leaves little enough to be named.
 [[nodiscard]] bool outdoes(const BaseFindings& found, const Selection& plain, double noise_mm,
                            bool plain_explains);
 

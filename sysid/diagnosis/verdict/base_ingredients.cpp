@@ -33,20 +33,21 @@
 namespace softgrip::sysid {
 namespace {
 
-/// What an ingredient must bring of the mean square that the recalibrated base left beyond the noise.
+/// Smallest share of the refitted base's mean square beyond the noise that a component must remove.
 constexpr double least_share = 0.01;
-/// A base that leaves more than so many times as much held out as fitted has run off there.
+/// A held-out fold has diverged if its loss exceeds this multiple of the fitted one.
 constexpr double ran_off_above = 3;
 
-/// Operators of which less than this share follows a reversal at once stand still first, as a backlash does:
-/// 0.09 to 0.81 in 20 textbook fingers, 0.01 to 0.15 where a backlash of eight times the noise is hidden.
+/// Limit of the share of operators that follow a reversal at once. Below it the operators behave like a
+/// backlash. The share is 0.09 to 0.81 in 20 textbook fingers, and 0.01 to 0.15 with a hidden backlash of 8
+/// times the noise.
 constexpr double stands_still_below = 0.07;
 
-/// What a finding is called, and with which blocks it stands in the model.
+/// The name of a finding and its blocks in the model.
 struct FindingName {
   Ingredient ingredient;
   std::string_view id;
-  std::string_view rival;  ///< gives the same readings whatever the command; empty: none
+  std::string_view rival;  ///< a cause with the same readings for every command; empty: none
   std::size_t (*block)(const BaseStructure& structure, Drive drive);
 };
 constexpr std::array names{
@@ -70,8 +71,8 @@ constexpr std::array names{
     FindingName{Ingredient::characteristic, causes::Stiffening::id, causes::SensorNonlinearity::id,
                 [](const BaseStructure&, Drive) { return model::block_type<model::Characteristic>(); }}};
 
-/// What the recalibrated base leaves beyond the noise, held out. A fold in which it ran off does not tell how
-/// much there is to be explained.
+/// Returns the held-out mean square of the refitted base beyond the noise. A fold that diverged does not show
+/// how large the unexplained error is.
 double left_by_the_given_mm2(const BaseSearch& search) {
   const double noise_mm = search.question.noise_mm;
   const double held_out_mm2 = std::pow(rmse_mm(search.plain.base_losses), 2) - noise_mm * noise_mm;
@@ -124,8 +125,9 @@ class Namer {
   UncertainPoint at_;
 };
 
-/// A delay makes up for most of a lag, and a lag for most of a delay, so that neither may be missed although
-/// the finger is late: the one that is missed more stands for both. Nothing where one has its name already.
+/// A delay and a lag compensate for most of each other, so the data may require neither although the finger
+/// responds late. The one with the larger loss represents both. Returns an empty value if one of them is
+/// already named.
 std::optional<NamedCause> latency_of(const std::vector<WithoutIngredient>& ablation, const Namer& namer,
                                      const BaseFindings& found) {
   const StructureTrial* const neither = trial_without(ablation, Ingredient::latency);

@@ -1,5 +1,5 @@
 #pragma once
-// What the ingredients of a richer base bring, by taking each of them away, and the names that they get.
+// Measures the error reduction of each component of a richer base by its removal, and names the components.
 
 #include <vector>
 
@@ -10,11 +10,11 @@
 
 namespace softgrip::sysid {
 
-/// What is to be taken away for name_ingredients().
+/// Returns the components that must be removed for name_ingredients().
 [[nodiscard]] std::vector<Ingredient> named_ingredients();
 
-/// Adds the ingredients of `found.chosen` that bring enough, as named or, where they may bring nothing, as
-/// possible. `found.fit` is that base fitted to all readings.
+/// Adds the components of `found.chosen` with a sufficient error reduction as named causes. Components with
+/// an uncertain reduction become possible causes. `found.fit` is that base fitted to all readings.
 void name_ingredients(BaseFindings& found, const std::vector<WithoutIngredient>& ablation,
                       const BaseSearch& search);
 

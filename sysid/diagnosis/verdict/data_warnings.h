@@ -1,5 +1,5 @@
 #pragma once
-// What a diagnosis says beside its verdict: limits of the data, and of a recalibrated model.
+// Adds warnings to a verdict: limits of the data and of a refitted model.
 
 #include <string>
 #include <vector>
@@ -11,13 +11,13 @@
 
 namespace softgrip::sysid {
 
-/// What recalibration cannot be trusted with.
+/// Warns if the refitted model is unphysical.
 void warn_unphysical(const model::Model& model, std::vector<std::string>& warnings);
 
-/// Limits of the data that bear on what can be told.
+/// Warns about limits of the data that restrict the diagnosis.
 void warn_of_data(const std::vector<Log>& logs, const Scales& scales, std::vector<std::string>& warnings);
 
-/// Readings that are as many times what the given model says as two units are apart.
+/// Warns if the ratio of readings to the given model equals the ratio of two units.
 /// @param residual_mm  reading minus prediction, by record
 void warn_of_scale(const std::vector<Record>& records, const std::vector<std::vector<double>>& residual_mm,
                    std::vector<std::string>& warnings);

@@ -1,6 +1,6 @@
 #pragma once
-// Logs with far more samples than a finger needs. The time of a diagnosis grows with the readings; what they
-// tell does not where many of them lie within the time in which a finger moves at all.
+// Averages logs with far more samples than a finger needs. The time of a diagnosis grows with the number of
+// readings. Their information does not grow if many of them lie within the response time of a finger.
 
 #include <string>
 #include <vector>
@@ -9,13 +9,14 @@
 
 namespace softgrip::sysid {
 
-/// Campaigns of fewer readings are left alone.
+/// Campaigns with at most this number of readings are not changed.
 inline constexpr std::size_t most_readings = 40'000;
-/// What of a larger one lies closer together is averaged, up to this [s]: half a sample of a rig at 100 Hz.
+/// Readings of a larger campaign that are closer together are averaged over at most this time [s]: half a
+/// sample at 100 Hz.
 inline constexpr double averaged_interval_s = 0.005;
 
-/// Averages the records of such a campaign, and adds to `warnings` one sentence for each that was. Returns
-/// whether any was.
+/// Averages the records of such a campaign, and adds one sentence per averaged record to `warnings`. Returns
+/// true if any record was averaged.
 bool average_dense(std::vector<Record>& records, std::vector<std::string>& warnings);
 
 }  // namespace softgrip::sysid

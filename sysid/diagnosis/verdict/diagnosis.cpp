@@ -233,7 +233,8 @@ class Diagnostician {
     return true;
   }
 
-  /// Whether a selection leaves more than what is named may leave, or structure where nothing is named.
+  /// Returns true if a selection with causes leaves more than they may leave, or one without causes leaves
+  /// unexplained error.
   [[nodiscard]] bool leaves_too_much(const Selection& selection) const {
     if (!selection.left.present) return false;
     if (selection.extended.causes.empty()) {
@@ -242,8 +243,8 @@ class Diagnostician {
     return sysid::leaves_too_much(selection.left, selection.base_structure, d_.noise_mm);
   }
 
-  /// A valve that sticks leaves what no simulation from the command alone can foretell. True where that is
-  /// what was missing; the selection is then the one behind the staircase.
+  /// No simulation from the command alone can predict the remainder of a valve with stick-slip. Returns true
+  /// if stick-slip was the missing effect. The selection is then the one behind the valve.
   bool look_for_staircase(Selection& selection, const Division& division) {
     if (options_.record.drive != Drive::command) return false;
     if (options_.progress) options_.progress("looks for a staircase");
@@ -253,7 +254,8 @@ class Diagnostician {
     one_more.progress = options_.progress;
     auto found = select_behind_staircase(data_, selection, d_.noise_mm, division, one_more);
     if (!found || leaves_too_much(found->selection)) return false;
-    // Courses of tiny steps nibble at anything.
+    // A path of many small steps can fit any residual. Therefore stick-slip must explain most of the
+    // remaining error.
     if (square(found->selection.left.excess_mm) > left_by_what_was_missing * square(selection.left.excess_mm))
       return false;
     selection = std::move(found->selection);
@@ -261,7 +263,7 @@ class Diagnostician {
     return true;
   }
 
-  /// Before a gauge or null campaigns have said what a selection is worth, another base is no question.
+  /// Another base is searched only after a gauge or null campaigns have tested the selection.
   [[nodiscard]] bool may_ask_at_once() const { return !options_.gauge && options_.null_campaigns == 0; }
 
   void look_for_base(AnotherBase& another, const Selection& selection) {
@@ -367,9 +369,9 @@ class Diagnostician {
     d_.null_calibration = calibrate_on_nulls(data_, d_.recalibrated, d_.gain.value, division, nulls);
   }
 
-  /// One name for two models would let nobody tell which a file or a figure shows.
+  /// Equal names for two models would make files and figures ambiguous.
   [[nodiscard]] model::Model named_model(model::Model model, const std::string& how) const {
-    // For the daemon, which commands: what the valve does stands in front again.
+    // The daemon needs the command as input, so the valve is inserted again.
     if (options_.record.drive == Drive::measured && d_.in_valve)
       model = with_valve(std::move(model), d_.in_valve->stage);
     model.name = given_.name + '_' + how.substr(0, how.find(' '));
@@ -387,22 +389,21 @@ class Diagnostician {
     }
     for (NamedCause& named : chosen) {
       if (d_.staircase && named.cause.id == causes::ValveDeadband::id) {
-        // Of the staircase itself; the extended model's may be that of its mean.
+        // The values of the stick-slip motion; the extended model may have those of its mean.
         named.parameters.front() = {"band_kpa", "kPa", d_.staircase->band_kpa, d_.staircase->band_ci95, true};
       }
       causes_.push_back(std::move(named));
     }
   }
 
-  /// Wrong samples that were not found stand alone; what a cause does resembles itself from sample to sample.
+  /// Undetected wrong samples are isolated, but the effect of a cause is correlated from sample to sample.
   [[nodiscard]] bool left_by_outliers(const Structure& structure) const {
     return d_.outliers.present && structure.slow_correlation <= clearly_correlated &&
            structure.excess_mm < d_.noise_mm;
   }
 
   void conclude(const Selection& selection) {
-    // Where the gauge has told which of two twins it is, how well the form of that one fits is beside the
-    // point.
+    // If the gauge selected one of two indistinguishable causes, the fit of its form is irrelevant.
     const bool placed_by_gauge = d_.gauge && d_.gauge->replaced;
     const bool too_much_left = !placed_by_gauge && leaves_too_much(selection);
     const bool by_chance = d_.null_calibration && d_.null_calibration->reach_the_gain();

@@ -1,5 +1,5 @@
 #pragma once
-// The diagnosis: what a model gets wrong, the cause, the extension, the gain.
+// Diagnoses a model: its error, the cause, the extension and the error reduction.
 
 #include <chrono>
 #include <cstdint>
@@ -33,9 +33,9 @@ struct DiagnosisOptions {
   RecordOptions record;
   std::uint64_t seed = 1;
   unsigned threads = 0;
-  /// Null campaigns on which the whole search is calibrated when it names something; 0: none.
+  /// Number of simulated null campaigns that calibrate the whole search if it names a cause; 0: none.
   std::size_t null_campaigns = 0;
-  /// What the sensor reads at known positions, where somebody has looked.
+  /// Sensor readings at known positions, if an operator has measured them.
   std::optional<GaugeFile> gauge;
   std::function<void(const std::string&)> progress;
 };
@@ -45,30 +45,31 @@ struct RunError {
   std::string run;
   double given = 0;
   double recalibrated = 0;  ///< fitted to the other runs
-  double extended = 0;      ///< the same; of no extended model the recalibrated one's
+  double extended = 0;      ///< fitted to the other runs; equal to `recalibrated` without an extended model
 };
 
 struct Diagnosis {
   Verdict verdict = Verdict::unexplained;  ///< of the displacement; see whole_verdict()
   std::vector<NamedCause> causes;          ///< of cause_found, ambiguous and partly_explained
-  std::vector<NamedCause> partial;         ///< of unexplained: what explains part of it
+  std::vector<NamedCause> partial;         ///< of unexplained: partial explanations
   std::vector<CandidateScore> rejected;
   double noise_mm = 0;
-  Spread gain;                      ///< extended against recalibrated, held out [%]
+  Spread gain;  ///< held-out error reduction of the extended relative to the refitted model [%]
   double as_given_rmse_mm = 0;      ///< of all readings; starts by sysid/fitting/start_estimate.h
   double recalibrated_rmse_mm = 0;  ///< held out
   double extended_rmse_mm = 0;      ///< held out
-  /// The same with whole logs held out; empty with a single log.
+  /// Held-out RMSE with whole logs held out; empty with a single log.
   std::optional<double> recalibrated_other_logs_rmse_mm;
   std::optional<double> extended_other_logs_rmse_mm;
   std::vector<RunError> runs;
   double unexplained_percent = 0;
-  std::optional<NullCalibration> null_calibration;  ///< where it was asked for and something was to be named
+  std::optional<NullCalibration> null_calibration;  ///< if requested and a cause was to be named
   OutlierEvidence outliers;
-  std::optional<StaircaseEvidence> staircase;  ///< where the named dead band is one
+  std::optional<StaircaseEvidence> staircase;  ///< if the named dead band shows stick-slip
   std::optional<GaugeEvidence> gauge;          ///< where gauge readings were given
   std::optional<ValveFindings> in_valve;       ///< where the pressure was measured; none of `causes` again
-  std::string base;  ///< what a richer base is made of, where the given one does not hold; empty: it holds
+  /// components of a richer base, if the given base is insufficient; empty: it is sufficient
+  std::string base;
   Structure structure_recalibrated;
   Structure structure_left;
   StructureFit as_given;
@@ -78,26 +79,27 @@ struct Diagnosis {
   model::Model recalibrated_model;
   std::vector<Record> records;
   std::vector<std::string> warnings;
-  /// By id: causes whose condition the logs never meet, with the recording that would test them.
+  /// Untested causes by id: the logs never meet their condition. The value names the recording that would
+  /// test them.
   std::map<std::string, std::string, std::less<>> not_tested;
   std::optional<Evidence> evidence;  ///< where the models are wrong; see examine()
   double wall_s = 0;
-  std::vector<std::pair<std::string, double>> stages_s;  ///< what the wall time went into
+  std::vector<std::pair<std::string, double>> stages_s;  ///< wall time by stage
 };
 
-/// Whether the extended model is another than the recalibrated one.
+/// Returns true if the extended model differs from the refitted one.
 [[nodiscard]] inline bool is_extended(const Diagnosis& d) {
   return !d.extended.causes.empty() || !d.base.empty();
 }
 
-/// The verdict with what only the measured pressure shows.
+/// Returns the verdict including the causes that only the measured pressure shows.
 [[nodiscard]] Verdict whole_verdict(const Diagnosis& d);
 
-/// Takes the time of a diagnosis' stages, one after the other.
+/// Measures the wall time of the stages of a diagnosis in sequence.
 class StageClock {
  public:
   explicit StageClock(Diagnosis& diagnosis) : diagnosis_(diagnosis) {}
-  /// What has run since construction or the last call was this stage.
+  /// Assigns the time since construction or the last call to this stage.
   void ended(std::string stage) {
     const auto now = std::chrono::steady_clock::now();
     const double took_s = std::chrono::duration<double>(now - began_).count();
@@ -111,15 +113,15 @@ class StageClock {
   std::chrono::steady_clock::time_point began_ = std::chrono::steady_clock::now();
 };
 
-/// Fails with a sentence where the logs cannot be judged at all.
+/// Returns an error sentence if the logs cannot be diagnosed at all.
 [[nodiscard]] tl::expected<Diagnosis, std::string> diagnose(const std::vector<Log>& logs,
                                                             const model::Model& given,
                                                             const DiagnosisOptions& options = {});
 
-/// Adds the evidence to a diagnosis: it describes what the verdict left, and does not change it.
+/// Adds the evidence to a diagnosis. It describes the remaining error and does not change the verdict.
 void examine(Diagnosis& diagnosis, const DiagnosisOptions& options);
 
-/// The verdict in one sentence that a technician understands.
+/// Returns the verdict as one sentence for a technician.
 [[nodiscard]] std::string verdict_sentence(const Diagnosis& diagnosis);
 
 }  // namespace softgrip::sysid

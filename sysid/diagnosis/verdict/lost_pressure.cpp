@@ -8,10 +8,11 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Of what a sensor's gain takes a leak must take so much. Of a leak's or a scale's loss it takes 0.99 and
-/// more, of a ceiling's at nine tenths of the range 0.84.
+/// Smallest share of the reduction by a sensor gain that a leak must reach. The share is at least 0.99 for a
+/// leak or a scale, and 0.84 for a ceiling at 90 % of the range.
 constexpr double taken_by_a_leak = 0.95;
-/// And of all that is left without either: it is what is missing, not what else is wrong.
+/// Smallest share of the error without both that the leak must explain. Otherwise most of the error has
+/// another cause.
 constexpr double least_taken = 0.5;
 
 double mean_of(const BlockLosses& losses) {

@@ -1,5 +1,6 @@
 #pragma once
-// A measured pressure that stays below the command by more than scales differ: a leak, or a scale after all.
+// Finds a measured pressure that stays below the command by more than scale errors explain. The cause is a
+// leak or a wrong scale.
 
 #include <cstdint>
 #include <optional>
@@ -8,22 +9,22 @@
 
 namespace softgrip::sysid {
 
-/// What two scales may differ by and nobody looks for a leak: a regulator and a pressure sensor of 1 % each,
-/// as their data sheets have it.
+/// Largest difference between two scales that needs no leak as an explanation. A regulator and a pressure
+/// sensor have 1 % error each by their data sheets.
 inline constexpr double scales_agree_within = 0.015;
 
 struct LostPressure {
   ValveParts parts;  ///< with the leak
   ValveStage stage;  ///< with it, and a sensor whose gain is one
   BlockLosses losses_kpa2;
-  BlockLosses without_kpa2;  ///< neither leak nor gain
-  double highest_kpa = 0;    ///< measured
-  double missing_kpa = 0;    ///< there
+  BlockLosses without_kpa2;  ///< without leak and gain
+  double highest_kpa = 0;    ///< highest measured pressure
+  double missing_kpa = 0;    ///< pressure missing at that point
 };
 
-/// Nothing where the gain of the pressure's sensor, fitted in its place, is within what scales differ by,
-/// where a leak takes clearly less of what is missing than that gain does, or where most of what is left is
-/// something else.
+/// Returns an empty value in three cases. The fitted gain of the pressure sensor is within the scale errors.
+/// A leak explains significantly less of the missing pressure than that gain. Most of the remaining error has
+/// another cause.
 /// @param scaled  the fit of `parts`, which hold no leak, with gain and zero of the sensor.
 [[nodiscard]] std::optional<LostPressure> find_lost_pressure(const std::vector<Log>& logs,
                                                              const MeasuredValve& valve, ValveParts parts,

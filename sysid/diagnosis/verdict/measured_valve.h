@@ -1,6 +1,6 @@
 #pragma once
-// The measured pressure of a few logs and the fits of a valve stage to it: what is left of blocks that were
-// not fitted, and how certain the numbers are.
+// Fits a valve stage to the measured pressure of a few logs. It computes the held-out error and the
+// uncertainty of the parameters.
 
 #include <cstddef>
 #include <vector>
@@ -13,29 +13,31 @@
 
 namespace softgrip::sysid {
 
-/// Refers to its logs, which outlive it. Each has a measured pressure.
+/// Refers to its logs, which must outlive it. Each log has a measured pressure.
 class MeasuredValve {
  public:
-  /// @param held  the command keeps its value until the next sample.
+  /// @param held  true: the command keeps its value until the next sample.
   MeasuredValve(const std::vector<Log>& logs, bool held);
 
-  /// A fit of some parts, and the gauge, to everything; `tolerance`: of one that is told to the last digits.
+  /// Fits some parts and the gauge to all data. @param tolerance  of the fit; a reported fit needs a small
+  /// one.
   [[nodiscard]] ValveStage fit(ValveParts parts, const std::vector<ValveStage>& from, double tolerance = 1e-6,
                                PressureSensorFit sensor = PressureSensorFit::gain_and_zero) const;
 
-  /// The better of `one`, a fit of `parts`, and of one that begins at `other`, which has some of them; the
-  /// latter is tried where `other` leaves not much more than `one`.
+  /// Returns the better of two fits of `parts`: `one`, and a fit that starts at `other`, which has some of
+  /// the parts. The second fit runs only if `other` leaves little more than `one`.
   [[nodiscard]] ValveStage better_fit(ValveParts parts, const ValveStage& one, const ValveStage& other) const;
 
-  /// Mean square of every block while it was not fitted, blocks taking turns [kPa^2].
+  /// Returns the mean square of every block while it was held out; the blocks take turns [kPa^2].
   [[nodiscard]] BlockLosses held_out_losses(
       ValveParts parts, const ValveStage& whole,
       PressureSensorFit sensor = PressureSensorFit::gain_and_zero) const;
 
-  /// Standard errors of numbers that were fitted together, in their units and order. The larger of two: of
-  /// white noise; and by the sandwich whose filling is the sum over whole blocks, so that what resembles
-  /// itself within a block counts once (White, Econometrica 48, 1980; Liang & Zeger, Biometrika 73, 1986).
-  /// That one is too small where few blocks say most: the edges of a few steps.
+  /// Returns standard errors of parameters that were fitted together, in their units and order. The result is
+  /// the larger of two estimates. One assumes white noise. The other is the sandwich estimate with sums over
+  /// whole blocks, so that correlation within a block is included (White, Econometrica 48, 1980; Liang &
+  /// Zeger, Biometrika 73, 1986). The sandwich estimate is too small if few blocks contain most of the
+  /// information, such as the edges of a few steps.
   [[nodiscard]] Eigen::VectorXd standard_errors(const ValveStage& at,
                                                 const std::vector<double ValveStage::*>& numbers) const;
 

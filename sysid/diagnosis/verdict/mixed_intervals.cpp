@@ -11,7 +11,7 @@ namespace {
 /// A structure that loses less in fewer than this share of the draws is ruled out.
 constexpr double least_weight = 0.05;
 
-/// Whether any interval became wider.
+/// Returns true if any interval became wider.
 bool widen(NamedCause& named, const std::vector<CauseParameter>& with) {
   bool wider = false;
   for (CauseParameter& number : named.parameters) {

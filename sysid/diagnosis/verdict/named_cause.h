@@ -1,5 +1,5 @@
 #pragma once
-// A cause as a verdict names it, with what speaks for it.
+// Describes a cause that a verdict names, with its evidence.
 
 #include <cstddef>
 #include <optional>
@@ -22,7 +22,7 @@ struct CauseParameter {
   [[nodiscard]] bool determined() const { return has_interval && is_determined(ci95, value); }
 };
 
-/// Named alone at this inclusion and above.
+/// A cause is named alone at this inclusion frequency and above.
 inline constexpr double full_inclusion = 0.95;
 
 struct NamedCause {
@@ -30,8 +30,9 @@ struct NamedCause {
   std::size_t block_type = 0;  ///< of the form in which it was found
   std::vector<CauseParameter> parameters;
   Spread heldout_gain_percent;
-  Spread gain_mm2;  ///< what the held-out mean square falls by with it
-  /// The same of the measured pressure, where that has judged it [kPa^2].
+  Spread gain_mm2;  ///< decrease of the held-out mean square with the cause
+  /// Decrease of the mean square of the measured pressure, if the pressure was used to judge the cause
+  /// [kPa^2].
   std::optional<Spread> gain_kpa2;
   double inclusion = 1;  ///< the weight of the structures in the confidence set that contain it
   std::vector<Cause> rivals;

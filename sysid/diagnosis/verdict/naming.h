@@ -1,5 +1,5 @@
 #pragma once
-// What is said of a cause: its numbers with their intervals.
+// Describes a cause: its parameters with their intervals.
 
 #include <cstddef>
 #include <string>
@@ -11,37 +11,38 @@
 
 namespace softgrip::sysid {
 
-/// A fitted point with the covariance of what its fit moved.
+/// A fitted point with the covariance of the fitted parameters.
 struct UncertainPoint {
   const FitPoint& point;
   const FitSpace& space;
   std::vector<double> z;
   Uncertainty uncertainty;
 };
-/// @param space  what the fit to `records` moved; both must outlive the result.
+/// @param space  the parameters that the fit to `records` moved; both must outlive the result.
 [[nodiscard]] UncertainPoint uncertain_point(const std::vector<Record>& records, const FitPoint& point,
                                              const FitSpace& space);
 
-/// The numbers of the model's block of this type, in its order; intervals of 95 % where the fit moved them
-/// and they are not at a bound.
+/// Returns the parameters of the model's block of this type, in its order. A parameter has a 95 % interval if
+/// the fit moved it and it is not at a bound.
 [[nodiscard]] std::vector<CauseParameter> block_numbers(const UncertainPoint& at, std::size_t block_type);
 
-/// The causes that a search chose, as they stand in its extended structure.
+/// Returns the causes of a selection with their parameters in the extended structure.
 [[nodiscard]] std::vector<NamedCause> name_chosen(const std::vector<Record>& records,
                                                   const StructureFit& extended,
                                                   const std::vector<ChosenCause>& chosen);
 
 [[nodiscard]] NamedCause outlier_cause(const OutlierEvidence& evidence, double noise_mm);
 
-/// A cause in the midst of a sentence: "valve lag".
+/// Returns the title of a cause for use inside a sentence: "valve lag".
 [[nodiscard]] std::string title_within(const Cause& cause);
-/// A rival beside what is named: "a further valve lag" where one is named already.
+/// Returns the title of an alternative next to the named causes: "a further valve lag" if a valve lag is
+/// already named.
 [[nodiscard]] std::string rival_title(const Cause& rival, const std::vector<NamedCause>& named);
 
-/// Whether the cause is among those that are named.
+/// Returns true if the cause is named.
 [[nodiscard]] bool is_among(const std::vector<NamedCause>& named, const Cause& cause);
 
-/// Whether any of them has a rival.
+/// Returns true if any of the causes has an alternative.
 [[nodiscard]] bool any_rivals(const std::vector<NamedCause>& causes);
 
 }  // namespace softgrip::sysid

@@ -1,5 +1,5 @@
 #pragma once
-// What the logs of a diagnosis cannot show by a simulation: causes whose condition they never meet, and
+// Handles causes that a simulation of the logs cannot show: causes whose condition the logs never meet, and
 // closed loops.
 
 #include "sysid/diagnosis/verdict/diagnosis.h"

@@ -37,19 +37,20 @@ namespace {
 /// time with a lag, and a part can absorb some of the difference. In 16 simulated textbook cases an absent
 /// part explained at most 0.12, and a present one at least 0.27 at twice the noise.
 constexpr double least_part = 0.2;
-/// The same for a second time constant, which is a detail of a lag and no name of its own.
+/// Smallest share for a second time constant, which is a detail of a lag and has no name of its own.
 constexpr double least_detail = 0.02;
-/// Of all logs together, of more every second, third, ... is taken: a valve's numbers are few.
+/// Largest number of samples of all logs together. Longer logs are thinned to every second, third, ...
+/// sample, because a valve has few parameters.
 constexpr std::size_t most_samples = 30'000;
 
-/// A stage's number, as the named cause gives it.
+/// A parameter of a stage, as the named cause reports it.
 struct Number {
   std::string_view name;
   std::string_view unit;
   double ValveStage::*value;
 };
 
-/// What a part is called.
+/// The name of a part.
 struct PartName {
   ValvePart part;
   std::string_view id;
@@ -160,7 +161,7 @@ class Search {
     parallel_for(valve_part_count, question.threads, [&](std::size_t i) {
       if (!ablation_[i]) return;
       Trial& trial = *ablation_[i];
-      // What takes next to nothing where it was fitted takes nothing held out.
+      // A part with a negligible share of the fitted error is not tested on held-out blocks.
       const double fitted_share = 1 - std::pow(whole_.stage.rmse_kpa / trial.stage.rmse_kpa, 2);
       if (fitted_share > 0.5 * least_share_of(static_cast<ValvePart>(i))) {
         trial.losses_kpa2 = valve_.held_out_losses(trial.parts, trial.stage);
@@ -214,7 +215,7 @@ class Search {
     return evidence;
   }
 
-  /// Whether two lags in a row leave next to as little as a dead time and one.
+  /// Returns true if two lags in series fit almost as well as one lag and a dead time.
   [[nodiscard]] bool may_be_second_lag() const {
     const ValveParts parts = without(whole_.parts, ValvePart::delay).set(index_of(ValvePart::second_lag));
     ValveStage start = whole_.stage;
@@ -225,7 +226,7 @@ class Search {
   }
 
   void add_lost_pressure(ValveFindings& found, ValveParts kept) const {
-    // What a supply that sags or a ceiling takes is missing too, until it is fitted.
+    // A supply that sags or a ceiling also reduces the pressure, so both are fitted first.
     if (!(whole_.stage.gauge_gain < 1 - scales_agree_within)) return;
     const auto lost = find_lost_pressure(logs_, valve_, kept, found.stage);
     if (!lost) return;

@@ -1,6 +1,6 @@
 #pragma once
-// What the valve does between the command and the measured pressure, judged by the measured pressure: where
-// the pressure is recorded, a cause in the valve is no guess from the finger's motion.
+// Finds the causes between the command and the measured pressure. With a recorded pressure, a valve cause is
+// not inferred from the motion of the finger.
 
 #include <cstdint>
 #include <optional>
@@ -15,12 +15,12 @@
 namespace softgrip::sysid {
 
 struct ValveFindings {
-  /// At full inclusion and, but for a leak, which a scale may pass for, without rivals; none where the stage
-  /// is far off, and none that the given model has. Their gains are of the measured pressure (gain_kpa2,
-  /// heldout_gain_percent), and gain_mm2 is 0.
+  /// Causes at full inclusion, without alternatives except for a leak, which may be a scale error. The list
+  /// is empty if the stage fits badly. It contains no cause of the given model. The reductions apply to the
+  /// measured pressure (gain_kpa2, heldout_gain_percent), and gain_mm2 is 0.
   std::vector<NamedCause> named;
-  std::string advice;  ///< what tells a leak that is named from a scale; empty: none is
-  ValveStage stage;    ///< dead time, lag and what is named
+  std::string advice;  ///< advice that separates a named leak from a scale error; empty: no leak is named
+  ValveStage stage;    ///< dead time, lag and the named causes
   double heldout_rmse_kpa = 0;
   double noise_kpa = 0;  ///< of the measured pressure, sample to sample
 };
@@ -30,10 +30,10 @@ struct ValveQuestion {
   bool held = false;
   double noise_mm = 0;  ///< of the finger's readings: what moves it by less is not named
   std::uint64_t seed = 1;
-  unsigned threads = 0;  ///< 0: as many as there are cores
+  unsigned threads = 0;  ///< 0: the number of cores
 };
 
-/// Nothing where a log has no measured pressure.
+/// Returns an empty value if a log has no measured pressure.
 [[nodiscard]] std::optional<ValveFindings> find_in_valve(const std::vector<Log>& logs,
                                                          const ValveQuestion& question);
 

@@ -17,7 +17,7 @@ std::string listed(const std::vector<NamedCause>& causes) {
   });
 }
 
-/// Nothing but wrong samples was found.
+/// Returns the sentence if only wrong samples were found.
 std::string outlier_sentence(const Diagnosis& d) {
   return "Isolated wrong samples stand among the readings (" + significant(100 * d.outliers.share, 2) +
          " %, about " + significant(d.outliers.size_mm, 2) +
@@ -25,7 +25,8 @@ std::string outlier_sentence(const Diagnosis& d) {
          significant(d.recalibrated_rmse_mm, 2) + " mm.";
 }
 
-/// The command does not tell where in its staircase a valve stands; the readings do.
+/// Returns the sentence on stick-slip. The readings determine the position of the valve; the command does
+/// not.
 std::string staircase_sentence(const Diagnosis& d, const std::string& before, const std::string& after) {
   return "The model lacks " + listed(d.causes) +
          ": the valve sticks and jumps. When it jumps the command alone does not tell, and with it the "
