@@ -21,11 +21,11 @@ enum class FaultCode : std::uint16_t {
   reading_jumped = 204,        ///< moved faster than a finger can
   reading_frozen = 205,        ///< did not change while the command moved
   displacement_beyond_limits = 206,
-  pressure_not_followed = 207,  ///< the measured pressure is not what the command asks for
+  pressure_not_followed = 207,  ///< the measured pressure differs from the command
   readback_mismatch = 301,      ///< the board's output is not what was written
-  write_refused = 302,          ///< the board did not take the write
+  write_refused = 302,          ///< the board rejected the write
   board_watchdog_tripped = 303,
-  outputs_overwritten = 304,  ///< somebody else writes to the board
+  outputs_overwritten = 304,  ///< another Modbus client writes to the board
   model_unfit = 401,
   emergency_stop = 501,
   inputs_lost = 502,  ///< the digital inputs cannot be read
@@ -33,7 +33,7 @@ enum class FaultCode : std::uint16_t {
   not_finite = 902,   ///< a command was not a finite number
 };
 
-/// What the manual and the events say of a fault.
+/// Description of a fault in the manual and in events.
 struct FaultInfo {
   FaultCode code;
   std::string_view id;       ///< "F101"
@@ -46,11 +46,11 @@ struct FaultInfo {
 
 /// All faults in the order of their codes, without `none`.
 [[nodiscard]] std::span<const FaultInfo> all_faults() noexcept;
-/// Of one; for `none` and unknown numbers an entry with id "F000", name "none".
+/// Returns the description of a fault. For `none` and unknown numbers, the entry has id "F000" and name
+/// "none".
 [[nodiscard]] const FaultInfo& info_of(FaultCode code) noexcept;
 
-/// The bus says so when it has stopped obeying the loop: what stands at the outputs is not what was
-/// commanded.
+/// Returns true if the fault shows that the outputs no longer follow the loop: they differ from the commands.
 [[nodiscard]] constexpr bool inhibits(FaultCode code) noexcept {
   return code == FaultCode::cycles_lost || code == FaultCode::board_watchdog_tripped ||
          code == FaultCode::write_refused || code == FaultCode::outputs_overwritten;
@@ -67,8 +67,8 @@ enum class RefusalCode : std::uint16_t {
   no_valid_reading = 6,  ///< a channel of the sequence has no valid reading
   nothing_to_stop = 7,
   nothing_to_acknowledge = 8,
-  cause_persists = 9,  ///< acknowledge while the cause of a latched fault is still there
-  overtaken = 10,      ///< a start behind which a stop or a vent was asked for before the loop could take it
+  cause_persists = 9,            ///< acknowledge while the cause of a latched fault is still there
+  overtaken = 10,                ///< a stop or vent request superseded the start before the loop accepted it
   nothing_to_release = 11,       ///< no sequence runs, and every channel is at its rest pressure
   named_start_not_running = 12,  ///< a stop of one start, which does not run
 };

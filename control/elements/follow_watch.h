@@ -5,8 +5,9 @@
 
 namespace softgrip::control {
 
-/// What holds a finger lets it stay where it met it while the model goes on; a finger that has changed goes
-/// on with its model, only less far. Until the model has gone far enough to tell, a finger counts as held.
+/// Detects if a finger is held by an object. A held finger stays where it made contact while the model
+/// continues. A finger whose gain has changed continues with its model, but less far. Until the model has
+/// moved far enough to decide, a finger counts as held.
 class FollowWatch {
  public:
   static constexpr double tells_from_mm = 1;  ///< of the model's motion since the touch
@@ -14,8 +15,8 @@ class FollowWatch {
 
   void reset() noexcept { touching_ = held_ = false; }
 
-  /// One tick: whether it lags the model by more than grip detection's margin, where it is and where the
-  /// model would be [mm]. What is not finite changes nothing.
+  /// Processes one tick. `touching`: the finger lags the model by more than the margin of grip detection. The
+  /// other arguments are the reading and the model position [mm]. Non-finite values change nothing.
   void observe(bool touching, double displacement_mm, double expected_mm) noexcept {
     if (!touching) return reset();
     if (!std::isfinite(displacement_mm) || !std::isfinite(expected_mm)) return;

@@ -8,13 +8,13 @@
 
 namespace softgrip::control {
 
-/// Whether a finger touches something, with hysteresis: from a deficit of `margin_mm` on, until it is below
-/// half of that.
+/// Detects contact with hysteresis. Contact starts at a displacement shortfall of `margin_mm` and ends below
+/// half of it.
 class Contact {
  public:
   explicit Contact(double margin_mm) noexcept : margin_mm_(margin_mm) {}
   void reset() noexcept { touching_ = false; }
-  /// A deficit that is not known (NaN) changes nothing.
+  /// An unknown shortfall (NaN) changes nothing.
   void observe(double deficit_mm) noexcept;
   [[nodiscard]] bool touching() const noexcept { return touching_; }
 
@@ -23,7 +23,7 @@ class Contact {
   bool touching_ = false;
 };
 
-/// Asks for an evidence that lasts a whole window. Samples that say nothing (invalid readings) start it anew.
+/// Requires evidence throughout a window. Invalid readings restart the window.
 class EvidenceWindow {
  public:
   enum class Verdict : std::uint8_t { pending, verified, refuted };
@@ -42,9 +42,9 @@ class EvidenceWindow {
   bool evidence_ = false;
 };
 
-/// Watches that something is still held: at the end of every interval the mean of the evidence over it must
-/// not be below the least. What is lost is told at most two intervals after it went. Intervals without one
-/// usable sample say nothing.
+/// Monitors a held part. At the end of every interval, the mean evidence of the interval must reach the
+/// minimum. A loss is reported at most two intervals after it occurs. Intervals without a usable sample are
+/// ignored.
 class HoldWatch {
  public:
   void start(double time_s, double interval_s, double least) noexcept;

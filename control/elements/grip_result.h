@@ -6,7 +6,7 @@
 
 namespace softgrip::control {
 
-/// Of one channel; stays until acknowledged or until the next start.
+/// The result of one channel; it stays until a reset (acknowledge) or the next start.
 enum class GripResult : std::uint8_t {
   none,       ///< nothing asked yet
   holding,    ///< HOLDING: an object was detected and verified

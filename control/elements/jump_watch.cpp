@@ -11,7 +11,7 @@ namespace {
 /// How much more than its model a free finger may move.
 constexpr double more_than_model = 1.5;
 
-/// What of a motion lies beyond what the model explains; the sign is the direction [mm].
+/// Returns the part of a motion that the model does not explain; the sign is the direction [mm].
 double unexplained_mm(double moved_mm, double model_mm) noexcept {
   const double least = std::min(0.0, more_than_model * model_mm);
   const double most = std::max(0.0, more_than_model * model_mm);

@@ -10,9 +10,9 @@
 
 namespace softgrip::control {
 
-/// Counts jumps that turn back. A jump is what the reading moved from one to the next beyond what the model
-/// did meanwhile (a finger does between nothing and a little more than its free model). A part that slips, is
-/// lost or is pushed in makes the finger jump, too, but one way.
+/// Counts jumps that reverse. A jump is the change between two readings beyond the change of the model. A
+/// finger moves between nothing and slightly more than its free-motion model. A part that slips, is lost or
+/// is pushed in also makes the finger jump, but in one direction only.
 class JumpWatch {
  public:
   static constexpr double window_s = 1;  ///< in which the jumps are counted

@@ -1,5 +1,5 @@
 #pragma once
-// What a first-order lag does in a step.
+// Computes the response of a first-order lag in one step.
 
 #include <cmath>
 

@@ -1,6 +1,5 @@
 #pragma once
-// A limit that keeps a command from what is wanted for longer than a moment is worth telling: what was asked
-// for is not what goes out.
+// Reports a limit that keeps the output below or above the demand for longer than a short time.
 
 #include <cstdint>
 #include <optional>
@@ -8,8 +7,7 @@
 
 namespace softgrip::control {
 
-/// What keeps a command from what is wanted. The rest pressure is not among them: a finger that is let go
-/// stands at it.
+/// The limit that restricts a command. The rest pressure is not included, because a released finger is at it.
 enum class BindingLimit : std::uint8_t {
   none,
   rig_pressure,   ///< limits: pressure_max_kpa of the rig file
@@ -23,17 +21,17 @@ enum class BindingLimit : std::uint8_t {
 /// "pressure_max_kpa of the rig keeps the pressure down"; empty of none.
 [[nodiscard]] std::string_view words_of(BindingLimit limit) noexcept;
 
-/// Tells of a limit when limits have bound a command for `moment_s`, of another one that has taken its place
-/// for as long, and when they have let go of it. Shorter gaps than `gap_s` do not count: noise takes a
-/// command across its ceiling again and again.
+/// Reports a limit after limits have restricted a command for `moment_s`. It also reports a different limit
+/// that has replaced it for as long, and the end of the restriction. Gaps shorter than `gap_s` are ignored:
+/// noise moves a command across its ceiling repeatedly.
 class LimitWatch {
  public:
   static constexpr double moment_s = 0.5;
   static constexpr double gap_s = 0.1;
 
-  /// One tick. A value where what stands() has just changed.
+  /// Processes one tick. Returns a value if stands() has just changed.
   std::optional<BindingLimit> observe(double time_s, BindingLimit now) noexcept;
-  /// The limit that binds and was told.
+  /// Returns the limit that was reported and is still active.
   [[nodiscard]] BindingLimit stands() const noexcept { return told_; }
 
  private:

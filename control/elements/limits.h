@@ -1,8 +1,8 @@
 #pragma once
-// What a command may be. limit() is the only place where a pressure that a tick commands is kept within its
-// range and slowed down to the slew limits; a feedforward that plans ahead asks the same functions what they
-// would let through. One thing is not slowed down: the safe output (ChannelOutput::safe_kpa), which is
-// written when the loop leaves or falls silent, is the rest pressure at once, or the last command.
+// Limits commands. limit() is the only function that keeps a commanded pressure within its range and slew
+// limits. A feedforward that plans ahead calls the same functions. The safe output (ChannelOutput::safe_kpa)
+// has no slew limit. It is written when the loop stops or its commands time out. It is the rest pressure at
+// once, or the last command.
 
 #include <algorithm>
 #include <cmath>
@@ -64,9 +64,10 @@ struct LimitedCommand {
 /// No ceiling but the pressure range's.
 inline constexpr double no_ceiling = std::numeric_limits<double>::infinity();
 
-/// The command for `wanted_kpa` when `last_kpa` went out `elapsed_s` (>= 0) ago. It is always inside the
-/// pressure range, even when the last one was not; inside the range the slew limits hold as well. A ceiling
-/// below what stands is gone to as fast as they allow. A ceiling below rest is one at rest.
+/// Returns the command for `wanted_kpa` if `last_kpa` was written `elapsed_s` (>= 0) ago. The result is
+/// always inside the pressure range, even if the last command was not. Inside the range, the slew limits
+/// apply too. A ceiling below the present command is approached as fast as they permit. A ceiling below the
+/// rest pressure acts as a ceiling at the rest pressure.
 [[nodiscard]] LimitedCommand limit(const LimitSettings& limits, double wanted_kpa, double last_kpa,
                                    double elapsed_s, double ceiling_kpa = no_ceiling) noexcept;
 

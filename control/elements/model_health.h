@@ -20,14 +20,13 @@ enum class HealthState : std::uint8_t {
   unknown,  ///< nothing was observed yet
   healthy,
   suspect,  ///< the residual drifts more than a healthy model's: calibrate soon
-  unfit,    ///< the residual is larger than grip detection and feedforward can stand
+  unfit,    ///< the residual exceeds the tolerance of grip detection and feedforward
 };
 [[nodiscard]] const char* name_of(HealthState state) noexcept;
 
-/// What a healthy residual looks like, and when to tell. With the defaults, of forty models of the bench twin
-/// whose parameters are off by up to 5 % none is suspect within five cycles of a 13 +- 7 mm sine, off by up
-/// to 10 % five, off by up to 20 % twenty-three (tests/control/tuning/tracking_run_test.cpp holds them to
-/// it).
+/// Properties of a healthy residual, and the limits for warnings. With the defaults, 40 models of the bench
+/// twin with wrong parameters were tested for five cycles of a 13 +- 7 mm sine. With errors up to 5 % none is
+/// suspect, up to 10 % five, up to 20 % twenty-three (checked by tests/control/tuning/tracking_run_test.cpp).
 struct ModelHealthSettings {
   double model_error_mm = 0.4;      ///< > 0
   double correlation_time_s = 4.0;  ///< > 0

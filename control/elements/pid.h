@@ -33,8 +33,9 @@ class Pid {
  public:
   Pid(const PidSettings& settings, double tick_s) noexcept;
 
-  /// The next step() continues `command_kpa` whatever its errors and feedforward are: the integrator takes
-  /// up the difference. For a start, a change from hold or pressure to displacement, a new feedforward.
+  /// Makes the next step() continue at `command_kpa`, regardless of its errors and feedforward: the
+  /// integrator absorbs the difference. Use it for a start, a change from hold or pressure to displacement,
+  /// and a new feedforward.
   void align(double command_kpa) noexcept;
 
   /// The feedback part of the request [kPa]; the request is feedforward_kpa plus it. `error_reference_mm` is
@@ -42,13 +43,13 @@ class Pid {
   [[nodiscard]] double step(double error_reference_mm, double measurement_mm,
                             double feedforward_kpa) noexcept;
 
-  /// A tick without a usable measurement, or with the feedback held on purpose: the last feedback stands,
-  /// the integrator and the derivative rest. After align(), it is what continues the command; the step() that
-  /// comes then continues in its turn.
+  /// Processes a tick without a usable measurement, or with the feedback held on purpose. The last feedback
+  /// is kept, and the integrator and the derivative pause. After align(), the feedback is the value that
+  /// continues the command, and the next step() continues from there.
   [[nodiscard]] double hold(double feedforward_kpa) noexcept;
 
-  /// What the limits let out of the last request: the anti-windup acts on the difference, whether it comes
-  /// from the pressure range, from the slew limits or from a feedforward beyond them.
+  /// Reports the part of the last request that the limits let pass. The anti-windup acts on the difference.
+  /// It can come from the pressure range, the slew limits or a feedforward beyond them.
   void sent(double command_kpa) noexcept;
 
   [[nodiscard]] double integral_kpa() const noexcept { return integral_kpa_; }
@@ -71,7 +72,7 @@ class Pid {
   double request_kpa_ = 0;
   double increment_kpa_ = 0;  ///< what the integrator gained in the last step
   double align_to_kpa_ = 0;
-  /// What the next step() goes on from.
+  /// The state from which the next step() continues.
   enum class Memory : std::uint8_t {
     none,           ///< the integral; there is no last measurement to differentiate or integrate from
     measured,       ///< the last measurement

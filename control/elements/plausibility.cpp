@@ -11,9 +11,10 @@ double between_s(Nanoseconds from, Nanoseconds to) {
   return static_cast<double>(to - from) * 1e-9;
 }
 
-/// So many changes of the reading show how a sensor behaves.
+/// Number of changes of the reading that characterise a sensor.
 constexpr std::uint32_t enough_changes = 50;
-/// A run without a change is unlike the sensor when it is so many times longer than any before, and so long.
+/// A run without a change is implausible if it exceeds the longest previous run by this factor and also this
+/// time.
 constexpr Nanoseconds unlike_times = 4;
 constexpr Nanoseconds unlike_at_least = ns_per_s / 10;
 

@@ -25,7 +25,7 @@ struct PlausibilitySettings {
   /// > 0; from one reading to the next, beyond what the model explains, is a jump
   /// (control/elements/jump_watch.h).
   double jump_mm = 2;
-  /// 2 to most_unsteady_jumps; so many jumps there and back within a second: the sensor is unsteady.
+  /// From 2 to most_unsteady_jumps. This number of reversing jumps within 1 s makes the sensor unsteady.
   std::uint32_t unsteady_jumps = 4;
 };
 
@@ -37,10 +37,10 @@ class Plausibility {
   /// Forgets everything: the next sound reading is taken as it is.
   void reset() noexcept;
 
-  /// The validity of `reading` at `now`, when `command_kpa` is the last command sent. What the driver found
-  /// wrong stands. A jump is measured from the last valid reading, and what the finger could have travelled
-  /// since then grows with time: a sensor that comes back after a gap is believed again. `expected_mm` is
-  /// what the model says of the free finger at the time of the reading.
+  /// Returns the validity of `reading` at `now`; `command_kpa` is the last command sent. An invalidity
+  /// reported by the driver is kept. A jump is measured from the last valid reading. The permitted travel
+  /// grows with time, so a sensor that returns after a gap becomes valid again. `expected_mm` is the
+  /// free-motion model at the time of the reading.
   [[nodiscard]] model::Validity judge(const model::Reading& reading, Nanoseconds now, double command_kpa,
                                       double expected_mm = 0) noexcept;
 
@@ -54,7 +54,7 @@ class Plausibility {
   [[nodiscard]] bool frozen(const model::Reading& reading, double command_kpa, double expected_mm) noexcept;
   void learn(Nanoseconds run) noexcept;
 
-  /// What has been seen since the reading last changed.
+  /// Extremes since the last change of the reading.
   struct Travel {
     double lowest = std::numeric_limits<double>::infinity();
     double highest = -std::numeric_limits<double>::infinity();

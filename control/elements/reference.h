@@ -1,5 +1,6 @@
 #pragma once
-// What a channel shall do, known ahead: a short list of segments that can be asked for any time.
+// Defines the reference of a channel, known in advance: a short list of segments that can be evaluated at any
+// time.
 
 #include <array>
 #include <cstddef>
@@ -26,7 +27,7 @@ class Reference {
   Reference() noexcept = default;
   /// Forgets everything and holds `value` from `time_s` on. To start from where the finger is: its reading.
   void start(double time_s, double value) noexcept;
-  /// The same in motion: what is appended first takes over its rate and acceleration.
+  /// Starts in motion: the first appended segment continues its rate and acceleration.
   void start(double time_s, const ReferencePoint& point) noexcept;
 
   // Each of the next appends behind end_s() and returns false, changing nothing, when `capacity` segments
@@ -40,10 +41,10 @@ class Reference {
   /// mean - amplitude cos(2 pi f t) for `cycles`; ramp to mean - amplitude before it.
   bool sine(double mean, double amplitude, double frequency_hz, double cycles) noexcept;
 
-  /// Forgets what was to come after `time_s` and ends there (holding until then if it ended before). What is
-  /// appended next goes on from there with value, rate and acceleration unbroken. A feedforward that looks
-  /// ahead has used the reference up to its preview already: cut at now + preview to change one's mind
-  /// without a step.
+  /// Removes everything after `time_s` and ends there (holding until then if it ended before). The next
+  /// appended segment continues with the same value, rate and acceleration. A feedforward with preview has
+  /// already used the reference up to its preview. Therefore cut at now + preview for a change without a
+  /// step.
   void cut(double time_s) noexcept;
   /// Makes room: segments that ended before `time_s` are dropped; earlier times then return the value where
   /// the first one left starts.

@@ -1,5 +1,5 @@
 #pragma once
-// What a refused request says to whoever asked.
+// Gives the message for a refused request.
 
 #include <string_view>
 

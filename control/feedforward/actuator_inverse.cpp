@@ -12,8 +12,8 @@ constexpr double tolerance_mm = 1e-11;
 /// A Newton step this short is taken without looking again: with curvatures below 0.05 mm/kPa^2 the equation
 /// is then solved to 1e-11 mm.
 constexpr double last_step_kpa = 2e-5;
-/// A body without sharp kinks takes a handful of Newton's steps. What has not come to an end after so many
-/// runs to and fro between two of them; halving the bracket then ends it.
+/// A body without sharp kinks needs a few Newton steps. An iteration that has not converged after this number
+/// oscillates between two kinks; bisection then ends it.
 constexpr int newton_iterations = 20;
 constexpr int most_iterations = 80;
 

@@ -15,8 +15,8 @@ namespace {
 
 /// How long a difference between plan and reference takes to fade out at least.
 constexpr double fade_s = 0.5;
-/// What the reference may turn by from tick to tick before it is called a jump; a corner between 50 mm/s up
-/// and 50 mm/s down at 200 Hz is as much.
+/// Largest change of the reference's slope per tick [mm] that is not a jump. A corner between 50 mm/s up and
+/// 50 mm/s down at 200 Hz has this size.
 constexpr double jump_mm = 0.5;
 /// Peak acceleration and peak speed of a minimum-jerk move of unit length in unit time.
 constexpr double peak_acceleration = 5.774;
@@ -28,9 +28,9 @@ constexpr double missed_mm = 0.2;
 /// A reference that begins further from where its plan begins than this is not what was planned for: a plan
 /// moves at the speed of another way, and is worse then than none.
 constexpr double off_plan_mm = 1;
-/// Two clocks that count the same may differ by so much.
+/// Largest rounding difference between two equal clocks.
 constexpr double clock_rounding_s = 1e-6;
-/// How long the difference between the pressure before and the start of a plan takes to fade.
+/// Fade-out time of the difference between the previous pressure and the start of a plan.
 constexpr double plan_fade_s = 3;
 
 model::Model bouc_wen_of(const model::Model& model) {
@@ -51,7 +51,7 @@ BoucWenFeedforward::BoucWenFeedforward(const model::Model& model, const LimitSet
     : limits_(limits), inverse_(bouc_wen_of(model), tick_s) {}
 
 void BoucWenFeedforward::enter(const RunningModel& running, const FeedforwardQuery&, double) noexcept {
-  // What it did while nobody asked: one stretch from where it was. The hysteresis forgets the rest.
+  // The time without calls is one segment from the last state. The hysteresis needs no intermediate points.
   inverse_.advance(running.pressure_kpa());
 }
 
@@ -71,7 +71,7 @@ FullModelFeedforward::FullModelFeedforward(const model::Model& model, const Feed
       valve_(model, tick_s),
       preview_s_(tick_s + dead_time_s(model) + settings.extra_latency_s),
       inverse_(body_of(model), tick_s) {
-  // What follows the pressure at once moves with its slew; what creeps accelerates with it.
+  // The immediate response moves with the slew of the pressure; creep accelerates with it.
   const model::Chain<double> body(body_of(model), {}, tick_s);
   const double at_once = body.peek(0.0, model::Dual<double>(0, 1)).v;
   const double after_tick = body.peek(tick_s, model::Dual<double>(0, 1)).v;

@@ -15,14 +15,13 @@
 
 namespace softgrip::control {
 
-/// What a feedforward gave in a tick.
+/// Result of a feedforward in one tick.
 struct FeedforwardStep {
   double pressure_kpa = 0;
   bool out_of_reach = false;  ///< the reference needs more than the limits allow; it goes as far as they do
 };
 
-/// What a feedforward is asked with. The reference is in mm of the finger; `offset_mm` is what the finger
-/// shows more than the model.
+/// Inputs of a feedforward. The reference is in mm of the finger. `offset_mm` is the reading minus the model.
 struct FeedforwardQuery {
   const Reference* reference = nullptr;
   double time_s = 0;  ///< now, on the reference's clock
@@ -69,8 +68,8 @@ class FullModelFeedforward {
  public:
   FullModelFeedforward(const model::Model& model, const FeedforwardSettings& settings,
                        const LimitSettings& limits, double tick_s);
-  /// Begins from where the running model stands. What the model would do by itself and the reference differ
-  /// at that moment (creep, a reading off the model); the difference is faded out, not jumped over.
+  /// Starts from the state of the running model. At that moment the model's free response and the reference
+  /// differ (creep, an offset of the reading). The difference fades out without a jump.
   void enter(const RunningModel& running, const FeedforwardQuery& query, double command_kpa) noexcept;
   FeedforwardStep step(const FeedforwardQuery& query) noexcept;
   [[nodiscard]] double preview_s() const noexcept { return preview_s_; }
@@ -96,11 +95,11 @@ class FullModelFeedforward {
   Reference fade_;  ///< of the difference after enter() or a jump, on the reference's clock
 };
 
-/// A plan that was made before the run (control/sequences/planner.h), read ahead by all dead
-/// time and the hold's half tick. A finger that stands off its model (offset_mm) is not in the plan: the
-/// difference is added at the settled gain. Where there is no plan, or the reference begins more than 1 mm
-/// from where the plan does, the settled gain alone follows the reference until the next step. Whenever the
-/// source changes, the difference to the pressure before fades out over 3 s; the rest is the PID's.
+/// A plan from before the run (control/sequences/planner.h), read ahead by the total dead time and half a
+/// tick for the hold. The plan does not include the offset of a finger from its model (offset_mm); the
+/// settled gain adds it. If there is no plan, or the reference starts more than 1 mm from the plan, the
+/// settled gain alone follows the reference until the next step. After each change of the source, the
+/// difference to the previous pressure fades out over 3 s. The PID corrects the rest.
 class PlannedFeedforward {
  public:
   PlannedFeedforward(const model::Model& model, const FeedforwardSettings& settings,

@@ -1,5 +1,6 @@
 #pragma once
-// What the free finger needs to be somewhere: by it a pressure is told apart that squeezes.
+// Computes the pressure that a free finger needs at a displacement. The pressure above it is gripping
+// pressure.
 
 #include <vector>
 
@@ -24,8 +25,8 @@ class FreeCurve {
   [[nodiscard]] double pressure_kpa(double displacement_mm) const noexcept {
     return at(pressure_kpa_, displacement_mm);
   }
-  /// The least squeeze that leaves the finger behind the free one by `deficit_mm`, wherever between its ends
-  /// it is stopped [kPa].
+  /// Returns the smallest gripping pressure that causes a displacement shortfall of `deficit_mm` at every
+  /// position of the curve [kPa].
   [[nodiscard]] double squeeze_for_kpa(double deficit_mm) const noexcept;
 
  private:

@@ -13,8 +13,8 @@ struct FreeMotion {
   double fastest_mm_per_s = 0;  ///< on the way up and down, as fast as the slew limits allow
 };
 
-/// Steps the model through the whole pressure range and back, a few thousand steps. What is only noise and
-/// dead times are left out.
+/// Steps the model through the whole pressure range and back, in a few thousand steps. Noise and dead times
+/// are omitted.
 [[nodiscard]] FreeMotion free_motion(const model::Model& model, const LimitSettings& limits);
 
 }  // namespace softgrip::control

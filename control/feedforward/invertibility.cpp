@@ -48,7 +48,7 @@ struct Worst {
   bool rising = false;
 };
 
-/// The slope either way where the chain stands at `pressure_kpa`: at once, and at the end of a tick.
+/// Computes both one-sided slopes at the state for `pressure_kpa`: immediate, and at the end of a tick.
 void look(const model::Chain<double>& chain, double pressure_kpa, double tick_s, Worst& worst) {
   constexpr double aside_kpa = 1e-7;
   for (const bool rising : {true, false}) {
@@ -60,10 +60,10 @@ void look(const model::Chain<double>& chain, double pressure_kpa, double tick_s,
   }
 }
 
-/// Walks a chain through its working range and looks at every step. The outermost hysteresis states are met
-/// on the first loading and the full unloading after it, whatever came before being wiped out; inner loops
-/// and a slow pass, in which creep moves what depends on the displacement, fill in the rest.
-/// Both sides of 0 kPa are walked, as far as the limits reach.
+/// Moves a chain through its working range and checks every step. The first loading and the full unloading
+/// reach the outermost hysteresis states, regardless of the initial state. Inner loops and a slow pass cover
+/// the rest; in the slow pass, creep moves the blocks that depend on displacement. Both sides of 0 kPa are
+/// covered, up to the limits.
 Worst worst_gain(const model::Model& model, const LimitSettings& limits, double tick_s) {
   constexpr int steps = 200;
   constexpr std::array<double, 10> turns{1, 0, 1, 0.3, 0.8, 0.5, 0.6, 0, 0.4, 0};
@@ -89,8 +89,8 @@ Worst worst_gain(const model::Model& model, const LimitSettings& limits, double 
   return worst;
 }
 
-/// What to say of a Bouc-Wen element that falls before it rises, or nothing. `stiff` is what else follows the
-/// pressure at once, `stiff_name` how to call it.
+/// Returns the sentence on a Bouc-Wen element with an inverse response, or an empty string. `stiff` is the
+/// other immediate response to the pressure, and `stiff_name` is its name.
 std::string wrong_way(const model::Chain<double>& chain, double stiff, std::string_view stiff_name) {
   const auto* bouc_wen = chain.find<model::BoucWen<double>>();
   if (bouc_wen == nullptr) return {};

@@ -1,5 +1,5 @@
 #pragma once
-// Whether a feedforward exists for a model, asked once when a rig is loaded, never when it diverges.
+// Checks if a feedforward exists for a model. The check runs once when a rig is loaded.
 
 #include <span>
 #include <string>

@@ -1,5 +1,5 @@
 #pragma once
-// What of a model without an inverse has one.
+// Finds the invertible part of a model that has no inverse.
 
 #include <optional>
 #include <string>
@@ -15,9 +15,10 @@ struct InvertiblePart {
   std::vector<std::string> left_out;  ///< ids of the blocks that were taken out
 };
 
-/// The model without what keeps `full_model` from it: the blocks that have no inverse, and, where that is not
-/// enough, of the others the one that is missed least over a slow way from 0 kPa to each end of the limits
-/// and back, twice. Nothing where no such part is accepted, or the model is accepted as it is.
+/// Returns the model without the blocks that prevent `full_model`. These are the blocks without an inverse.
+/// If that is not enough, the block with the smallest effect is removed too. The effect is measured on a slow
+/// path from 0 kPa to each end of the limits and back, twice. Returns an empty value if no such part is
+/// accepted, or if the model is accepted unchanged.
 /// @param tick_s  > 0.
 [[nodiscard]] std::optional<InvertiblePart> invertible_part(const model::Model& model,
                                                             const LimitSettings& limits, double tick_s);

@@ -9,8 +9,8 @@
 
 namespace softgrip::control {
 
-/// A command over time, straight between its points. Its clock is that of the finger without dead time: what
-/// stands at a time must act on the valve one dead time earlier. Plain values; at() allocates nothing.
+/// A command over time, linear between its points. Its clock is that of the finger without dead time: a value
+/// must reach the valve one dead time earlier. Plain values; at() allocates nothing.
 struct PressurePlan {
   double start_s = 0;  ///< of the first point, on the reference's clock
   double step_s = 0;   ///< from point to point
@@ -43,8 +43,8 @@ struct SettledLine {
 /// noise.
 [[nodiscard]] model::Model without_dead_time(const model::Model& model);
 
-/// How long before a change of the reference a plan should begin, so that what moves the wrong way first has
-/// moved by then [s].
+/// Time by which a plan should start before a change of the reference, so that an inverse response is over by
+/// then [s].
 inline constexpr double plan_lead_s = 0.6;
 
 }  // namespace softgrip::control

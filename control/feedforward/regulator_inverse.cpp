@@ -36,12 +36,12 @@ double RegulatorInverse::command_for(double next_kpa) const noexcept {
   double opened_kpa = direction_of(way_kpa, tick_s_) * n.overlap_kpa + way_kpa / share;
   const double time_constant_s = fills ? n.filling_s : n.venting_s;
   if (n.full_open_kpa > 0 && time_constant_s > 0) {
-    // Open as far as it gets to the end of the tick, when the pressure has come so much closer.
+    // The largest opening at the end of the tick, after the pressure has approached.
     const double comes_kpa = (n.full_open_kpa - n.overlap_kpa) * tick_s_ / time_constant_s;
     const double most_kpa = n.full_open_kpa + comes_kpa;
     opened_kpa = std::clamp(opened_kpa, -most_kpa, most_kpa);
   }
-  // What the error adds to the integral by the middle of the tick opens the port, too.
+  // The error also moves the integral until the middle of the tick, which opens the port further.
   const double drift = n.integral_s > 0 ? 0.5 * tick_s_ / n.integral_s : 0;
   const double error_kpa = (opened_kpa - regulated_.integral_kpa() + 0.5 * drift * way_kpa) / (1 + drift);
   return now_kpa + error_kpa;

@@ -5,19 +5,20 @@
 
 namespace softgrip::control {
 
-/// Which way a pressure is to move that has `way_kpa` to go in a tick, -1 to 1. Whole where it moves at all;
-/// a part of it where it hardly does: what then went by half a dead band would do nothing but noise.
+/// Returns the direction of a pressure change of `way_kpa` in a tick, -1 to 1. The value is full for a real
+/// motion and partial for a very small one. A small change with half a dead band would only add noise.
 [[nodiscard]] double direction_of(double way_kpa, double tick_s) noexcept;
 
-/// Of a regulator whose command is held for a tick (model/regulated_pressure.h). In closed form from where
-/// spool and integral stand, with the integral straight over the tick and as much passed by a port as in the
-/// tick before: a thousandth of the way is left to the next tick, which begins where the pressure then is.
+/// Inverse of a regulator whose command is held for a tick (model/regulated_pressure.h). It is a closed form
+/// from the present spool and integral. It assumes a linear integral over the tick and the same port flow as
+/// in the last tick. An error of 0.1 % of the change remains for the next tick, which starts from the actual
+/// pressure.
 class RegulatorInverse {
  public:
   /// @param tick_s  > 0.
   RegulatorInverse(const model::RegulatedPressure<double>& regulated, double tick_s);
 
-  /// The regulator stands as this one does; of the same numbers.
+  /// Copies the state of `regulated`, which must have the same parameters.
   void take_over(const model::RegulatedPressure<double>& regulated) noexcept;
 
   /// The command under which the pressure is at `next_kpa` at the end of the tick; where no port opens far

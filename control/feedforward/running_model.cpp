@@ -14,7 +14,7 @@ bool runs(const BlockInfo& info) {
   return info.inverse != Inverse::preview && info.inverse != Inverse::ignored;
 }
 
-/// What stands between valve and finger without a memory is undone with the finger.
+/// Memoryless blocks between valve and finger are inverted with the finger.
 bool is_of_valve(const BlockInfo& info) {
   return info.station == Station::valve && info.inverse != Inverse::implicit;
 }

@@ -9,7 +9,7 @@
 
 namespace softgrip::control {
 
-/// A finger whose command has stood still for so long is at rest: all but slow creep is over [s].
+/// Time at a constant command after which a finger is at rest: only slow creep remains [s].
 inline constexpr double rests_after_s = 3;
 
 /// Dead times commute with everything that does not change with time, so they are taken out of the chain: it
@@ -18,7 +18,7 @@ inline constexpr double rests_after_s = 3;
 class RunningModel {
  public:
   /// @param extra_latency_s  from the computation of a command to the board's output.
-  /// @param longest_age_s  of a reading that will be asked for; older ones get the oldest prediction kept.
+  /// @param longest_age_s  largest age of a reading; an older one gets the oldest stored prediction.
   RunningModel(const model::Model& model, double tick_s, double extra_latency_s, double longest_age_s);
 
   /// At rest under `command_kpa`.

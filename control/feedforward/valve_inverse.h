@@ -33,7 +33,7 @@ class ValveInverse {
   /// Moves on by one tick from `now_kpa`; the pressure at its end [kPa].
   double advance(double now_kpa, double command_kpa) noexcept;
 
-  /// Of the lags, from `now_kpa` towards `pressure_kpa` [s]; 0 without any.
+  /// Returns the time constant of the lags, from `now_kpa` towards `pressure_kpa` [s]; 0 without a lag.
   [[nodiscard]] double time_constant_s(double now_kpa, double pressure_kpa) const noexcept {
     return lag_towards(now_kpa, pressure_kpa).time_constant_s;
   }

@@ -1,5 +1,5 @@
 #pragma once
-// Problems that come from the value of a parameter are told at the parameter.
+// Reports problems at the parameter whose value causes them.
 
 #include <functional>
 #include <span>
@@ -10,7 +10,7 @@
 
 namespace softgrip::control {
 
-/// What is wrong with a sequence, read with these values.
+/// Returns the problems of a sequence that is read with these values.
 using Judge = std::function<document::Problems(const std::vector<Parameter>& parameters)>;
 
 /// Adds what `judge` finds with these values, each at the line of the parameter whose value alone is enough
@@ -19,8 +19,8 @@ using Judge = std::function<document::Problems(const std::vector<Parameter>& par
 void blame_values(const document::Document& document, const std::vector<Parameter>& parameters,
                   const Judge& judge, document::Problems& problems);
 
-/// The same at both ends of each range, one parameter after the other, the others at their defaults: what
-/// goes together is for the start to judge. Nothing is added where the defaults are wrong already.
+/// Tests both ends of each range, one parameter at a time, with the others at their defaults. The start
+/// checks combinations of values. Adds nothing if the defaults are already wrong.
 void blame_ends(const document::Document& document, std::vector<Parameter> parameters, const Judge& judge,
                 document::Problems& problems);
 

@@ -217,7 +217,7 @@ Document with_values(const Document& document, const std::vector<Parameter>& par
   for (Node::Entry& entry : bound.root.entries) {
     if (entry.key == "steps") binder.bind(entry.value, {});
   }
-  // What could not be read may have used it.
+  // An unreadable part may have used the parameter.
   if (document.complete) binder.report_unused();
   return bound;
 }

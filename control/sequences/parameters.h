@@ -9,13 +9,13 @@
 
 namespace softgrip::control {
 
-/// The parameters that a document declares, each with its default as its value. What is wrong with one is
-/// added to `problems` and the others are read all the same.
+/// Returns the parameters that a document declares, each with its default as its value. Errors of a parameter
+/// are added to `problems`; the other parameters are still read.
 [[nodiscard]] std::vector<Parameter> read_parameters(const document::Document& document,
                                                      document::Problems& problems);
 
-/// Gives the parameters the values that a start asks for. A name that none has, one that comes twice and a
-/// value out of its range are problems at the parameter, or at the top of the document.
+/// Assigns the values of a start to the parameters. An unknown name, a repeated name and a value out of range
+/// are problems. They are reported at the parameter, or at the top of the document.
 void set_values(std::span<const Argument> arguments, const document::Document& document,
                 std::vector<Parameter>& parameters, document::Problems& problems);
 

@@ -17,8 +17,9 @@ using Matrix = Eigen::MatrixXd;
 
 /// Distance of the points of a plan.
 constexpr double finest_step_s = 0.025;
-/// What a window decides, and how much further it looks: the effect of what comes later on the best command
-/// now fades by exp(-z t) with z the wrong-way zero, 7/s for the published model.
+/// Length of the decided part of a window, and of its preview. The effect of later references on the best
+/// command now decays with exp(-z t). Here z is the zero of the inverse response, 7/s for the published
+/// model.
 constexpr double decided_s = 4;
 constexpr double ahead_s = 1.5;
 /// Weight of the second difference of the command [mm/kPa]: far below what a plan must reach.
@@ -27,10 +28,10 @@ constexpr double smooth_mm_per_kpa = 1e-3;
 constexpr double bound_mm_per_kpa = 30;
 /// For the derivatives of the chain.
 constexpr double aside_kpa = 1e-6;
-/// Of one search, and of all searches of a window together: the time that planning takes at most.
+/// Limits of the iterations of one search and of all searches of a window. They bound the time of planning.
 constexpr int most_iterations = 25;
 constexpr int most_iterations_of_window = 60;
-/// A window whose root mean square miss is below this needs no other guess.
+/// A window with a root mean square error below this needs no other start.
 constexpr double good_mm = 0.01;
 /// A window is done when an iteration lowers its cost by less than this share.
 constexpr double done_share = 2e-3;
@@ -132,9 +133,10 @@ class Window {
       chain.step(step_s_, u[i]);
       miss[i] = chain.after(model::Station::load) - wanted_mm_[i];
     }
-    // By the change of the command at point j, everything after it shifted along: one stretch becomes longer
-    // in the direction in which it goes. A single point moved to and fro would run around a small loop of the
-    // hysteresis instead. The difference of neighbouring columns is the derivative by the point itself.
+    // The derivative is with respect to the command at point j with all later points shifted along: one
+    // segment becomes longer in its direction. A change of a single point would instead follow a small
+    // hysteresis loop. The difference of neighbouring columns is the derivative with respect to the single
+    // point.
     for (Eigen::Index j = 0; j < n; ++j) {
       model::Chain<double>& other = states[static_cast<std::size_t>(j)];
       const double aside = std::copysign(aside_kpa, u[j] - before(u, j - 1));
@@ -274,8 +276,8 @@ PressurePlan Planner::plan(const Reference& reference, double from_s, double to_
   for (std::size_t done = 1; done < points && !stop.stop_requested();) {
     Vector wanted(n);
     for (Eigen::Index i = 0; i < n; ++i) wanted[i] = wanted_at(done + static_cast<std::size_t>(i));
-    // What the window before thought beyond what it decided; then in proportion. A guess that stands still
-    // would be a bad place for derivatives: hysteresis has one slope up and another down.
+    // The guess is the undecided part of the previous window, then proportional to the reference. A constant
+    // guess would give poor derivatives, because hysteresis has different slopes up and down.
     const Vector proportional = wanted.unaryExpr(in_proportion);
     const Eigen::Index known = guess.size();
     guess.conservativeResize(n);

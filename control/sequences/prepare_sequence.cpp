@@ -347,7 +347,7 @@ class Fitting {
   Problems& problems_;
   document::Document source_;
   std::uint32_t gripped_ = 0;
-  /// By channel: the squeeze from which on a part is seen, once it was asked for.
+  /// By channel: the smallest gripping pressure that shows a part, once computed.
   std::vector<std::optional<double>> least_squeeze_kpa_ =
       std::vector<std::optional<double>>(settings_.channels.size());
   /// The displacement that each channel follows before a step; NaN while it follows none.

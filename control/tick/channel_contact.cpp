@@ -1,5 +1,5 @@
-// What a channel does that touches something on its way: the part of ChannelPlayer
-// (control/tick/channel_player.h) that makes a grip gentle.
+// Implements the contact handling of ChannelPlayer (control/tick/channel_player.h), which makes a grip
+// gentle.
 
 #include <algorithm>
 #include <utility>
@@ -25,7 +25,8 @@ OnContact ChannelPlayer::on_contact() const noexcept {
   return step_->squeeze.by_kpa > 0 ? OnContact::squeeze : OnContact::close;
 }
 
-/// Moves in a way that can run into something. What is held is touched, and a finger that opens leaves it.
+/// Returns true if the motion can meet an object. A holding finger is in contact already, and an opening
+/// finger moves away.
 bool ChannelPlayer::under_way() const noexcept {
   if (!closing_ || result_ == GripResult::holding) return false;
   return stage_ == Stage::ramp || (stage_ == Stage::settle && !squeezing_) || stage_ == Stage::profile;
@@ -44,14 +45,14 @@ void ChannelPlayer::look_for_contact(double time_s, const ChannelOutput& seen) n
   if (contact_met_ == OnContact::squeeze) {
     begin_squeeze(time_s, seen);
   } else if (contact_met_ != OnContact::ignore && contact_met_ != OnContact::close) {
-    // What is on its way to the finger by now is taken back: only what it was touched with stays.
+    // The command withdraws pressure that has not reached the finger yet. Only the pressure at contact stays.
     const double touched_with_kpa = seen.free_kpa + std::max(0.0, seen.squeeze_kpa);
     stay_at(no_further(traits_.rest_kpa, touched_with_kpa, seen.command_kpa), time_s);
     stopped_by_contact_ = true;
   }
 }
 
-/// What was on its way to the finger when it touched is taken back first.
+/// Before the step ends, the command withdraws the pressure that had not reached the finger at contact.
 Progress ChannelPlayer::stopped(const ChannelOutput& seen) noexcept {
   if (seen.command_kpa > pressure_.final_value() + taken_back_kpa) return Progress::pending;
   return step_->on_contact == OnContact::fail ? Progress::failed : pass();
@@ -82,8 +83,8 @@ double ChannelPlayer::squeezing_kpa(double time_s, const ChannelOutput& seen) co
                   by_pressure ? step_->target.value : infinite);
 }
 
-/// False when the touch is gone, and the search goes on. What yields as far as the target is followed no
-/// farther.
+/// Returns false if contact is lost; the search then continues. If the object yields up to the target, the
+/// finger stops at the target.
 bool ChannelPlayer::squeezes_on(double time_s, const ChannelOutput& seen) noexcept {
   const bool by_displacement = step_->target.quantity == Target::Quantity::displacement_mm;
   if (by_displacement && seen.displacement_mm >= step_->target.value) stay_at(pressure_kpa_, time_s);

@@ -21,9 +21,10 @@ constexpr double settled_after_s = 0.2;
 constexpr double settled_sigma = 4;
 /// How much of the reading's noise is kept from the command that the free finger needs.
 constexpr double need_filter_s = 0.03;
-/// What a limit cuts off and is not worth telling [kPa].
+/// A smaller reduction of the command by a limit is not reported [kPa].
 constexpr double unnoticed_kpa = 0.5;
-/// Ticks that the model catches up at most after a gap; beyond it the channel starts from rest.
+/// Largest number of ticks that the model catches up after a gap. After a longer gap, the channel starts from
+/// rest.
 constexpr std::int64_t most_ticks = 1000;
 /// Ticks that a plan is carried over at most; beyond it the feedforward begins anew.
 constexpr std::int64_t most_planned_ticks = 10;
@@ -82,10 +83,9 @@ void ChannelController::tick(const ChannelInput& input, ChannelOutput& channel) 
   send(input.demand, request(input.demand, ticks, channel), channel);
 }
 
-/// What of the pressure moves the finger, and what squeezes. Of two answers to what the free finger would
-/// need here the lower one: on its first way up; or as it is now, where creep and hysteresis let it rest
-/// under less. A finger on its way is under more than it needs to rest, and stopped there it would squeeze
-/// with that.
+/// Splits the pressure into free-motion and gripping pressure. The free-motion pressure is the lower of two
+/// values: on the first loading, and in the present state, where creep and hysteresis can lower it. A moving
+/// finger is under more pressure than it needs at rest. If it is stopped there, that pressure grips.
 void ChannelController::weigh(double predicted_mm, ChannelOutput& channel) noexcept {
   channel.squeeze_kpa = not_known;
   if (!displacement_used_ || channel.validity != model::Validity::valid) return;
@@ -157,7 +157,7 @@ double ChannelController::take_reading(const ChannelInput& input, ChannelOutput&
   return predicted_mm;
 }
 
-/// What plausibility makes of a reading does not count: a jump that it refuses is one.
+/// A reading that the plausibility check rejects counts too: a rejected jump is a jump.
 void ChannelController::watch_jumps(const model::Reading& reading, double predicted_mm,
                                     ChannelOutput& channel) noexcept {
   if (reading.validity == model::Validity::valid && std::isfinite(reading.displacement_mm)) {

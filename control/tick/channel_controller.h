@@ -39,20 +39,20 @@ class ChannelController {
   /// Starts from rest with `command_kpa` (clamped) at the board.
   void start(double command_kpa, ChannelOutput& channel) noexcept;
 
-  /// One period. `channel` is what start() or the tick before left there, and becomes what this tick gives,
-  /// but for what belongs to the sequence and to leaving: result, evidence, step, safe_kpa. Calls that are
-  /// more than one period apart (slipped ticks) make the model catch up.
+  /// Runs one period. On entry, `channel` holds the result of start() or of the last tick. On return, it
+  /// holds the result of this tick, except result, evidence, step and safe_kpa. If calls are more than one
+  /// period apart (missed cycles), the model catches up.
   void tick(const ChannelInput& input, ChannelOutput& channel) noexcept;
 
   /// How far ahead of now the feedforward asks the reference. A reference that changes its mind does so
   /// without a step when it is cut at now + preview_s().
   [[nodiscard]] double preview_s() const noexcept { return feedforward_.preview_s(); }
   [[nodiscard]] const LimitSettings& limits() const noexcept { return limits_; }
-  /// What resynchronising added to the model [mm].
+  /// Returns the offset that resynchronisation added to the model [mm].
   [[nodiscard]] double offset_mm() const noexcept { return offset_mm_; }
 
  private:
-  /// Who makes the command.
+  /// The source of the command.
   enum class Loop : std::uint8_t {
     stopped,  ///< no tick since start()
     open,     ///< the demand by itself: hold, vent, pressure

@@ -1,5 +1,5 @@
 #pragma once
-// What the sequence player or the supervisor asks of one channel in one tick.
+// Defines the demand of the sequence player or the supervisor for one channel in one tick.
 
 #include <cstdint>
 #include <limits>
@@ -25,13 +25,12 @@ struct ChannelDemand {
   /// clock is that of `time_s` less plan_origin_s.
   const PressurePlan* plan = nullptr;
   double plan_origin_s = 0;
-  /// Of displacement: the finger meets an object. The feedback stays as it is, so that it does not press
-  /// ever harder against what does not yield; the feedforward goes on.
+  /// In mode displacement: the finger is in contact with an object. The feedback keeps its value, so the
+  /// finger does not press harder and harder against a stiff object. The feedforward continues.
   bool feedback_held = false;
-  /// Bounds of the step, in every mode: the command stays at or below both, whatever asks for more.
+  /// Bounds of the step in every mode. The command stays at or below both, regardless of the demand.
   double pressure_max_kpa = std::numeric_limits<double>::infinity();
-  /// Above the command that the free finger needs to rest at the present displacement
-  /// (ChannelOutput::free_kpa).
+  /// Relative to the command that the free finger needs to rest at the present displacement
   double squeeze_max_kpa = std::numeric_limits<double>::infinity();
 };
 

@@ -72,7 +72,7 @@ void ChannelPlayer::begin(const Step& step, const PressurePlan* plan, double tim
       stage_ = Stage::ramp;
       break;
     case StepKind::release:
-      // A release that is asked for early may find less than it would go back to.
+      // An early release may start below the pressure of its target.
       go_to(step.target,
             step.target.at_rest ? traits_.rest_kpa
                                 : no_further(traits_.rest_kpa, step.target.value, seen.command_kpa),
@@ -170,7 +170,7 @@ Progress ChannelPlayer::tick(double time_s, const ChannelOutput& seen) noexcept 
     pressure_kpa_ = squeezing_ ? squeezing_kpa(time_s, seen) : pressure_at(time_s);
   }
   if (progress == Progress::pending && time_s >= deadline_s_) {
-    // Nobody who could not look may say that there is nothing.
+    // NO PART requires a window with usable readings. Otherwise the result is ERROR.
     const bool looked = stage_ == Stage::verify && !window_.blinded(time_s);
     failure_ = looked ? GripResult::no_part : GripResult::error;
     progress = Progress::failed;
@@ -208,7 +208,7 @@ Progress ChannelPlayer::advance(double time_s, const ChannelOutput& seen) noexce
     case Stage::done:
       break;
   }
-  // Nobody holds what cannot be looked at any more.
+  // Without usable readings, the channel cannot confirm the hold.
   return verified_ && !usable(step_->verify, seen) ? Progress::pending : Progress::passed;
 }
 
@@ -240,7 +240,7 @@ Progress ChannelPlayer::settle(double time_s, const ChannelOutput& seen) noexcep
   }
   if (time_s < stage_end_s_) return Progress::pending;
   if (step_->kind != StepKind::grip) return pass();
-  // What was reached stays while it is looked at and held.
+  // The reached pressure is kept during verification and hold.
   if (squeezing_) stay_at(pressure_kpa_, time_s);
   stage_ = Stage::verify;
   window_.start(time_s, step_->verify.window_s);
@@ -276,7 +276,8 @@ Progress ChannelPlayer::verify(double time_s, const ChannelOutput& seen) noexcep
   return Progress::pending;
 }
 
-/// Purges, then waits until the finger is where the free model says. A channel without sight cannot know.
+/// Purges, then waits until the finger is where the free-motion model predicts. Without displacement
+/// feedback, this cannot be confirmed.
 Progress ChannelPlayer::release(double time_s) noexcept {
   if (time_s < stage_end_s_) return Progress::pending;
   stage_ = Stage::free;

@@ -17,7 +17,7 @@ namespace softgrip::control {
 /// How far a channel is with its step.
 enum class Progress : std::uint8_t { pending, passed, failed };
 
-/// What does not change of a channel.
+/// Constant properties of a channel.
 struct ChannelTraits {
   double margin_mm = 0;  ///< of grip detection
   double rest_kpa = 0;   ///< the rest pressure
@@ -43,9 +43,9 @@ class ChannelPlayer {
   /// One tick outside a sequence: true once when what is held is lost.
   bool idle(double time_s, const ChannelOutput& seen) noexcept;
 
-  /// Of the last tick; `reference` points into this object.
+  /// Returns the demand of the last tick; `reference` points into this object.
   [[nodiscard]] ChannelDemand demand(double time_s) const noexcept;
-  /// The finger touches something.
+  /// Returns true if the finger is in contact.
   [[nodiscard]] bool touching() const noexcept { return contact_.touching(); }
   /// It moves less than its model, and not because it has changed: something is in its way.
   [[nodiscard]] bool held_back() const noexcept { return follow_.held(); }
@@ -53,7 +53,7 @@ class ChannelPlayer {
   [[nodiscard]] std::optional<OnContact> take_contact() noexcept;
   /// It stays with the pressure of its first touch.
   [[nodiscard]] bool stopped_by_contact() const noexcept { return stopped_by_contact_; }
-  /// What a failed step would answer now: NO PART or ERROR.
+  /// Returns the result if the step failed now: NO PART or ERROR.
   [[nodiscard]] GripResult failure() const noexcept { return failure_; }
 
   [[nodiscard]] GripResult result() const noexcept { return result_; }
@@ -75,7 +75,7 @@ class ChannelPlayer {
   [[nodiscard]] double motion_end_s() const noexcept {
     return stage_ == Stage::profile ? stage_end_s_ : ramp_end_s_;
   }
-  /// In mode pressure: what the present step asks for at a time [kPa].
+  /// Returns the pressure of the present step at a time, in mode pressure [kPa].
   [[nodiscard]] double pressure_at(double time_s) const noexcept;
 
  private:
@@ -139,7 +139,7 @@ class ChannelPlayer {
   bool met_ = false;                      ///< something, in this attempt
   std::optional<OnContact> contact_met_;  ///< not taken yet
   bool stopped_by_contact_ = false;
-  bool squeezing_ = false;       ///< the pressure follows what the free finger needs, by so much above it
+  bool squeezing_ = false;       ///< the pressure stays above the free-motion pressure by a fixed amount
   double squeeze_from_kpa_ = 0;  ///< at squeeze_from_s_
   double squeeze_from_s_ = 0;
   Contact contact_;

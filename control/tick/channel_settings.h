@@ -1,6 +1,6 @@
 #pragma once
-// What one channel's control needs to know: plain values, in the units of the rig file. Whoever makes them
-// checks them (settings_problems() in settings.h); control takes them as they are.
+// Defines the settings of one channel as plain values, in the units of the rig file. The caller checks them
+// (settings_problems() in settings.h); control does not check them again.
 
 #include <string>
 

@@ -32,7 +32,7 @@ bool said_by_board(FaultCode code) noexcept {
   return inhibits(code) && code != FaultCode::cycles_lost;
 }
 
-/// Commands of so many seconds, the one under way and the one that is being compared included.
+/// Returns the number of commands in a time, including the current one and the compared one.
 std::size_t window_of(double delay_s, double rate_hz) {
   return static_cast<std::size_t>(std::ceil(delay_s * rate_hz)) + 2;
 }
@@ -80,7 +80,7 @@ Fault FaultMonitor::bus(const BusHealth& bus, bool starting) noexcept {
   if (good) return {};
   const FaultCode code = bus.fault == FaultCode::none ? FaultCode::bus_down : bus.fault;
   const Fault fault{code, whole_rig, static_cast<double>(bus_cycles_)};
-  // A board that nobody reaches has tripped because of that: the silence is what has to be mended.
+  // If the daemon cannot reach the board, report the bus fault. The watchdog trip is only its consequence.
   const bool unreached = !bus.connected && code == FaultCode::board_watchdog_tripped;
   note_cause({unreached ? FaultCode::bus_down : code, whole_rig, fault.value});
   if (starting && !said_by_board(bus.fault)) return {};

@@ -17,12 +17,13 @@ class FaultMonitor {
  public:
   explicit FaultMonitor(const RigSettings& settings);
 
-  /// One tick. `seen` is what the tick before left behind; the read-back is compared with its commands and
-  /// earlier ones. While `starting`, silence is no fault: nobody has answered yet. Returns the gravest fault
-  /// that is due now, in the order of the checks below.
+  /// Checks one tick. `seen` is the output of the last tick; the read-back is compared with its commands and
+  /// earlier ones. While `starting`, a missing response is no fault, because the board has not responded yet.
+  /// Returns the most severe fault that is due now, in the order of the checks below.
   Fault observe(const TickInput& input, std::span<const ChannelOutput> seen, bool starting) noexcept;
 
-  /// The gravest that is there in this tick and is a fault or grows to one: acknowledging would not last.
+  /// Returns the most severe cause that is present in this tick and is a fault or may become one. While it is
+  /// present, a reset would not last.
   [[nodiscard]] const Fault& cause() const noexcept { return cause_; }
   /// No bus fault is there in this tick.
   [[nodiscard]] bool bus_good() const noexcept { return bus_cycles_ == 0; }

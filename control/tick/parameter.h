@@ -19,7 +19,7 @@ struct Parameter {
   double value = 0;       ///< with which the sequence was read
 };
 
-/// What a start asks for: a parameter by its name and the value, in the parameter's unit.
+/// An argument of a start: the name of a parameter and its value, in the parameter's unit.
 struct Argument {
   std::string name;
   double value = 0;

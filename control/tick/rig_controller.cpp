@@ -29,7 +29,7 @@ std::string_view name_of(SequenceEnd end) noexcept {
 
 RigController::Channel::Channel(const RigSettings& rig, const ChannelSettings& settings)
     : controller(settings, 1 / rig.rate_hz),
-      // Without sight a finger is at rest when its command has not been changed.
+      // Without displacement feedback, a finger is at rest if its command has not changed.
       rest(settings.displacement_used ? rig.rest_band_mm : 0, rig.rest_time_s),
       longest_age(nanoseconds(settings.plausibility.max_age_s)),
       sighted(settings.displacement_used) {}
@@ -97,8 +97,8 @@ void RigController::stay_within_outputs(std::size_t index, double last_kpa, cons
   command_kpa = no_further(channel.rest_kpa(), allowed_kpa, command_kpa);
 }
 
-/// What the tick before saw is what this one decides on. After a gap it says nothing any more, neither that a
-/// part is held nor that a finger rests.
+/// Invalidates readings after a gap. A tick decides on the readings of the last tick. After a gap, they do
+/// not show if a part is held or if a finger is at rest.
 void RigController::forget_old_readings(Nanoseconds now) noexcept {
   const Nanoseconds gap = last_now_ == no_tick ? 0 : now - last_now_;
   last_now_ = now;
@@ -129,9 +129,9 @@ Facts RigController::facts(const TickInput& input, double time_s) noexcept {
   return facts;
 }
 
-/// All channels of the sequence at rest; those that are vented, and so free, also followed to where they are,
-/// by no more than grip detection can stand: what of the offset is creep that is still on its way out would
-/// later look like an object.
+/// Waits until all channels of the sequence are at rest. The model of a vented (free) channel is then shifted
+/// to its reading. The shift is limited to the tolerance of grip detection. Otherwise decaying creep in the
+/// offset would later look like an object.
 Rest RigController::look_for_rest(const PreparedSequence& sequence, double time_s) noexcept {
   bool all = true;
   for (std::size_t i = 0; i < channels_.size(); ++i) {
@@ -237,7 +237,7 @@ void RigController::tell_limits(std::size_t index, double time_s) noexcept {
 void RigController::tell_changes(std::size_t index) noexcept {
   const ChannelOutput& seen = output_.channels[index];
   const bool valid = seen.validity == model::Validity::valid;
-  // Before the board's first answer there is nothing to be told of a reading.
+  // Before the first response of the board, no event about a reading is due.
   if (seen.validity != model::Validity::none_yet && valid != channels_[index].valid_before) {
     output_.events.add_of_channel(index, valid ? Event::Kind::reading_valid : Event::Kind::reading_invalid,
                                   seen.validity, 0, seen.age_s);
@@ -264,7 +264,7 @@ void RigController::look_for_pressure() noexcept {
   }
 }
 
-/// What the sequence says of the channels, and what each shall do should the loop be left now.
+/// Updates the results of the sequence, and the safe output of each channel if the loop stops now.
 void RigController::conclude() noexcept {
   const std::uint32_t venting = supervisor_.venting_on_leaving(player_.phase());
   for (std::size_t i = 0; i < channels_.size(); ++i) {

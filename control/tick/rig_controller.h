@@ -1,6 +1,6 @@
 #pragma once
-// Everything that happens in one tick between readings and commands: the seam between control and the loop.
-// The same object runs in softgripd, in `softgrip run`, in virtual time, in tests and in benchmarks.
+// Computes the commands of one tick from its readings. It is the interface between control and the loop. The
+// same class runs in softgripd, in `softgrip run`, in virtual time, in tests and in benchmarks.
 
 #include <cstddef>
 #include <cstdint>
@@ -26,7 +26,7 @@ class RigController {
   RigController(const RigController&) = delete;
   RigController& operator=(const RigController&) = delete;
 
-  /// One period of 1/settings.rate_hz. The same as output() afterwards.
+  /// Runs one period of 1/settings.rate_hz. Returns output().
   const TickOutput& tick(const TickInput& input) noexcept;
 
   /// The output of the last tick. Before the first tick the commands are the rest pressures.

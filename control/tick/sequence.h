@@ -19,15 +19,15 @@
 
 namespace softgrip::control {
 
-/// Of a time without end, and of a pressure without bound.
+/// An unlimited time or an unbounded pressure.
 inline constexpr double infinite = std::numeric_limits<double>::infinity();
 
-/// Of a mask of channels.
+/// Returns the bit of a channel in a mask.
 constexpr std::uint32_t channel_bit(std::size_t channel) noexcept {
   return 1U << channel;
 }
 
-/// What a step does; the key that opens it in the file.
+/// The kind of a step; its name is the key of the step in the file.
 enum class StepKind : std::uint8_t {
   move,      ///< to a target, with a ramp
   grip,      ///< to a target, then verification: HOLDING or NO PART
@@ -38,7 +38,7 @@ enum class StepKind : std::uint8_t {
 };
 [[nodiscard]] std::string_view name_of(StepKind kind) noexcept;
 
-/// What happens when a step fails and no retries are left.
+/// The action if a step fails and no retries are left.
 enum class OnFail : std::uint8_t {
   vent,      ///< the sequence ends, to the rest pressure
   hold,      ///< the sequence ends, the command stays
@@ -49,13 +49,13 @@ enum class OnFail : std::uint8_t {
 /// As in the file: "vent", "hold", "abort", "release", "continue".
 [[nodiscard]] std::string_view name_of(OnFail action) noexcept;
 
-/// What a finger does that touches something on its way: how its step ends.
+/// The action if a finger meets an object during its motion.
 enum class OnContact : std::uint8_t {
-  hold,     ///< stays with the pressure of its first touch; its step is done
-  grip,     ///< the same, and the sequence goes on with its next grip step at once
+  hold,     ///< stays at the pressure of the first contact; its step is done
+  grip,     ///< as hold, and the sequence continues with its next grip step at once
   fail,     ///< stays so, and its step fails
   ignore,   ///< goes on as if nothing were there
-  squeeze,  ///< of a grip with squeeze_kpa: presses by so much (not written in files)
+  squeeze,  ///< of a grip with squeeze_kpa: adds this gripping pressure (not written in files)
   close,    ///< of any other grip: goes on to its target with its feedback held (not written in files)
 };
 /// "hold", "grip", "fail", "ignore", "squeeze", "close"
@@ -104,9 +104,9 @@ struct Profile {
   double scale = 1;                         ///< of the signal
   std::uint32_t cycles = 1;
 };
-/// Of one cycle [s].
+/// Returns the duration of one cycle [s].
 [[nodiscard]] double cycle_s(const Profile& profile) noexcept;
-/// Of all cycles [s].
+/// Returns the duration of all cycles [s].
 [[nodiscard]] double duration_s(const Profile& profile) noexcept;
 /// The profile at `time_s` since its start; its first value before, its last after; at a jump the value
 /// after it. Allocates nothing.
@@ -120,10 +120,10 @@ struct Sine {
   std::uint32_t cycles = 1;
 };
 
-/// What a step may put out at most.
+/// Upper bounds of the command in a step.
 struct Bounds {
   double pressure_max_kpa = std::numeric_limits<double>::infinity();
-  /// Above the command that the free finger needs to rest at the present displacement.
+  /// Relative to the command that the free finger needs to rest at the present displacement.
   double squeeze_max_kpa = std::numeric_limits<double>::infinity();
 };
 
@@ -149,7 +149,7 @@ struct Step {
   bool on_contact_stated = false;  ///< the file says it
   Squeeze squeeze;                 ///< of grip
   Verify verify;                   ///< of grip
-  double hold_s = 0;               ///< infinite: until a release is asked for
+  double hold_s = 0;               ///< infinite: until a release is requested
   double reverify_every_s = 0;     ///< of hold
   double purge_s = 0;              ///< of release: stays at the rest pressure
   std::optional<double> timeout_s;
@@ -169,7 +169,7 @@ struct Sequence {
   std::string about;  ///< one line, may be empty
   Interlock interlock = Interlock::start;
   std::vector<std::string> channels;  ///< empty: all of the rig
-  std::vector<Parameter> parameters;  ///< with the values that stand in the steps
+  std::vector<Parameter> parameters;  ///< with the values used in the steps
   std::vector<Step> steps;
   std::string file;  ///< as the user named it
   std::string text;  ///< the file's text, for messages and for the recording's provenance
@@ -197,7 +197,7 @@ struct PreparedSequence {
   std::uint32_t needs_detection =
       0;                  ///< those that are verified by detection: their free model must agree at rest
   std::uint64_t rig = 0;  ///< rig_key() of the settings it was prepared for
-  std::vector<Argument> parameters;  ///< the values of its parameters, for who tells of it
+  std::vector<Argument> parameters;  ///< values of its parameters, for status and events
   std::vector<PreparedStep> steps;
   double planned_s = 0;  ///< how much motion the plans are for; the channel with the most of it
 };

@@ -40,7 +40,7 @@ SequencePlayer::Outcome SequencePlayer::tick(double time_s, std::span<const Chan
     const Progress progress = channels_[i].tick(time_s, seen[i]);
     to_grip |= take_contact(i, seen[i], events);
     if ((refused_ & channel_bit(i)) != 0) return;
-    // What was verified may be doubted again while the others are waited for.
+    // A channel that passed can become pending again while others are still running.
     if (progress == Progress::pending) done_ &= ~channel_bit(i);
     if (progress == Progress::pending || (done_ & channel_bit(i)) != 0) return;
     done_ |= channel_bit(i);
@@ -131,7 +131,7 @@ SequencePlayer::Outcome SequencePlayer::failed(double time_s, std::span<const Ch
   return finished(step.on_fail == OnFail::release ? OnFail::vent : step.on_fail, events);
 }
 
-/// What a channel that passed its step answers.
+/// Sets the result of a channel that passed its step.
 void SequencePlayer::answer_passed(std::size_t channel, double time_s, EventList& events) noexcept {
   ChannelPlayer& player = channels_[channel];
   const Step& step = now().step;
@@ -166,7 +166,7 @@ SequencePlayer::Outcome SequencePlayer::finished(OnFail action, EventList& event
   return {true, end_, action};
 }
 
-/// Nobody who took part stays without an answer when something went wrong.
+/// Sets ERROR for every participating channel without a result after a failure.
 void SequencePlayer::answer_the_rest(EventList& events) noexcept {
   for (std::size_t i = 0; i < channels_.size(); ++i) {
     if ((sequence_->channels & channel_bit(i)) != 0 && channels_[i].result() == GripResult::none) {

@@ -21,7 +21,7 @@ class SequencePlayer {
   void start(const PreparedSequence& sequence, double time_s, std::span<const ChannelOutput> seen,
              EventList& events) noexcept;
 
-  /// How the sequence stands after a tick.
+  /// State of the sequence after a tick.
   struct Outcome {
     bool finished = false;
     SequenceEnd end = SequenceEnd::done;
@@ -30,8 +30,8 @@ class SequencePlayer {
   /// One tick of the running sequence.
   Outcome tick(double time_s, std::span<const ChannelOutput> seen, EventList& events) noexcept;
 
-  /// Somebody asks for what is held: on with the next release step, as the sequence would. Without one it is
-  /// finished, to be vented. Asked for before a hold, the sequence is not done, but stopped.
+  /// Handles a release request: continues with the next release step. Without one, the sequence is finished
+  /// and must be vented. If the request comes before a hold, the sequence is stopped, not done.
   Outcome release(double time_s, std::span<const ChannelOutput> seen, EventList& events) noexcept;
 
   /// The sequence ends from outside. Channels without an answer get ERROR. So do those that were HOLDING,
@@ -39,11 +39,11 @@ class SequencePlayer {
   void interrupt(SequenceEnd end, std::uint32_t venting, EventList& events) noexcept;
   /// No sequence runs: re-verifies what is still held.
   void idle_tick(double time_s, std::span<const ChannelOutput> seen, EventList& events) noexcept;
-  /// What these channels held was let go by a vent: HOLDING becomes RELEASED.
+  /// Records that a vent released these channels: HOLDING becomes RELEASED.
   void vented(std::uint32_t channels, EventList& events) noexcept;
-  /// The sequence could not start: ERROR for its channels.
+  /// Sets ERROR for the channels of a sequence that could not start.
   void refuse(std::uint32_t channels, EventList& events) noexcept;
-  /// NO PART, PART LOST, RELEASED or ERROR stands somewhere.
+  /// Returns true if any channel has NO PART, PART LOST, RELEASED or ERROR.
   [[nodiscard]] bool has_answers() const noexcept;
   /// Clears these.
   void acknowledge(std::uint32_t request, EventList& events) noexcept;
@@ -51,9 +51,9 @@ class SequencePlayer {
   [[nodiscard]] ChannelDemand demand(std::size_t channel, double time_s) const noexcept;
   [[nodiscard]] const ChannelPlayer& channel(std::size_t index) const noexcept { return channels_[index]; }
   [[nodiscard]] std::uint16_t step() const noexcept { return step_; }
-  /// What the rig is doing, for the choice of what is safe.
+  /// Returns the phase of the rig, which selects the safe action.
   [[nodiscard]] Phase phase() const noexcept;
-  /// The finger moves without touching anything, as far as is known. `at_rest`: its command is the rest
+  /// Returns true if the finger moves without contact, as far as is known. `at_rest`: its command is the rest
   /// pressure.
   [[nodiscard]] bool free_motion(std::size_t channel, bool at_rest) const noexcept;
 

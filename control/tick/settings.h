@@ -1,5 +1,5 @@
 #pragma once
-// What a RigController needs to know of a rig: plain values. The rig file is read elsewhere (daemon/).
+// Defines the settings of a RigController as plain values. The daemon reads the rig file (daemon/).
 
 #include <array>
 #include <cstddef>
@@ -16,7 +16,7 @@ namespace softgrip::control {
 /// Most channels of one rig. A bound, so that snapshots and rows are plain values of fixed size.
 inline constexpr std::size_t max_channels = 16;
 
-/// What a rig is doing, as far as it decides what a safe output is.
+/// The phase of a rig, which determines its safe output.
 enum class Phase : std::uint8_t {
   idle,       ///< no sequence runs (also: starting, re-synchronising)
   closing,    ///< approach, grip, settle, verify; tracking and pressure steps of studies
@@ -27,7 +27,7 @@ inline constexpr std::size_t phase_count = 4;
 /// "idle", "closing", "holding", "releasing": the keys of `safe_action` in the rig file.
 [[nodiscard]] std::string_view name_of(Phase phase) noexcept;
 
-/// What the outputs do when motion must end.
+/// The action of the outputs if motion must end.
 enum class SafeAction : std::uint8_t {
   vent,  ///< to the rest pressure: at the slew limit while the loop runs, at once when it leaves
   hold,  ///< stay at the last command
@@ -43,19 +43,20 @@ struct DetectionSettings {
   double model_rmse_mm = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// What the daemon knows of the world behind the bus. All explicit in the rig file.
+/// Properties of the installation behind the bus. All are explicit in the rig file.
 struct SafetySettings {
-  /// What stop, faults and leaving do, by the phase in which they come.
+  /// Action of a stop, a fault or a shutdown, by the phase in which it occurs.
   std::array<SafeAction, phase_count> safe_action{};
   /// What an emergency stop does. `hold` only where its circuit does not vent by itself: a held command
   /// would fill the fingers again when the circuit is reset.
   SafeAction on_emergency_stop = SafeAction::vent;
-  /// The board puts its outputs to the rest pressure by itself when nobody talks to it. Then faults of the
-  /// bus vent in every phase: a held command would fill the fingers again on reconnection.
+  /// The board sets its outputs to the rest pressure if communication stops. Then bus faults vent in every
+  /// phase, because a held command would pressurise the fingers again on reconnection.
   bool board_vents_when_silent = true;
 };
 
-/// How many cycles something may be wrong before it is a fault: the reaction bounds that the rig promises.
+/// Number of cycles for which a condition may last before it is a fault. They set the guaranteed reaction
+/// times of the rig.
 struct FaultSettings {
   std::uint32_t bus_down_cycles = 5;         ///< cycles in a row without a good exchange
   std::uint32_t invalid_reading_cycles = 3;  ///< cycles in a row in which a channel's reading is not valid
@@ -68,10 +69,10 @@ struct FaultSettings {
   double pressure_delay_s = 0.5;      ///< how far back that window of past commands reaches
   bool model_unfit_is_fault = false;  ///< false: model health is only reported
   bool unsteady_is_fault = false;     ///< a sensor that jumps there and back; false: it is only reported
-  std::uint32_t slipped_cycles = 0;   ///< so many cycles lost at once are a fault; 0: only counted
+  std::uint32_t slipped_cycles = 0;   ///< this number of cycles missed at once is a fault; 0: only counted
 };
 
-/// Everything that RigController needs.
+/// All settings of a RigController.
 struct RigSettings {
   double rate_hz = 200;                   ///< of tick()
   std::vector<ChannelSettings> channels;  ///< 1 to max_channels, names unique
@@ -83,8 +84,9 @@ struct RigSettings {
   FaultSettings faults;
 };
 
-/// What is wrong with settings, one sentence each; empty: RigController takes them. The rig file's reader
-/// reports most of it with its place; this is what it can not see key by key, and what code must respect.
+/// Returns the problems of the settings, one sentence each. If the list is empty, RigController accepts them.
+/// The rig file's reader reports most problems with their location. This function covers relations between
+/// keys and settings made in code.
 [[nodiscard]] std::vector<std::string> settings_problems(const RigSettings& settings);
 
 }  // namespace softgrip::control

@@ -26,7 +26,7 @@ Orders Supervisor::tick(const TickInput& input, const Facts& facts, EventList& e
   return orders;
 }
 
-/// The first fault stays; later ones are told once each and can only turn a hold into a vent.
+/// Latches the first fault. Later faults are reported once each and can only turn a hold into a vent.
 void Supervisor::latch(const Facts& facts, Orders& orders, EventList& events) noexcept {
   const Fault& fault = facts.fault;
   std::uint32_t place = 1;
@@ -52,7 +52,7 @@ void Supervisor::latch(const Facts& facts, Orders& orders, EventList& events) no
 
 SafeAction Supervisor::action_for(FaultCode code, Phase phase) const noexcept {
   const auto number = static_cast<unsigned>(code);
-  // What stands at the outputs is not what was held.
+  // The output differs from the command that was held.
   if (code == FaultCode::board_watchdog_tripped || code == FaultCode::outputs_overwritten)
     return SafeAction::vent;
   // Inputs that cannot be read may hide an emergency stop.

@@ -18,10 +18,10 @@
 
 namespace softgrip::control {
 
-/// Where the search for rest stands.
+/// State of the search for rest.
 enum class Rest : std::uint8_t { pending, at_rest, timed_out };
 
-/// What the supervisor must know of a tick beside its input. Masks: bit i is channel i.
+/// Inputs of the supervisor in addition to the tick input. Masks: bit i is channel i.
 struct Facts {
   Fault fault;  ///< due now
   Fault cause;  ///< what is there and is a fault or grows to one
@@ -33,7 +33,7 @@ struct Facts {
   Rest rest = Rest::pending;
 };
 
-/// What is to be done in this tick because of what the supervisor decided.
+/// Outputs of the supervisor for this tick.
 struct Orders {
   std::optional<SequenceEnd> interrupt;          ///< the player stops, for this reason
   std::optional<std::uint32_t> acknowledged_by;  ///< answers are cleared, because of this request
@@ -67,7 +67,7 @@ class Supervisor {
   void answer(const TickInput& input, const Facts& facts, Orders& orders, EventList& events) noexcept;
   void answer_start(const TickInput& input, const Facts& facts, Orders& orders, EventList& events) noexcept;
   [[nodiscard]] RefusalCode refusal_of_start(const TickInput& input, const Facts& facts) const noexcept;
-  /// Tells a refusal.
+  /// Reports a refusal.
   [[nodiscard]] bool refuses_start(const TickInput& input, const Facts& facts,
                                    EventList& events) const noexcept;
   void answer_check(const TickInput& input, const Facts& facts, EventList& events) const noexcept;
@@ -90,7 +90,7 @@ class Supervisor {
   State state_ = State::starting;
   Fault first_fault_;
   Phase fault_phase_ = Phase::idle;  ///< in which it came
-  std::uint32_t told_ = 0;           ///< faults told since the latch, by their place in all_faults()
+  std::uint32_t told_ = 0;           ///< faults reported since the latch, by their index in all_faults()
   std::uint32_t venting_ = 0;
   const PreparedSequence* sequence_ = nullptr;  ///< from the accepted start to its end
   std::uint32_t start_request_ = 0;

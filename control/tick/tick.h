@@ -46,7 +46,7 @@ enum class RestLack : std::uint8_t { none, moves, off_model };
 enum class SequenceEnd : std::uint8_t { done, failed, stopped, faulted };
 [[nodiscard]] std::string_view name_of(SequenceEnd end) noexcept;
 
-/// What the outside may ask of the controller; at most one per tick (the loop queues them).
+/// A request to the controller; at most one per tick (the loop queues them).
 struct Request {
   enum class Kind : std::uint8_t {
     none,
@@ -63,7 +63,7 @@ struct Request {
   std::uint32_t of_start = 0;                  ///< for stop: the only start that it stops; 0: any
 };
 
-/// What the bus did since the last tick, as far as control must know.
+/// State of the bus since the last tick.
 struct BusHealth {
   bool connected = false;             ///< a session is up
   FaultCode fault = FaultCode::none;  ///< what the last failed exchange means; none after a good one
@@ -83,8 +83,8 @@ struct TickInput {
   Request request;
   bool emergency_stop = false;       ///< the level of the input, true = stop
   bool interlock_open = false;       ///< a start is refused while true; opening it does not end a sequence
-  bool inputs_lost = false;          ///< the digital inputs cannot be read: nobody knows what they say
-  std::uint32_t slipped_cycles = 0;  ///< cycles that the loop lost just before this tick
+  bool inputs_lost = false;          ///< the digital inputs cannot be read, so their state is unknown
+  std::uint32_t slipped_cycles = 0;  ///< cycles that the loop missed just before this tick
 };
 
 /// One channel in one tick. It is written in place: what the tick before left here is what this tick's
@@ -102,11 +102,12 @@ struct ChannelOutput {
                                ///< NaN while there is no valid reading
   double deficit_mm = 0;       ///< how much less than its free-motion envelope the finger moved; NaN without
                                ///< sight and until the second valid reading in a row
-  double free_kpa = 0;       ///< the command that the free finger needs to rest at this displacement; of the
-                             ///< last valid reading
-  double squeeze_kpa = 0;    ///< the deficit as a pressure: how much of what acts squeezes; NaN without sight
+  double free_kpa = 0;  ///< the command that the free finger needs to rest at this displacement; of the
+                        ///< last valid reading
+  /// gripping pressure that corresponds to the displacement shortfall; NaN without displacement feedback
+  double squeeze_kpa = 0;
   double age_s = 0;          ///< of the reading
-  double health_rms_mm = 0;  ///< root mean square of the residual, by which a model is unfit
+  double health_rms_mm = 0;  ///< root mean square of the residual; a large value makes the model unfit
   std::uint16_t step = 0;    ///< index in the sequence
   model::Validity validity = model::Validity::none_yet;
   GripResult result = GripResult::none;
@@ -130,14 +131,14 @@ struct ChannelOutput {
 /// `Event::channel` of what concerns the whole rig.
 inline constexpr std::uint8_t whole_rig = 0xff;
 
-/// What is wrong, and with which channel.
+/// A fault and its channel.
 struct Fault {
   FaultCode code = FaultCode::none;
   std::uint8_t channel = whole_rig;
-  double value = 0;  ///< what goes with it: an age, a displacement, a read-back, a number of cycles
+  double value = 0;  ///< value that belongs to it: an age, a displacement, a read-back, a number of cycles
 };
 
-/// Something worth telling, at most a few per tick.
+/// An event to report; at most a few per tick.
 struct Event {
   enum class Kind : std::uint8_t {
     state_changed,
@@ -166,8 +167,9 @@ struct Event {
   /// BindingLimit or RestLack, by kind.
   std::uint16_t detail = 0;
   std::uint32_t request = 0;  ///< the id of the request it answers, or 0
-  double value = 0;           ///< a number that goes with it (a deficit, an age, where a contact was), or 0
-  GripEvidence evidence = GripEvidence::none;  ///< of grip_result: on what it rests
+  /// value that belongs to it (a displacement shortfall, an age, a contact position), or 0
+  double value = 0;
+  GripEvidence evidence = GripEvidence::none;  ///< of grip_result: its basis
 };
 
 /// The events of one tick. Those that do not fit are counted.
