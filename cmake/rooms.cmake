@@ -123,7 +123,7 @@ if(httplib_VERSION VERSION_GREATER_EQUAL 0.18)
   target_compile_definitions(${softgrip_room_target} PRIVATE SOFTGRIP_HTTPLIB_ADDRESSES=1)
 endif()
 # Separate from tools/command_line: the gateways, which a network reaches, do not link the readers of foreign files.
-softgrip_room(tools/log_input USES base document sysid/logs sysid/import sysid/diagnosis/gauge tools/command_line
+softgrip_room(tools/log_input USES base document model sysid/logs sysid/import sysid/diagnosis/gauge tools/command_line
   LIBRARIES CLI11::CLI11)
 softgrip_room(tools/recordings USES base document sysid/logs sysid/pages tools/command_line
   LIBRARIES nlohmann_json::nlohmann_json)

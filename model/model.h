@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "model/block.h"
+#include "model/output_unit.h"
 
 namespace softgrip::model {
 
@@ -27,6 +28,7 @@ struct Model {
   std::string name;
   std::string source;  ///< where its numbers come from, one line
   std::vector<BlockSpec> blocks;
+  OutputUnit output_unit = OutputUnit::mm;  ///< of its answer, and of every number whose name says mm
 
   bool operator==(const Model&) const = default;
 };

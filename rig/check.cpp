@@ -93,7 +93,7 @@ void read_as(const document::Document& document, bool parsed, std::span<const co
       keep_name(read_board_map(document, problems));
       break;
     case FileKind::model:
-      keep_name(model::read_model(document, problems));
+      keep_name(model::read_rig_model(document, problems));
       break;
     case FileKind::sequence: {
       auto sequence = control::read_sequence(document, problems, arguments);

@@ -147,7 +147,7 @@ std::optional<model::Model> named_model(Context& context, MapReader& reader, std
   const std::size_t problems = context.problems.size();
   const auto document = named_document(context, reader, key, role);
   if (!document) return std::nullopt;
-  std::optional<model::Model> model = model::read_model(*document, context.problems);
+  std::optional<model::Model> model = model::read_rig_model(*document, context.problems);
   if (context.problems.size() != problems) model.reset();
   context.models.emplace(document->file, model);
   return model;

@@ -91,27 +91,29 @@ Worst worst_gain(const model::Model& model, const LimitSettings& limits, double 
 
 /// Returns the sentence on a Bouc-Wen element with an inverse response, or an empty string. `stiff` is the
 /// other immediate response to the pressure, and `stiff_name` is its name.
-std::string wrong_way(const model::Chain<double>& chain, double stiff, std::string_view stiff_name) {
+std::string wrong_way(const model::Model& model, double stiff, std::string_view stiff_name) {
+  const model::Chain<double> chain(model);
   const auto* bouc_wen = chain.find<model::BoucWen<double>>();
   if (bouc_wen == nullptr) return {};
   const double beta = bouc_wen->beta_mm_per_kpa();
   const double gain = bouc_wen->alpha_mm_per_kpa() + stiff;
   if (beta < gain) return {};
   return "beta " + std::string(beta > gain ? ">" : "=") + " alpha" + std::string(stiff_name) + " (" +
-         significant(beta) + (beta > gain ? " > " : " = ") + significant(gain) + " mm/kPa)" +
-         std::string(wrong_way_first);
+         significant(beta) + (beta > gain ? " > " : " = ") + significant(gain) +
+         model::in_unit(" mm/kPa)", model.output_unit) + std::string(wrong_way_first);
 }
 
 tl::expected<void, Refusal> check_gain(const model::Model& model, const LimitSettings& limits, double tick_s,
                                        double stiff, std::string_view stiff_name) {
-  std::string text = wrong_way(model::Chain<double>(model), stiff, stiff_name);
+  std::string text = wrong_way(model, stiff, stiff_name);
   if (!text.empty()) return tl::unexpected(Refusal{std::move(text), usual_cause});
   const Worst worst = worst_gain(model, limits, tick_s);
   if (worst.gain_mm_per_kpa >= least_gain_mm_per_kpa) return {};
   const bool backwards = !(worst.gain_mm_per_kpa >= 0);
   return tl::unexpected(Refusal{"the instantaneous gain is " + significant(worst.gain_mm_per_kpa) +
-                                    " mm/kPa at " + significant(worst.pressure_kpa) +
-                                    " kPa while the pressure " + (worst.rising ? "rises" : "falls") +
+                                    model::in_unit(" mm/kPa at ", model.output_unit) +
+                                    significant(worst.pressure_kpa) + " kPa while the pressure " +
+                                    (worst.rising ? "rises" : "falls") +
                                     std::string(backwards ? wrong_way_first : creep_alone),
                                 backwards ? usual_cause : planned_needs_none});
 }
@@ -148,7 +150,8 @@ tl::expected<void, Refusal> check_planned(const model::Model& model, const Limit
   const double gain = settled_line(model, limits).gain_mm_per_kpa;
   if (gain > 0) return {};
   return tl::unexpected(Refusal{"the model's settled gain between the lowest and the highest command is " +
-                                significant(gain) + " mm/kPa: planning needs one above 0"});
+                                significant(gain) +
+                                model::in_unit(" mm/kPa: planning needs one above 0", model.output_unit)});
 }
 
 tl::expected<void, Refusal> check_full_model(const model::Model& model, const LimitSettings& limits,

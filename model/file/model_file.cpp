@@ -74,6 +74,14 @@ bool has_key_of_another(const Node& map, const EarlierBlock& earlier, std::size_
   });
 }
 
+constexpr std::string_view output_unit_key = "output_unit";
+
+OutputUnit read_output_unit(MapReader& map) {
+  std::vector<std::string> names;
+  for (const OutputUnit unit : all_output_units) names.emplace_back(name_of(unit));
+  return all_output_units[map.optional_choice(output_unit_key, names).value_or(0)];
+}
+
 class ModelReader {
  public:
   ModelReader(const Document& document, Problems& problems) : document_(document), problems_(problems) {}
@@ -83,6 +91,7 @@ class ModelReader {
     MapReader top(document_, document_.root, problems_, "model");
     model.name = top.text("name");
     model.source = top.text("source");
+    model.output_unit = read_output_unit(top);
     for (const Station station : stations) {
       const bool required = station == Station::actuator;
       for (const Node* item : top.sequence(name_of(station), required)) read_block(*item, station, model);
@@ -251,15 +260,43 @@ std::optional<Model> read_model(const Document& document, Problems& problems) {
   return model;
 }
 
-std::optional<Model> load_model(const std::string& path, Problems& problems) {
+std::optional<Model> read_rig_model(const Document& document, Problems& problems) {
+  std::optional<Model> model = read_model(document, problems);
+  if (!model || model->output_unit == OutputUnit::mm) return model;
+  const auto key = std::find_if(document.root.entries.begin(), document.root.entries.end(),
+                                [](const Node::Entry& entry) { return entry.key == output_unit_key; });
+  problems.add(document.problem(key->key_at,
+                                "the model answers in " + std::string(name_of(model->output_unit)) +
+                                    ", and a rig measures and controls in mm",
+                                "simulate, identify, validate and diagnose use this model; a rig needs one "
+                                "that was identified from logs in mm"));
+  return std::nullopt;
+}
+
+namespace {
+
+std::optional<Model> load(const std::string& path, Problems& problems,
+                          std::optional<Model> (*read)(const Document&, Problems&)) {
   const std::size_t before = problems.size();
   const Document document = document::parse_file(path, problems);
-  std::optional<Model> model = read_model(document, problems);
+  std::optional<Model> model = read(document, problems);
   return problems.size() == before ? model : std::nullopt;
+}
+
+}  // namespace
+
+std::optional<Model> load_model(const std::string& path, Problems& problems) {
+  return load(path, problems, read_model);
+}
+
+std::optional<Model> load_rig_model(const std::string& path, Problems& problems) {
+  return load(path, problems, read_rig_model);
 }
 
 std::string to_yaml(const Model& model) {
   std::string text = "name: " + double_quoted(model.name) + "\nsource: " + double_quoted(model.source) + "\n";
+  if (model.output_unit != OutputUnit::mm)
+    text += std::string(output_unit_key) + ": " + std::string(name_of(model.output_unit)) + "\n";
   for (const Station station : stations) {
     bool any = false;
     for (const BlockSpec& block : model.blocks) {

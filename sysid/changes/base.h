@@ -27,8 +27,8 @@ enum class Judged { displacement, pressure };
 [[nodiscard]] constexpr const char* name_of(Judged judged) {
   return judged == Judged::pressure ? "pressure" : "displacement";
 }
-[[nodiscard]] constexpr const char* unit_of(Judged judged) {
-  return judged == Judged::pressure ? "kPa" : "mm";
+[[nodiscard]] inline std::string unit_of(Judged judged, model::OutputUnit output_unit) {
+  return judged == Judged::pressure ? "kPa" : std::string(model::name_of(output_unit));
 }
 
 struct Base {

@@ -517,6 +517,9 @@ tl::expected<ChangeDiagnosis, std::string> diagnose_change(const std::vector<Log
     std::erase_if(diagnosis.causes, [&](const ChangeCause& c) { return c.gain < beside_another * most; });
   }
   diagnosis.verdict = verdict_of(diagnosis);
+  diagnosis.output_unit = healthy.front().output_unit;
+  for (ChangeCause& cause : diagnosis.causes) cause.output_unit = diagnosis.output_unit;
+  for (JudgedChange& judged : diagnosis.readings) judged.output_unit = diagnosis.output_unit;
   diagnosis.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
   return diagnosis;
 }

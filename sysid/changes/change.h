@@ -32,7 +32,7 @@ struct ChangeOptions {
 struct ChangeSize {
   std::string what;  ///< "dead time", "gain"
   double value = 0;
-  std::string unit;  ///< "s", "mm", "kPa", "%"
+  std::string unit;  ///< "s", "mm" (of any output unit), "kPa", "%"
 };
 
 struct ChangeCause {
@@ -40,6 +40,7 @@ struct ChangeCause {
   std::string title;
   model::Station station = model::Station::actuator;
   Judged judged = Judged::displacement;
+  model::OutputUnit output_unit = model::OutputUnit::mm;
   FittedEffect fitted;
   ChangeSize size;
   EffectIntervals intervals;
@@ -71,6 +72,7 @@ struct RunLeft {
 /// One reading: the displacement, or the pressure.
 struct JudgedChange {
   Judged judged = Judged::displacement;
+  model::OutputUnit output_unit = model::OutputUnit::mm;
   std::string base;     ///< in words
   double noise_mm = 0;  ///< kPa of the pressure
   std::size_t healthy_runs = 0;
@@ -94,6 +96,7 @@ struct JudgedChange {
 struct ChangeDiagnosis {
   ChangeVerdict verdict = ChangeVerdict::unexplained;
   std::vector<ChangeCause> causes;
+  model::OutputUnit output_unit = model::OutputUnit::mm;
   std::vector<JudgedChange> readings;
   std::vector<std::string> warnings;
   double wall_s = 0;

@@ -28,11 +28,11 @@ Json cause_json(const ChangeCause& cause) {
           {"size",
            {{"what", cause.size.what},
             {"value", cause.size.value},
-            {"unit", cause.size.unit},
+            {"unit", model::in_unit(cause.size.unit, cause.output_unit)},
             {"ci95", interval_json(cause.intervals.size)}}},
           {"full_pressure", cause.full_pressure_mm},
           {"effect_rms", cause.effect_mm},
-          {"unit", unit_of(cause.judged)},
+          {"unit", unit_of(cause.judged, cause.output_unit)},
           {"share_percent", cause.share_percent},
           {"gain", {{"value", cause.gain}, {"ci95", {cause.gain_lower, cause.gain_upper}}}},
           {"next_steps", {steps[0], steps[1]}}};
@@ -54,7 +54,7 @@ Json reading_json(const JudgedChange& judged) {
                     {"base_rms", run.base},
                     {"explained_rms", run.explained}});
   return {{"reading", judged.judged == Judged::pressure ? "pressure_kpa" : "displacement_mm"},
-          {"unit", unit_of(judged.judged)},
+          {"unit", unit_of(judged.judged, judged.output_unit)},
           {"base", judged.base},
           {"noise", judged.noise_mm},
           {"healthy_runs", judged.healthy_runs},
@@ -78,6 +78,7 @@ Json json_of(const ChangeDiagnosis& d) {
   json["schema"] = 1;
   json["question"] = "change";
   json["verdict"] = name_of(d.verdict);
+  json["output_unit"] = model::name_of(d.output_unit);
   json["causes"] = Json::array();
   json["alternatives"] = Json::array();
   for (const ChangeCause& cause : d.causes) {

@@ -26,10 +26,10 @@ void add_causes(Page& page, const ChangeDiagnosis& d) {
       {false, false, false, false, true, false},
       {}};
   for (const ChangeCause& cause : d.causes) {
-    table.rows.push_back({cause.id, size_text(cause), interval_text(cause),
-                          significant(cause.full_pressure_mm, 2) + " " + unit_of(cause.judged),
-                          fixed(cause.share_percent, 0),
-                          cause.rivals.empty() ? "-" : with_commas(cause.rivals)});
+    table.rows.push_back(
+        {cause.id, size_text(cause), interval_text(cause),
+         significant(cause.full_pressure_mm, 2) + " " + unit_of(cause.judged, cause.output_unit),
+         fixed(cause.share_percent, 0), cause.rivals.empty() ? "-" : with_commas(cause.rivals)});
   }
   page.table(table);
   for (const ChangeCause& cause : d.causes) {
@@ -46,7 +46,7 @@ Figure misfit_figure(const JudgedChange& judged, bool explained) {
     Chart chart;
     chart.title = judged.logs[r];
     chart.x.label = "time [s]";
-    chart.y.label = std::string("left [") + unit_of(judged.judged) + "]";
+    chart.y.label = std::string("left [") + unit_of(judged.judged, judged.output_unit) + "]";
     chart.height = 180;
     Series before;
     before.label = "base of the healthy finger";
@@ -68,7 +68,7 @@ Figure misfit_figure(const JudgedChange& judged, bool explained) {
       std::string("misfit ") + name_of(judged.judged),
       "What the base of the healthy finger leaves of the later logs. Healthy logs that it was not fitted to "
       "leave " +
-          significant(judged.healthy_mm, 2) + " " + unit_of(judged.judged) + " (RMS).",
+          significant(judged.healthy_mm, 2) + " " + unit_of(judged.judged, judged.output_unit) + " (RMS).",
       stacked(std::move(charts))};
 }
 
@@ -117,7 +117,7 @@ Figure runs_figure(const JudgedChange& judged, bool explained) {
     after.push_back(run.is_healthy ? std::numeric_limits<double>::quiet_NaN() : run.explained);
   }
   Chart chart = chart_over(std::move(names));
-  chart.y.label = std::string("error [") + unit_of(judged.judged) + "]";
+  chart.y.label = std::string("error [") + unit_of(judged.judged, judged.output_unit) + "]";
   chart.series = {points_over_names("base of the healthy finger", Colour::error, std::move(before))};
   if (explained)
     chart.series.push_back(points_over_names("with the causes", Colour::model, std::move(after)));
@@ -136,7 +136,7 @@ Table not_tested_table(const JudgedChange& judged) {
 
 void add_reading(Page& page, const JudgedChange& judged, const ChangeDiagnosis& d) {
   page.section(std::string("The ") + name_of(judged.judged));
-  const std::string unit = std::string(" ") + unit_of(judged.judged);
+  const std::string unit = std::string(" ") + unit_of(judged.judged, judged.output_unit);
   page.terms({{"base", judged.base},
               {"noise of the readings", significant(judged.noise_mm, 2) + unit},
               {"healthy logs", std::to_string(judged.healthy_runs)},
@@ -185,7 +185,8 @@ Table tried_table(const JudgedChange& judged) {
 }
 
 Table run_table(const JudgedChange& judged) {
-  Table table{std::string("Error of each run, RMS about its mean [") + unit_of(judged.judged) + "]",
+  Table table{std::string("Error of each run, RMS about its mean [") +
+                  unit_of(judged.judged, judged.output_unit) + "]",
               {"run", "base", "with the causes"},
               {false, true, true},
               {}};

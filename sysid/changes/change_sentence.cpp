@@ -17,7 +17,8 @@ std::string named(const ChangeCause& cause) {
 }  // namespace
 
 std::string size_text(const ChangeCause& cause) {
-  return cause.size.what + " " + significant(cause.size.value, 3) + " " + cause.size.unit;
+  return cause.size.what + " " + significant(cause.size.value, 3) + " " +
+         model::in_unit(cause.size.unit, cause.output_unit);
 }
 
 std::string interval_text(const ChangeCause& cause) {

@@ -64,7 +64,8 @@ ChangeSize size_of(const LaterReadings& readings, const FittedEffect& effect, do
     case SizedBy::Of::full_pressure:
       break;
   }
-  return {std::string(SizedBy{}.what), full_pressure_mm, unit_of(readings.base().judged)};
+  return {std::string(SizedBy{}.what), full_pressure_mm,
+          unit_of(readings.base().judged, model::OutputUnit::mm)};
 }
 
 }  // namespace softgrip::sysid

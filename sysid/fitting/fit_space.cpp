@@ -23,7 +23,7 @@ FreeParameter model_parameter(const model::Model& model, std::size_t flat_index)
   FreeParameter p;
   p.flat_index = flat_index;
   p.name = model::parameter_path(model, flat_index);
-  p.unit = spec.unit;
+  p.unit = model::in_unit(spec.unit, model.output_unit);
   p.logarithmic = is_logarithmic(spec);
   p.scale = p.logarithmic ? 1 : spec.scale;
   p.lower = p.logarithmic ? std::max(spec.lower, 1e-9) : spec.lower;
@@ -82,14 +82,16 @@ FitSpace::FitSpace(const model::Model& model, const std::vector<Record>& records
       free_.push_back(std::move(p));
     };
     const double scale_mm = std::max(record.span_mm, 1e-3);
-    if (record.offset_free) add(FreeParameter::Kind::offset, 0, "offset_mm", "mm", scale_mm, -1e6, 1e6);
+    const std::string reading_unit(model::name_of(record.output_unit));
+    if (record.offset_free)
+      add(FreeParameter::Kind::offset, 0, "offset_mm", reading_unit, scale_mm, -1e6, 1e6);
     if (!record.start_unknown) continue;
     const double first = record.drive_kpa.front() + 1e-6;
     add(FreeParameter::Kind::peak_before, 0, "peak_before_kpa", "kPa", record.largest_kpa, first,
         std::max(first + 1e-6, 1.5 * record.largest_kpa));
     for (std::size_t b = 0; b < branches; ++b) {
-      add(FreeParameter::Kind::unsettled, b, "unsettled" + std::to_string(b + 1) + "_mm", "mm", scale_mm,
-          -2 * scale_mm, 2 * scale_mm);
+      add(FreeParameter::Kind::unsettled, b, "unsettled" + std::to_string(b + 1) + "_mm", reading_unit,
+          scale_mm, -2 * scale_mm, 2 * scale_mm);
     }
   }
 }

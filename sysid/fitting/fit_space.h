@@ -21,7 +21,7 @@ struct FreeParameter {
   std::size_t record = 0;      ///< of a start state
   std::size_t branch = 0;      ///< of unsettled creep
   std::string name;            ///< "kelvin_voigt.k1_kpa_per_mm", "tp1: offset_mm"
-  std::string unit;
+  std::string unit;            ///< in which the value is
   bool logarithmic = false;
   double scale = 1;
   double lower = 0;  ///< of the value

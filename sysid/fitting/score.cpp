@@ -80,6 +80,7 @@ Score score_of(const model::Model& model, const Record& record, const StartState
                const std::vector<double>& readings) {
   Score score;
   score.name = record.name;
+  score.output_unit = record.output_unit;
   score.drive = record.drive;
   score.start = start;
   score.prediction_mm = predict(model, record, start);
@@ -106,10 +107,10 @@ std::vector<std::string> divergences_of(const std::vector<Score>& scores) {
     if (!score.diverges) continue;
     const bool finite = std::all_of(score.prediction_mm.begin(), score.prediction_mm.end(),
                                     [](double value) { return std::isfinite(value); });
-    sentences.push_back(
-        "the prediction of " + score.name + " diverges: it " +
-        (finite ? "leaves the readings by up to " + significant(score.largest_error_mm, 3) + " mm"
-                : std::string("does not stay finite")));
+    sentences.push_back("the prediction of " + score.name + " diverges: it " +
+                        (finite ? "leaves the readings by up to " + significant(score.largest_error_mm, 3) +
+                                      " " + std::string(model::name_of(score.output_unit))
+                                : std::string("does not stay finite")));
   }
   return sentences;
 }

@@ -15,7 +15,8 @@ inline constexpr double bad_percent = 10;
 /// A prediction and its errors. Errors are reading minus prediction.
 struct Score {
   std::string name;
-  Drive drive = Drive::command;  ///< which signal drove the model
+  model::OutputUnit output_unit = model::OutputUnit::mm;  ///< of prediction and errors
+  Drive drive = Drive::command;                           ///< which signal drove the model
   std::vector<double> prediction_mm;
   std::vector<double> error_mm;  ///< NaN without reading
   double rmse_mm = 0;

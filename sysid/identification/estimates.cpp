@@ -56,7 +56,7 @@ std::vector<Estimate> parameter_estimates(const FittedPoint& fit) {
     }
     Estimate kept;
     kept.name = model::parameter_path(model, flat);
-    kept.unit = model::parameter_spec(model, flat).unit;
+    kept.unit = model::in_unit(model::parameter_spec(model, flat).unit, model.output_unit);
     kept.value = values[flat];
     kept.note = "kept at the start's value";
     estimates.push_back(std::move(kept));
@@ -90,13 +90,14 @@ std::vector<Estimate> combination_estimates(const FittedPoint& fit) {
   const Uncertainty& u = fit.uncertainty;
   const auto n = static_cast<Eigen::Index>(fit.z.size());
   std::vector<Estimate> estimates;
-  for (const Combination& combination : combinations_of(space.point(fit.z).model)) {
+  const model::Model model = space.point(fit.z).model;
+  for (const Combination& combination : combinations_of(model)) {
     const auto value_at = [&](const std::vector<double>& z) {
       return combination.value(space.point(z).model);
     };
     Estimate e;
     e.name = combination.name;
-    e.unit = combination.unit;
+    e.unit = model::in_unit(combination.unit, model.output_unit);
     e.formula = combination.formula;
     e.value = value_at(fit.z);
     const bool positive = e.value > 0 && combination.scale == 0;

@@ -69,6 +69,7 @@ std::string identify_json(const IdentifyReport& report) {
   json["call"] = report.call;
   json["model"] = {{"name", r.model.name}, {"hash", model::model_hash(r.model)}, {"file", "model.yaml"}};
   json["start"] = {{"name", report.start.name}, {"hash", model::model_hash(report.start)}};
+  json["output_unit"] = model::name_of(r.model.output_unit);
   json["logs"] = logs_json(report.logs);
   add_scores(json, r.scores);
   json["parameters"] = estimates(r.parameters);

@@ -101,7 +101,7 @@ Chart multistart_chart(const Identification& r) {
   chart.height = 240;
   chart.title = "where the starts ended";
   chart.x.label = "start, best first";
-  chart.y.label = "RMSE [mm]";
+  chart.y.label = model::in_unit("RMSE [mm]", r.model.output_unit);
   std::vector<double> sorted = r.multistart.rmse_mm;
   std::sort(sorted.begin(), sorted.end());
   Series series;
@@ -143,13 +143,16 @@ void add_limits(Page& page, const Identification& r) {
 
 void add_residuals(Page& page, const Identification& r) {
   page.section("Errors and search");
-  page.paragraph("Sample-to-sample noise of the readings " + significant(r.fast_noise_mm, 3) + " mm; RMSE " +
-                 significant(r.rmse_mm, 3) + " mm; correlation of the errors from one sample to the next " +
+  const std::string unit(model::name_of(r.model.output_unit));
+  page.paragraph("Sample-to-sample noise of the readings " + significant(r.fast_noise_mm, 3) + " " + unit +
+                 "; RMSE " + significant(r.rmse_mm, 3) + " " + unit +
+                 "; correlation of the errors from one sample to the next " +
                  significant(r.noise.lag1_correlation, 3) + ". For the intervals the samples count as " +
                  fixed(r.noise.effective_samples, 0) + " independent ones (autoregressive model of order " +
                  std::to_string(r.noise.coefficients.size()) + ").");
   if (r.huber_mm > 0) {
-    page.paragraph("Robust fit: errors beyond " + significant(r.huber_mm, 3) + " mm count linearly.");
+    page.paragraph("Robust fit: errors beyond " + significant(r.huber_mm, 3) + " " + unit +
+                   " count linearly.");
   }
   page.figure({"errors and search",
                "Correlation of the errors over the time between them, and where the search ended: " +
@@ -157,7 +160,8 @@ void add_residuals(Page& page, const Identification& r) {
                    std::to_string(r.multistart.starts) + " starts reached the best fit.",
                {{correlation_chart(r), multistart_chart(r)}}});
   if (r.exponent_rmse_mm.size() > 1) {
-    Table table{"Exponents of the hysteresis that were tried", {"exponent", "RMSE [mm]"}, {true, true}, {}};
+    Table table{
+        "Exponents of the hysteresis that were tried", {"exponent", "RMSE [" + unit + "]"}, {true, true}, {}};
     for (const auto& [exponent, rmse_mm] : r.exponent_rmse_mm) {
       table.rows.push_back({std::to_string(exponent), significant(rmse_mm, 4)});
     }
@@ -166,17 +170,17 @@ void add_residuals(Page& page, const Identification& r) {
 }
 
 /// What was tried, and what each ingredient of the chosen structure brings.
-void add_structure(Page& page, const StructureEvidence& s) {
+void add_structure(Page& page, const StructureEvidence& s, model::OutputUnit unit) {
+  const std::string fitted = model::in_unit("RMSE fitted [mm]", unit);
+  const std::string held_out = model::in_unit("RMSE held-out blocks [mm]", unit);
   page.section("Structure");
   page.paragraph(
       "Every structure was fitted to all readings, and again without each fifth of " +
       std::to_string(s.blocks) +
       " interleaved blocks, on which it was then judged. Chosen is the simplest within one standard "
       "error of the best.");
-  Table tried{"Structures, the simplest first",
-              {"structure", "", "RMSE fitted [mm]", "RMSE held-out blocks [mm]"},
-              {false, false, true, true},
-              {}};
+  Table tried{
+      "Structures, the simplest first", {"structure", "", fitted, held_out}, {false, false, true, true}, {}};
   for (const StructureEvidence::Candidate& c : s.candidates) {
     tried.rows.push_back({c.description, c.chosen ? "chosen" : "", significant(c.rmse_mm, 4),
                           significant(c.heldout_rmse_mm, 4)});
@@ -184,7 +188,7 @@ void add_structure(Page& page, const StructureEvidence& s) {
   page.table(tried);
   if (!s.ablation.empty()) {
     Table without{"The chosen structure without one ingredient",
-                  {"without", "RMSE fitted [mm]", "RMSE held-out blocks [mm]"},
+                  {"without", fitted, held_out},
                   {false, true, true},
                   {}};
     for (const StructureEvidence::Ablation& a : s.ablation)
@@ -220,7 +224,7 @@ void add_notes(Page& page, const std::vector<Log>& logs) {
 std::string verdict_of(const Identification& r) {
   const std::string logs = logs_in_words(r);
   const std::string size =
-      "RMSE of " + significant(r.rmse_mm, 3) + " mm, " +
+      "RMSE of " + significant(r.rmse_mm, 3) + " " + std::string(model::name_of(r.model.output_unit)) + ", " +
       (r.scores.size() == 1 ? significant(largest_percent(r), 2) + " % of its span"
                             : "at most " + significant(largest_percent(r), 2) + " % of a log's span");
   if (largest_percent(r) > bad_percent) {
@@ -252,7 +256,7 @@ Page identify_page(const IdentifyReport& report) {
     table.caption = "Held out, continuation: the rest of each log, predicted from its start";
     page.table(table);
   }
-  if (r.structure) add_structure(page, *r.structure);
+  if (r.structure) add_structure(page, *r.structure, r.model.output_unit);
   for (std::size_t i = 0; i < r.scores.size(); ++i) add_log_figures(page, r.records[i], r.scores[i]);
   if (!report.validation.empty()) {
     page.section("Validation");

@@ -21,13 +21,13 @@ Series line(std::string label, const std::vector<double>& x, const std::vector<d
 std::vector<Chart> overlay(const Record& record, const Score& score) {
   Chart values;
   values.title = record.name;
-  values.y.label = "displacement [mm]";
+  values.y.label = model::in_unit("displacement [mm]", record.output_unit);
   values.height = 260;
   Series measured = line("measured", record.time_s, record.reading_mm, Colour::measured);
   measured.width = 2.2;
   values.series = {measured, line("model", record.time_s, score.prediction_mm, Colour::model)};
   Chart error;
-  error.y.label = "error [mm]";
+  error.y.label = model::in_unit("error [mm]", record.output_unit);
   error.x.label = "time [s]";
   error.height = 170;
   Series difference = line("", record.time_s, score.error_mm, Colour::error);
@@ -44,7 +44,7 @@ Chart loops(const Record& record, const Score& score) {
   chart.width = 380;
   chart.height = 300;
   chart.x.label = "pressure [kPa]";
-  chart.y.label = "displacement [mm]";
+  chart.y.label = model::in_unit("displacement [mm]", record.output_unit);
   Series measured = line("measured", record.drive_kpa, record.reading_mm, Colour::measured);
   measured.width = 2.2;
   Series model = line("model", record.drive_kpa, score.prediction_mm, Colour::model);
@@ -58,7 +58,7 @@ Chart error_by_pressure(const Record& record, const Score& score) {
   chart.width = 380;
   chart.height = 300;
   chart.x.label = "pressure [kPa]";
-  chart.y.label = "error [mm]";
+  chart.y.label = model::in_unit("error [mm]", record.output_unit);
   Series loading;
   loading.style = Series::Style::points;
   loading.width = 0.7;
@@ -96,6 +96,8 @@ Table score_table(const std::vector<Record>& records, const std::vector<Score>& 
   table.header = {"log",         "driven by",    "samples",
                   "span [mm]",   "RMSE [mm]",    "RMSE [% of span]",
                   "first cycle", "settled [mm]", "largest error [mm]"};
+  for (std::string& title : table.header)
+    if (!scores.empty()) title = model::in_unit(title, scores.front().output_unit);
   table.numeric = {false, false, true, true, true, true, true, true, true};
   for (std::size_t i = 0; i < scores.size(); ++i) {
     const Score& s = scores[i];

@@ -39,7 +39,8 @@ std::string bound_text(const Validation& v) {
 }
 
 std::string start_text(const Record& record, const StartState& start) {
-  const std::string offset = "offset " + significant(start.offset_mm, 3) + " mm";
+  const std::string offset =
+      "offset " + significant(start.offset_mm, 3) + " " + std::string(model::name_of(record.output_unit));
   return is_at_rest(start, record) ? "at rest, " + offset + " estimated"
                                    : "state and " + offset + " estimated (it does not begin at rest)";
 }
@@ -60,8 +61,8 @@ Validation validate_logs(const model::Model& model, const std::vector<Log>& logs
   v.warnings = doubts_among(logs);
   for (std::string& sentence : divergences_of(v.scores)) v.warnings.push_back(std::move(sentence));
   for (std::size_t i = 0; i < v.scores.size(); ++i) {
-    if (std::string doubt =
-            doubt_about_scale(logs[i].name, v.scores[i].prediction_mm, v.records[i].reading_mm);
+    if (std::string doubt = doubt_about_scale(logs[i].name, v.scores[i].prediction_mm,
+                                              v.records[i].reading_mm, logs[i].output_unit);
         !doubt.empty())
       v.warnings.push_back(std::move(doubt));
   }
@@ -82,10 +83,10 @@ std::string verdict_of(const Validation& v) {
   }
   const std::string logs =
       v.scores.size() == 1 ? v.scores.front().name : std::to_string(v.scores.size()) + " logs";
-  const std::string size = v.scores.size() == 1
-                               ? significant(highest, 3) + " mm"
-                               : significant(lowest, 3) + " to " + significant(highest, 3) + " mm";
-  return v.model.name + " predicts " + logs + " with an RMSE of " + size + ", at most " +
+  const std::string size = v.scores.size() == 1 ? significant(highest, 3)
+                                                : significant(lowest, 3) + " to " + significant(highest, 3);
+  return v.model.name + " predicts " + logs + " with an RMSE of " + size + " " +
+         std::string(model::name_of(v.model.output_unit)) + ", at most " +
          significant(largest_percent(v), 2) + " % of a log's span" + bound_text(v) + ".";
 }
 
@@ -119,6 +120,7 @@ std::string validate_json(const Validation& v, const std::vector<Log>& logs) {
       {"schema", 1}, {"software", software_and_version()}, {"verdict", verdict_of(v)}};
   json["call"] = v.call;
   json["model"] = {{"name", v.model.name}, {"hash", model::model_hash(v.model)}};
+  json["output_unit"] = model::name_of(v.model.output_unit);
   json["logs"] = logs_json(logs);
   add_scores(json, v.scores);
   if (v.at_most_percent) {

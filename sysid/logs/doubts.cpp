@@ -107,7 +107,9 @@ void doubt_response(const Log& log, std::vector<std::string>& doubts) {
     doubts.push_back(
         "the reading falls when the pressure rises (correlation " + significant(correlation, 3) +
         "): a sensor mounted the other way round? `softgrip import --scale displacement=-X` with "
-        "a negative factor turns it");
+        "a negative factor" +
+        (log.output_unit == model::OutputUnit::deg ? " and --unit displacement=deg turns it"
+                                                   : std::string(" turns it")));
     return;
   }
   const double share = loop_share(drive, log.displacement_mm);
@@ -130,6 +132,8 @@ void doubt_free_motion(const Log& log, std::vector<std::string>& doubts) {
 }
 
 void doubt_spans(const Log& log, std::vector<std::string>& doubts) {
+  using model::OutputUnit;
+  const OutputUnit unit = log.output_unit;
   if (const auto p = extent_of(log.pressure_command_kpa); p && p->width() > 0) {
     const double largest = std::max(-p->lowest, p->highest);
     if (largest < small_pressure_kpa)
@@ -144,12 +148,14 @@ void doubt_spans(const Log& log, std::vector<std::string>& doubts) {
                        " kPa, about an atmosphere: absolute? `softgrip import --zero` subtracts it");
   }
   if (const auto y = extent_of(log.displacement_mm); y && y->width() > 0) {
-    if (y->width() < small_displacement_mm)
-      doubts.push_back("the displacement spans " + significant(y->width()) +
-                       " mm: metres or V in a column taken for mm?");
+    if (y->width() < small_reading(unit))
+      doubts.push_back(model::in_unit("the displacement spans ", unit) + significant(y->width()) +
+                       (unit == OutputUnit::deg ? " deg: radians or V in a column taken for deg?"
+                                                : " mm: metres or V in a column taken for mm?"));
     if (y->width() > large_displacement_mm)
-      doubts.push_back("the displacement spans " + significant(y->width()) +
-                       " mm: micrometres in a column taken for mm?");
+      doubts.push_back(model::in_unit("the displacement spans ", unit) + significant(y->width()) +
+                       (unit == OutputUnit::deg ? " deg: counts or degrees in a column taken for radians?"
+                                                : " mm: micrometres in a column taken for mm?"));
   }
   if (const auto t = extent_of(log.temperature_c); t && t->lowest > 200)
     doubts.emplace_back("the temperature is above 200 C: kelvin?");
@@ -205,7 +211,7 @@ std::vector<std::string> doubts_among(const std::vector<Log>& logs) {
   const double usual = median_of(std::span(clear));
   for (std::size_t i = 0; i < logs.size(); ++i) {
     if (gains[i] <= 0) continue;
-    if (const std::string mistake = mistaken_unit(gains[i] / usual); !mistake.empty())
+    if (const std::string mistake = mistaken_unit(gains[i] / usual, logs[i].output_unit); !mistake.empty())
       doubts.push_back(logs[i].name + ": the finger moves " + significant(gains[i] / usual, 3) +
                        " times as far per kPa as in the other logs: " + mistake + "?");
   }
@@ -213,11 +219,11 @@ std::vector<std::string> doubts_among(const std::vector<Log>& logs) {
 }
 
 std::string doubt_about_scale(const std::string& log_name, const std::vector<double>& prediction_mm,
-                              const std::vector<double>& reading_mm) {
+                              const std::vector<double>& reading_mm, model::OutputUnit unit) {
   const PairSums sums = sums_of(prediction_mm, reading_mm);
   if (sums.correlation() < clear_correlation) return {};
   const double factor = sums.slope();
-  const std::string mistake = mistaken_unit(factor);
+  const std::string mistake = mistaken_unit(factor, unit);
   if (mistake.empty()) return {};
   return log_name + ": the readings are " + significant(factor, 3) +
          " times what the model says: " + mistake + "?";

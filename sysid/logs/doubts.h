@@ -23,6 +23,6 @@ namespace softgrip::sysid {
 /// no reading.
 [[nodiscard]] std::string doubt_about_scale(const std::string& log_name,
                                             const std::vector<double>& prediction_mm,
-                                            const std::vector<double>& reading_mm);
+                                            const std::vector<double>& reading_mm, model::OutputUnit unit);
 
 }  // namespace softgrip::sysid

@@ -4,12 +4,16 @@
 #include <optional>
 #include <vector>
 
+#include "model/output_unit.h"
+
 namespace softgrip::sysid {
 
-/// Below these a column is probably in another unit than kPa or mm: a soft finger moves at 20 to 60 kPa by
-/// some 10 mm.
+/// Below these a column is probably in another unit than kPa, mm or deg: a soft finger moves at 20 to 60 kPa
+/// by some 10 mm, and bends by more than 3 deg, which is less than any finger in radians.
 inline constexpr double small_pressure_kpa = 2;
-inline constexpr double small_displacement_mm = 0.1;
+[[nodiscard]] constexpr double small_reading(model::OutputUnit unit) {
+  return unit == model::OutputUnit::deg ? 3 : 0.1;
+}
 
 struct ColumnExtent {
   double lowest = 0;

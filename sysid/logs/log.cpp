@@ -30,6 +30,7 @@ Campaign read_campaign(const std::vector<std::string>& paths, document::Problems
                        const LogOptions& options) {
   namespace fs = std::filesystem;
   Campaign campaign;
+  LogOptions agreed = options;
   for (const std::string& given : paths) {
     std::error_code error;
     const bool folder = fs::is_directory(given, error);
@@ -40,8 +41,12 @@ Campaign read_campaign(const std::vector<std::string>& paths, document::Problems
       campaign.unreadable = true;
       continue;
     }
-    auto log = parse_log(path, *text, problems, options);
+    auto log = parse_log(path, *text, problems, agreed);
     if (!log) continue;
+    if (!agreed.output_unit && options.need_readings) {
+      agreed.output_unit = log->output_unit;
+      agreed.output_unit_of = path;
+    }
     if (folder) {
       const fs::path run = fs::path(given).lexically_normal();
       log->name = (run.has_filename() ? run.filename() : run.parent_path().filename()).string() +
@@ -59,7 +64,8 @@ std::string format_log(const Log& log) {
   for (const KnownColumn& known : known_columns) {
     if (!(log.*known.values).empty() || known.required) present.push_back(&known);
   }
-  for (const KnownColumn* known : present) text += (text.empty() ? "" : ",") + std::string(known->name);
+  for (const KnownColumn* known : present)
+    text += (text.empty() ? "" : ",") + std::string(column_name(*known, log));
   if (!log.channel.empty()) text += ',' + std::string(channel_column);
   for (const OtherColumn& other : log.others) text += ',' + as_cell(other.name);
   text += '\n';
@@ -128,6 +134,7 @@ Log slice(const Log& log, std::size_t first, std::size_t last) {
   part.name = log.name;
   part.channel = log.channel;
   part.sha256 = log.sha256;
+  part.output_unit = log.output_unit;
   for (const KnownColumn& known : known_columns) part.*known.values = cut(log.*known.values);
   for (const OtherColumn& other : log.others) part.others.push_back({other.name, cut(other.cells)});
   for (double& time : part.time_s) time -= log.time_s[first];

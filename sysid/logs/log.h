@@ -3,8 +3,10 @@
 //
 //   time_s,pressure_command_kpa,displacement_mm[,pressure_kpa][,temperature_c][,supply_kpa][,channel][,...]
 //
+// In the place of displacement_mm there may be angle_deg or angle_rad, a bending angle. It is read into
+// displacement_mm in deg, and output_unit says so.
 // First line the header, comma, decimal point, times from 0 and increasing. Other columns are kept as text.
-// An empty cell in displacement_mm or pressure_kpa says that there was no reading: the sample is simulated
+// An empty cell in the readings or in pressure_kpa says that there was no reading: the sample is simulated
 // but not compared. Sampling may be irregular; nothing here resamples.
 
 #include <cstddef>
@@ -14,6 +16,7 @@
 #include <vector>
 
 #include "document/problem.h"
+#include "model/output_unit.h"
 
 namespace softgrip::sysid {
 
@@ -51,10 +54,11 @@ struct Log {
   std::string sha256;   ///< of the file's bytes, lower-case hexadecimal; "" of a log made in memory
   std::vector<double> time_s;
   std::vector<double> pressure_command_kpa;
-  std::vector<double> displacement_mm;  ///< NaN: no reading
+  std::vector<double> displacement_mm;  ///< in output_unit; NaN: no reading
   std::vector<double> pressure_kpa;     ///< measured; NaN: no reading; empty: no such column
   std::vector<double> temperature_c;    ///< empty: no such column
   std::vector<double> supply_kpa;       ///< empty: no such column
+  model::OutputUnit output_unit = model::OutputUnit::mm;  ///< of the readings
   std::vector<OtherColumn> others;
   std::vector<LogNote> notes;
 
@@ -69,6 +73,10 @@ struct LogOptions {
   bool require_motion = true;
   /// False: only the command is used. Two samples, any distance between them and no displacement_mm will do.
   bool need_readings = true;
+  /// Refuse readings in another unit; `output_unit_of` says what is in this one ("the model given.yaml").
+  /// Without it, all logs of a campaign must agree with the first.
+  std::optional<model::OutputUnit> output_unit;
+  std::string output_unit_of;
   /// Refuse a log of which a larger share of the readings clips (1: never; less is only noted).
   double clipped_share_refused = 0.2;
 };

@@ -72,6 +72,10 @@ class Check {
     log_.notes.push_back({sample < source_.line.size() ? source_.line[sample] : 0, std::move(text)});
   }
 
+  [[nodiscard]] std::string in_unit(std::string_view text) const {
+    return model::in_unit(text, log_.output_unit);
+  }
+
   bool time_increases() {
     int found = 0;
     for (std::size_t i = 1; i < log_.size(); ++i) {
@@ -158,12 +162,14 @@ class Check {
     }
     if (std::abs(log_.displacement_mm[y]) > largest_displacement_mm) {
       refuse(y, source_.displacement_column,
-             "a displacement of " + significant(log_.displacement_mm[y]) + " mm",
+             in_unit("a displacement of ") + significant(log_.displacement_mm[y]) + in_unit(" mm"),
              is_code(log_.displacement_mm[y])
                  ? "a code of the sensor where it read nothing? softgrip import --missing leaves it out"
-                 : "is the column in micrometres? Divide by 1000");
-    } else if (const double span = span_mm(log_); span > 0 && span < small_displacement_mm) {
-      note(y, "the displacement spans " + significant(span) + " mm: is the column in metres?");
+             : log_.output_unit == model::OutputUnit::deg ? "is the column in degrees?"
+                                                          : "is the column in micrometres? Divide by 1000");
+    } else if (const double span = span_mm(log_); span > 0 && span < small_reading(log_.output_unit)) {
+      note(y, in_unit("the displacement spans ") + significant(span) + in_unit(" mm: is the column in ") +
+                  (log_.output_unit == model::OutputUnit::deg ? "radians?" : "metres?"));
     }
   }
 
@@ -192,7 +198,7 @@ class Check {
       return;
     }
     if (span_mm(log_) <= 0) {
-      refuse(0, source_.displacement_column, "the displacement never changes while the command does",
+      refuse(0, source_.displacement_column, in_unit("the displacement never changes while the command does"),
              "is the sensor connected?");
     }
   }
@@ -222,7 +228,7 @@ class Check {
     if (clipped == 0) return;
     const double share = static_cast<double>(clipped) / static_cast<double>(log_.size());
     const std::string message = percent(share) + " of the readings stay on the extreme value " +
-                                significant(value, 6) + " mm while the command moves";
+                                significant(value, 6) + in_unit(" mm while the command moves");
     if (share > share_refused) {
       refuse(first, source_.displacement_column, message,
              "the sensor clips: move it, or cut these stretches out of the readings");

@@ -1,8 +1,16 @@
 #include "sysid/logs/log_columns.h"
 
+#include <algorithm>
 #include <map>
 
 namespace softgrip::sysid {
+
+std::string_view column_name(const KnownColumn& known, const Log& log) {
+  if (known.values != &Log::displacement_mm) return known.name;
+  return std::find_if(reading_columns.begin(), reading_columns.end(),
+                      [&](const ReadingColumn& column) { return column.unit == log.output_unit; })
+      ->name;
+}
 
 std::string conversion(std::string_view unit) {
   static const std::map<std::string_view, std::string_view> conversions{

@@ -33,6 +33,22 @@ inline constexpr std::size_t column_command = 1;
 inline constexpr std::size_t column_displacement = 2;
 inline constexpr std::string_view channel_column = "channel";
 
+/// A column that holds the readings of the finger.
+struct ReadingColumn {
+  std::string_view name;
+  model::OutputUnit unit;
+  double factor;  ///< from the column to the unit
+};
+/// A log has one of them. Of several the first is used; the others are kept as text.
+inline constexpr std::array<ReadingColumn, 3> reading_columns{{
+    {known_columns[column_displacement].name, model::OutputUnit::mm, 1},
+    {"angle_deg", model::OutputUnit::deg, 1},
+    {"angle_rad", model::OutputUnit::deg, model::deg_per_rad},
+}};
+
+/// How a log names a column: "angle_deg" of the readings of a log in deg.
+[[nodiscard]] std::string_view column_name(const KnownColumn& known, const Log& log);
+
 /// How to come from a unit that people write to the one of the contract: ", divide by 1000"; empty: unknown.
 [[nodiscard]] std::string conversion(std::string_view unit);
 

@@ -1,6 +1,7 @@
 #include "sysid/logs/log_header.h"
 
 #include <algorithm>
+#include <optional>
 
 #include "base/numbers.h"
 #include "sysid/logs/csv_text.h"
@@ -49,6 +50,26 @@ bool header_is_plausible(std::string_view line, const std::vector<Cell>& cells, 
   return true;
 }
 
+/// The first of the columns that may hold the readings.
+std::optional<ReadingColumn> reading_column(const std::vector<Cell>& cells) {
+  for (const ReadingColumn& column : reading_columns) {
+    if (std::any_of(cells.begin(), cells.end(),
+                    [&](const Cell& cell) { return cell_text(cell.text) == column.name; }))
+      return column;
+  }
+  return std::nullopt;
+}
+
+/// The hint for a log without readings: a column with a similar name.
+std::string hint_of_missing(std::string_view column, const std::vector<std::string>& names) {
+  const auto angle = std::find_if(names.begin(), names.end(),
+                                  [](const std::string& name) { return name.starts_with("angle"); });
+  if (column == reading_columns.front().name && angle != names.end())
+    return "is it '" + *angle + "'? A bending angle is 'angle_deg' or 'angle_rad'";
+  const std::string near = document::nearest(column, names);
+  return near.empty() ? std::string() : "is it '" + near + "'?";
+}
+
 }  // namespace
 
 LogHeader read_header(std::string_view line, const LogOptions& options, LogReporter& report) {
@@ -61,10 +82,12 @@ LogHeader read_header(std::string_view line, const LogOptions& options, LogRepor
     return header;
   }
   if (!header_is_plausible(line, cells, report)) return header;
+  if (const auto reading = reading_column(cells)) header.reading = *reading;
   for (std::size_t i = 0; i < cells.size(); ++i) {
     const std::string name = cell_text(cells[i].text);
-    const auto known = std::find_if(known_columns.begin(), known_columns.end(),
-                                    [&](const KnownColumn& k) { return k.name == name; });
+    const auto known = std::find_if(known_columns.begin(), known_columns.end(), [&](const KnownColumn& k) {
+      return (k.values == &Log::displacement_mm ? header.reading.name : k.name) == name;
+    });
     const bool repeated =
         !name.empty() && std::find(header.names.begin(), header.names.end(), name) != header.names.end();
     if (repeated) {
@@ -80,12 +103,19 @@ LogHeader read_header(std::string_view line, const LogOptions& options, LogRepor
     }
     header.names.push_back(name);
   }
+  if (const int k = header.index[column_displacement];
+      k >= 0 && options.output_unit && *options.output_unit != header.reading.unit) {
+    report.add("unit", {1, header.column[column_displacement]}, line,
+               "column '" + std::string(header.reading.name) + "' gives readings in " +
+                   std::string(name_of(header.reading.unit)) + ", and " + options.output_unit_of + " is in " +
+                   std::string(name_of(*options.output_unit)),
+               "a model and the logs that it is used with have one unit");
+  }
   for (std::size_t k = 0; k < known_columns.size(); ++k) {
     if (!known_columns[k].required || header.index[k] >= 0) continue;
     if (k == column_displacement && !options.need_readings) continue;
-    const std::string near = document::nearest(known_columns[k].name, header.names);
     report.add("missing", {1, 1}, line, "column '" + std::string(known_columns[k].name) + "' is missing",
-               near.empty() ? std::string() : "is it '" + near + "'?");
+               hint_of_missing(known_columns[k].name, header.names));
   }
   return header;
 }

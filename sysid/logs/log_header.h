@@ -18,6 +18,7 @@ struct LogHeader {
   std::array<int, known_columns.size()> index{};  ///< -1: absent
   std::array<int, known_columns.size()> column{};
   int channel = -1;
+  ReadingColumn reading = reading_columns.front();  ///< which of them holds the readings
 };
 
 /// What is wrong with it is reported; then the header is not to be used.

@@ -19,11 +19,11 @@ namespace {
 constexpr double no_reading = std::numeric_limits<double>::quiet_NaN();
 
 /// One number of a row, reported where it is none.
-double read_cell(const KnownColumn& known, const Cell& cell, int line_number, std::string_view line,
-                 LogReporter& report) {
+double read_cell(const KnownColumn& known, std::string_view name, const Cell& cell, int line_number,
+                 std::string_view line, LogReporter& report) {
   const std::string_view text = unquoted(cell.text);
   const document::Location at{line_number, cell.column};
-  const std::string column = "'" + std::string(known.name) + "'";
+  const std::string column = "'" + std::string(name) + "'";
   if (text.empty()) {
     if (known.may_be_empty) return no_reading;
     report.add("empty cell", at, line, "no number in column " + column);
@@ -84,8 +84,10 @@ class RowReader {
     for (std::size_t k = 0; k < known_columns.size(); ++k) {
       if (header_.index[k] < 0) continue;
       const Cell& cell = cells_[static_cast<std::size_t>(header_.index[k])];
-      (log_.*known_columns[k].values)
-          .push_back(read_cell(known_columns[k], cell, line_number, line, report_));
+      const bool reading = k == column_displacement;
+      const double value = read_cell(known_columns[k], reading ? header_.reading.name : known_columns[k].name,
+                                     cell, line_number, line, report_);
+      (log_.*known_columns[k].values).push_back(reading ? in_output_unit(value) : value);
     }
     for (std::size_t i = 0; i < other_index_.size(); ++i) {
       log_.others[i].cells.push_back(cell_text(cells_[other_index_[i]].text));
@@ -97,6 +99,12 @@ class RowReader {
   [[nodiscard]] const std::vector<std::string>& channels() const { return channels_; }
 
  private:
+  /// A value whose conversion overflows is not converted: its size is then refused.
+  [[nodiscard]] double in_output_unit(double value) const {
+    const double converted = header_.reading.factor * value;
+    return std::isfinite(converted) ? converted : value;
+  }
+
   bool belongs() {
     if (header_.channel < 0) return true;
     const std::string channel = cell_text(cells_[static_cast<std::size_t>(header_.channel)].text);
@@ -180,6 +188,7 @@ std::optional<Log> parse_log(const std::string& file, std::string_view text, doc
                    header.column[column_time],
                    header.column[column_command],
                    header.column[column_displacement]};
+  log.output_unit = header.reading.unit;
   RowReader rows(header, options, log, source, report);
   for (std::size_t i = 1; i < lines.size(); ++i) {
     rows.read(lines[i], static_cast<int>(i) + 1, i + 1 == lines.size());

@@ -31,6 +31,7 @@ void fill_missing(std::vector<double>& values) {
 Record make_record(const Log& log, const RecordOptions& options, double campaign_time_s) {
   Record record;
   record.name = log.name;
+  record.output_unit = log.output_unit;
   record.drive = options.drive;
   record.time_s = log.time_s;
   record.drive_kpa = options.drive == Drive::measured ? log.pressure_kpa : log.pressure_command_kpa;

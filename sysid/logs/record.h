@@ -57,7 +57,8 @@ struct StartState {
 /// One log, prepared. All vectors have the same length, but for temperature and supply, which may be empty.
 struct Record {
   std::string name;
-  Drive drive = Drive::command;  ///< which column drive_kpa is
+  model::OutputUnit output_unit = model::OutputUnit::mm;  ///< of readings and of all members named _mm
+  Drive drive = Drive::command;                           ///< which column drive_kpa is
   std::vector<double> time_s;
   std::vector<double> duration_s;  ///< of the step that ends at a sample; the first is 0
   std::vector<double> drive_kpa;

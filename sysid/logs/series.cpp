@@ -21,6 +21,7 @@ LogSeries series_of(const Log& log, const Record& record, bool all_held_out) {
   // Of an averaged record the log's own samples are no longer there.
   const bool own_samples = record.size() == log.size();
   series.name = log.name;
+  series.output_unit = record.output_unit;
   series.time_s = own_samples ? log.time_s : record.time_s;
   series.drive_kpa = record.drive_kpa;
   series.measured_mm = own_samples ? log.displacement_mm : record.reading_mm;
@@ -33,10 +34,11 @@ LogSeries series_of(const Log& log, const Record& record, bool all_held_out) {
 }
 
 std::string series_csv(const LogSeries& series) {
-  std::string text = "time_s,drive_kpa,measured_mm";
+  const std::string unit = "_" + std::string(model::name_of(series.output_unit));
+  std::string text = "time_s,drive_kpa,measured" + unit;
   for (const LogSeries::Predicted& predicted : series.predicted) {
-    text += ',' + as_cell("predicted_" + predicted.model + "_mm");
-    text += ',' + as_cell("residual_" + predicted.model + "_mm");
+    text += ',' + as_cell("predicted_" + predicted.model + unit);
+    text += ',' + as_cell("residual_" + predicted.model + unit);
   }
   text += ",held_out\n";
   text.reserve(series.time_s.size() * (60 + 40 * series.predicted.size()));

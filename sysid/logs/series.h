@@ -3,6 +3,8 @@
 //
 //   time_s,drive_kpa,measured_mm,predicted_MODEL_mm,residual_MODEL_mm[,...],held_out
 //
+// Of a log in deg, the names end with _deg in the place of _mm.
+//
 // An empty cell says that there is no reading, or no prediction. held_out is 1 where no model was fitted to
 // the reading.
 
@@ -23,6 +25,7 @@ struct LogSeries {
   };
 
   std::string name;  ///< of the log
+  model::OutputUnit output_unit = model::OutputUnit::mm;
   std::vector<double> time_s;
   std::vector<double> drive_kpa;    ///< what drove the models: smoothed where it was measured
   std::vector<double> measured_mm;  ///< NaN: no reading

@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "base/numbers.h"
 
@@ -37,6 +38,15 @@ constexpr std::array mistakes{
                "metres in the displacement column taken for mm, or Pa in a pressure column taken "
                "for kPa"}};
 
+constexpr std::array mistakes_of_angles{
+    UnitFactor{model::deg_per_rad, "degrees in the angle column taken for radians"},
+    UnitFactor{1 / model::deg_per_rad, "radians in the angle column taken for degrees"},
+    UnitFactor{6.894757, "psi in a pressure column taken for kPa"},
+    UnitFactor{1 / 6.894757, "kPa in a pressure column taken for psi"},
+    UnitFactor{1000, "MPa in a pressure column taken for kPa"},
+    UnitFactor{1 / 10.0, "mbar in a pressure column taken for kPa"},
+    UnitFactor{1 / 1000.0, "Pa in a pressure column taken for kPa"}};
+
 double apart(double factor, double of) {
   return std::abs(std::log(std::abs(factor) / of));
 }
@@ -51,11 +61,14 @@ std::string pressure_units_apart(double factor) {
   return {};
 }
 
-std::string mistaken_unit(double factor) {
+std::string mistaken_unit(double factor, model::OutputUnit unit) {
   // A finger is not quite proportional, and the model may be another finger's.
   constexpr double close = 0.25;
   const UnitFactor* nearest = nullptr;
-  for (const UnitFactor& mistake : mistakes) {
+  const std::span<const UnitFactor> known = unit == model::OutputUnit::deg
+                                                ? std::span<const UnitFactor>(mistakes_of_angles)
+                                                : std::span<const UnitFactor>(mistakes);
+  for (const UnitFactor& mistake : known) {
     if (nearest == nullptr || apart(factor, mistake.factor) < apart(factor, nearest->factor))
       nearest = &mistake;
   }

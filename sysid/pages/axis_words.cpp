@@ -6,13 +6,18 @@
 namespace softgrip::sysid {
 
 std::string in_words(std::string_view label) {
-  constexpr std::array<std::pair<std::string_view, std::string_view>, 13> units{{
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 18> units{{
       {"s", "seconds"},
       {"mm", "millimetres"},
       {"kPa", "kilopascals"},
       {"kPa/s", "kilopascals per second"},
       {"mm/s", "millimetres per second"},
       {"mm/kPa", "millimetres per kilopascal"},
+      {"deg", "degrees"},
+      {"deg/s", "degrees per second"},
+      {"deg/kPa", "degrees per kilopascal"},
+      {"deg\xc2\xb2", "square degrees"},
+      {"deg\xc2\xb2/Hz", "square degrees per hertz"},
       {"Hz", "hertz"},
       {"mm\xc2\xb2", "square millimetres"},
       {"mm\xc2\xb2/Hz", "square millimetres per hertz"},

@@ -121,6 +121,7 @@ class Builder {
 FitPoint point_of(const FittedStructure& fit, const std::vector<Record>& records, Drive drive) {
   const ColumnLayout layout(fit.structure, fit.grid, records);
   FitPoint point{Builder(fit, layout).model(drive), {}};
+  if (!records.empty()) point.model.output_unit = records.front().output_unit;
   for (std::size_t r = 0; r < records.size(); ++r) {
     StartState start;
     if (layout.offset(r) >= 0) start.offset_mm = fit.weights(layout.offset(r));

@@ -88,6 +88,9 @@ std::string page() {
          " except those with a default (may be left out). A model file with a value outside the allowed "
          "range is"
          " refused.\n\n"
+         "The output of a model whose file has `output_unit: deg` is a bending angle. mm then means deg in "
+         "all "
+         "keys and units below. Without this key, the unit is mm. A rig accepts only models in mm.\n\n"
          "This page is written by `model_blocks_page --write` from the declarations in `model/blocks/`.\n";
   Station station = Station::valve;
   bool first = true;

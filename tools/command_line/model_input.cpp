@@ -9,4 +9,8 @@ tl::expected<model::Model, ExitCode> read_model(const std::string& path) {
   return read_input(path, model::load_model);
 }
 
+tl::expected<model::Model, ExitCode> read_rig_model(const std::string& path) {
+  return read_input(path, model::load_rig_model);
+}
+
 }  // namespace softgrip::tools

@@ -12,5 +12,7 @@ namespace softgrip::tools {
 
 /// Reads a model file; where it is refused, prints all problems and returns the exit code.
 [[nodiscard]] tl::expected<model::Model, ExitCode> read_model(const std::string& path);
+/// Reads a model file for a rig: another output unit than mm is refused.
+[[nodiscard]] tl::expected<model::Model, ExitCode> read_rig_model(const std::string& path);
 
 }  // namespace softgrip::tools

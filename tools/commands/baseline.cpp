@@ -60,7 +60,7 @@ struct Runs {
 
 tl::expected<model::Model, ExitCode> model_of(const BaselineOptions& options,
                                               const std::vector<sysid::Log>& logs) {
-  if (!options.model.empty()) return read_model(options.model);
+  if (!options.model.empty()) return read_rig_model(options.model);
   ProgressLine line;
   sysid::IdentifyOptions fit;
   fit.record = options.logs.record_options();
@@ -120,11 +120,11 @@ std::string text_of_check(const Json& check) {
 
 tl::expected<Runs, ExitCode> recorded(const BaselineOptions& options) {
   Runs runs;
-  auto healthy = read_logs(options.data, options.logs);
+  auto healthy = read_logs(options.data, options.logs, unit_of_rigs());
   if (!healthy) return tl::unexpected(healthy.error());
   runs.healthy = std::move(*healthy);
   if (!options.check.empty()) {
-    auto again = read_logs(options.check, options.logs);
+    auto again = read_logs(options.check, options.logs, unit_of_rigs());
     if (!again) return tl::unexpected(again.error());
     runs.again = std::move(*again);
   }
@@ -220,7 +220,7 @@ ExitCode checked_again(BaselineOptions options) {
   options.check = baseline->second;
   const auto runs = recorded(options);
   if (!runs) return runs.error();
-  const auto model = read_model(baseline->model);
+  const auto model = read_rig_model(baseline->model);
   if (!model) return model.error();
   bool holds = false;
   const auto check = checked(options, *runs, *model, holds);

@@ -95,10 +95,14 @@ void print_cause(const sysid::NamedCause& named) {
 
 void print_summary(const sysid::Diagnosis& d, const std::string& out) {
   std::printf("%s\n\n", sysid::verdict_sentence(d).c_str());
-  std::printf("  %-34s %s mm\n", "noise of the readings", significant(d.noise_mm, 3).c_str());
-  std::printf("  %-34s %s mm\n", "RMSE of the model as given", significant(d.as_given_rmse_mm, 4).c_str());
-  std::printf("  %-34s %s mm\n", "recalibrated, held out", significant(d.recalibrated_rmse_mm, 4).c_str());
-  std::printf("  %-34s %s mm\n", "extended, held out", significant(d.extended_rmse_mm, 4).c_str());
+  const auto print = [&](const char* what, double value, int digits) {
+    std::printf("  %-34s %s %s\n", what, significant(value, digits).c_str(),
+                std::string(model::name_of(d.extended_model.output_unit)).c_str());
+  };
+  print("noise of the readings", d.noise_mm, 3);
+  print("RMSE of the model as given", d.as_given_rmse_mm, 4);
+  print("recalibrated, held out", d.recalibrated_rmse_mm, 4);
+  print("extended, held out", d.extended_rmse_mm, 4);
   std::printf("  %-34s %s %%\n\n", "structure left", fixed(d.unexplained_percent, 1).c_str());
   if (d.evidence && d.structure_recalibrated.present)
     std::printf("%s\n", sysid::dependence_sentence(d.evidence->recalibrated).c_str());
@@ -152,7 +156,8 @@ std::optional<sysid::ClosedLoopCurves> closed_loop_curves(const Consequences& co
   if (!consequences.closed_loop) return std::nullopt;
   const ClosedLoopGain& gain = *consequences.closed_loop;
   sysid::ClosedLoopCurves curves{
-      gain.reference(), gain.pid_alone.trace.time_s, gain.pid_alone.trace.reference_mm, {}, gain.notes()};
+      gain.reference(), gain.pid_alone.trace.time_s, gain.pid_alone.trace.reference_mm, {}, gain.notes(),
+      gain.output_unit};
   for (const auto& [name, scheme] :
        {std::pair<const char*, const ClosedLoopScheme*>{"PID alone", &gain.pid_alone},
         {"recalibrated model", &gain.recalibrated},
@@ -166,7 +171,7 @@ std::optional<sysid::ClosedLoopCurves> closed_loop_curves(const Consequences& co
 /// What changed between the healthy logs and the others.
 ExitCode changed(const DiagnoseOptions& options, const model::Model& model,
                  const std::vector<sysid::Log>& logs, const std::vector<std::string>& call) {
-  const auto healthy = read_logs(options.healthy, options.logs);
+  const auto healthy = read_logs(options.healthy, options.logs, unit_of(model));
   if (!healthy) return healthy.error();
   ChangeQuestion question{*healthy, logs,         model,          {}, options.out, options.figures,
                           call,     options.json, options.explain};
@@ -195,11 +200,15 @@ ExitCode run(DiagnoseOptions options, const std::vector<std::string>& call) {
   if (const auto code = refuse_own_inputs(options)) return *code;
   const auto model = read_model(options.model);
   if (!model) return model.error();
-  const auto logs = read_logs(options.data, options.logs);
+  const auto logs = read_logs(options.data, options.logs, unit_of(*model));
   if (!logs) return logs.error();
   if (!options.healthy.empty()) return changed(options, *model, *logs, call);
   options.diagnosis.record = options.logs.record_options();
   if (!options.gauge.empty()) {
+    if (model->output_unit != model::OutputUnit::mm)
+      return fail(ExitCode::input_refused,
+                  "--gauge: a gauge file is in mm, and the readings of these logs are in " +
+                      std::string(name_of(model->output_unit)));
     auto gauge = read_gauge(options.gauge);
     if (!gauge) return gauge.error();
     options.diagnosis.gauge = std::move(*gauge);

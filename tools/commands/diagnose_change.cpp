@@ -26,7 +26,7 @@ nlohmann::ordered_json sources_of(const std::vector<sysid::Log>& logs) {
 void print_cause(const sysid::ChangeCause& cause) {
   std::printf("  %-26s %s, 95 %%: %s (%s %s at full pressure)\n", cause.id.c_str(), size_text(cause).c_str(),
               interval_text(cause).c_str(), significant(cause.full_pressure_mm, 3).c_str(),
-              unit_of(cause.judged));
+              unit_of(cause.judged, cause.output_unit).c_str());
   for (const std::string& rival : cause.rivals) std::printf("      %s explains as much\n", rival.c_str());
   for (const std::string_view step : sysid::next_steps(cause.id))
     std::printf("      - %s\n", std::string(step).c_str());
@@ -37,7 +37,7 @@ void print_explanation(const sysid::JudgedChange& judged) {
               judged.healthy_runs, judged.healthy_runs == 1 ? "" : "s");
   std::printf(
       "  error of healthy runs that were left out %s %s; another healthy run may have %s; later logs %s\n",
-      significant(judged.healthy_mm, 3).c_str(), unit_of(judged.judged),
+      significant(judged.healthy_mm, 3).c_str(), unit_of(judged.judged, judged.output_unit).c_str(),
       significant(judged.allowed_mm, 3).c_str(), significant(judged.later_mm, 3).c_str());
   std::printf("  whitened squared error of the later logs %s (1: as in healthy runs)\n",
               significant(judged.misfit_before, 3).c_str());
@@ -54,7 +54,8 @@ void print_summary(const sysid::ChangeDiagnosis& d, const std::string& out) {
     std::printf("  %-12s noise %s, healthy base leaves %s, of the later logs %s, with the causes %s %s\n",
                 name_of(judged.judged), significant(judged.noise_mm, 2).c_str(),
                 significant(judged.healthy_mm, 3).c_str(), significant(judged.later_mm, 3).c_str(),
-                significant(judged.explained_mm, 3).c_str(), unit_of(judged.judged));
+                significant(judged.explained_mm, 3).c_str(),
+                unit_of(judged.judged, judged.output_unit).c_str());
   }
   for (const std::string& warning : d.warnings) std::printf("warning: %s\n", warning.c_str());
   std::printf("%s s; report: %s\n", significant(d.wall_s, 3).c_str(),

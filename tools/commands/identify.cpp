@@ -49,11 +49,11 @@ struct IdentifyOptions {
   bool json = false;
 };
 
-sysid::ShowProgress progress_on(ProgressLine& line) {
-  return [show = line.show()](const sysid::Progress& progress) {
+sysid::ShowProgress progress_on(ProgressLine& line, model::OutputUnit output_unit) {
+  return [show = line.show(), unit = std::string(name_of(output_unit))](const sysid::Progress& progress) {
     if (!progress.stage.empty()) return show(progress.stage);
     show("start " + std::to_string(progress.done) + " of " + std::to_string(progress.starts) +
-         ", best RMSE " + significant(progress.best_rmse_mm, 4) + " mm");
+         ", best RMSE " + significant(progress.best_rmse_mm, 4) + " " + unit);
   };
 }
 
@@ -74,21 +74,15 @@ tl::expected<sysid::Identification, std::string> identified(const std::vector<sy
                                                             const IdentifyOptions& options) {
   ProgressLine line;
   sysid::IdentifyOptions fit = options.fit;
-  fit.progress = progress_on(line);
+  fit.progress = progress_on(line, logs.front().output_unit);
   if (const auto question = question_of(options)) return sysid::identify_structure(logs, *question, fit);
   return sysid::identify(logs, start, fit);
 }
 
-/// The model to start from: the given file's, or the base structure.
-tl::expected<model::Model, ExitCode> start_model(const IdentifyOptions& options,
-                                                 const std::vector<sysid::Log>& logs) {
-  if (options.start.empty()) return sysid::base_model(logs, options.branches);
-  return read_model(options.start);
-}
-
 std::string source_of(const std::vector<sysid::Log>& logs, double rmse_mm, const model::Model& start) {
   return "identified by " + sysid::software_and_version() + " from " + with_commas(logs, &sysid::Log::name) +
-         " (RMSE " + significant(rmse_mm, 3) + " mm), starting from " + start.name;
+         " (RMSE " + significant(rmse_mm, 3) + " " + std::string(name_of(logs.front().output_unit)) +
+         "), starting from " + start.name;
 }
 
 void append(std::vector<std::string>& list, std::vector<std::string> more) {
@@ -130,21 +124,24 @@ void print_scores(const char* title, const std::vector<sysid::Score>& scores) {
   if (scores.empty()) return;
   std::printf("%s\n", title);
   for (const sysid::Score& s : scores) {
-    std::printf("  %-24s RMSE %8s mm  %6s %% of span  largest %8s mm  driven by the %s\n", s.name.c_str(),
-                significant(s.rmse_mm, 4).c_str(), significant(s.rmse_percent_of_span, 3).c_str(),
-                significant(s.largest_error_mm, 3).c_str(), name_of(s.drive).c_str());
+    const std::string unit(name_of(s.output_unit));
+    std::printf("  %-24s RMSE %8s %s  %6s %% of span  largest %8s %s  driven by the %s\n", s.name.c_str(),
+                significant(s.rmse_mm, 4).c_str(), unit.c_str(),
+                significant(s.rmse_percent_of_span, 3).c_str(), significant(s.largest_error_mm, 3).c_str(),
+                unit.c_str(), name_of(s.drive).c_str());
   }
 }
 
-void print_structure(const sysid::StructureEvidence& s) {
+void print_structure(const sysid::StructureEvidence& s, model::OutputUnit output_unit) {
+  const std::string unit(name_of(output_unit));
   std::printf("Structures, RMSE of the fit and of %zu held-out interleaved blocks\n", s.blocks);
   for (const sysid::StructureEvidence::Candidate& c : s.candidates) {
-    std::printf("  %c %-86s %8s  %8s mm\n", c.chosen ? '*' : ' ', c.description.c_str(),
-                significant(c.rmse_mm, 4).c_str(), significant(c.heldout_rmse_mm, 4).c_str());
+    std::printf("  %c %-86s %8s  %8s %s\n", c.chosen ? '*' : ' ', c.description.c_str(),
+                significant(c.rmse_mm, 4).c_str(), significant(c.heldout_rmse_mm, 4).c_str(), unit.c_str());
   }
   for (const sysid::StructureEvidence::Ablation& a : s.ablation) {
-    std::printf("    without %-78s %8s  %8s mm\n", a.without.c_str(), significant(a.rmse_mm, 4).c_str(),
-                significant(a.heldout_rmse_mm, 4).c_str());
+    std::printf("    without %-78s %8s  %8s %s\n", a.without.c_str(), significant(a.rmse_mm, 4).c_str(),
+                significant(a.heldout_rmse_mm, 4).c_str(), unit.c_str());
   }
   if (!s.valve) return;
   std::printf(
@@ -163,7 +160,7 @@ void print_summary(const sysid::IdentifyReport& report, const std::string& out) 
   for (const std::string& warning : r.warnings) std::printf("warning: %s\n", warning.c_str());
   std::puts("");
   print_scores("Fit", r.scores);
-  if (r.structure) print_structure(*r.structure);
+  if (r.structure) print_structure(*r.structure, r.model.output_unit);
   print_scores("Held out, continuation", r.held_out);
   print_scores("Validation", report.validation);
   std::puts("Parameters, 95 % intervals");
@@ -185,36 +182,41 @@ ExitCode run(IdentifyOptions options, const std::vector<std::string>& call) {
     return *code;
   LogInput fitted = options.logs;
   fitted.begins_at_measured_pressure = question_of(options).has_value();
-  auto logs = read_logs(options.data, fitted);
+  std::optional<model::Model> given;
+  if (!options.start.empty()) {
+    auto read = read_model(options.start);
+    if (!read) return read.error();
+    given = std::move(*read);
+  }
+  auto logs = read_logs(options.data, fitted, given ? std::optional(unit_of(*given)) : std::nullopt);
   if (!logs) return logs.error();
   std::vector<std::string> wrong_readings = sysid::take_out_wrong_readings(*logs);
   std::vector<sysid::Log> validation_logs;
   if (!options.validate.empty()) {
-    auto read = read_logs(options.validate, options.logs);
+    auto read = read_logs(options.validate, options.logs, unit_of(*logs));
     if (!read) return read.error();
     validation_logs = std::move(*read);
     append(wrong_readings, sysid::take_out_wrong_readings(validation_logs));
   }
-  auto start = start_model(options, *logs);
-  if (!start) return start.error();
+  model::Model start = given ? std::move(*given) : sysid::base_model(*logs, options.branches);
   options.fit.record = options.logs.record_options();
-  auto result = identified(*logs, *start, options);
+  auto result = identified(*logs, start, options);
   if (!result) return fail(ExitCode::input_refused, refusal_of(result.error(), *logs));
   if (question_of(options) && !options.start.empty())
     result->warnings.push_back("--structure searches from the data's scale: nothing of " + options.start +
                                " was used");
   if (options.start.empty()) {
-    start->name =
+    start.name =
         question_of(options) ? "structures, from the data's scale" : "base structure, from the data's scale";
   } else {
-    result->model.name = start->name + "_identified";
+    result->model.name = start.name + "_identified";
   }
   std::vector<std::string> warnings = warnings_of_data(*result, *logs, std::move(wrong_readings));
   append(warnings, std::move(result->warnings));
   result->warnings = std::move(warnings);
-  result->model.source = source_of(*logs, result->rmse_mm, *start);
+  result->model.source = source_of(*logs, result->rmse_mm, start);
 
-  sysid::IdentifyReport report{*result, *logs, *start, options.fit.seed, {}, {}, nullptr, call};
+  sysid::IdentifyReport report{*result, *logs, start, options.fit.seed, {}, {}, nullptr, call};
   if (!validation_logs.empty()) {
     sysid::Validation validation = sysid::validate_logs(result->model, validation_logs, options.fit.record);
     report.validation_records = std::move(validation.records);

@@ -207,9 +207,9 @@ ExitCode run(const InvestigateOptions& options) {
   std::vector<std::string> names = diagnosis_files();
   names.insert(names.end(), {"investigation.json", "report.html", "step_*/*"});
   if (const auto code = refuse_overwriting(files_in(options.out, names), inputs)) return *code;
-  const auto model = read_model(options.model);
+  const auto model = read_rig_model(options.model);
   if (!model) return model.error();
-  const auto logs = read_logs(options.data, options.logs);
+  const auto logs = read_logs(options.data, options.logs, unit_of_rigs());
   if (!logs) return logs.error();
   const CampaignScales scales = scales_of(*logs);
   auto ground = playground_of(options, scales);

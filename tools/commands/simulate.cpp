@@ -67,6 +67,7 @@ tl::expected<sysid::Log, ExitCode> read_input(const SimulateOptions& options) {
 
 void report(const SimulateOptions& options, const model::Model& model, const sysid::Log& log) {
   std::FILE* const stream = report_stream(options.out);
+  const std::string unit(model::name_of(log.output_unit));
   const double span_mm = sysid::span_mm(log);
   const double duration_s = log.time_s.back() - log.time_s.front();
   if (options.json) {
@@ -74,6 +75,7 @@ void report(const SimulateOptions& options, const model::Model& model, const sys
     json["out"] = options.out;
     json["model"] = model.name;
     json["input"] = options.input;
+    json["output_unit"] = unit;
     json["samples"] = log.size();
     json["duration_s"] = duration_s;
     json["span_mm"] = span_mm;
@@ -82,10 +84,10 @@ void report(const SimulateOptions& options, const model::Model& model, const sys
     std::fprintf(stream, "%s\n", json.dump().c_str());
     return;
   }
-  std::fprintf(stream, "%s answers %s: %zu samples, %s s, span %s mm, noise %s mm, seed %s -> %s\n",
+  std::fprintf(stream, "%s answers %s: %zu samples, %s s, span %s %s, noise %s %s, seed %s -> %s\n",
                model.name.c_str(), options.input.c_str(), log.size(), significant(duration_s).c_str(),
-               significant(span_mm).c_str(), significant(options.settings.noise_mm).c_str(),
-               std::to_string(options.settings.seed).c_str(), options.out.c_str());
+               significant(span_mm).c_str(), unit.c_str(), significant(options.settings.noise_mm).c_str(),
+               unit.c_str(), std::to_string(options.settings.seed).c_str(), options.out.c_str());
 }
 
 ExitCode run(const SimulateOptions& options) {
@@ -116,7 +118,7 @@ void add_simulate(CLI::App& program, ExitCode& outcome) {
   command->add_option("--out", options->out, "Log to write ('-': standard output)")->required();
   command
       ->add_option("--noise-mm", options->settings.noise_mm,
-                   "Standard deviation of white noise on the reading")
+                   "Standard deviation of white noise on the reading, in the unit of the model's output")
       ->capture_default_str()
       ->check(number_between(0, 1000));
   command->add_option("--seed", options->settings.seed, "Of all noise")->capture_default_str();

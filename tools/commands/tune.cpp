@@ -119,7 +119,7 @@ std::string json_of(const TuneOptions& options, const control::TuneTask& task, c
 
 ExitCode run(TuneOptions& options) {
   if (const auto code = refuse_overwriting({options.out}, {options.model, options.rig})) return *code;
-  const auto model = read_model(options.model);
+  const auto model = read_rig_model(options.model);
   if (!model) return model.error();
   control::TuneTask& task = options.task;
   task.channel.model = *model;

@@ -39,11 +39,13 @@ struct ValidateOptions {
 };
 
 std::string summary_line(const sysid::Validation& v, const sysid::Score& s) {
+  const std::string unit = " " + std::string(name_of(s.output_unit));
   std::string line = "  " + s.name + std::string(s.name.size() < 24 ? 24 - s.name.size() : 0, ' ') +
-                     " RMSE " + significant(s.rmse_mm) + " mm, " + significant(s.rmse_percent_of_span, 3) +
-                     " % of span, largest error " + significant(s.largest_error_mm, 3) + " mm; ";
-  line += std::isfinite(s.settled_rmse_mm) ? "first cycle " + significant(s.first_cycle_rmse_mm) +
-                                                 " mm, settled " + significant(s.settled_rmse_mm) + " mm"
+                     " RMSE " + significant(s.rmse_mm) + unit + ", " +
+                     significant(s.rmse_percent_of_span, 3) + " % of span, largest error " +
+                     significant(s.largest_error_mm, 3) + unit + "; ";
+  line += std::isfinite(s.settled_rmse_mm) ? "first cycle " + significant(s.first_cycle_rmse_mm) + unit +
+                                                 ", settled " + significant(s.settled_rmse_mm) + unit
                                            : "the command does not repeat";
   line += "; driven by the " + name_of(s.drive);
   if (s.diverges)
@@ -74,7 +76,7 @@ ExitCode run(const ValidateOptions& options, const std::vector<std::string>& cal
     return *code;
   const auto model = read_model(options.model);
   if (!model) return model.error();
-  auto logs = read_logs(options.data, options.logs);
+  auto logs = read_logs(options.data, options.logs, unit_of(*model));
   if (!logs) return logs.error();
   const std::vector<std::string> wrong_readings = sysid::take_out_wrong_readings(*logs);
   sysid::Validation v = sysid::validate_logs(*model, *logs, options.logs.record_options());

@@ -206,7 +206,7 @@ std::string take_model(const std::string& text, RigDraft& draft) {
   const std::string path = path_of(text, "models");
   if (path.empty()) return unknown_name(text, "models");
   document::Problems problems;
-  const auto model = model::load_model(path, problems);
+  const auto model = model::load_rig_model(path, problems);
   if (!model) return problems.format();
   draft.model = *model;
   draft.model_path = path;

@@ -241,26 +241,28 @@ class Generator {
       text_ += "\nstatic void " + next + "(void *chain, segment in) {\n  " + name_ +
                "_state *s = chain;\n  " + step + ";\n}\n";
     }
-    text_ +=
-        "\n/* At rest, as if the command had risen from 0 once; returns the displacement [mm]. */\ndouble " +
-        name_ + "_reset(" + name_ +
-        "_state *s, double command_kpa) {\n  const double input = command_kpa;\n"
-        "  s->command_kpa = command_kpa;\n";
+    text_ += model::in_unit(
+                 "\n/* At rest, as if the command had risen from 0 once; returns the displacement [mm]. "
+                 "*/\ndouble ",
+                 model_.output_unit) +
+             name_ + "_reset(" + name_ +
+             "_state *s, double command_kpa) {\n  const double input = command_kpa;\n"
+             "  s->command_kpa = command_kpa;\n";
     for (const std::size_t i : valve_) {
       std::string reset = numbered(block(i).reset, i);
       if (reset.starts_with("block_")) reset = "s->" + reset;
       text_ += "  (void)(" + reset + ");\n";
     }
     text_ += "  return body_reset(&s->body, input);\n}\n";
-    text_ +=
-        "\n/* One tick of TICK_S on, while the command goes straight to command_kpa; returns the "
-        "displacement [mm]. "
-        "*/\ndouble " +
-        name_ + "_step(" + name_ +
-        "_state *s, double command_kpa) {\n"
-        "  const segment in = straight(TICK_S, s->command_kpa, command_kpa);\n  s->command_kpa = "
-        "command_kpa;\n  " +
-        next + "(s, in);\n  return s->body.output;\n}\n";
+    text_ += model::in_unit(
+                 "\n/* One tick of TICK_S on, while the command goes straight to command_kpa; returns the "
+                 "displacement [mm]. */\ndouble ",
+                 model_.output_unit) +
+             name_ + "_step(" + name_ +
+             "_state *s, double command_kpa) {\n"
+             "  const segment in = straight(TICK_S, s->command_kpa, command_kpa);\n  s->command_kpa = "
+             "command_kpa;\n  " +
+             next + "(s, in);\n  return s->body.output;\n}\n";
   }
 
   void add_inverse() {
@@ -339,7 +341,9 @@ tl::expected<CSource, std::string> c_source(const model::Model& model, double ti
   if (!source.no_inverse.empty()) about += "   It has no inverse: " + source.no_inverse + "\n";
   for (std::size_t at = 2; (at = about.find("*/", at)) != std::string::npos;) about.replace(at, 2, "* ");
   source.text = about +
-                "   Pressures in kPa, displacements in mm, one call per tick. */\n#include <math.h>\n\n" +
+                model::in_unit("   Pressures in kPa, each displacement in mm, one call per tick. */\n",
+                               model.output_unit) +
+                "#include <math.h>\n\n" +
                 Generator(model, tick_s, source.name).run(source.no_inverse.empty());
   return source;
 }

@@ -35,7 +35,7 @@ SignalGroup group_of(const sysid::Log& log) {
   for (const sysid::KnownColumn& known : sysid::known_columns) {
     const std::vector<double>& values = log.*known.values;
     if (&known != &sysid::known_columns[sysid::column_time] && !values.empty())
-      group.signals.push_back({std::string(known.name), values, {}});
+      group.signals.push_back({std::string(sysid::column_name(known, log)), values, {}});
   }
   for (const sysid::OtherColumn& other : log.others) group.signals.push_back(signal_of(other));
   return group;

@@ -55,6 +55,10 @@ void score_one(const std::string& path, const BaseOf& base_of, RunScores& scores
   }
   for (std::size_t c = 0; c < recording->channels.size(); ++c) {
     const std::string& finger = recording->channels[c].channel;
+    if (recording->channels[c].output_unit != model::OutputUnit::mm) {
+      scores.skipped.push_back({name, "its readings are angles, and the health of rigs is in mm"});
+      continue;
+    }
     const FingerBase* const base = base_of(finger);
     if (base == nullptr) {
       scores.skipped.push_back({name, "there is no baseline of `" + finger + "`"});

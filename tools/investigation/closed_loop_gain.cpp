@@ -167,8 +167,8 @@ Json scheme_json(const ClosedLoopScheme& scheme) {
 }  // namespace
 
 std::string ClosedLoopGain::reference() const {
-  return significant(mean_mm, 3) + " ± " + significant(amplitude_mm, 3) + " mm at " +
-         significant(frequency_hz, 3) + " Hz";
+  return significant(mean_mm, 3) + " ± " + significant(amplitude_mm, 3) + " " +
+         std::string(model::name_of(output_unit)) + " at " + significant(frequency_hz, 3) + " Hz";
 }
 
 std::vector<std::string> ClosedLoopGain::notes() const {
@@ -198,6 +198,7 @@ ClosedLoopGain measure_closed_loop(const ClosedLoopQuestion& question) {
   ClosedLoopGain gain;
   gain.mean_mm = rigs.mean();
   gain.amplitude_mm = rigs.amplitude();
+  gain.output_unit = question.extended.output_unit;
   gain.frequency_hz = question.frequency_hz;
   gain.rig_scatter = question.rig_scatter;
   gain.rigs = judged_rigs;

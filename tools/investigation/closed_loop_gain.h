@@ -48,6 +48,7 @@ struct ClosedLoopGain {
   ClosedLoopScheme extended;
   double mean_mm = 13;
   double amplitude_mm = 7;
+  model::OutputUnit output_unit = model::OutputUnit::mm;
   double frequency_hz = 0.2;
   double rig_scatter = 0;
   int rigs = 0;

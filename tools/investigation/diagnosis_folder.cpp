@@ -108,10 +108,11 @@ std::string text_of(const Consequences& consequences, const std::string& folder)
   for (const std::string& sentence : next.advice) text += "to tell more: " + sentence + "\n";
   if (consequences.closed_loop) {
     const ClosedLoopGain& gain = *consequences.closed_loop;
+    const std::string unit = " " + std::string(model::name_of(gain.output_unit));
     text += "in closed loop, " + gain.reference() + ": recalibrated " +
-            significant(gain.recalibrated.rmse_mm, 3) + " mm, extended " +
-            significant(gain.extended.rmse_mm, 3) + " mm, PID alone " +
-            significant(gain.pid_alone.rmse_mm, 3) + " mm\n";
+            significant(gain.recalibrated.rmse_mm, 3) + unit + ", extended " +
+            significant(gain.extended.rmse_mm, 3) + unit + ", PID alone " +
+            significant(gain.pid_alone.rmse_mm, 3) + unit + "\n";
     for (const std::string& note : gain.notes()) text += "  " + note + "\n";
   }
   return text;

@@ -48,6 +48,8 @@ tl::expected<sysid::Log, NotPlayed> log_of(const std::string& path, const std::s
   document::Problems problems;
   sysid::LogOptions options;
   options.channel = channel;
+  options.output_unit = model::OutputUnit::mm;
+  options.output_unit_of = "the investigation";
   sysid::Campaign campaign = sysid::read_campaign({path}, problems, options);
   if (campaign.logs.empty()) return failed("the log of the experiment was refused:\n" + problems.format());
   return std::move(campaign.logs.front());

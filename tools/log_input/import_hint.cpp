@@ -2,15 +2,22 @@
 
 #include <filesystem>
 
+#include "base/files.h"
 #include "base/shell_word.h"
 #include "sysid/import/conversion.h"
 #include "sysid/import/foreign_file.h"
 #include "sysid/import/proposal.h"
+#include "sysid/logs/log.h"
 
 namespace softgrip::tools {
 
 std::string import_hint(const std::string& path) {
   document::Problems problems;
+  // A file that is a log by itself needs no import: another log or the model refused it.
+  if (const auto text = read_file(path, sysid::LogOptions{}.bytes);
+      text && sysid::parse_log(path, *text, problems))
+    return "";
+  problems = {};
   bool unreadable = false;
   const auto table = sysid::read_foreign_file(path, {}, problems, unreadable);
   const std::filesystem::path file(path);

@@ -49,11 +49,28 @@ void add_log_options(CLI::App& command, LogInput& input) {
   command.add_flag("--held", input.held, "The command keeps its value until the next sample");
 }
 
+RequiredUnit unit_of(const model::Model& model) {
+  return {"the model " + model.name, model.output_unit};
+}
+
+RequiredUnit unit_of(const std::vector<sysid::Log>& logs) {
+  return {logs.front().path, logs.front().output_unit};
+}
+
+RequiredUnit unit_of_rigs() {
+  return {"what a rig measures", model::OutputUnit::mm};
+}
+
 tl::expected<std::vector<sysid::Log>, ExitCode> read_logs(const std::vector<std::string>& paths,
-                                                          const LogInput& input) {
+                                                          const LogInput& input,
+                                                          const std::optional<RequiredUnit>& required) {
   document::Problems problems;
   sysid::LogOptions options;
   options.channel = input.channel;
+  if (required) {
+    options.output_unit = required->unit;
+    options.output_unit_of = required->of;
+  }
   sysid::Campaign campaign = sysid::read_campaign(paths, problems, options);
   for (const sysid::Log& log : campaign.logs) {
     if (input.drive == "measured" && log.pressure_kpa.empty()) {

@@ -55,7 +55,7 @@ std::vector<simulation::PlantSettings> make_plants(const Options& options, std::
     if (!options.object.empty()) plants[i].object = simulation::object_named(options.object);
   }
   for (std::size_t i = 0; i < options.models.size(); ++i) {
-    const auto model = model::load_model(options.models[i], problems);
+    const auto model = model::load_rig_model(options.models[i], problems);
     if (!model) continue;
     for (std::size_t channel = i; channel < channels; channel += options.models.size()) {
       plants[channel].model = *model;

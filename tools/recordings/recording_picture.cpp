@@ -72,7 +72,8 @@ Chart pressure_chart(const sysid::Log& log) {
 }
 
 Chart displacement_chart(const Recording& recording, const sysid::Log& log) {
-  Chart displacement = chart(title_of("displacement", log), "displacement [mm]", tall);
+  Chart displacement = chart(title_of(model::in_unit("displacement", log.output_unit), log),
+                             model::in_unit("displacement [mm]", log.output_unit), tall);
   displacement.series.push_back(line("measured", log, log.displacement_mm, Colour::measured));
   if (std::vector<double> reference = numbers_of(log, "reference_mm"); any_number(reference)) {
     Series wanted = line("reference", log, std::move(reference), Colour::model);

@@ -45,6 +45,7 @@ void simulate(const model::Model& model, const SimulationSettings& settings, sys
   model::Chain<double> chain(model, {}, sample_time_of(log), settings.seed);
   const std::uint64_t noise_seed = derived_seed(settings.seed, added_noise);
   chain.reset(log.pressure_command_kpa.front());
+  log.output_unit = model.output_unit;
   double previous_s = log.time_s.front();
   for (std::size_t i = 0; i < log.size(); ++i) {
     const double reading_mm =

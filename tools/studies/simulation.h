@@ -18,9 +18,9 @@ struct SimulationSettings {
   std::uint64_t seed = 1;  ///< of all noise
 };
 
-/// Fills displacement_mm of a log with the model's answer. The command is piecewise linear between samples;
-/// before the first one, it had risen to its value once and been held. supply_kpa and temperature_c of the
-/// log surround the model where they are there. Same input, same settings: same bits.
+/// Fills the readings of a log with the model's answer, in its unit. The command is piecewise linear between
+/// samples; before the first one, it had risen to its value once and been held. supply_kpa and temperature_c
+/// of the log surround the model where they are there. Same input, same settings: same bits.
 void simulate(const model::Model& model, const SimulationSettings& settings, sysid::Log& log);
 
 }  // namespace softgrip::tools

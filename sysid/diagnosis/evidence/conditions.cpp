@@ -203,9 +203,10 @@ std::vector<Condition> conditions_of(const std::vector<Record>& records,
   list.push_back(condition("history", "largest pressure so far [kPa]", "the largest load so far", samples,
                            [&](std::size_t k, std::size_t i) { return h[k].largest_kpa[i]; }));
   const auto position = [&](std::size_t k, std::size_t i) { return prediction_mm[k][i]; };
-  list.push_back(condition("position", "predicted displacement [mm]", "the position", samples, position));
-  list.push_back(
-      condition("loop", "predicted displacement [mm]", "the position within the loop", samples, position));
+  const std::string over_position = model::in_unit(
+      "predicted displacement [mm]", records.empty() ? model::OutputUnit::mm : records.front().output_unit);
+  list.push_back(condition("position", over_position, "the position", samples, position));
+  list.push_back(condition("loop", over_position, "the position within the loop", samples, position));
   group_by(list.back(), samples, {"loading", "unloading"},
            [&](std::size_t k, std::size_t i) { return h[k].falling[i]; });
   list.push_back(condition(

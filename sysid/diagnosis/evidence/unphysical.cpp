@@ -23,6 +23,7 @@ void add_branches(const model::Model& model, const std::vector<Record>& records,
   if (!position) return;
   const auto [largest_kpa, span_mm, longest_s] = campaign_size(records);
   const model::BlockSpec& block = model.blocks[*position];
+  const std::string unit(model::name_of(model.output_unit));
   const std::vector<double> constants_s = branch_time_constants_s(model);
   for (std::size_t b = 0; b < constants_s.size(); ++b) {
     const std::string k = "k" + std::to_string(b + 1), c = "c" + std::to_string(b + 1);
@@ -30,8 +31,8 @@ void add_branches(const model::Model& model, const std::vector<Record>& records,
     if (moved_mm > spans_of_a_branch * span_mm) {
       signs.push_back({"stiffness_near_zero",
                        k + " is near zero: settled, this branch alone would move " +
-                           significant(moved_mm, 3) + " mm, and the finger moves " + significant(span_mm, 3) +
-                           " mm.",
+                           significant(moved_mm, 3) + " " + unit + ", and the finger moves " +
+                           significant(span_mm, 3) + " " + unit + ".",
                        moved_mm, spans_of_a_branch * span_mm});
     }
     if (constants_s[b] > share_of_log * longest_s) {

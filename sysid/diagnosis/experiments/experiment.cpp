@@ -270,7 +270,9 @@ class Designer {
       const Contest& contest = contests_[pairs_[p].contest];
       const AdviceFacts facts{options_.pressure_recorded, data_.scales.has_temperature,
                               furthest >= separation_needed_sigma, d_.gauge.has_value()};
-      if (asks_for_gauge(pairs_[p], facts) && !facts.gauge_made) {
+      // A gauge measures positions, and no angles.
+      const bool in_mm = d_.records.front().output_unit == model::OutputUnit::mm;
+      if (in_mm && asks_for_gauge(pairs_[p], facts) && !facts.gauge_made) {
         for (const std::string& id : {contest.ids[pairs_[p].one], contest.ids[pairs_[p].other]}) {
           if (std::find(by_gauge.begin(), by_gauge.end(), id) == by_gauge.end()) by_gauge.push_back(id);
         }

@@ -54,7 +54,7 @@ Json valve_json(const ValveFindings& in_valve) {
 Json budget_json(const Diagnosis& d, const Budget& budget) {
   Json causes = Json::object();
   for (const NamedCause& named : d.causes) causes[std::string(named.cause.id)] = spread(named.gain_mm2);
-  return {{"unit", "mm^2"},
+  return {{"unit", model::in_unit("mm^2", d.extended_model.output_unit)},
           {"as_given", number(budget.as_given)},
           {"recalibrated", number(budget.recalibrated)},
           {"causes", std::move(causes)},
@@ -187,6 +187,7 @@ Json json_of(const Diagnosis& d) {
   Json json;
   json["schema"] = 1;
   json["verdict"] = name_of(whole_verdict(d));
+  json["output_unit"] = model::name_of(d.extended_model.output_unit);
   const Budget budget = budget_of(d);
   json["causes"] = Json::array();
   json["alternatives"] = Json::array();

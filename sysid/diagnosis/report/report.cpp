@@ -49,7 +49,8 @@ Terms looked_at(const DiagnosisReport& report) {
   return {{"given model", report.given.name},
           {is_extended(d) ? "extended model" : "recalibrated model", d.extended_model.name},
           {"data", logs + ", " + std::to_string(samples) + " samples, " + significant(duration_s, 4) +
-                       " s; noise of the readings " + significant(d.noise_mm, 3) + " mm"},
+                       " s; noise of the readings " + significant(d.noise_mm, 3) + " " +
+                       std::string(model::name_of(d.extended_model.output_unit))},
           {"software", software_and_version()}};
 }
 

@@ -34,6 +34,7 @@ struct ClosedLoopCurves {
   std::vector<double> reference_mm;
   std::vector<Scheme> schemes;  ///< the best last; at most three
   std::vector<std::string> notes;
+  model::OutputUnit output_unit = model::OutputUnit::mm;
 };
 
 /// What goes onto the page.

@@ -22,19 +22,24 @@ std::string letter(std::size_t i) {
   return {static_cast<char>('A' + static_cast<char>(i))};
 }
 
-std::string amount(double mm2, double whole_mm2) {
-  return significant(mm2, 3) + " mm\xc2\xb2, " + fixed(100 * mm2 / whole_mm2, 1) + " %";
+/// "0.012 mm²", in the unit of the readings.
+std::string square_text(double mm2, model::OutputUnit unit) {
+  return significant(mm2, 3) + model::in_unit(" mm\xc2\xb2", unit);
+}
+
+std::string amount(double mm2, double whole_mm2, model::OutputUnit unit) {
+  return square_text(mm2, unit) + ", " + fixed(100 * mm2 / whole_mm2, 1) + " %";
 }
 
 /// The given model's misfit, and the part of it that the bar below shows enlarged. Returns where that bar
 /// begins; above it there is room for its title, within the lines that lead to it.
-double given_bar(Canvas& canvas, const Budget& budget, double top) {
+double given_bar(Canvas& canvas, const Budget& budget, model::OutputUnit unit, double top) {
   const double kept = std::clamp(budget.recalibrated / budget.as_given, 0.0, 1.0);
   const double split = right - kept * (right - left);
   canvas.words({left, top - 6}, Anchor::start,
-               "Given model, mean square error " + significant(budget.as_given, 3) +
-                   " mm\xc2\xb2: new numbers " + "for its parameters take " +
-                   fixed(100 * (1 - kept), kept < 0.01 ? 1 : 0) + " %");
+               "Given model, mean square error " + square_text(budget.as_given, unit) +
+                   ": new numbers for its parameters take " + fixed(100 * (1 - kept), kept < 0.01 ? 1 : 0) +
+                   " %");
   canvas.box(left, top, split - left, bar_px / 2, Colour::grid);
   canvas.box(split, top, right - split, bar_px / 2, Colour::axis);
   const double below = top + bar_px / 2, spread = below + fan_px, bar = spread + line_px + 4;
@@ -57,12 +62,13 @@ void parts_bar(Canvas& canvas, const std::vector<BudgetPart>& parts, double whol
   }
 }
 
-void key(Canvas& canvas, const std::vector<BudgetPart>& parts, double whole, double top) {
+void key(Canvas& canvas, const std::vector<BudgetPart>& parts, double whole, model::OutputUnit unit,
+         double top) {
   for (std::size_t i = 0; i < parts.size(); ++i) {
     const double y = top + line_px * static_cast<double>(i);
     canvas.box(left, y - 10, 12, 12, parts[i].colour);
     canvas.words({left + 20, y}, Anchor::start, letter(i) + "  " + parts[i].name);
-    canvas.words({left + 360, y}, Anchor::start, amount(parts[i].mm2, whole));
+    canvas.words({left + 360, y}, Anchor::start, amount(parts[i].mm2, whole, unit));
     if (!parts[i].interval.empty())
       canvas.words({left + 520, y}, Anchor::start, "95 % interval " + parts[i].interval, Colour::muted);
   }
@@ -101,19 +107,20 @@ Figure budget_figure(const Diagnosis& d) {
   const Budget budget = budget_of(d);
   const std::vector<BudgetPart> parts = budget_parts(d);
   const bool moved = std::isfinite(budget.as_given) && budget.as_given > 1.02 * budget.recalibrated;
+  const model::OutputUnit unit = d.extended_model.output_unit;
   Drawing drawing;
   Canvas canvas;
   double top = 24;
-  if (moved) top = given_bar(canvas, budget, top);
+  if (moved) top = given_bar(canvas, budget, unit, top);
   canvas.words({moved ? left + 8 : left, top - 6}, Anchor::start,
                std::string(moved ? "Recalibrated model" : "Model") + ", mean square error " +
-                   significant(budget.recalibrated, 3) + " mm\xc2\xb2");
+                   square_text(budget.recalibrated, unit));
   parts_bar(canvas, parts, budget.recalibrated, top);
-  key(canvas, parts, budget.recalibrated, top + bar_px + 20);
+  key(canvas, parts, budget.recalibrated, unit, top + bar_px + 20);
   drawing.markup = canvas.markup();
   drawing.height = static_cast<int>(top + bar_px + 20 + line_px * static_cast<double>(parts.size()));
-  drawing.header = {"part", "mean square [mm^2]", "share of the recalibrated model's [%]",
-                    "95 % interval [mm^2]"};
+  drawing.header = {"part", model::in_unit("mean square [mm^2]", unit),
+                    "share of the recalibrated model's [%]", model::in_unit("95 % interval [mm^2]", unit)};
   if (moved) drawing.rows.push_back({"given model", shortest(budget.as_given), "", ""});
   drawing.rows.push_back({"recalibrated model", shortest(budget.recalibrated), "100", ""});
   for (const BudgetPart& part : parts)

@@ -41,14 +41,14 @@ std::string without_unit(std::string name, std::string_view unit) {
   return name;
 }
 
-std::vector<std::string> lines_of(const model::BlockSpec& block) {
+std::vector<std::string> lines_of(const model::BlockSpec& block, model::OutputUnit output_unit) {
   const model::BlockDescriptor& descriptor = model::catalogue()[block.type];
   std::vector<std::string> lines;
   const std::size_t shown = block.values.size() > values_shown ? values_shown - 1 : block.values.size();
   for (std::size_t i = 0; i < shown; ++i) {
     const std::string unit(descriptor.spec(i).unit);
     lines.push_back(without_unit(descriptor.name(i), unit) + " = " + significant(block.values[i], 3) +
-                    (unit.empty() ? "" : " " + unit));
+                    (unit.empty() ? "" : " " + model::in_unit(unit, output_unit)));
   }
   if (shown < block.values.size())
     lines.push_back("and " + std::to_string(block.values.size() - shown) + " more");
@@ -60,7 +60,8 @@ std::size_t boxes_in_a_row(const model::Model& model) {
   double widest = 0;
   for (const model::BlockSpec& block : model.blocks) {
     widest = std::max(widest, 1.1 * text_width(model::catalogue()[block.type].info.title));
-    for (const std::string& line : lines_of(block)) widest = std::max(widest, text_width(line));
+    for (const std::string& line : lines_of(block, model.output_unit))
+      widest = std::max(widest, text_width(line));
   }
   std::size_t boxes = 4;
   while (boxes > 2 && box_width(boxes) < 0.9 * widest + 16) --boxes;
@@ -87,7 +88,8 @@ Figure chain_figure(const model::Model& model, const model::Model& given) {
   for (std::size_t first = 0; first < model.blocks.size(); first += boxes) {
     const std::size_t last = std::min(model.blocks.size(), first + boxes);
     std::size_t lines = 1;
-    for (std::size_t i = first; i < last; ++i) lines = std::max(lines, lines_of(model.blocks[i]).size());
+    for (std::size_t i = first; i < last; ++i)
+      lines = std::max(lines, lines_of(model.blocks[i], model.output_unit).size());
     const double height = 30 + number_line_px * static_cast<double>(lines);
     for (std::size_t i = first; i < last; ++i) {
       const model::BlockSpec& block = model.blocks[i];
@@ -106,7 +108,7 @@ Figure chain_figure(const model::Model& model, const model::Model& given) {
       canvas.words({x + 8, top + 17}, Anchor::start, descriptor.info.title, Colour::text,
                    " font-weight=\"600\"");
       double y = top + 34;
-      for (const std::string& line : lines_of(block)) {
+      for (const std::string& line : lines_of(block, model.output_unit)) {
         canvas.words({x + 8, y}, Anchor::start, line);
         y += number_line_px;
       }
@@ -114,9 +116,9 @@ Figure chain_figure(const model::Model& model, const model::Model& given) {
       if (i + 1 == last && last == model.blocks.size())
         arrow(canvas, x + box_px, std::min(x + box_px + gap_px - 6, width_px - 2.0), top + height / 2);
       for (std::size_t v = 0; v < block.values.size(); ++v)
-        drawing.rows.push_back({station, std::string(descriptor.info.title), descriptor.name(v),
-                                shortest(block.values[v]), std::string(descriptor.spec(v).unit),
-                                added ? "yes" : "no"});
+        drawing.rows.push_back(
+            {station, std::string(descriptor.info.title), descriptor.name(v), shortest(block.values[v]),
+             model::in_unit(descriptor.spec(v).unit, model.output_unit), added ? "yes" : "no"});
     }
     top += height + 30;
   }

@@ -153,7 +153,8 @@ void add_bins(Chart& chart, const ConditionEvidence& e, std::size_t group, const
   chart.series.push_back(means);
 }
 
-Chart condition_chart(const ConditionEvidence& recalibrated, const ConditionEvidence* extended) {
+Chart condition_chart(const ConditionEvidence& recalibrated, const ConditionEvidence* extended,
+                      model::OutputUnit unit) {
   const Condition& condition = recalibrated.condition;
   Chart chart;
   chart.width = 380;
@@ -171,7 +172,7 @@ Chart condition_chart(const ConditionEvidence& recalibrated, const ConditionEvid
     chart.x.lower = -0.5;
     chart.x.upper = static_cast<double>(used) - 0.5;
   }
-  chart.y.label = "mean error [mm]";
+  chart.y.label = model::in_unit("mean error [mm]", unit);
   const std::size_t groups = std::max<std::size_t>(1, condition.groups.size());
   if (extended != nullptr && extended->condition.why_not.empty()) {
     for (std::size_t g = 0; g < groups; ++g)
@@ -223,8 +224,9 @@ Figure error_figure(const Diagnosis& d, std::size_t k) {
                              far_off * std::sqrt(mean_square(d.recalibrated.residual_mm[k]));
   Chart values, before, after;
   // Their titles say what they show: along so low an axis there is room for the unit alone.
-  values.title = record.name + ": displacement";
-  values.y.label = before.y.label = after.y.label = "[mm]";
+  const std::string unit(model::name_of(record.output_unit));
+  values.title = record.name + ": " + model::in_unit("displacement", record.output_unit);
+  values.y.label = before.y.label = after.y.label = "[" + unit + "]";
   values.height = 150;
   values.series.push_back(curve("measured", Colour::measured, 2.4, record.time_s, record.reading_mm));
   before.title = is_extended(d) ? "error before" : "error";
@@ -238,7 +240,7 @@ Figure error_figure(const Diagnosis& d, std::size_t k) {
     Chart& errors = model.fit == &d.extended ? after : before;
     if (!left_out) errors.series.push_back(curve_of(model, record.time_s, model.fit->residual_mm[k]));
     numbers += (numbers.empty() ? "" : ", ") + std::string(model.label) + " " +
-               significant(std::sqrt(mean_square(model.fit->residual_mm[k])), 3) + " mm";
+               significant(std::sqrt(mean_square(model.fit->residual_mm[k])), 3) + " " + unit;
   }
   std::vector<Chart> charts{values, before};
   if (is_extended(d)) {
@@ -268,7 +270,7 @@ Figure runs_figure(const Diagnosis& d) {
     extended.push_back(one.extended);
   }
   Chart chart = chart_over(std::move(names));
-  chart.y.label = "RMSE [mm]";
+  chart.y.label = model::in_unit("RMSE [mm]", d.extended_model.output_unit);
   chart.y.logarithmic = true;
   const std::vector<Shown> models = shown(d);
   const std::array errors{&given, &recalibrated, &extended};
@@ -287,7 +289,7 @@ Figure loops_figure(const Diagnosis& d, std::size_t k) {
   whole.width = 380;
   whole.height = 290;
   whole.x.label = "pressure [kPa]";
-  whole.y.label = "displacement [mm]";
+  whole.y.label = model::in_unit("displacement [mm]", record.output_unit);
   Chart zoom = whole;
   const Window window =
       window_of(record, prediction(first_fit(d), record, k), prediction(final_fit(d), record, k));
@@ -314,19 +316,23 @@ Figure loops_figure(const Diagnosis& d, std::size_t k) {
       curve("", Colour::text, 1,
             {window.lower_kpa, window.upper_kpa, window.upper_kpa, window.lower_kpa, window.lower_kpa},
             {window.lower_mm, window.lower_mm, window.upper_mm, window.upper_mm, window.lower_mm}));
-  return {"loops " + record.name,
-          record.name +
+  return {
+      "loops " + record.name,
+      record.name +
+          model::in_unit(
               ": displacement over pressure, as a whole and, enlarged, in the frame where the models differ "
               "most.",
-          {{whole, zoom}}};
+              record.output_unit),
+      {{whole, zoom}}};
 }
 
 Figure closed_loop_figure(const ClosedLoopCurves& curves) {
   Chart values, errors;
-  values.title = "displacement";
-  values.y.label = errors.y.label = "[mm]";
+  const std::string unit(model::name_of(curves.output_unit));
+  values.title = model::in_unit("displacement", curves.output_unit);
+  values.y.label = errors.y.label = "[" + unit + "]";
   values.height = 160;
-  errors.title = "displacement minus reference";
+  errors.title = values.title + " minus reference";
   errors.x.label = "time [s]";
   errors.height = 150;
   values.series.push_back(curve("reference", Colour::measured, 2.4, curves.time_s, curves.reference_mm));
@@ -343,7 +349,8 @@ Figure closed_loop_figure(const ClosedLoopCurves& curves) {
     for (std::size_t t = 0; t < error.y.size(); ++t) error.y[t] -= curves.reference_mm[t];
     values.series.push_back(std::move(way));
     errors.series.push_back(std::move(error));
-    numbers += (numbers.empty() ? "" : ", ") + scheme.name + " " + significant(scheme.rmse_mm, 3) + " mm";
+    numbers +=
+        (numbers.empty() ? "" : ", ") + scheme.name + " " + significant(scheme.rmse_mm, 3) + " " + unit;
   }
   return {
       "closed loop",
@@ -367,8 +374,8 @@ Figure conditions_figure(const Diagnosis& d) {
       return other.condition.id == e.condition.id;
     });
     if (charts % 2 == 0) figure.charts.emplace_back();
-    figure.charts.back().push_back(
-        condition_chart(e, is_extended(d) && same != after.end() ? &*same : nullptr));
+    figure.charts.back().push_back(condition_chart(
+        e, is_extended(d) && same != after.end() ? &*same : nullptr, d.extended_model.output_unit));
     ++charts;
   }
   return figure;
@@ -378,7 +385,7 @@ Figure spectrum_figure(const Diagnosis& d) {
   Chart chart;
   chart.height = 230;
   chart.x.label = "frequency [Hz]";
-  chart.y.label = "error [mm\xc2\xb2/Hz]";
+  chart.y.label = model::in_unit("error [mm\xc2\xb2/Hz]", d.extended_model.output_unit);
   chart.x.logarithmic = true;
   chart.y.logarithmic = true;
   const auto add = [&](const Shown& model, const ResidualEvidence& e) {
@@ -398,7 +405,8 @@ Figure spectrum_figure(const Diagnosis& d) {
           is_clear(s.p_value, s.share_percent)
               ? "Spectrum of the error. The strongest line that the command does not have: " +
                     significant(s.peak_hz, 4) + " Hz, amplitude " + significant(s.peak_amplitude_mm, 2) +
-                    " mm (p " + significant(s.p_value, 2) + ")."
+                    " " + std::string(model::name_of(d.extended_model.output_unit)) + " (p " +
+                    significant(s.p_value, 2) + ")."
               : "Spectrum of the error. No line stands out that the command does not have.",
           {{chart}}};
 }

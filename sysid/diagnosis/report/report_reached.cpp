@@ -68,7 +68,8 @@ void add_errors(Page& page, const Diagnosis& d) {
     page.paragraph(
         "The gain does not carry over to logs that were not fitted: with whole logs held out the error goes "
         "from " +
-        significant(before, 3) + " to " + significant(after, 3) + " mm.");
+        significant(before, 3) + " to " + significant(after, 3) + " " +
+        std::string(model::name_of(d.extended_model.output_unit)) + ".");
 }
 
 void add_evidence(Page& page, const Diagnosis& d) {

@@ -23,7 +23,8 @@ const ConditionEvidence* find(const ResidualEvidence& evidence, const std::strin
   return nullptr;
 }
 
-std::string outcome_of(const CandidateScore& c, const NamedCause* chosen, double chosen_rmse_mm) {
+std::string outcome_of(const CandidateScore& c, const NamedCause* chosen, double chosen_rmse_mm,
+                       model::OutputUnit unit) {
   if (chosen != nullptr) {
     if (c.cause == chosen->cause) return "named";
     if (std::find(chosen->rivals.begin(), chosen->rivals.end(), c.cause) != chosen->rivals.end())
@@ -34,23 +35,28 @@ std::string outcome_of(const CandidateScore& c, const NamedCause* chosen, double
   if (c.gain_percent.lower <= 0) return "no gain that excludes chance";
   if (chosen == nullptr) return "gain too small to be worth a block";
   return "explains less: " + significant(c.heldout_rmse_mm, 3) + " against " +
-         significant(chosen_rmse_mm, 3) + " mm";
+         significant(chosen_rmse_mm, 3) + " " + std::string(model::name_of(unit));
 }
 
 /// The candidates, their errors, and the reason why each was not kept.
 /// @param chosen  the cause in whose place these were tried; nullptr: one more cause was looked for.
 Table candidate_table(const std::vector<CandidateScore>& candidates, const NamedCause* chosen,
-                      double chosen_rmse_mm, std::string caption) {
+                      double chosen_rmse_mm, model::OutputUnit unit, std::string caption) {
   Table table;
   table.caption = std::move(caption);
-  table.header = {"cause", "station", "fitted [mm]", "held out [mm]", "held-out gain [%]", "outcome"};
+  table.header = {"cause",
+                  "station",
+                  model::in_unit("fitted [mm]", unit),
+                  model::in_unit("held out [mm]", unit),
+                  "held-out gain [%]",
+                  "outcome"};
   table.numeric = {false, false, true, true, true, false};
   for (const CandidateScore& c : candidates) {
     const bool judged = std::isfinite(c.heldout_rmse_mm) && c.heldout_rmse_mm > 0;
     table.rows.push_back(
         {std::string(c.cause.id), std::string(model::name_of(c.cause.station)),
          c.rmse_mm > 0 ? or_dash(c.rmse_mm, 3) : dash, judged ? or_dash(c.heldout_rmse_mm, 3) : dash,
-         judged ? percent_range(c.gain_percent) : dash, outcome_of(c, chosen, chosen_rmse_mm)});
+         judged ? percent_range(c.gain_percent) : dash, outcome_of(c, chosen, chosen_rmse_mm, unit)});
   }
   return table;
 }
@@ -68,9 +74,11 @@ std::string percent_range(const Spread& share) {
 
 Table rmse_table(const Diagnosis& d) {
   Table table;
-  table.caption = "Error of the models (noise of the readings " + significant(d.noise_mm, 3) + " mm)";
+  table.caption = "Error of the models (noise of the readings " + significant(d.noise_mm, 3) + " " +
+                  std::string(model::name_of(d.extended_model.output_unit)) + ")";
   table.header = {"model", "fitted, RMSE [mm]", "stretches held out [mm]", "whole logs held out [mm]",
                   "structure left [mm]"};
+  for (std::string& title : table.header) title = model::in_unit(title, d.extended_model.output_unit);
   table.numeric = {false, true, true, true, true};
   const auto fitted = [](const StructureFit& fit) { return or_dash(std::sqrt(fit.mean_square_mm2), 3); };
   const auto excess = [&](const StructureFit& fit) {
@@ -125,20 +133,22 @@ std::vector<Table> candidate_tables(const Diagnosis& d) {
     for (const NamedCause& named : *list) {
       if (!named.candidates.empty())
         tables.push_back(candidate_table(named.candidates, &named, d.extended_rmse_mm,
+                                         d.extended_model.output_unit,
                                          "Tried in the place of " + std::string(named.cause.id)));
     }
   }
   if (!d.rejected.empty())
     tables.push_back(candidate_table(
-        d.rejected, nullptr, d.extended_rmse_mm,
+        d.rejected, nullptr, d.extended_rmse_mm, d.extended_model.output_unit,
         d.causes.empty() && d.partial.empty() ? "No cause was kept" : "No further cause was kept"));
   return tables;
 }
 
 Table run_table(const Diagnosis& d) {
   Table table;
-  table.caption =
-      "Error of each run, RMSE [mm]; the recalibrated and the extended model are fitted to the others";
+  table.caption = model::in_unit(
+      "Error of each run, RMSE [mm]; the recalibrated and the extended model are fitted to the others",
+      d.extended_model.output_unit);
   table.header = {"run", "given", "recalibrated", "extended"};
   table.numeric = {false, true, true, true};
   for (const RunError& one : d.runs)
@@ -201,8 +211,9 @@ Table moved_table(const Diagnosis& d, const model::Model& given) {
     const auto before = model::find_path(given, path);
     const double old = before ? model::flat_values(given)[*before] : 0;
     const std::string moved = old != 0 ? fixed(100 * (values[i] / old - 1), 1) + " %" : dash;
-    std::vector<std::string> row{path, std::string(model::parameter_spec(d.extended_model, i).unit),
-                                 value_at(given, path), value_at(d.recalibrated_model, path)};
+    std::vector<std::string> row{
+        path, model::in_unit(model::parameter_spec(d.extended_model, i).unit, d.extended_model.output_unit),
+        value_at(given, path), value_at(d.recalibrated_model, path)};
     if (extended) row.push_back(significant(values[i], 4));
     row.push_back(moved);
     table.rows.push_back(std::move(row));

@@ -38,8 +38,8 @@ double noise_of(const std::vector<Record>& records) {
 std::string sentence_of(const Log& log, const std::vector<std::size_t>& wrong) {
   std::string first;
   for (std::size_t i = 0; i < std::min(wrong.size(), named_readings); ++i) {
-    first += (i == 0 ? "" : ", ") + significant(log.displacement_mm[wrong[i]]) + " mm at " +
-             significant(log.time_s[wrong[i]]) + " s";
+    first += (i == 0 ? "" : ", ") + significant(log.displacement_mm[wrong[i]]) + " " +
+             std::string(model::name_of(log.output_unit)) + " at " + significant(log.time_s[wrong[i]]) + " s";
   }
   if (wrong.size() > named_readings)
     first += " and " + std::to_string(wrong.size() - named_readings) + " more";

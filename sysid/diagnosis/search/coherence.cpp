@@ -87,9 +87,10 @@ std::optional<std::string> strangers_among(const std::vector<Record>& records,
   if (records.size() < 2) return std::nullopt;
   const double apart_mm = rmse_apart_mm(records, recalibrated);
   if (!(apart_mm * apart_mm < apart_share * together_mm2)) return std::nullopt;
-  return "recalibrated on each log alone the model's error is " + significant(apart_mm, 2) +
-         " mm, on all together " + significant(std::sqrt(together_mm2), 2) +
-         " mm: are these logs of one rig, and was nothing changed between them?";
+  const std::string unit(model::name_of(records.front().output_unit));
+  return "recalibrated on each log alone the model's error is " + significant(apart_mm, 2) + " " + unit +
+         ", on all together " + significant(std::sqrt(together_mm2), 2) + " " + unit +
+         ": are these logs of one rig, and was nothing changed between them?";
 }
 
 std::optional<std::string> why_not_about(const std::vector<Record>& records,

@@ -51,7 +51,8 @@ void warn_of_scale(const std::vector<Record>& records, const std::vector<std::ve
   for (std::size_t k = 0; k < records.size(); ++k) {
     std::vector<double> predicted_mm = records[k].reading_mm;
     for (std::size_t i = 0; i < predicted_mm.size(); ++i) predicted_mm[i] -= residual_mm[k][i];
-    if (std::string doubt = doubt_about_scale(records[k].name, predicted_mm, records[k].reading_mm);
+    if (std::string doubt =
+            doubt_about_scale(records[k].name, predicted_mm, records[k].reading_mm, records[k].output_unit);
         !doubt.empty())
       warnings.push_back(std::move(doubt));
   }

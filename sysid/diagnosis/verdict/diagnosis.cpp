@@ -312,7 +312,9 @@ class Diagnostician {
         std::min(100.0, 100 * square(d_.structure_left.excess_mm / selection.base_structure.excess_mm));
     d_.extended_model = named_model(d_.extended.point.model, "extended");
     d_.causes = std::move(base.named);
-    if (d_.outliers.present) d_.causes.insert(d_.causes.begin(), outlier_cause(d_.outliers, d_.noise_mm));
+    if (d_.outliers.present)
+      d_.causes.insert(d_.causes.begin(),
+                       outlier_cause(d_.outliers, d_.noise_mm, d_.records.front().output_unit));
     d_.partial = std::move(base.possible);
     const bool whole = !sysid::leaves_too_much(d_.structure_left, selection.base_structure, d_.noise_mm);
     d_.verdict = d_.causes.empty()       ? Verdict::unexplained
@@ -381,7 +383,8 @@ class Diagnostician {
   }
 
   void name(const Selection& selection) {
-    if (d_.outliers.present) causes_.push_back(outlier_cause(d_.outliers, d_.noise_mm));
+    if (d_.outliers.present)
+      causes_.push_back(outlier_cause(d_.outliers, d_.noise_mm, d_.records.front().output_unit));
     std::vector<NamedCause> chosen = name_chosen(data_.records, selection.extended, selection.chosen);
     if (!d_.staircase) {
       for (std::string& sentence : mix_intervals(chosen, data_.records, selection, options_.seed))

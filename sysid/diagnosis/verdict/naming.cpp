@@ -30,7 +30,7 @@ std::vector<CauseParameter> block_numbers(const UncertainPoint& at, std::size_t 
     CauseParameter p;
     p.name = model::parameter_name(block, i);
     const model::ParameterSpec& spec = model::catalogue()[block.type].spec(i);
-    p.unit = std::string(spec.unit);
+    p.unit = model::in_unit(spec.unit, model.output_unit);
     p.value = block.values[i];
     for (std::size_t j = 0; j < at.space.size(); ++j) {
       const FreeParameter& free = at.space.free()[j];
@@ -75,13 +75,16 @@ std::vector<NamedCause> name_chosen(const std::vector<Record>& records, const St
   return list;
 }
 
-NamedCause outlier_cause(const OutlierEvidence& evidence, double noise_mm) {
+NamedCause outlier_cause(const OutlierEvidence& evidence, double noise_mm, model::OutputUnit unit) {
   NamedCause named;
   named.cause = *find_cause(causes::Outliers::id);
   named.block_type = named.cause.forms.front().type;
-  named.parameters = {
-      {"probability", "", evidence.share, {evidence.share_low, evidence.share_high}, true},
-      {"size_mm", "mm", evidence.size_mm, {evidence.size_low_mm, evidence.size_high_mm}, true}};
+  named.parameters = {{"probability", "", evidence.share, {evidence.share_low, evidence.share_high}, true},
+                      {"size_mm",
+                       std::string(model::name_of(unit)),
+                       evidence.size_mm,
+                       {evidence.size_low_mm, evidence.size_high_mm},
+                       true}};
   const double with = std::sqrt(noise_mm * noise_mm + evidence.excess_mm * evidence.excess_mm);
   const double gain = 100 * (1 - noise_mm / with);
   const double relative = 1.0 / std::sqrt(static_cast<double>(std::max<std::size_t>(1, evidence.count)));

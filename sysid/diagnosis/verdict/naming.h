@@ -31,7 +31,8 @@ struct UncertainPoint {
                                                   const StructureFit& extended,
                                                   const std::vector<ChosenCause>& chosen);
 
-[[nodiscard]] NamedCause outlier_cause(const OutlierEvidence& evidence, double noise_mm);
+[[nodiscard]] NamedCause outlier_cause(const OutlierEvidence& evidence, double noise_mm,
+                                       model::OutputUnit unit);
 
 /// Returns the title of a cause for use inside a sentence: "valve lag".
 [[nodiscard]] std::string title_within(const Cause& cause);

@@ -9,6 +9,11 @@
 namespace softgrip::sysid {
 namespace {
 
+/// "0.31 mm", in the unit of the readings.
+std::string reading(const Diagnosis& d, double value) {
+  return significant(value, 2) + " " + std::string(model::name_of(d.extended_model.output_unit));
+}
+
 std::string listed(const std::vector<NamedCause>& causes) {
   return enumerated(causes, " and ", [&causes](const NamedCause& named) {
     std::string text = title_within(named.cause);
@@ -20,9 +25,8 @@ std::string listed(const std::vector<NamedCause>& causes) {
 /// Returns the sentence if only wrong samples were found.
 std::string outlier_sentence(const Diagnosis& d) {
   return "Isolated wrong samples stand among the readings (" + significant(100 * d.outliers.share, 2) +
-         " %, about " + significant(d.outliers.size_mm, 2) +
-         " mm off); on the others the recalibrated model's error is " +
-         significant(d.recalibrated_rmse_mm, 2) + " mm.";
+         " %, about " + reading(d, d.outliers.size_mm) +
+         " off); on the others the recalibrated model's error is " + reading(d, d.recalibrated_rmse_mm) + ".";
 }
 
 /// Returns the sentence on stick-slip. The readings determine the position of the valve; the command does
@@ -33,7 +37,7 @@ std::string staircase_sentence(const Diagnosis& d, const std::string& before, co
          "held-out error "
          "falls from " +
          before + " to " + after + " only; with the moment of every jump taken from the readings, to " +
-         significant(d.staircase->heldout_rmse_mm, 2) + " mm.";
+         reading(d, d.staircase->heldout_rmse_mm) + ".";
 }
 
 /// ": with them the held-out error falls from 2 mm to 1 mm". Where it does not fall, a model that moves as no
@@ -59,7 +63,7 @@ std::string unexplained_sentence(const Diagnosis& d, const std::string& before, 
   }
   return "Something is wrong that no known cause explains in full: with " + listed(d.partial) +
          " the held-out error falls from " + before + " to " + after + ", and " +
-         significant(d.structure_left.excess_mm, 2) + " mm of structure stays, " +
+         reading(d, d.structure_left.excess_mm) + " of structure stays, " +
          significant(d.structure_left.excess_mm / d.noise_mm, 2) + " times the noise.";
 }
 
@@ -79,12 +83,14 @@ std::string sentence_of_valve(const Diagnosis& d) {
 }
 
 std::string sentence_of_logs(const Diagnosis& d) {
-  const std::string before = significant(d.recalibrated_rmse_mm, 2) + " mm";
-  const std::string after = significant(d.extended_rmse_mm, 2) + " mm";
+  const std::string before = reading(d, d.recalibrated_rmse_mm);
+  const std::string after = reading(d, d.extended_rmse_mm);
   switch (d.verdict) {
     case Verdict::adequate:
-      return "The model explains " + std::string(valve_lacks(d) ? "the displacement" : "these logs") +
-             " to the noise (" + significant(d.noise_mm, 2) + " mm)" +
+      return "The model explains " +
+             (valve_lacks(d) ? model::in_unit("the displacement", d.extended_model.output_unit)
+                             : "these logs") +
+             " to the noise (" + reading(d, d.noise_mm) + ")" +
              (valve_lacks(d) ? "." : ": nothing to change.");
     case Verdict::recalibrate:
       return "The structure is right and its numbers are not: recalibrated, the error falls from " +
@@ -98,7 +104,7 @@ std::string sentence_of_logs(const Diagnosis& d) {
              with_them(d, before, after) + ".";
     case Verdict::partly_explained:
       return "The model lacks " + listed(d.causes) + with_them(d, before, after) + "; " +
-             significant(d.structure_left.excess_mm, 2) + " mm of structure stays, " +
+             reading(d, d.structure_left.excess_mm) + " of structure stays, " +
              significant(d.structure_left.excess_mm / d.noise_mm, 2) + " times the noise.";
     case Verdict::unexplained:
       return unexplained_sentence(d, before, after);

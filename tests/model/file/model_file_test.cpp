@@ -67,6 +67,31 @@ TEST(ModelFile, RandomModelsComeBackBitForBit) {
   }
 }
 
+TEST(ModelFile, TheOutputUnitComesBackAndIsMillimetresWhereItIsLeftOut) {
+  std::mt19937 generator(1);
+  Model model = random_model(generator);
+  const std::string in_mm = to_yaml(model);
+  EXPECT_EQ(in_mm.find("output_unit"), std::string::npos);
+  model.output_unit = OutputUnit::deg;
+  const Outcome outcome = read(to_yaml(model));
+  ASSERT_TRUE(outcome.model) << outcome.problems.format();
+  EXPECT_EQ(*outcome.model, model);
+  EXPECT_NE(model_hash(model), model_hash(*read(in_mm).model));
+  EXPECT_FALSE(read("output_unit: rad\n" + in_mm).model);
+}
+
+TEST(ModelFile, ARigRefusesAModelInDegrees) {
+  std::mt19937 generator(1);
+  const std::string in_mm = to_yaml(random_model(generator));
+  document::Problems problems;
+  EXPECT_TRUE(read_rig_model(document::parse("model.yaml", in_mm, problems), problems)) << problems.format();
+  EXPECT_FALSE(
+      read_rig_model(document::parse("model.yaml", "output_unit: deg\n" + in_mm, problems), problems));
+  ASSERT_EQ(problems.size(), 1U);
+  EXPECT_EQ(problems.list().front().at.line, 1);
+  EXPECT_NE(problems.list().front().message.find("a rig measures and controls in mm"), std::string::npos);
+}
+
 TEST(ModelFile, PresetsComeBackBitForBit) {
   for (const std::string name : {"zhang2025", "bench_twin", "soft_arm_play"}) {
     const Model model = preset(name);

@@ -124,9 +124,10 @@ TEST(Doubts, ALogThatIsGivenTwice) {
 TEST(Doubts, ReadingsInAnotherUnitThanTheModels) {
   const Log log = simulated(loaded("bench_twin"), model::SignalName::tp1, 50, 0.05, 7);
   std::vector<double> predicted = log.displacement_mm;
-  EXPECT_EQ(doubt_about_scale("x", predicted, log.displacement_mm), "");
+  EXPECT_EQ(doubt_about_scale("x", predicted, log.displacement_mm, log.output_unit), "");
   for (double& y : predicted) y /= 6.5;
-  EXPECT_NE(doubt_about_scale("x", predicted, log.displacement_mm).find("x: the readings are 6.5 times"),
+  EXPECT_NE(doubt_about_scale("x", predicted, log.displacement_mm, log.output_unit)
+                .find("x: the readings are 6.5 times"),
             std::string::npos);
 }
 

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <limits>
 #include <map>
+#include <numbers>
 #include <sstream>
 
 #include <gtest/gtest.h>
@@ -186,6 +187,79 @@ TEST(Log, TextAndBackLosesNothing) {
   EXPECT_EQ(back->others, log.others);
   EXPECT_TRUE(std::isnan(back->displacement_mm[10]));
   EXPECT_EQ(format_log(*back), format_log(log));
+}
+
+/// A text with another name for the column of the readings.
+std::string with_readings_called(const std::string& name, std::string text) {
+  const std::string usual = "displacement_mm";
+  return text.replace(text.find(usual), usual.size(), name);
+}
+
+TEST(Log, AnAngleInDegreesIsReadAsItStands) {
+  Problems problems;
+  const auto log = parse_log("a.csv", with_readings_called("angle_deg", good_text()), problems);
+  ASSERT_TRUE(log) << problems.format();
+  EXPECT_EQ(log->output_unit, model::OutputUnit::deg);
+  EXPECT_EQ(log->displacement_mm, good_log().displacement_mm);
+  EXPECT_TRUE(log->others.empty());
+  EXPECT_EQ(format_log(*log), with_readings_called("angle_deg", good_text()));
+}
+
+TEST(Log, AnAngleInRadiansIsConvertedOnce) {
+  Problems problems;
+  Log radians = good_log();
+  for (double& y : radians.displacement_mm) y *= std::numbers::pi / 180;
+  const auto log = parse_log("a.csv", with_readings_called("angle_rad", format_log(radians)), problems);
+  ASSERT_TRUE(log) << problems.format();
+  EXPECT_EQ(log->output_unit, model::OutputUnit::deg);
+  for (std::size_t i = 0; i < log->size(); ++i)
+    EXPECT_NEAR(log->displacement_mm[i], good_log().displacement_mm[i], 1e-13);
+  const auto again = parse_log("b.csv", format_log(*log), problems);
+  ASSERT_TRUE(again);
+  EXPECT_EQ(again->displacement_mm, log->displacement_mm);
+}
+
+TEST(Log, AnAngleTooLargeForDegreesIsRefused) {
+  Problems problems;
+  std::string text = with_readings_called("angle_rad", good_text());
+  text += "1,0,1e308\n";
+  EXPECT_FALSE(parse_log("a.csv", text, problems));
+  EXPECT_NE(problems.format().find("a bending angle of 1e+308 deg"), std::string::npos) << problems.format();
+}
+
+TEST(Log, BesideADisplacementAnAngleIsAnotherColumn) {
+  Problems problems;
+  Log log = good_log();
+  log.others.push_back({"angle_deg", std::vector<std::string>(log.size(), "7")});
+  const auto read = parse_log("a.csv", format_log(log), problems);
+  ASSERT_TRUE(read) << problems.format();
+  EXPECT_EQ(read->output_unit, model::OutputUnit::mm);
+  EXPECT_EQ(read->others, log.others);
+}
+
+TEST(Log, MessagesOfAnAngleSayDegrees) {
+  Problems problems;
+  Log far = good_log();
+  for (double& y : far.displacement_mm) y *= 1000;
+  EXPECT_FALSE(parse_log("a.csv", with_readings_called("angle_deg", format_log(far)), problems));
+  EXPECT_NE(problems.format().find("a bending angle of "), std::string::npos) << problems.format();
+  EXPECT_NE(problems.format().find(" deg"), std::string::npos);
+  problems = {};
+  EXPECT_FALSE(parse_log("a.csv", with_readings_called("angle", good_text()), problems));
+  EXPECT_NE(problems.format().find("'angle_deg' or 'angle_rad'"), std::string::npos) << problems.format();
+}
+
+TEST(Log, ReadingsInAnotherUnitThanAskedForAreRefusedAtTheirColumn) {
+  Problems problems;
+  LogOptions options;
+  options.output_unit = model::OutputUnit::deg;
+  options.output_unit_of = "the model finger";
+  EXPECT_FALSE(parse_log("a.csv", good_text(), problems, options));
+  ASSERT_EQ(problems.size(), 1U);
+  EXPECT_EQ(problems.list().front().at.line, 1);
+  EXPECT_EQ(problems.list().front().at.column, 29);
+  EXPECT_EQ(problems.list().front().message,
+            "column 'displacement_mm' gives readings in mm, and the model finger is in deg");
 }
 
 TEST(Log, AcceptsWhatSpreadsheetsWrite) {

@@ -13,16 +13,20 @@ TEST(UnitFactors, OfPressureAreKnownBothWays) {
 }
 
 TEST(UnitFactors, SayWhichColumnWasProbablyMistaken) {
-  EXPECT_NE(mistaken_unit(6.7).find("psi in a pressure column taken for kPa (a factor of 6.895)"),
+  EXPECT_NE(mistaken_unit(6.7, model::OutputUnit::mm)
+                .find("psi in a pressure column taken for kPa (a factor of 6.895)"),
             std::string::npos);
-  EXPECT_NE(mistaken_unit(103).find("bar"), std::string::npos);
-  EXPECT_NE(mistaken_unit(0.0385).find("inch in the displacement column"), std::string::npos);
-  EXPECT_NE(mistaken_unit(0.1).find("cm in the displacement column"), std::string::npos);
-  EXPECT_NE(mistaken_unit(1050).find("micrometres"), std::string::npos);
+  EXPECT_NE(mistaken_unit(103, model::OutputUnit::mm).find("bar"), std::string::npos);
+  EXPECT_NE(mistaken_unit(0.0385, model::OutputUnit::mm).find("inch in the displacement column"),
+            std::string::npos);
+  EXPECT_NE(mistaken_unit(0.1, model::OutputUnit::mm).find("cm in the displacement column"),
+            std::string::npos);
+  EXPECT_NE(mistaken_unit(1050, model::OutputUnit::mm).find("micrometres"), std::string::npos);
 }
 
 TEST(UnitFactors, AFingerOfAnotherSizeIsNone) {
-  for (const double factor : {0.3, 0.7, 1.0, 1.5, 3.0, 5.0, 15.0}) EXPECT_EQ(mistaken_unit(factor), "");
+  for (const double factor : {0.3, 0.7, 1.0, 1.5, 3.0, 5.0, 15.0})
+    EXPECT_EQ(mistaken_unit(factor, model::OutputUnit::mm), "");
 }
 
 }  // namespace

@@ -1,0 +1,168 @@
+"""Logs and models whose output is a bending angle: the same numbers as in mm, another unit in every text."""
+
+import csv
+import html
+import json
+import math
+import re
+import subprocess
+
+import bench
+
+TWIN, GIVEN = "config/models/bench_twin.yaml", "config/models/zhang2025.yaml"
+
+
+def without_times(value):
+    """The numbers of a JSON companion: what the clock, the unit, the hashes and the texts say is left out."""
+    if isinstance(value, dict):
+        return {key: without_times(inner) for key, inner in value.items()
+                if key not in ("wall_s", "stages_s", "hash", "sha256", "output_unit", "unit")}
+    if isinstance(value, list):
+        return [without_times(inner) for inner in value]
+    return None if isinstance(value, str) else value
+
+
+def words_of(page):
+    """What a reader sees of a page: no markup, no drawing instructions."""
+    return html.unescape(re.sub(r"<[^>]*>", " ", re.sub(r"(?s)<style.*?</style>", "", page)))
+
+
+class Angles(bench.BenchTest):
+
+    def setUp(self):
+        super().setUp()
+        for seed, signal in enumerate(("tp1", "sp2"), 1):
+            self.softgrip("simulate", "--model", TWIN, "--input", signal, "--rate-hz", "20", "--noise-mm", "0.05", "--seed",
+                          seed, "--out", f"{signal}.csv")
+            for unit, per_deg in (("deg", 1), ("rad", math.pi / 180)):
+                self.rename(f"{signal}.csv", f"{unit}/{signal}.csv", f"angle_{unit}", per_deg)
+            self.rename(f"{signal}.csv", f"mm/{signal}.csv", "displacement_mm", 1)
+
+    def rename(self, source, target, column, factor):
+        (self.folder / target).parent.mkdir(exist_ok=True)
+        with open(self.folder / source, newline="") as file:
+            rows = list(csv.reader(file))
+        at = rows[0].index("displacement_mm")
+        rows[0][at] = column
+        for row in rows[1:]:
+            row[at] = row[at] if factor == 1 else repr(float(row[at]) * factor)
+        with open(self.folder / target, "w", newline="") as file:
+            csv.writer(file, lineterminator="\n").writerows(rows)
+
+    def in_degrees(self, model):
+        name = "deg_" + model.rsplit("/", 1)[1]
+        self.write(name, "output_unit: deg\n" + self.read(model))
+        return name
+
+    def read(self, path):
+        return (self.folder / path).read_text()
+
+    def parameters(self, unit):
+        return {key: value["value"] for key, value in json.loads(self.read(f"{unit}/out/identify.json"))["parameters"].items()}
+
+    def identified(self, unit, *more):
+        return self.softgrip("identify", "--data", f"{unit}/tp1.csv", "--validate", f"{unit}/sp2.csv", "--starts", "3", *more,
+                             "--out", f"{unit}/out", timeout_s=150).stdout
+
+    def assert_in_degrees(self, folder, companion, *texts):
+        page = words_of(self.read(f"{folder}/report.html"))
+        told = self.read(f"{folder}/{companion}")
+        self.assertEqual(json.loads(told)["output_unit"], "deg")
+        for text in (page, told, self.read(f"{folder}/report.html"), *texts):
+            self.assertEqual(re.findall(r".{0,40}(?: mm\b|\[mm|\bmm/kPa|millimetre).{0,20}", text), [])
+        for text in (page, *texts):
+            self.assertRegex(text, r"\d deg\b")
+
+    def test_identify_gives_the_numbers_of_a_log_in_mm(self):
+        said = {unit: self.identified(unit, "--figures", f"{unit}/figures") for unit in ("mm", "deg")}
+        found = {unit: json.loads(self.read(f"{unit}/out/identify.json")) for unit in said}
+        self.assertEqual(without_times(found["deg"]), without_times(found["mm"]))
+        self.assertEqual(found["mm"]["output_unit"], "mm")
+        self.assertEqual(found["deg"]["parameters"]["bouc_wen.alpha_mm_per_kpa"]["unit"], "deg/kPa")
+        self.assert_in_degrees("deg/out", "identify.json", said["deg"])
+        self.assertIn("bending angle in degrees", self.read("deg/out/report.html"))
+        self.assertIn("\noutput_unit: deg\n", self.read("deg/out/model.yaml"))
+        self.assertNotIn("output_unit", self.read("mm/out/model.yaml"))
+        self.assertIn("measured_deg,predicted_identified_deg", self.read("deg/out/tp1/series.csv"))
+        self.assertEqual(self.read("deg/out/tp1/series.csv").split("\n")[1:], self.read("mm/out/tp1/series.csv").split("\n")[1:])
+        heads = [path.read_text().split("\n")[0] for path in (self.folder / "deg/figures").glob("*.csv")]
+        self.assertTrue(any("[deg]" in head for head in heads), heads)
+        self.assertFalse(any("[mm]" in head for head in heads), heads)
+
+    def test_a_chosen_structure_is_in_degrees_too(self):
+        for unit in ("mm", "deg"):
+            said = self.identified(unit, "--structure", "bouc_wen")
+        self.assertEqual(self.parameters("deg"), self.parameters("mm"))
+        self.assert_in_degrees("deg/out", "identify.json", said)
+        self.assertIn("\noutput_unit: deg\n", self.read("deg/out/model.yaml"))
+
+    def test_radians_give_the_model_of_degrees(self):
+        for unit in ("deg", "rad"):
+            self.identified(unit)
+        other = self.parameters("rad")
+        for name, value in self.parameters("deg").items():
+            self.assertAlmostEqual(other[name] / value, 1, delta=1e-6, msg=name)
+        self.assertIn("\noutput_unit: deg\n", self.read("rad/out/model.yaml"))
+
+    def test_validate_and_diagnose_speak_of_degrees(self):
+        found = {}
+        for unit in ("mm", "deg"):
+            logs = [f"{unit}/tp1.csv", f"{unit}/sp2.csv"]
+            models = [self.in_degrees(model) if unit == "deg" else model for model in (TWIN, GIVEN)]
+            validated = self.softgrip("validate", "--model", models[0], "--data", *logs, "--out", f"{unit}/validated").stdout
+            diagnosed = self.softgrip("diagnose", "--model", models[1], "--data", *logs, "--explain", "--out",
+                                      f"{unit}/diagnosed", timeout_s=170).stdout
+            found[unit] = [json.loads(self.read(f"{unit}/{name}"))
+                           for name in ("validated/validate.json", "diagnosed/diagnosis.json")]
+        self.assertEqual(without_times(found["deg"]), without_times(found["mm"]))
+        self.assertTrue(found["deg"][1]["causes"], "nothing was diagnosed")
+        self.assert_in_degrees("deg/validated", "validate.json", validated)
+        self.assert_in_degrees("deg/diagnosed", "diagnosis.json", diagnosed)
+        self.assertIn("\noutput_unit: deg\n", self.read("deg/diagnosed/model.yaml"))
+
+    def test_a_change_is_in_degrees(self):
+        self.rename("tp1.csv", "deg/later.csv", "angle_deg", 0.8)
+        said = self.softgrip("diagnose", "--model", self.in_degrees(TWIN), "--healthy", "deg/tp1.csv", "deg/sp2.csv", "--data",
+                             "deg/later.csv", "--explain", "--out", "deg/changed", timeout_s=170).stdout
+        self.assert_in_degrees("deg/changed", "diagnosis.json", said)
+
+    def test_logs_of_two_units_are_refused_with_file_and_line(self):
+        done = self.softgrip("identify", "--data", "mm/tp1.csv", "deg/sp2.csv", "--out", "out", expect=3)
+        self.assertRegex(done.stderr, r"deg/sp2\.csv:1:\d+: .*'angle_deg' gives readings in deg, and mm/tp1\.csv is in mm")
+        self.assertNotIn("softgrip import", done.stderr)
+        done = self.softgrip("identify", "--data", "rad/tp1.csv", "--validate", "mm/sp2.csv", "--out", "out", expect=3)
+        self.assertRegex(done.stderr, r"mm/sp2\.csv:1:\d+: .*'displacement_mm' gives readings in mm, and rad/tp1\.csv is in deg")
+        self.assertFalse((self.folder / "out").exists())
+
+    def test_a_model_of_another_unit_is_refused(self):
+        angular = self.in_degrees(TWIN)
+        for model, log, why in ((TWIN, "deg/tp1.csv", "in deg, and the model bench_twin is in mm"),
+                                (angular, "mm/tp1.csv", "in mm, and the model bench_twin is in deg")):
+            for command in (["validate", "--model", model], ["diagnose", "--model", model, "--out", "out"],
+                            ["identify", "--start", model, "--out", "out"]):
+                done = self.softgrip(*command, "--data", log, expect=3)
+                self.assertRegex(done.stderr, rf"{log}:1:\d+: .*{why}")
+        for command in (["baseline", "--data", "deg/tp1.csv", "--out", "out"], ["tune", "--model", angular, "--out", "out.yaml"],
+                        ["diagnose", "--model", angular, "--data", "deg/tp1.csv", "--gauge", "gauge.csv", "--out", "out"]):
+            self.assertRegex(self.softgrip(*command, expect=3).stderr, r"\bmm\b")
+
+    def test_no_rig_takes_a_model_in_degrees(self):
+        why = "the model answers in deg, and a rig measures and controls in mm"
+        self.assertIn(f":1:1: {why}", self.softgrip("check", self.in_degrees(TWIN), expect=3).stderr)
+        self.write(TWIN, "output_unit: deg\n" + self.read(TWIN))
+        self.assertIn(f"{TWIN}:1:1: {why}", self.softgrip("check", "config/rig.yaml", expect=3).stderr)
+        done = subprocess.run([bench.SOFTGRIPD, "--config", "config/rig.yaml", "--check"], cwd=self.folder,
+                              capture_output=True, text=True, timeout=bench.PATIENCE_S, stdin=subprocess.DEVNULL)
+        self.assertEqual(done.returncode, 3, done.stderr)
+        self.assertIn(why, done.stderr)
+
+    def test_simulate_writes_the_angle_of_a_model_in_degrees(self):
+        model = self.in_degrees(TWIN)
+        told = self.softgrip("simulate", "--model", model, "--input", "tp1", "--rate-hz", "20", "--noise-mm", "0.05",
+                             "--seed", "1", "--out", "simulated.csv").stdout
+        self.assertRegex(told, r"span [\d.]+ deg, noise 0\.05 deg")
+        self.assertEqual(self.read("simulated.csv"), self.read("deg/tp1.csv"))
+        self.softgrip("export", "simulated.csv", "--out", "wide.csv")
+        self.assertIn("angle_deg", self.read("wide.csv").split("\n")[0])
+        self.softgrip("export", model, "--rate-hz", "100", "--out", "finger.c")
+        self.assertIn("returns the bending angle [deg]", self.read("finger.c"))
