@@ -63,7 +63,7 @@ softgrip_room(daemon/service
 
 # From a log to the reason.
 softgrip_room(sysid/logs USES base document model)
-softgrip_room(sysid/import USES base document sysid/logs LIBRARIES nlohmann_json::nlohmann_json)
+softgrip_room(sysid/import USES base document model sysid/logs LIBRARIES nlohmann_json::nlohmann_json)
 # Nobody else is to be compiled against them.
 target_link_libraries(${softgrip_room_target} PRIVATE ZLIB::ZLIB PkgConfig::matio PkgConfig::hdf5 PkgConfig::libzip PkgConfig::pugixml)
 softgrip_room(sysid/pages USES base model model/file sysid/logs)

@@ -150,11 +150,16 @@ class Converter {
     const std::string word(spec.word);
     if (mapped.scale) {
       source.factor = *mapped.scale;
+      if (const auto angle = angle_of_scale(spec, mapped)) {
+        source.factor *= angle->factor;
+        output_unit_ = angle->output;
+      }
     } else if (const auto unit =
                    moments ? Unit{"s", Quantity::time, source.factor} : unit_named(text, spec.quantity);
                unit) {
       source.factor = unit->factor;
       source.offset = unit->offset;
+      if (spec.role == Role::displacement) output_unit_ = unit->output;
     } else if (text.empty()) {
       refuse(
           word + ": '" + document::shown(mapped.columns.front()) + "' says no unit",
@@ -163,7 +168,7 @@ class Converter {
       refuse(
           word + ": '" + document::shown(text) + "' is no unit of a " + std::string(name_of(spec.quantity)),
           "--scale " + word + "=X, " + std::string(spec.unit) + " per " + document::shown(text) +
-              "; known are " + unit_names(spec.quantity) + angle_hint(spec, text));
+              "; known are " + unit_names(spec.quantity));
     }
     if (mapped.zero) source.offset -= source.factor * *mapped.zero;
   }
@@ -176,13 +181,12 @@ class Converter {
     return codes;
   }
 
-  static std::string angle_hint(const RoleSpec& spec, const std::string& unit) {
-    const std::string name = lower_case(unit);
-    const bool angle =
-        name.starts_with("deg") || name.starts_with("rad") || name == "\xc2\xb0" || name == "grad";
-    if (spec.role != Role::displacement || !angle) return {};
-    return ". A log is in mm: of a bending angle, X is the length of the path of the tip per unit of the "
-           "angle";
+  /// Beside --scale, --unit displacement=deg or rad says that the scale gives an angle in this unit.
+  static std::optional<Unit> angle_of_scale(const RoleSpec& spec, const ColumnMapping& mapped) {
+    if (spec.role != Role::displacement || !mapped.scale || mapped.unit.empty()) return std::nullopt;
+    auto unit = unit_named(mapped.unit, spec.quantity);
+    if (unit && unit->output == model::OutputUnit::mm) unit.reset();
+    return unit;
   }
 
   /// "12:34" is two times: of two fields the unit says which.
@@ -419,10 +423,11 @@ class Converter {
       const bool dates = time && mapped.given() && table_.columns[sources_[0].columns.front()].moments > 0 &&
                          table_.columns[sources_[0].columns.front()].short_clocks == 0;
       const std::string why = mapped.given() ? "" : "no column is the " + std::string(spec.word);
-      if (!mapped.unit.empty() && (!mapped.given() || mapped.scale || dates))
-        idle("--unit" + word + mapped.unit, !why.empty()   ? why
-                                            : mapped.scale ? "--scale takes its place"
-                                                           : "the column has dates or times of day");
+      const bool scaled = mapped.scale && !angle_of_scale(spec, mapped);
+      if (!mapped.unit.empty() && (!mapped.given() || scaled || dates))
+        idle("--unit" + word + mapped.unit, !why.empty() ? why
+                                            : scaled     ? "--scale takes its place"
+                                                         : "the column has dates or times of day");
       if (mapped.scale && !mapped.given()) idle("--scale" + word + shortest(*mapped.scale), why);
       if ((mapped.zero || mapped.zero_first) && (!mapped.given() || time))
         idle("--zero" + word + (mapped.zero ? shortest(*mapped.zero) : "first"),
@@ -480,8 +485,9 @@ class Converter {
     }
   }
 
-  static Log log_of(ForeignSamples samples) {
+  [[nodiscard]] Log log_of(ForeignSamples samples) const {
     Log log;
+    log.output_unit = output_unit_;
     for (const RoleSpec& spec : roles) log.*spec.values = std::move(samples[spec.role]);
     return log;
   }
@@ -493,6 +499,7 @@ class Converter {
   std::set<std::size_t> bad_rows_;
   std::vector<double> missing_ = missing_codes();
   ImportRemarks remarks_;
+  model::OutputUnit output_unit_ = model::OutputUnit::mm;
   double clocks_begin_s_ = -std::numeric_limits<double>::infinity();
   double clocks_end_s_ = std::numeric_limits<double>::infinity();
 };

@@ -24,7 +24,7 @@ struct RoleSpec {
   Role role;
   std::string_view word;  ///< of options and mapping files
   Quantity quantity;
-  std::string_view unit;  ///< of the log
+  std::string_view unit;  ///< of the log, as options say it; a displacement may be in deg
   std::vector<double> Log::*values;
 };
 inline constexpr std::array<RoleSpec, role_count> roles{{
@@ -45,7 +45,8 @@ struct ColumnMapping {
       columns;       ///< names, or numbers from 1; several are averaged, but each of several times holds for
                      ///< its own columns (clock.h); empty: the role is not there
   std::string unit;  ///< empty: what the column itself says
-  std::optional<double> scale;  ///< log units per unit of the column, in place of a unit's
+  std::optional<double> scale;  ///< log units per unit of the column, in place of a unit's; of a
+                                ///< displacement, units of an angle where `unit` is one
   std::optional<double> zero;   ///< subtracted before, in the column's unit
   bool zero_first = false;      ///< the first value is subtracted
 

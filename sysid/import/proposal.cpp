@@ -30,9 +30,10 @@ const std::array<Words, role_count>& words() {
         "pd", "input", "commanded", "sollwert", "valve", "ventil"}},
       {Role::pressure, {"pressure", "press", "p", "druck", "pm", "prs", "regulator"}},
       {Role::displacement,
-       {"displacement", "disp",     "x",         "y",          "position", "pos",     "deflection",
-        "stroke",       "tip",      "bend",      "weg",        "laser",    "encoder", "enc",
-        "height",       "distance", "extension", "elongation", "travel",   "hub"}},
+       {"displacement", "disp",     "x",         "y",          "position",   "pos",     "deflection",
+        "stroke",       "tip",      "bend",      "weg",        "laser",      "encoder", "enc",
+        "height",       "distance", "extension", "elongation", "travel",     "hub",     "angle",
+        "bending",      "theta",    "flexion",   "winkel",     "biegewinkel"}},
       {Role::temperature, {"temperature", "temp", "temperatur"}},
       {Role::supply, {"supply", "tank", "vordruck", "source", "versorgung", "reservoir"}},
   }};
@@ -85,19 +86,24 @@ int fitness_for(const TableColumn& column, Role role) {
   const std::string unit = column.unit.empty() ? split_unit(column.name, spec.quantity).unit : column.unit;
   const std::string anywhere = open_unit(column);
   const bool of_quantity = !unit.empty() && unit_named(unit, spec.quantity).has_value();
-  const bool elsewhere =
-      !of_quantity && !anywhere.empty() && !is_raw_unit(anywhere) && unit_named(anywhere).has_value();
-  if (elsewhere) return 0;
+  const std::optional<Unit> carried = unit_named(anywhere);
   const std::string bare = split_unit(column.name, spec.quantity).name;
   const bool named = names_role(bare, spec.role);
+  const bool angle = carried && carried->output == model::OutputUnit::deg;
+  // "temp_deg" is in degrees of a temperature: the scale is unknown.
+  const bool warmth = angle && names_role(split_unit(column.name).name, Role::temperature);
+  if (warmth) return role == Role::temperature ? 3 : 0;
+  const bool elsewhere = !of_quantity && !anywhere.empty() && !is_raw_unit(anywhere) && carried;
+  if (elsewhere) return 0;
   if (time && column.moments > 0) return 4;
   // A pressure that is asked for is no measured one, and the supply's is neither.
   const bool pressure = spec.role == Role::pressure;
   if (pressure && (names_role(bare, Role::command) || names_role(bare, Role::supply))) return 0;
   if (spec.role == Role::command && names_role(bare, Role::displacement) && !of_quantity) return 0;
-  if (named) return of_quantity ? 5 : 3;
+  // Of a path and an angle, the path is taken.
+  if (named) return !of_quantity ? 3 : angle ? 4 : 5;
   const bool by_unit_alone = pressure || spec.role == Role::displacement || time;
-  return of_quantity && by_unit_alone ? 2 : 0;
+  return !of_quantity || !by_unit_alone ? 0 : angle ? 1 : 2;
 }
 
 namespace {
@@ -302,7 +308,7 @@ void say_what_is_missing(const ForeignTable& table, Proposal& proposal) {
   if (!mapping[Role::command].given() && !mapping[Role::pressure].given())
     proposal.missing.emplace_back("a pressure: --command COLUMN (asked for) or --pressure COLUMN (measured)");
   if (!mapping[Role::displacement].given())
-    proposal.missing.emplace_back("a displacement: --displacement COLUMN");
+    proposal.missing.emplace_back("a displacement or a bending angle: --displacement COLUMN");
 }
 
 /// Up to three values from the beginning, the middle and the end.

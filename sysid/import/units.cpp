@@ -38,6 +38,9 @@ constexpr std::array units{
     Unit{"m", Quantity::displacement, 1e3},
     Unit{"in", Quantity::displacement, 25.4},
     Unit{"mil", Quantity::displacement, 0.0254},
+    Unit{"deg", Quantity::displacement, 1, 0, model::OutputUnit::deg},
+    Unit{"rad", Quantity::displacement, model::deg_per_rad, 0, model::OutputUnit::deg},
+    Unit{"mrad", Quantity::displacement, 1e-3 * model::deg_per_rad, 0, model::OutputUnit::deg},
     Unit{"c", Quantity::temperature},
     Unit{"k", Quantity::temperature, 1, absolute_zero_c},
     Unit{"f", Quantity::temperature, 5.0 / 9, -160.0 / 9},
@@ -58,7 +61,8 @@ constexpr std::array spellings{
     Spelling{"microns", "um"},      Spelling{"inch", "in"},        Spelling{"inches", "in"},
     Spelling{"meter", "m"},         Spelling{"metre", "m"},        Spelling{"celsius", "c"},
     Spelling{"degc", "c"},          Spelling{"kelvin", "k"},       Spelling{"degf", "f"},
-    Spelling{"fahrenheit", "f"},
+    Spelling{"fahrenheit", "f"},    Spelling{"degree", "deg"},     Spelling{"degrees", "deg"},
+    Spelling{"radian", "rad"},      Spelling{"radians", "rad"},
 };
 constexpr std::array<std::string_view, 14> raw_units{
     "v", "mv", "volt", "volts", "ma", "a", "counts", "count", "lsb", "adc", "raw", "%", "percent", "digits"};
@@ -75,6 +79,7 @@ void replace_all(std::string& text, std::string_view from, std::string_view to) 
 std::string normalised(std::string_view text) {
   std::string unit(trimmed(text));
   if (unit == "mPa") return "millipascal";
+  if (unit == "\xc2\xb0" || unit == "\xc2\xba") return "deg";
   replace_all(unit, "\xc2\xb5", "u");  // micro sign
   replace_all(unit, "\xce\xbc", "u");  // small mu
   replace_all(unit, "\xc2\xb0", "");   // degree sign

@@ -1,10 +1,13 @@
 #pragma once
-// Units that people write, and how to come from them to the units of a log: s, kPa, mm, degrees Celsius.
+// Units that people write, and how to come from them to the units of a log: s, kPa, mm or deg, degrees
+// Celsius. A bending angle is a displacement, too.
 
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
+
+#include "model/output_unit.h"
 
 namespace softgrip::sysid {
 
@@ -16,6 +19,8 @@ struct Unit {
   Quantity quantity = Quantity::time;
   double factor = 1;
   double offset = 0;
+  /// Of a displacement: what a log is in that holds it.
+  model::OutputUnit output = model::OutputUnit::mm;
 };
 
 /// The unit of a quantity that a text names: "PSI", "µm", "deg C". Upper and lower case are one but for mPa

@@ -308,6 +308,7 @@ def opendocument(path):
 
 BASIC = ("time_s", "pressure_command_kpa", "displacement_mm")
 BASIC_OF = {key: TRUTH[key] for key in BASIC}
+BENT = {"time_s": T, "pressure_command_kpa": COMMAND, "angle_deg": TIP}
 MEASURED = {key: TRUTH[key] for key in (*BASIC, "pressure_kpa")}
 ALONE = {"time_s": T, "pressure_command_kpa": PRESSURE, "pressure_kpa": PRESSURE, "displacement_mm": TIP}
 PLAIN = table(["time_s", "set_kpa", "tip_mm"], [T, COMMAND, TIP])
@@ -661,8 +662,19 @@ def files():
         File("fingers_a_b.csv", "fingers A and B", table(
             ["t_s", "Finger A set (kPa)", "Finger A tip (mm)", "Finger B set (kPa)", "Finger B tip (mm)"],
             [T, *other, COMMAND, TIP]), "--channel B"),
-        File("angle.csv", "degrees", table(["time_s", "set_kpa", "tip (deg)"], [T, COMMAND, TIP]),
-             refused="'deg' is no unit of a displacement"),
+        File("angle.csv", "degrees", table(["time_s", "set_kpa", "tip (deg)"], [T, COMMAND, TIP]), columns=BENT),
+        File("angle_sign.csv", "a bending angle with the sign of degrees", table(
+            ["time_s", "set_kpa", "bend [\u00b0]"], [T, COMMAND, TIP]), columns=BENT),
+        File("angle_rad.csv", "radians", table(
+            ["time_s", "set_kpa", "theta_rad"], [T, COMMAND, scaled(TIP, math.degrees(1), 15)]), columns=BENT),
+        File("angle_volts.csv", "a bend sensor of 18 degrees a volt", table(
+            ["time_s", "set_kpa", "flex_V"], [T, COMMAND, scaled(TIP, 18)]),
+             "--displacement flex_V --scale displacement=18 --unit displacement=deg", columns=BENT),
+        File("angle_beside.csv", "a tip in mm, and the angle of the bend", table(
+            ["time_s", "set_kpa", "angle (deg)", "tip (mm)"], [T, COMMAND, scaled(TIP, 0.3), TIP]),
+             says="not used: 'angle (deg)'"),
+        File("angle_gon.csv", "a unit of angles that is not read", table(
+            ["time_s", "set_kpa", "angle (gon)"], [T, COMMAND, TIP]), refused="'gon' is no unit of a displacement"),
         File("angle_scaled.csv", "degrees, as the path of a tip 45 mm from the bend",
              table(["time_s", "set_kpa", "tip (deg)"], [T, COMMAND, scaled(TIP, math.radians(45))]),
              f"--scale displacement={math.radians(45)!r}"),
@@ -688,7 +700,7 @@ def files():
 def read_csv(path):
     with open(path, newline="") as file:
         rows = list(csv.DictReader(file))
-    names = [name for name in (rows[0] if rows else {}) if name in TRUTH]
+    names = [name for name in (rows[0] if rows else {}) if name in TRUTH or name == "angle_deg"]
     return {name: [float(row[name]) if row[name] else math.nan for row in rows] for name in names}
 
 

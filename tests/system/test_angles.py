@@ -166,3 +166,22 @@ class Angles(bench.BenchTest):
         self.assertIn("angle_deg", self.read("wide.csv").split("\n")[0])
         self.softgrip("export", model, "--rate-hz", "100", "--out", "finger.c")
         self.assertIn("returns the bending angle [deg]", self.read("finger.c"))
+
+    def test_a_foreign_angle_is_imported_in_degrees(self):
+        with open(self.folder / "tp1.csv", newline="") as file:
+            rows = list(csv.DictReader(file))
+        wanted = [float(row["displacement_mm"]) for row in rows]
+        for name, factor, options in (("bend [\u00b0]", 1, ()), ("theta_rad", math.pi / 180, ()),
+                                      ("Winkel (degrees)", 1, ()), ("flex [V]", 1 / 18, (
+                                          "--displacement", "flex [V]", "--scale", "displacement=18", "--unit",
+                                          "displacement=deg"))):
+            with open(self.folder / "foreign.csv", "w", newline="") as file:
+                csv.writer(file).writerows([["t (s)", "set (kPa)", name], *(
+                    [row["time_s"], row["pressure_command_kpa"], repr(value * factor)] for row, value in zip(rows, wanted))])
+            told = json.loads(self.softgrip("import", "foreign.csv", *options, "--yes", "--json", "--out", "log.csv").stdout)
+            self.assertEqual(told["logs"][0]["output_unit"], "deg", name)
+            with open(self.folder / "log.csv", newline="") as file:
+                got = [float(row["angle_deg"]) for row in csv.DictReader(file)]
+            self.assertEqual(len(got), len(wanted))
+            for a, b in zip(got, wanted):
+                self.assertAlmostEqual(a, b, delta=1e-9, msg=name)

@@ -33,7 +33,8 @@ void add_import(CLI::App& program, ExitCode& outcome) {
       ->allow_extra_args(false);
   command
       ->add_option("--scale", options->scales,
-                   "ROLE=X, s, kPa, mm or C per unit of the column (displacement=-2.5)")
+                   "ROLE=X, s, kPa, mm or C per unit of the column (displacement=-2.5); deg or rad per unit "
+                   "beside --unit displacement=deg or =rad")
       ->allow_extra_args(false);
   command
       ->add_option("--zero", options->zeros, "ROLE=X, subtracted first, in the column's unit; or ROLE=first")

@@ -213,6 +213,7 @@ ordered_json json_of(const Job& job) {
           {"out", job.out},
           {"samples", log.size()},
           {"duration_s", log.time_s.back()},
+          {"output_unit", model::name_of(log.output_unit)},
           {"columns", columns},
           {"options", sysid::options_of(job.mapping)},
           {"rows", account_json(job.result.account)},

@@ -69,6 +69,44 @@ TEST(Convert, UnitScaleAndZero) {
   EXPECT_NEAR(log.displacement_mm[50], -2 * 6.5, 1e-9);
 }
 
+TEST(Convert, AnAngleMakesALogInDegrees) {
+  for (const auto& [name, factor] :
+       {std::pair("theta_deg", 1.0), std::pair("bend [rad]", 1 / model::deg_per_rad),
+        std::pair("angle (\xc2\xb0)", 1.0)}) {
+    const std::string text =
+        text_of(std::string("time_s,set_kpa,") + name,
+                [factor = factor](int i, double p, double y) { return plain(i, p, factor * y); });
+    const Log log = log_of(text).log;
+    EXPECT_EQ(log.output_unit, model::OutputUnit::deg) << name;
+    EXPECT_NEAR(log.displacement_mm[50], 6.5, 1e-9) << name;
+  }
+}
+
+TEST(Convert, OfAPathAndAnAngleThePathIsTaken) {
+  const Log log = log_of(text_of("time_s,set_kpa,angle_deg,tip_mm", [](int i, double p, double y) {
+                    return plain(i, p, 3 * y) + "," + shortest(y);
+                  })).log;
+  EXPECT_EQ(log.output_unit, model::OutputUnit::mm);
+  EXPECT_NEAR(log.displacement_mm[50], 6.5, 1e-9);
+}
+
+TEST(Convert, AScaleGivesMillimetresOrTheAngleThatTheUnitNames) {
+  const std::string text = text_of("time_s,set_kpa,flex_V", plain);
+  Mapping mapping = mapping_of("time_s", "set_kpa", "flex_V");
+  mapping[Role::displacement].scale = 2;
+  EXPECT_EQ(log_of(text, mapping).log.output_unit, model::OutputUnit::mm);
+  mapping[Role::displacement].unit = "rad";
+  const ImportedLog angle = log_of(text, mapping);
+  EXPECT_EQ(angle.log.output_unit, model::OutputUnit::deg);
+  EXPECT_NEAR(angle.log.displacement_mm[50], 2 * 6.5 * model::deg_per_rad, 1e-9);
+  EXPECT_TRUE(angle.warnings.empty());
+}
+
+TEST(Convert, ATemperatureInDegreesIsNoAngle) {
+  const std::string text = text_of("time_s,set_kpa,temp_deg", plain);
+  EXPECT_NE(refusal(text, {}).find("a displacement or a bending angle"), std::string::npos);
+}
+
 TEST(Convert, ZeroFirstSubtractsTheFirstValue) {
   const std::string text =
       text_of("t_s,set_kpa,tip_mm", [](int i, double p, double y) { return plain(i, p, y + 5); });

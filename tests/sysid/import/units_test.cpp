@@ -38,7 +38,11 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"mmHg", Quantity::pressure, 1, 0.133322387415}, Case{"inH2O", Quantity::pressure, 1, 0.24908891},
         Case{"kgf/cm2", Quantity::pressure, 1, 98.0665}, Case{"cm", Quantity::displacement, 1.2, 12},
         Case{"m", Quantity::displacement, 0.012, 12}, Case{"\xce\xbcm", Quantity::displacement, 12000, 12},
-        Case{"inch", Quantity::displacement, 0.5, 12.7}, Case{"mil", Quantity::displacement, 100, 2.54},
+        Case{"inch", Quantity::displacement, 0.5, 12.7}, Case{"Degrees", Quantity::displacement, 30, 30},
+        Case{"\xc2\xb0", Quantity::displacement, 30, 30},
+        Case{"rad", Quantity::displacement, 1, 57.29577951308232},
+        Case{"mrad", Quantity::displacement, 1000, 57.29577951308232},
+        Case{"mil", Quantity::displacement, 100, 2.54},
         Case{"\xc2\xb0"
              "C",
              Quantity::temperature, 21, 21},
