@@ -17,9 +17,10 @@ struct NoInterruption {
   static void halfway() noexcept {}
 };
 
-/// One thread pushes and never waits: the oldest item makes room. Any number of readers, each of its own
-/// thread and at its own pace; one that lags behind by more than the capacity loses items, counted, and holds
-/// up nobody. Memory is allocated at construction only. T is a plain value.
+/// Distributes items from one thread to any number of readers. The writer never waits: a new item replaces
+/// the oldest. Each reader has its own thread and pace. A reader that lags by more than the capacity loses
+/// items, which are counted, and delays no other thread. Memory is allocated at construction only. T is a
+/// plain value.
 template <class T, class Interruption = NoInterruption>
 class Broadcast {
   static_assert(std::is_trivially_copyable_v<T>);
@@ -35,7 +36,7 @@ class Broadcast {
     std::memcpy(words.data(), &item, sizeof(T));
     Slot& slot = slot_of(pushed_);
     slot.turn.store(writing, std::memory_order_relaxed);
-    // Whoever sees one of the new words sees before it that the slot is being written.
+    // A reader that sees one of the new words also sees that the slot is being written.
     for (std::size_t i = 0; i < words.size(); ++i) {
       if (i == words.size() / 2) Interruption::halfway();
       slot.words[i].store(words[i], std::memory_order_release);

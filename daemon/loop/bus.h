@@ -18,21 +18,22 @@
 
 namespace softgrip::daemon {
 
-/// What a failed exchange means to the supervisor; none for ok.
+/// Returns the fault of a failed exchange for the supervisor; none for ok.
 [[nodiscard]] control::FaultCode fault_of(drivers::BusStatus status) noexcept;
 
-/// The only one that talks to the board. It writes nothing before the loop has sent its first commands, which
-/// are safe ones.
+/// The only class that communicates with the board. It writes nothing before the loop has sent its first
+/// commands, which are safe ones.
 ///
-/// Outputs move away from rest only while a sequence runs. When something has come between the loop's
-/// commands and the outputs, the bus is inhibited: it writes nothing further from rest than what stands
-/// there, reports why, and obeys again only when commands come from a tick that knew, in which no sequence
-/// runs, and that are no further from rest than the outputs. That is so when
-/// - the loop falls silent: the safe outputs that came with its last commands are written (cycles_lost);
-/// - the board's watchdog must have acted, by the time since the last good exchange, or says that it has: the
-///   rest pressures are written (board_watchdog_tripped);
-/// - the board did not take a write (write_refused);
-/// - somebody else writes to the board: the rest pressures are written (outputs_overwritten).
+/// Outputs move away from rest only while a sequence runs. If the outputs no longer follow the loop's
+/// commands, the bus is inhibited. It then writes nothing further from rest than the present outputs, and
+/// reports the reason. It follows commands again under three conditions. They come from a tick that knew of
+/// the inhibition. No sequence runs in that tick. They are no further from rest than the outputs. The bus is
+/// inhibited if
+/// - the commands of the loop time out: the safe outputs of its last commands are written (cycles_lost);
+/// - the board's watchdog must have tripped, by the time since the last good exchange, or reports that it
+/// has: the rest pressures are written (board_watchdog_tripped);
+/// - the board rejected a write (write_refused);
+/// - another Modbus client writes to the board: the rest pressures are written (outputs_overwritten).
 class Bus {
  public:
   /// All references outlive the bus. `rig`: one channel per channel of the board.
@@ -44,8 +45,8 @@ class Bus {
   /// connect_deadline.
   bool open() noexcept { return ensure_session(); }
 
-  /// Steps on the grid until the last commands were confirmed or `leave_deadline` has passed since the loop
-  /// was told to leave.
+  /// Runs on the grid until the last commands are confirmed, or until `leave_deadline` has passed since the
+  /// shutdown request to the loop.
   void run(Grid grid, std::chrono::nanoseconds leave_deadline) noexcept;
 
   /// One exchange, or one attempt to rebuild the session if it is due. `due` is when it should have begun.

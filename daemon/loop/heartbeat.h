@@ -1,5 +1,5 @@
 #pragma once
-// Whether the threads that must go on go on.
+// Checks that the essential threads are still running.
 
 #include <cstdint>
 #include <vector>

@@ -19,7 +19,7 @@ class Histogram {
   /// One thread only.
   void add(std::int64_t duration_ns) noexcept;
 
-  /// What was counted so far. Taken while add() runs, it may miss the newest few, nothing else.
+  /// The counts so far. If add() runs at the same time, the newest few may be missing.
   struct Summary {
     std::uint64_t count = 0;
     std::int64_t min_ns = 0;
@@ -42,8 +42,9 @@ class Histogram {
   };
   [[nodiscard]] std::vector<Bin> bins() const;
 
-  /// In the form of `cyclictest --histogram`: one line per microsecond with its count, then minimum, average,
-  /// maximum. Above 131 us a bin is wider than a microsecond and stands at its lower end.
+  /// Returns the histogram in the form of `cyclictest --histogram`: one line per microsecond with its count,
+  /// then minimum, average and maximum. Above 131 us, a bin is wider than 1 us and is listed at its lower
+  /// end.
   [[nodiscard]] std::string cyclictest_text(std::string_view title) const;
 
  private:

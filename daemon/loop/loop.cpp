@@ -62,8 +62,8 @@ void Loop::read(control::TickInput& input) noexcept {
   input.bus = report.health;
   input.outputs_kpa = std::span(report.outputs_kpa).first(channels_);
   inhibit_ = report.health.inhibit;
-  // An exchange that hangs reports nothing until its deadline; its cycles are without a good exchange all the
-  // same. One missing report is the jitter of two grids.
+  // An exchange that hangs reports nothing until its deadline, but its cycles count as failed. One missing
+  // report is the jitter between two grids.
   if (unreported_ > 1) input.bus.consecutive_failures += unreported_ - 1;
   input.emergency_stop = wires_.inputs.emergency_stop.load(std::memory_order_relaxed);
   input.interlock_open = wires_.inputs.interlock_open.load(std::memory_order_relaxed);

@@ -46,7 +46,7 @@ void touch(volatile char* memory, std::size_t bytes) {
   for (std::size_t at = 0; at < bytes; at += static_cast<std::size_t>(page_bytes())) memory[at] = 1;
 }
 
-/// Whether a block of the heap can be taken and touched without a page fault.
+/// Returns the number of page faults during allocation and use of a heap block.
 long faults_of_a_heap_block(std::size_t bytes) {
   const long before = page_faults();
   const std::unique_ptr<char[]> block(new char[bytes]);
@@ -89,7 +89,7 @@ std::string doubt_of_a_new_mapping() {
   return (resident & 1) != 0 ? "" : "a page mapped afterwards was not resident";
 }
 
-/// Whether the limit on locked memory does not apply to this process.
+/// Returns true if the limit on locked memory does not apply to this process.
 bool may_lock_without_limit() {
   rlimit limit{};
   getrlimit(RLIMIT_MEMLOCK, &limit);

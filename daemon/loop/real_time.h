@@ -9,7 +9,7 @@
 
 namespace softgrip::daemon {
 
-/// One thing that was asked for.
+/// One requested real-time setting.
 struct RealTimeStep {
   enum class Outcome { verified, failed, not_asked };
   std::string name;
@@ -19,13 +19,13 @@ struct RealTimeStep {
 };
 [[nodiscard]] std::string_view name_of(RealTimeStep::Outcome outcome) noexcept;
 
-/// What became of all steps of one thread or of the process.
+/// The results of all steps of one thread or of the process.
 class RealTimeReport {
  public:
   void add(RealTimeStep step) { steps_.push_back(std::move(step)); }
   void append(const RealTimeReport& other);
   [[nodiscard]] const std::vector<RealTimeStep>& steps() const noexcept { return steps_; }
-  /// True if anything that was asked for could not be verified.
+  /// Returns true if a requested setting could not be verified.
   [[nodiscard]] bool degraded() const noexcept;
   /// One line per step, and for a failed one a second line with its cost.
   [[nodiscard]] std::string format() const;
@@ -57,7 +57,7 @@ class ProcessorLatencyRequest {
 void prepare_thread(const rig::RealTimeSettings& settings, int priority, std::string_view who,
                     RealTimeReport& report);
 
-/// Whether the running kernel is PREEMPT_RT, as a step that never fails.
+/// Reports if the running kernel is PREEMPT_RT, as a step that never fails.
 [[nodiscard]] RealTimeStep kernel_step();
 
 }  // namespace softgrip::daemon

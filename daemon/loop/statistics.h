@@ -20,7 +20,7 @@ class Counter {
   std::atomic<std::uint64_t> value_{0};
 };
 
-/// A slip is a period of the grid in which no tick began.
+/// A slip (missed cycle) is a period of the grid in which no tick started.
 struct LoopStatistics {
   Histogram wake_up;      ///< from the grid's time to the first instruction of the tick
   Histogram compute;      ///< from there to the end of the tick
@@ -39,7 +39,7 @@ struct BusStatistics {
   Counter slips;
   Counter sessions;                         ///< successful connects
   std::atomic<std::uint64_t> attempts{0};   ///< to connect since the last good exchange
-  std::atomic<Nanoseconds> retry_pause{0};  ///< at most so long until the next one
+  std::atomic<Nanoseconds> retry_pause{0};  ///< upper limit of the time until the next one
 };
 
 }  // namespace softgrip::daemon

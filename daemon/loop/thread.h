@@ -9,7 +9,7 @@
 
 namespace softgrip::daemon {
 
-/// Joined on destruction at the latest; its body must end by itself when told so.
+/// Joins on destruction at the latest. The body must end by itself on request.
 class Thread {
  public:
   struct Options {

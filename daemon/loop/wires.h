@@ -20,9 +20,9 @@ namespace softgrip::daemon {
 struct Commands {
   Nanoseconds at = 0;  ///< the tick they come from
   std::array<double, control::max_channels> command_kpa{};
-  /// What to write instead when the loop stops sending.
+  /// The output if the loop stops sending commands.
   std::array<double, control::max_channels> safe_kpa{};
-  bool may_rise = false;      ///< a sequence runs; else what leaves rest is an old command that came late
+  bool may_rise = false;      ///< a sequence runs; otherwise a command away from rest is a late old command
   std::uint32_t inhibit = 0;  ///< control::BusHealth::inhibit, as this tick knew it
   bool last = false;          ///< the loop has ended; write these until the board confirms them
 };
@@ -73,7 +73,7 @@ struct StampedEvent {
   control::Event event;
 };
 
-/// From the loop to whoever asks for the status: one tick.
+/// One tick, from the loop to the readers of the status.
 struct Snapshot {
   Nanoseconds at = 0;
   std::uint64_t ticks = 0;
@@ -86,13 +86,13 @@ struct Snapshot {
   control::BusHealth bus;
 };
 
-/// Inputs that are levels, not requests; whoever reads the lines (daemon/panel/panel.h) stores them.
+/// Inputs that are levels, not requests; the reader of the lines (daemon/panel/panel.h) stores them.
 struct InputLevels {
   std::atomic<bool> emergency_stop{false};
   std::atomic<bool> interlock_open{false};
   std::atomic<bool> lost{false};          ///< the lines cannot be read any more
   std::atomic<Nanoseconds> looked_at{0};  ///< when the lines were read last
-  /// A look that is older than this means that nobody reads the lines: they are lost; 0: there are none.
+  /// The lines are lost if the last read is older than this; 0: there are no lines.
   Nanoseconds longest_silence = 0;
 };
 

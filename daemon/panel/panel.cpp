@@ -159,7 +159,7 @@ void Panel::drive(Nanoseconds now) noexcept {
   wires_.enable_on.store(enable && !dropped_.load(), std::memory_order_relaxed);
   if (changed) tell(enable ? PanelEvent::Kind::enable_on : PanelEvent::Kind::enable_off, now);
   const bool broken = hangs || lost_;
-  // Where the loop hangs nobody knows what stands at the fingers any more: the fault lamp is steady then.
+  // If the loop has stalled, the state of the fingers is unknown; the fault lamp is then steady.
   const bool dark = !broken && wires_.under_pressure.load(std::memory_order_relaxed) && in_dark_half(now);
   write(GpioRole::ready_lamp, works(state) && !broken && !dark);
   write(GpioRole::fault_lamp, (state == State::faulted || broken) && !dark);

@@ -16,15 +16,15 @@
 
 namespace softgrip::daemon {
 
-/// A thread of its own, because reading or writing a line is a system call, on a USB or I2C expander one of
-/// milliseconds: neither belongs into a tick or an exchange. It sleeps until an edge comes, and looks at the
-/// levels every `look_interval_s` all the same. The loop sees two flags and the time of the last look.
+/// Runs in a separate thread, because a read or write of a line is a system call. On a USB or I2C expander it
+/// takes milliseconds, which is too long for a tick or an exchange. The thread waits for an edge, and also
+/// reads the levels every `look_interval_s`. The loop gets two flags and the time of the last read.
 ///
-/// While pressure stays on although nothing moves, the lamp that is on blinks, half a second on and half a
-/// second off: the ready lamp of an idle rig, the fault lamp of a faulted one.
+/// If pressure is on although nothing moves, the active lamp blinks, 0.5 s on and 0.5 s off. This is the
+/// ready lamp of an idle rig, or the fault lamp of a faulted one.
 ///
-/// The emergency stop counts as pressed from the start. It counts as released when the loop has latched it
-/// and the line has been steadily released; motion then still needs an acknowledgement.
+/// The emergency stop counts as pressed at start-up. It counts as released after the loop has latched it and
+/// the line has been steadily released. Motion then still needs a reset (acknowledge).
 class Panel {
  public:
   /// All references outlive it. Sets the inputs of `wires` to what they are before anything is known.

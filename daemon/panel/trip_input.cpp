@@ -19,8 +19,7 @@ void TripInput::change(bool trips, Nanoseconds at) noexcept {
   known_ = true;
   asks_ = trips;
   since_ = at;
-  // Whatever broke the steadiness of a clear line is a reason for suspicion, also an edge whose partner was
-  // lost.
+  // Any disturbance of a clear line is suspicious, even an edge without its partner.
   if (suspect_ == never) suspect_ = at;
 }
 

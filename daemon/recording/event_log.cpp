@@ -20,7 +20,7 @@ namespace {
 using control::Event;
 using Kind = control::Event::Kind;
 
-/// An event that needs no numbers to be told.
+/// An event whose text contains no numbers.
 struct Words {
   std::string_view kind;
   Severity severity;
@@ -66,7 +66,7 @@ EventEntry entry_of(const Table& table, Which which) {
 
 using Sequence = control::PreparedSequence;
 
-/// What is still there, of a refused acknowledgement.
+/// Returns the remaining cause of a refused reset.
 control::FaultCode refused_because_of(const Event& event) {
   return static_cast<control::FaultCode>(static_cast<std::uint16_t>(event.value));
 }
@@ -108,7 +108,7 @@ void describe_result(const Event& event, const Sequence*, EventEntry& entry) {
 void describe_refusal(const Event& event, const Sequence*, EventEntry& entry) {
   const auto refusal = static_cast<control::RefusalCode>(event.detail);
   entry.code = control::id_of(refusal);
-  // The finger stands before the sentence already.
+  // The sentence already starts with the finger.
   entry.text =
       fmt::format("The request was refused. {}", sentences_of(refusal, {refused_because_of(event)}, {}));
   entry.severity = Severity::warning;
@@ -315,7 +315,7 @@ std::string_view name_of(Severity severity) noexcept {
 std::uint64_t EventLog::add(EventEntry entry) {
   const std::scoped_lock lock(mutex_);
   entry.id = ++last_id_;
-  // Whoever starts sequences chooses their names: counted by them, the counts would grow without end.
+  // Clients choose the names of sequences. A count per name would grow without limit.
   const bool named = entry.kind == "sequence_started" || entry.kind == "step_started";
   ++counts_[{entry.kind, named ? std::string() : entry.code, entry.channel}];
   entries_.push_back(std::move(entry));

@@ -29,7 +29,7 @@ struct EventEntry {
   std::string code;           ///< "F101", "R02", "HOLDING", a state, a step; by kind; may be empty
   std::string text;           ///< one sentence
   std::uint32_t request = 0;  ///< the request it answers, or 0
-  std::string client;         ///< who made that request, as it calls itself; empty: nobody said so
+  std::string client;         ///< name of the client that made the request; empty: unknown
   double value = 0;           ///< a number that goes with it, or 0
   std::vector<control::Argument> parameters;  ///< of sequence_started: what the sequence runs with
 };
@@ -49,7 +49,8 @@ struct EventEntry {
 [[nodiscard]] std::string title_of(const control::Fault& fault,
                                    const std::vector<std::string>& channel_names);
 
-/// What a refusal means and what to do now, as sentences. `cause`: of cause_persists, what is still there.
+/// Returns the meaning of a refusal and its remedy, as sentences. `cause`: for cause_persists, the remaining
+/// cause.
 [[nodiscard]] std::string sentences_of(control::RefusalCode refusal, const control::Fault& cause,
                                        const std::vector<std::string>& channel_names);
 

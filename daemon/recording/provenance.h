@@ -15,7 +15,7 @@ struct SourceFile {
   std::string sha256;
 };
 
-/// The same for all recordings of a daemon.
+/// Data that all recordings of a daemon share.
 struct Provenance {
   std::string software_version;
   std::string rig;  ///< its name
@@ -27,7 +27,7 @@ struct Provenance {
   double rate_hz = 0;
   std::uint32_t decimation = 1;
   std::optional<std::uint64_t> seed;  ///< of a simulated board
-  bool virtual_time = false;          ///< then nothing of the wall clock stands in a recording
+  bool virtual_time = false;          ///< a recording then contains no wall-clock time
 };
 
 }  // namespace softgrip::daemon

@@ -75,7 +75,7 @@ void Recorder::drain() {
     for (std::size_t i = 0; i < count; ++i) take(batch_[i]);
     if (recording_ && recording_->text.size() >= text_bytes) flush(false);
   }
-  // In virtual time hours pass in seconds, and nobody can read along: the kernel gets whole buffers.
+  // In virtual time, hours pass in seconds and no live reader exists: the kernel gets whole buffers.
   if (recording_ && !provenance_.virtual_time) flush(false);
   show();
 }

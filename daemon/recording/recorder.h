@@ -20,7 +20,7 @@
 
 namespace softgrip::daemon {
 
-/// What the status shows of it.
+/// Status of the recorder.
 struct RecorderStatus {
   bool active = false;
   std::string folder;  ///< of the present or last recording; empty before the first
@@ -29,10 +29,10 @@ struct RecorderStatus {
   std::string error;               ///< of the present or last recording
 };
 
-/// Decides where recordings begin and end, and writes them. A recording begins with a sequence and ends half
-/// a second after its motion; a fault outside a sequence gets a recording of its own that begins history_s
-/// before it. What disks do is told as an event and survived: that recording ends, the next one is tried
-/// again. All calls but status() come from one thread.
+/// Decides when recordings start and end, and writes them. A recording starts with a sequence and ends 0.5 s
+/// after its motion. A fault outside a sequence gets its own recording, which starts history_s before it. A
+/// disk error is reported as an event and ends that recording; the next one is tried again. All calls except
+/// status() come from one thread.
 class Recorder {
  public:
   /// `only_folder`: if not empty, everything goes into this one folder from start to stop, whatever the mode.
@@ -82,7 +82,7 @@ class Recorder {
   Wires& wires_;
   Broadcast<StampedEvent>::Reader loop_events_;
   std::optional<StampedEvent> waiting_;  // newer than the newest row
-  std::uint64_t events_lost_ = 0;        // told so far
+  std::uint64_t events_lost_ = 0;        // reported so far
   EventLog& events_;
   const SequenceShelf& shelf_;
   CsvRows rows_;

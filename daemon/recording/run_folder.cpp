@@ -93,8 +93,8 @@ bool RunFolder::append(std::string_view lines) {
     return true;
   }
   fail(path_ + "/run.csv", error);
-  // A full disk may have taken half of it. Cutting back needs no space; if it fails, the last line is
-  // incomplete, which readers of recordings stand.
+  // A full disk may have written half of it. Truncation needs no space. If it fails, the last line is
+  // incomplete, which readers of recordings accept.
   if (ftruncate(descriptor_, whole_bytes_) != 0) error_ += "; its last line may be incomplete";
   close();
   return false;

@@ -9,8 +9,9 @@
 
 namespace softgrip::daemon {
 
-/// A sentence where `path` holds a recording already: one is never overwritten. Empty: a run may be recorded
-/// there, or `path` is empty. For whoever would rather know before anything moves.
+/// Returns a sentence if `path` already holds a recording, because a recording is never overwritten. Returns
+/// an empty string if a run may be recorded there, or if `path` is empty. It permits a check before any
+/// motion.
 [[nodiscard]] std::string recorded_already(const std::string& path);
 
 /// Writes, and survives what disks do. After the first failed write of run.csv it writes no more rows: the
@@ -34,7 +35,7 @@ class RunFolder {
   bool append(std::string_view lines);
   /// Waits until the disk has what append() was given.
   bool sync();
-  /// Replaces run.json in one step. A failure is told but does not end the recording of rows.
+  /// Replaces run.json atomically. A failure is reported but does not end the recording of rows.
   bool replace_json(std::string_view text);
   /// Empty, or the sentence of the first failure.
   [[nodiscard]] const std::string& error() const noexcept { return error_; }

@@ -15,7 +15,7 @@
 
 namespace softgrip::daemon {
 
-/// What one recording has come to.
+/// State and contents of one recording.
 struct RunStory {
   std::string state = "recording";  ///< "recording", "complete", "stopped_early" (rows could not be written)
   std::string reason;               ///< why it began: "sequence", "fault", "always"
@@ -30,7 +30,7 @@ struct RunStory {
   std::string error;                  ///< of the disk
 };
 
-/// What a sequence runs with, as an object: {"squeeze_kpa": 4}.
+/// Returns the parameters of a sequence as an object: {"squeeze_kpa": 4}.
 [[nodiscard]] nlohmann::ordered_json parameters_json(const std::vector<control::Argument>& parameters);
 
 [[nodiscard]] std::string run_json(const Provenance& provenance, const RunStory& story);

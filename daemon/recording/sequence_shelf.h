@@ -1,5 +1,5 @@
 #pragma once
-// Sequences that were handed to the loop: kept until nobody can look at them any more.
+// Stores sequences that were passed to the loop until no thread uses them.
 
 #include <cstdint>
 #include <map>

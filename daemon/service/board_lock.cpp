@@ -57,7 +57,7 @@ std::string real_path(const std::string& path) {
 std::string name_of(const drivers::ModbusAddress& link, std::uint8_t unit) {
   if (const auto* tcp = std::get_if<drivers::TcpAddress>(&link))
     return fmt::format("modbus {} port {} unit {}", numeric(tcp->host), tcp->port, unit);
-  // A serial line has one master, whatever units it asks.
+  // A serial line has one client (master), regardless of the unit addresses.
   return "serial " + real_path(std::get<drivers::SerialLine>(link).device);
 }
 

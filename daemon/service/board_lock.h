@@ -20,7 +20,7 @@
 
 namespace softgrip::daemon {
 
-/// What of the outside world a rig drives: "modbus 192.168.1.5 port 502 unit 1", a serial device or a
+/// Returns the devices that a rig drives: "modbus 192.168.1.5 port 502 unit 1", a serial device or a
 /// converter by its real path; one entry each. Empty for a simulated board.
 [[nodiscard]] std::vector<std::string> driven_by(const rig::RigFile& rig);
 

@@ -15,7 +15,7 @@ namespace softgrip::daemon {
 
 namespace {
 
-/// Rows the recorder may lag behind: so many seconds of a slow disk are survived.
+/// Time of rows that the recorder may lag behind: a slow disk is tolerated this long.
 constexpr double seconds_of_rows = 8;
 constexpr std::size_t fewest_records = 4096;
 constexpr std::size_t most_records = std::size_t{1} << 18;

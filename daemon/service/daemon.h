@@ -60,7 +60,7 @@ enum class Ending : std::uint8_t {
   broken,             ///< an exception in a thread, or a loop that did not end
 };
 
-/// What a run came to.
+/// The result of a run.
 struct Outcome {
   Ending ending = Ending::asked;
   std::string message;  ///< one sentence where something went wrong
@@ -72,7 +72,7 @@ struct Outcome {
   bool left_safely = false;       ///< the board confirmed the safe outputs at the end
   bool pressure_left_on = false;  ///< control::pressed() of the safe output of a channel
   double vents_after_s = 0;  ///< pressure was left on, and the board's watchdog vents it so soon; 0: neither
-  int signal = 0;  ///< the first signal that asked for the end, until the outputs were safe; 0: none
+  int signal = 0;  ///< the first signal that requested the end, until the outputs were safe; 0: none
   std::uint64_t ticks = 0;
   std::uint64_t slips = 0;
   double wall_s = 0;  ///< how long it took

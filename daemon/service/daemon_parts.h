@@ -29,7 +29,7 @@ struct DaemonParts {
   [[nodiscard]] Nanoseconds bus_offset() const noexcept;
   /// Gives new events to options.on_event.
   void deliver_events();
-  /// What the present state means for the end of the run, if the sequence is over.
+  /// Updates the result of the run from the present state, if the sequence is over.
   void conclude(Outcome& outcome);
   void tell(const char* kind, Severity severity, std::string text);
 
@@ -57,7 +57,7 @@ struct DaemonParts {
   std::uint64_t delivered = 0;  // id of the last event given to on_event
 };
 
-/// What became of the errand, whether it is over or not.
+/// Updates the result from the one-shot task, finished or not.
 void conclude_errand(const Errand& errand, Outcome& outcome);
 
 /// Ticks as fast as it can, in this thread alone.

@@ -62,7 +62,7 @@ class StandardError final : public spdlog::sinks::base_sink<std::mutex> {
     pollfd ready{STDERR_FILENO, POLLOUT, 0};
     const bool writable = ::poll(&ready, 1, blocked_ ? 0 : patience_ms) > 0;
     blocked_ = !writable;
-    // Nobody can be told that this failed.
+    // A failure of this write cannot be reported.
     if (writable) [[maybe_unused]]
       const ssize_t written = ::write(STDERR_FILENO, line.data(), line.size());
   }

@@ -21,7 +21,7 @@ constexpr int schema = 1;
 /// Rig file, board maps and models of 256 KiB each at most.
 constexpr std::size_t largest = std::size_t{32} << 20U;
 
-/// The same file whatever folder a program was started in.
+/// Returns the absolute path, independent of the working directory.
 std::string absolute(const std::string& config) {
   std::error_code error;
   const std::filesystem::path path = std::filesystem::absolute(config, error);

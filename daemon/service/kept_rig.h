@@ -1,6 +1,6 @@
 #pragma once
-// The rig that softgripd runs, kept in the runtime folder: after a crash the safe outputs must not depend on
-// a rig file that somebody edits.
+// Keeps a copy of the rig file that softgripd runs in the runtime folder. After a crash, the safe outputs
+// must not depend on later edits of the rig file.
 
 #include <optional>
 #include <string>

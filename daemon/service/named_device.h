@@ -11,7 +11,7 @@
 
 namespace softgrip::daemon {
 
-/// What the rig uses of a device.
+/// The parts of a device that the rig uses.
 struct NamedDevice {
   std::vector<std::string> written;  ///< attributes of a converter that the daemon writes: out_voltage0_raw
 };

@@ -26,9 +26,9 @@ class PanelRun {
 
   /// Requests the lines. False, with ending and message in `outcome`: they cannot be had.
   bool open(Outcome& outcome);
-  /// From now on the lines are looked at. What became of its scheduling is added to `report`.
+  /// Starts reading the lines. Adds the result of the thread's scheduling to `report`.
   void start(RealTimeReport& report);
-  /// The enable output drops, and the thread ends.
+  /// Switches off the enable output and ends the thread.
   void stop() noexcept;
 
  private:

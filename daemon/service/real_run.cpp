@@ -38,9 +38,9 @@ constexpr Nanoseconds look_pause = ns_per_s / 20;
 /// How long loop and bus may stand still beyond what the rig file allows them before the service manager's
 /// watchdog starves: a machine that is busy for a moment is no hung daemon.
 constexpr Nanoseconds heartbeat_patience = ns_per_s / 2;
-/// How long the thread that serves clients may take for one turn: nobody is heard meanwhile.
+/// Longest time of one turn of the service thread: clients are not served meanwhile.
 constexpr Nanoseconds service_patience = 2 * ns_per_s;
-/// How long recorder and service thread may take to end when the outputs are safe already.
+/// Longest time for the recorder and the service thread to end after the outputs are safe.
 constexpr Nanoseconds longest_end = 3 * ns_per_s;
 /// Between two looks of the service thread when nothing listens.
 constexpr Nanoseconds service_pause = ns_per_s / 50;
@@ -252,7 +252,7 @@ void RealRun::start() {
     outcome_.ending = Ending::real_time_refused;
     outcome_.message = "real_time: required, and something could not be verified";
   }
-  // A loop that is told to leave before its first tick still sends the safe outputs.
+  // A loop with a shutdown request before its first tick still sends the safe outputs.
   if (outcome_.ending != Ending::asked) parts_.wires.leave.store(true);
   start_ = parts_.clock.now() + lead_time;
   go_.count_down();
@@ -275,7 +275,7 @@ std::string RealRun::status_line() {
                      parts_.bus_statistics.failures.value());
 }
 
-/// The bus thread may rightly stand still for so long.
+/// Returns the longest permitted blocking time of the bus thread.
 Nanoseconds RealRun::longest_bus_call() const {
   return std::max<Nanoseconds>(parts_.rig.reconnect.connect_deadline.count(),
                                nanoseconds(parts_.rig.loop.exchange_deadline_s));

@@ -33,7 +33,8 @@ std::vector<std::string> usual_places() {
   return {service_folder, "/run/user/" + user + "/softgrip", "/tmp/softgrip-" + user};
 }
 
-/// Makes the folder if it is missing. That of the service belongs to the service, whoever was first.
+/// Creates the folder if it is missing. The service's folder belongs to the service user, regardless of its
+/// creator.
 void make(const std::string& place) {
   const bool of_service = place == service_folder;
   if (::mkdir(place.c_str(), of_service ? 0755 : 0700) != 0 || !of_service) return;
@@ -86,7 +87,7 @@ tl::expected<Descriptor, std::string> RuntimeFolder::open_file(const std::string
   if (!S_ISREG(status.st_mode)) return Failure(path + ": is no regular file");
   if (!is_trusted(status.st_uid) || (status.st_mode & others_may_do_anything) != 0 || status.st_nlink != 1)
     return Failure(path + ": other users could open it");
-  // What root makes must be the service's, too. Only root can give it away.
+  // A file that root creates must also belong to the service user. Only root can change the owner.
   if (status.st_uid != folder.st_uid && (flags & O_CREAT) != 0) [[maybe_unused]]
     const int given = ::fchown(file.get(), folder.st_uid, folder.st_gid);
   return file;

@@ -17,7 +17,7 @@ class RuntimeFolder {
   /// write there gets a folder of his own: /run/user/UID/softgrip, or /tmp/softgrip-UID. The error is a
   /// sentence.
   [[nodiscard]] static tl::expected<RuntimeFolder, std::string> open();
-  /// The same with other places, in the order of preference.
+  /// Opens a folder among other places, in the order of preference.
   [[nodiscard]] static tl::expected<RuntimeFolder, std::string> open(const std::vector<std::string>& places);
 
   [[nodiscard]] const std::string& path() const noexcept { return path_; }

@@ -12,7 +12,7 @@
 
 namespace softgrip::daemon {
 
-/// What became of it.
+/// Result of the attempt.
 enum class SafeOutputsEnd {
   confirmed,       ///< the board took the rest pressure of every channel, and the next exchange confirmed it
   board_holds,     ///< the board's own watchdog has tripped and holds its safe values
@@ -30,10 +30,9 @@ struct SafeOutputsReport {
 /// 0, 4 or 5: see the exit codes of the manual.
 [[nodiscard]] ExitCode exit_code_of(SafeOutputsEnd end) noexcept;
 
-/// Connects and writes the rest pressure of every channel until two exchanges in a row succeeded: in the
-/// second the board repeats what the first one wrote, where its map has a read-back. Tries again until
-/// `patience` is over. Which phase the daemon was in nobody knows any more, so a part that was to be held is
-/// let go, as the board's own watchdog would.
+/// Connects and writes the rest pressure of every channel until two exchanges in a row succeeded. In the
+/// second one, the board repeats the first write if its map has a read-back. Tries again until `patience` is
+/// over. The phase of the daemon is unknown then, so a held part is released, as by the board's own watchdog.
 [[nodiscard]] SafeOutputsReport write_safe_outputs(const rig::RigFile& rig, drivers::Board& board,
                                                    const Clock& clock, std::chrono::nanoseconds patience);
 

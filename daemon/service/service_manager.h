@@ -1,5 +1,5 @@
 #pragma once
-// What the service manager (systemd) is told, when there is one.
+// Reports to the service manager (systemd), if there is one.
 
 #include <string>
 
@@ -16,8 +16,8 @@ class ServiceManager {
   void status(const std::string& status);
   void stopping();
 
-  /// Feeds the unit's watchdog (WatchdogSec=) four times in its time, as long as it is told that all threads
-  /// go on (`alive`, see Heartbeat); otherwise not at all, and the service manager kills and restarts.
+  /// Feeds the unit's watchdog (WatchdogSec=) four times per period while all threads run (`alive`, see
+  /// Heartbeat). Otherwise it does not, and the service manager kills and restarts the daemon.
   void feed(Nanoseconds now, bool alive);
 
  private:

@@ -26,8 +26,8 @@ Signals::Signals() noexcept {
 
 Signals::~Signals() {
   for (std::size_t i = 0; i < ignored.size(); ++i) sigaction(ignored[i], &ignored_before_[i], nullptr);
-  // After one that was answered by an orderly stop, the others ask for nothing more. One that was never taken
-  // stays pending: it goes to an outer object of this class, or ends the process.
+  // After a signal with an orderly stop, the other signals need no action. A signal that was never taken
+  // stays pending: an outer object of this class takes it, or it ends the process.
   if (first_ != 0) (void)first();
   pthread_sigmask(SIG_SETMASK, &before_, nullptr);
 }

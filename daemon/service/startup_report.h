@@ -1,5 +1,5 @@
 #pragma once
-// What softgripd, or `softgrip run`, says before anything moves.
+// Builds the report that softgripd or `softgrip run` prints before any motion.
 
 #include <string>
 #include <string_view>

@@ -23,7 +23,7 @@ struct Peer {
   /// A trusted user, or a member of the service's group, who may move the gripper anyway.
   bool trusted = false;
 };
-/// Returns the peer of a connected socket, or nothing if the kernel does not tell it.
+/// Returns the peer of a connected socket, or an empty value if the kernel does not report it.
 [[nodiscard]] std::optional<Peer> peer_of(int socket);
 
 }  // namespace softgrip::daemon

@@ -35,7 +35,7 @@ constexpr std::array<std::pair<std::string_view, Command>, 14> commands{{
     {"unsubscribe", Command::unsubscribe},
 }};
 
-/// The one key under which an object may stand.
+/// The one key that may contain an object.
 constexpr std::string_view nested_key = "parameters";
 constexpr std::size_t most_parameters = 64;
 constexpr std::size_t longest_name = 64;
@@ -96,7 +96,7 @@ class Reader {
     }
     value = given.get<std::string>();
   }
-  /// It stands in events and logs.
+  /// The text appears in events and logs.
   void name(const char* key, std::string& value) {
     text(key, value);
     const bool printable = std::none_of(value.begin(), value.end(), [](char letter) {
@@ -142,7 +142,7 @@ class Reader {
   }
 
  private:
-  /// Null when absent. A key that is null itself is an error.
+  /// Returns null if the key is absent. A key with the value null is an error.
   SortedJson take(const char* key) {
     const auto found = object_.find(key);
     if (found == object_.end()) return nullptr;

@@ -16,7 +16,7 @@
 
 namespace softgrip::daemon {
 
-/// Of the socket API.
+/// Version of the socket API.
 inline constexpr std::uint64_t api_version = 1;
 
 struct ClientRequest {
@@ -71,7 +71,7 @@ struct ClientError {
 /// False of what moves, stops or acknowledges.
 [[nodiscard]] bool only_looks(ClientRequest::Command command) noexcept;
 
-/// Whether it asks to stop or to vent.
+/// Returns true if the line requests a stop or a vent.
 [[nodiscard]] bool is_urgent(std::string_view line);
 
 }  // namespace softgrip::daemon

@@ -27,7 +27,7 @@ Failure failure(const std::string& path, std::string_view what) {
   return Failure(fmt::format("{}: {}: {}", path, what, std::strerror(errno)));
 }
 
-/// Nothing if the path is too long for a socket.
+/// Returns an empty value if the path is too long for a socket.
 std::optional<sockaddr_un> address_of(const std::string& path) {
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
@@ -36,7 +36,7 @@ std::optional<sockaddr_un> address_of(const std::string& path) {
   return address;
 }
 
-/// Whether somebody listens there; if not, errno says why.
+/// Returns true if a program listens there; otherwise errno states the reason.
 bool answers(const sockaddr_un& address) {
   const Descriptor probe(socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
   const auto* generic = reinterpret_cast<const sockaddr*>(&address);
@@ -46,8 +46,7 @@ bool answers(const sockaddr_un& address) {
 /// Removes the file of a daemon that is gone. False if one answers.
 bool clear_away(const sockaddr_un& address) {
   if (answers(address)) return false;
-  // A file that is no socket refuses a connection, too; it is somebody's, and bind() will say that it is
-  // there.
+  // A file that is no socket also refuses a connection. It is not removed, and bind() reports that it exists.
   struct stat status {};
   const bool refused = errno == ECONNREFUSED;
   if (refused && lstat(address.sun_path, &status) == 0 && S_ISSOCK(status.st_mode)) unlink(address.sun_path);
@@ -90,7 +89,7 @@ tl::expected<Listener, std::string> Listener::open(const rig::SocketFile& file) 
 
   Descriptor socket(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
   if (!socket) return failure(file.path, "socket");
-  // Between bind and chmod nobody else may connect.
+  // Between bind and chmod, no other user may connect.
   const mode_t before = umask(0177);
   const int bound = bind(socket.get(), reinterpret_cast<const sockaddr*>(&*address), sizeof *address);
   umask(before);
@@ -111,7 +110,7 @@ tl::expected<Listener, std::string> Listener::open(const rig::SocketFile& file) 
 
 Listener::~Listener() {
   struct stat status {};
-  // Somebody may have removed it and another daemon have put its own there.
+  // Another daemon may have replaced the removed socket with its own.
   const bool there = socket_ && lstat(path_.c_str(), &status) == 0;
   if (there && status.st_dev == device_ && status.st_ino == inode_) unlink(path_.c_str());
 }

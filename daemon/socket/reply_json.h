@@ -17,7 +17,7 @@
 
 namespace softgrip::daemon {
 
-/// Null where the client gave none.
+/// Returns null if the client gave no id.
 [[nodiscard]] nlohmann::ordered_json id_json(std::optional<std::uint64_t> id);
 [[nodiscard]] nlohmann::ordered_json error_json(std::string_view code, std::string_view message);
 [[nodiscard]] nlohmann::ordered_json problems_json(const std::vector<document::Problem>& problems);
@@ -25,7 +25,7 @@ namespace softgrip::daemon {
 /// Of a start that was only checked: what would run.
 [[nodiscard]] nlohmann::ordered_json checked_json(const LoadedSequence& sequence);
 
-/// Who answers a hello, and to whom.
+/// The data of a reply to hello.
 struct Greeting {
   std::string_view software_version;
   std::string_view started_at;  ///< of the daemon, UTC: event ids count from there

@@ -1,5 +1,5 @@
 #pragma once
-// What a client of the socket API may do, by the socket that it came through.
+// Defines the permissions of a client of the socket API, by the socket of its connection.
 
 #include <cstdint>
 #include <string_view>

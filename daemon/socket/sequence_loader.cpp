@@ -19,7 +19,8 @@ namespace softgrip::daemon {
 
 namespace {
 
-/// How long planning may delay a start before it is told: so much of the motion, and a hiccup of the machine.
+/// Longest delay of a start by planning without a message: a share of the motion, and a margin for machine
+/// load.
 constexpr double longest_planning_share = 0.1;
 constexpr double planning_slack_s = 0.2;
 
@@ -31,7 +32,7 @@ bool is_plain_name(const std::string& name) {
 
 constexpr std::string_view ending = ".yaml";
 
-/// What was meant, or which there are.
+/// Returns the most similar name, or the list of names.
 std::string hint_of(const std::string& name, const std::string& directory,
                     const std::vector<std::string>& names) {
   if (names.empty()) return fmt::format("there is none in {}", directory);

@@ -39,7 +39,7 @@ class SequenceLoader {
   [[nodiscard]] Result load_text(const std::string& name, const std::string& text, Arguments arguments = {},
                                  const std::stop_token& stop = {}) const;
 
-  /// A file of the directory, as far as it can be told without a rig.
+  /// A file of the directory, described without a rig.
   struct Listed {
     std::string name;  ///< as a start takes it: without `.yaml`
     std::string about;

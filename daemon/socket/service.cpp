@@ -165,7 +165,7 @@ void Service::take(const StampedEvent& stamped) {
   if (event.kind == EventKind::grip_result) note_result(stamped);
 }
 
-/// What came of the grip as a whole, whenever that changes.
+/// Updates the overall result of the grip at each change.
 void Service::note_result(const StampedEvent& stamped) {
   const control::Event& event = stamped.event;
   if (event.channel >= results_.size()) return;

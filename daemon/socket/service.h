@@ -21,10 +21,10 @@ class Service {
   Service(std::vector<std::string> channel_names, Nanoseconds origin, Wires& wires, EventLog& log,
           SequenceShelf& shelf);
 
-  /// Hands a request to the loop; returns its id, or nothing if the loop has not taken the last ones yet.
-  /// Vent and stop have lanes of their own, which pass whatever else waits, and always return an id: if their
-  /// lane is full, that of one that waits in it and will do the same. `client` stands in the events that come
-  /// of it; may be empty.
+  /// Passes a request to the loop. Returns its id, or an empty value if the loop has not taken the last ones
+  /// yet. Vent and stop have separate lanes that pass all other requests, and always return an id. If their
+  /// lane is full, it is the id of a waiting request with the same effect. `client` appears in the resulting
+  /// events; it may be empty.
   std::optional<std::uint32_t> submit(control::Request::Kind kind,
                                       std::shared_ptr<const LoadedSequence> sequence = nullptr,
                                       const std::string& client = {});
@@ -34,10 +34,10 @@ class Service {
   /// the last ones yet.
   std::optional<std::uint32_t> submit_stop_of(std::uint32_t start, const std::string& client = {});
 
-  /// Moves what loop and bus had to tell into the log, and notes answers.
+  /// Moves the events of loop and bus into the log, and notes replies.
   void pump();
 
-  /// What the loop said to a request. Everything but `pending` is said once.
+  /// Returns the loop's reply to a request. Each reply except `pending` is given once.
   struct Answer {
     enum class Kind : std::uint8_t { pending, accepted, refused };
     Kind kind = Kind::pending;
@@ -45,10 +45,10 @@ class Service {
     control::Fault fault;  ///< that was acknowledged, or whose cause is still there; none where there is none
   };
   [[nodiscard]] Answer take_answer(std::uint32_t request);
-  /// Nobody waits for the answer any more.
+  /// Discards the reply to a request.
   void forget(std::uint32_t request);
 
-  /// How the newest sequence ended that has ended, and which request had started it.
+  /// Returns the end of the newest finished sequence, and the request that had started it.
   struct Ending {
     std::uint32_t request = 0;  ///< 0: none so far
     control::SequenceEnd end = control::SequenceEnd::done;
@@ -60,9 +60,9 @@ class Service {
   /// The request that started it, or 0.
   [[nodiscard]] std::uint32_t sequence_request() const noexcept { return sequence_request_; }
 
-  /// Who made a request; empty where nobody said so, or too many came since.
+  /// Returns the client of a request. Empty if the client is unknown, or if too many requests followed.
   [[nodiscard]] std::string client_of(std::uint32_t request) const;
-  /// A request has started a sequence that has not ended.
+  /// Returns true if the request has started a sequence that has not ended.
   [[nodiscard]] bool runs(std::uint32_t request) const noexcept {
     return request != 0 && request == sequence_request_ && ending_.request != request;
   }
@@ -104,7 +104,7 @@ class Service {
   std::uint32_t sequence_request_ = 0;
   Ending ending_;
   BusFailure bus_failure_;
-  std::uint64_t events_dropped_ = 0;  // told so far
+  std::uint64_t events_dropped_ = 0;  // reported so far
 };
 
 }  // namespace softgrip::daemon

@@ -23,10 +23,10 @@ using Kind = control::Request::Kind;
 
 /// The loop answers within a tick; after this it is not coming.
 constexpr Nanoseconds longest_answer = ns_per_s;
-/// How long on_time() may be left alone, and while somebody waits for the loop's answer.
+/// Longest interval between calls of on_time(), normally and while a client waits for the loop's reply.
 constexpr Nanoseconds longest_pause = ns_per_s / 50;
 constexpr Nanoseconds pause_while_asked = ns_per_s / 1000;
-/// Events for one subscriber in one turn: the others have theirs.
+/// Number of events for one subscriber per turn, so that other subscribers get theirs.
 constexpr std::size_t most_fed = 50;
 
 }  // namespace
@@ -104,8 +104,8 @@ void SocketApi::on_line(ClientId client, std::string_view line, Nanoseconds now)
   }
 }
 
-/// Why this client may not ask for that now; null if it may. What a start would come to is anybody's to know
-/// who may start.
+/// Returns the reason why this client may not make the request now; null if it may. A client that may start
+/// may also check a start.
 Json SocketApi::refusal_of(ClientId client, const ClientRequest& request) const {
   if (only_looks(request.command)) return nullptr;
   const auto found = clients_.find(client);
@@ -123,8 +123,8 @@ Json SocketApi::refusal_of(ClientId client, const ClientRequest& request) const 
   return error;
 }
 
-/// The name of the client whose sequence runs or is asked for; nullptr if there is none. One without a name
-/// owns nothing, nor does one that has gone.
+/// Returns the name of the client whose sequence runs or is requested; nullptr if there is none. A client
+/// without a name, or one that has disconnected, owns nothing.
 const std::string* SocketApi::owner() const {
   const auto found = clients_.find(owner_client());
   return found == clients_.end() || found->second.name.empty() ? nullptr : &found->second.name;
@@ -212,7 +212,7 @@ Nanoseconds SocketApi::on_time(Nanoseconds now) {
   return next;
 }
 
-/// Nobody who asks for a vent or a stop waits for a plan, or for a disk.
+/// Planning uses its own thread: vent and stop requests never wait for a plan or a disk.
 void SocketApi::start(ClientId client, const ClientRequest& request, Nanoseconds now) {
   take_planned(now);
   if (planned_) {
@@ -273,8 +273,8 @@ void SocketApi::stop_of(ClientId client, const ClientRequest& request, Nanosecon
   wait_for(number, {client, request.id, now + longest_answer, {}, {}});
 }
 
-/// Nobody who asks for a vent waits for a disk, and a directory that hangs costs one thread, however often it
-/// is asked for.
+/// Reading uses its own thread: vent requests never wait for a disk. A directory that hangs costs one thread,
+/// regardless of the number of requests.
 void SocketApi::list_sequences(ClientId client, std::optional<std::uint64_t> id) {
   if (!listing_) {
     std::packaged_task<std::vector<SequenceLoader::Listed>()> read(
@@ -298,7 +298,7 @@ void SocketApi::abandon_planned() noexcept {
   planned_->stop.request_stop();
 }
 
-/// Who stops or vents does not want motion a moment later.
+/// A stop or a vent also cancels a planned motion.
 void SocketApi::refuse_planned() {
   if (!planned_ || planned_->abandoned) return;
   abandon_planned();
@@ -311,7 +311,7 @@ void SocketApi::take_planned(Nanoseconds now) {
   Planned planned = std::move(*planned_);
   planned_.reset();
   SequenceLoader::Result sequence = planned.loaded.get();
-  // Who left before the motion could begin does not want it any more.
+  // A client that disconnected before the motion no longer wants it.
   if (!planned.abandoned) loaded(planned, std::move(sequence), now);
 }
 
@@ -386,8 +386,8 @@ Json SocketApi::dated(const EventEntry& event, Nanoseconds now) {
   return json;
 }
 
-/// The two clocks are read one after the other. An event that is told twice is told with the same time, but
-/// where the clock on the wall was set meanwhile.
+/// The two clocks are read one after the other. A repeated event keeps its time unless the wall clock was set
+/// in between.
 Nanoseconds SocketApi::wall_origin(Nanoseconds now) {
   constexpr Nanoseconds was_set = ns_per_s / 2;
   const Nanoseconds origin = wall_time_now() - (now - sources_.origin);
@@ -413,7 +413,7 @@ void SocketApi::subscribe(ClientId client, const ClientRequest& request) {
      {{"since", since}, {"oldest", events_.oldest()}, {"newest", newest}, {"started_at", started_at_}});
 }
 
-/// Who does not read gets the events later, as long as they are kept; nobody waits.
+/// A client that does not read gets the events later, while they are kept. No thread waits for it.
 void SocketApi::feed(Nanoseconds now) {
   const std::uint64_t newest = events_.newest();
   for (auto& [client, subscription] : subscriptions_) {

@@ -37,10 +37,10 @@ class SocketApi {
             const EventLog& events, Send send);
   SocketApi(const SocketApi&) = delete;
   SocketApi& operator=(const SocketApi&) = delete;
-  /// What is being planned is told to stop. It is not waited for: its thread may hang in the file system.
+  /// Cancels the current planning without waiting for it: its thread may hang in the file system.
   ~SocketApi();
 
-  /// A client has come. One that was never announced may only look.
+  /// Registers a new client. An unregistered client is read-only.
   void on_opened(ClientId client, Role role);
   /// One line of a client, without its line break.
   void on_line(ClientId client, std::string_view line, Nanoseconds now);
@@ -83,7 +83,7 @@ class SocketApi {
     std::stop_source stop;
     std::string start_id;  ///< the client's own name for it; may be empty
     bool dry_run = false;
-    bool abandoned = false;  ///< nobody waits for it any more
+    bool abandoned = false;  ///< no client waits for it
   };
 
   struct Listing {  // of the sequence directory, being read by a thread of its own

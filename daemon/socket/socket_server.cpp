@@ -23,21 +23,21 @@ namespace {
 
 /// New clients in one call: they must not keep those that are there from having their turn.
 constexpr int most_accepts = 4;
-/// A client that has just come keeps its place for so long, though it has not said anything yet; one that has
-/// spoken for so long after its last word, or after the last one that it took.
+/// Times for which a client keeps its place: a new client without a request, and a client after its last
+/// request or its last received reply.
 constexpr Nanoseconds first_word = ns_per_s / 10;
 constexpr Nanoseconds longest_silence = 5 * ns_per_s;
-/// Clients beside those that have places.
+/// Number of additional clients beyond those with places.
 constexpr std::size_t most_standing = 32;
 /// Lines of one client in one call take no longer than this and one more line.
 constexpr std::chrono::microseconds longest_turn(500);
 /// Without a descriptor for it a new client cannot even be refused.
 constexpr Nanoseconds accept_pause = ns_per_s / 10;
-/// A client that takes nothing for so long has lost interest.
+/// A client that receives nothing for this time is disconnected.
 constexpr Nanoseconds longest_stall = 10 * ns_per_s;
-/// How long a client that will send no more may wait for what it asked.
+/// Longest time for which a client that has closed its sending side may wait for its replies.
 constexpr Nanoseconds answer_pause = 2 * ns_per_s;
-/// At most so much is read of one client before the others have their turn.
+/// Number of bytes that are read from one client per turn.
 constexpr std::size_t read_bytes = 16 * 1024;
 
 }  // namespace
@@ -91,7 +91,7 @@ void SocketServer::poll(Nanoseconds now, Nanoseconds until) {
     }
   }
   lines_left_ = false;
-  // Who may stop or vent is heard first.
+  // Clients that may stop or vent are served first.
   for (const Role role : {Role::operate, Role::look}) {
     for (auto& [id, client] : clients_) {
       if (client.role != role) continue;
