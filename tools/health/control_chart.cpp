@@ -9,7 +9,8 @@
 namespace softgrip::tools::health {
 namespace {
 
-/// A CUSUM beyond this share of doubt says since when: what was large at once had begun before.
+/// A CUSUM beyond this share of its threshold gives the start of the change, because a sudden large shift may
+/// have started earlier.
 constexpr double on_its_way_share = 0.6;
 
 /// Beyond which a standard normal value lies, on either side, once in so many.

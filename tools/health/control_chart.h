@@ -39,7 +39,7 @@
 
 namespace softgrip::tools::health {
 
-/// What a chart holds against its values.
+/// Limits of a chart.
 struct ChartLimits {
   double allowance = 0.5;  ///< half the shift to be found, in spreads
   double cusum = 0;        ///< threshold
@@ -79,8 +79,8 @@ class ControlChart {
   /// The next point. Returns its standard normal value, nothing while there is nothing to compare it with.
   std::optional<double> add(const ChartValues& values);
 
-  /// Somebody else knows that the values are others since a point: from now on that is this chart's alarm.
-  /// Nothing where it has an alarm since before, or where the point is the first or none.
+  /// Takes over an alarm that another chart has raised for these values since a point. Does nothing if this
+  /// chart has an earlier alarm, or if the point is the first one or does not exist.
   void take_alarm(std::size_t since);
 
   [[nodiscard]] std::size_t points() const { return history_.size(); }

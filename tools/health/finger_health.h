@@ -1,10 +1,10 @@
 #pragma once
-// How a finger has been: its recorded grips in points of time, what is usual of every number, and what stands
-// out. judge_rig() (rig_health.h) makes it.
+// Describes the health of a finger: its recorded grips as points in time, the reference of every indicator,
+// and the significant changes. judge_rig() (rig_health.h) computes it.
 //
-// A point is a day of a finger (UTC): the median of its runs of a recipe, so that what changes within a day,
-// the temperature above all, is not taken for chance from grip to grip. Runs whose time is not known are a
-// point each. What was mended begins all charts of the finger anew.
+// A point is a day of a finger (UTC): the median of its runs of a recipe. Thus changes within a day, mainly
+// of the temperature, do not count as random variation between grips. Each run without a known time is its
+// own point. A repair restarts all charts of the finger.
 
 #include <array>
 #include <cstddef>
@@ -29,10 +29,10 @@ struct HealthOptions {
 };
 
 struct HealthPoint {
-  std::string label;                                      ///< "2026-11-22", or the run's name
-  std::size_t grips = 0;                                  ///< runs
-  std::size_t epoch = 0;                                  ///< how often something was mended before
-  std::array<ChartValues, sysid::health_numbers> values;  ///< medians by recipe
+  std::string label;                                                  ///< "2026-11-22", or the run's name
+  std::size_t grips = 0;                                              ///< runs
+  std::size_t epoch = 0;                                              ///< number of earlier repairs
+  std::array<ChartValues, sysid::health_numbers> values;              ///< medians by recipe
   std::array<std::optional<double>, sysid::health_numbers> judged{};  ///< standard normal
   /// How much more than its rig-mates on the same runs, beyond what is usual; absent without mates.
   std::array<std::optional<double>, sysid::health_numbers> beside{};
@@ -47,13 +47,14 @@ struct HealthAlarm {
   std::size_t since = 0;
   double change = 0;      ///< in the number's unit
   std::size_t grips = 0;  ///< from the change to when it was noticed
-  /// Of the difference from these fingers; empty: of the finger's own number.
+  /// Peer fingers, if the alarm is of the difference from them; empty: of the finger's own indicator.
   std::vector<std::string> beside;
-  /// Point from which on the difference was told without an owner; `noticed` where it never was.
+  /// Point from which the change of the difference was reported without an assigned finger; `noticed` if
+  /// never.
   std::size_t warned = 0;
 };
 
-/// What is usual of a number since the last note.
+/// Reference of an indicator since the last maintenance record.
 struct HealthReference {
   std::string recipe;  ///< the one with most points
   double mean = 0;
@@ -61,7 +62,7 @@ struct HealthReference {
   std::size_t points = 0;
   std::optional<TemperatureSlope> slope;  ///< allowed for; absent: none is known
 
-  /// What the number would be. @param temperature_c  absent: not recorded
+  /// Returns the expected value of the indicator. @param temperature_c  absent: not recorded
   [[nodiscard]] double at(std::optional<double> temperature_c) const {
     return slope && temperature_c ? slope->at(*temperature_c) : mean;
   }
@@ -79,16 +80,16 @@ struct FingerHealth {
   FingerState state = FingerState::learning;
   std::vector<HealthPoint> points;
   std::vector<HealthAlarm> alarms;  ///< of all epochs, in the order in which they were noticed
-  /// Differences from the mates that have changed since the last note, without it being clear whose change it
-  /// is.
+  /// Changed differences from the peer fingers since the last maintenance record that are not attributed to a
+  /// finger.
   std::vector<HealthAlarm> unclear;
   std::array<std::optional<HealthReference>, sysid::health_numbers> references{};
   std::vector<std::pair<std::size_t, Note>> notes;  ///< before which point
 
-  /// Those that stand.
+  /// Returns the alarms that are still active.
   [[nodiscard]] std::vector<HealthAlarm> standing() const;
   [[nodiscard]] std::size_t epoch() const { return points.empty() ? 0 : points.back().epoch; }
-  /// Of a number, the median of the last point that has it; nothing where none has.
+  /// Returns the median of an indicator at the last point that has it; empty if no point has it.
   [[nodiscard]] std::optional<double> latest(sysid::HealthNumber number) const;
 };
 

@@ -20,13 +20,13 @@ struct RunGroup {
   std::size_t moment = 0;  ///< index of the label among all of the rig, in the order of time
 };
 
-/// A run, and how often its finger was mended before.
+/// A run, and the number of earlier repairs of its finger.
 struct PlacedRun {
   const ScoredRun* run = nullptr;
   std::size_t epoch = 0;
 };
 
-/// What judges keep in hand of a finger. The runs live elsewhere and longer.
+/// Working data of a finger for the charts. The runs are stored elsewhere and must outlive it.
 struct FingerTrack {
   FingerHealth health;  ///< with its points and notes; the judges add the rest
   ScoreBase base;

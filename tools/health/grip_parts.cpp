@@ -8,8 +8,9 @@ namespace {
 
 constexpr double moving_share = 0.005;
 constexpr double same_command_share = 0.02;
-/// A touch is told when the object has held the finger back for a while already, and a finger that is let go
-/// leaves it somewhere on its way: away from it is what reads so much less than at the touch.
+/// Contact is reported only after the object has held the finger back for a while. A released finger leaves
+/// the object at an unknown point. It is clear of the object if its reading is this much below the reading at
+/// contact.
 constexpr double away_mm = 1.0;
 constexpr double away_share = 0.1;
 
@@ -17,7 +18,7 @@ double away_from(double touch_mm) {
   return touch_mm - std::max(away_mm, away_share * touch_mm);
 }
 
-/// What the channel's next event does to it.
+/// Phase of the channel after its next event.
 enum class Phase : std::uint8_t { free, touching, holding, releasing, lost };
 
 Phase after(const RecordedEvent& event, Phase phase) {
@@ -30,7 +31,8 @@ Phase after(const RecordedEvent& event, Phase phase) {
   return Phase::lost;
 }
 
-/// The samples of a step that ended in HOLDING without a touch being told are not known to be free.
+/// In a step that ended in HOLDING without reported contact, the samples may not be free motion. Returns the
+/// time from which this applies.
 double unsure_from(const std::vector<RecordedEvent>& events, const std::string& channel, double holding_s) {
   double step_s = 0;
   for (const RecordedEvent& event : events) {

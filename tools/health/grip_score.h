@@ -1,10 +1,9 @@
 #pragma once
-// A recorded grip of one finger as a few numbers, each against the base: what the finger did when it was
-// commissioned.
+// Computes indicators of one recorded grip of a finger, relative to its baseline from commissioning.
 //
-// Free motion before the first touch gives gain and lag, by least squares of the readings on what the base
-// predicts and how fast that moves; the way back, where it is free again, gives the loop; the longest stretch
-// in which the command stands still gives the creep. What a recording does not carry is absent.
+// Free motion before the first contact gives gain and lag, by least squares of the readings on the prediction
+// of the baseline model and its rate. The free part of the return gives the loop. The longest segment with a
+// constant command gives the creep. Indicators that a recording does not support are absent.
 
 #include <array>
 #include <limits>
@@ -17,7 +16,7 @@
 
 namespace softgrip::tools::health {
 
-/// What the finger is compared with.
+/// The baseline of a finger.
 struct ScoreBase {
   model::Model model;   ///< driven by the command, without noise
   double full_kpa = 0;  ///< largest command of the healthy logs
@@ -41,7 +40,7 @@ struct GripScore {
 /// Any recording of the daemon, or a log by itself, which is then one free motion.
 [[nodiscard]] GripScore score_of(const Recording& recording, std::size_t channel, const ScoreBase& base);
 
-/// Smaller differences of a number are worth nobody's while, however alike the runs are.
+/// Returns the smallest relevant difference of an indicator, regardless of the spread of the runs.
 [[nodiscard]] double least_difference(sysid::HealthNumber number, const ScoreBase& base);
 
 }  // namespace softgrip::tools::health

@@ -17,7 +17,7 @@ inline constexpr const char* health_file = "health.json";
 
 /// One finger's part.
 [[nodiscard]] nlohmann::ordered_json json_of(const FingerHealth& health, const Suspicion& suspicion);
-/// What the rig shares.
+/// Returns the JSON of a change that all fingers share.
 [[nodiscard]] nlohmann::ordered_json json_of(const SharedChange& shared);
 
 }  // namespace softgrip::tools::health

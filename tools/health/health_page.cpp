@@ -114,7 +114,7 @@ std::optional<sysid::Chart> chart_of(const FingerHealth& health, std::size_t num
   return chart;
 }
 
-/// How far the finger is from where it usually is beside its mates.
+/// Returns the chart of the difference from the peer fingers, relative to its reference.
 std::optional<sysid::Chart> chart_beside(const FingerHealth& health, std::size_t number) {
   const sysid::HealthNumberInfo& info = sysid::health_number_infos[number];
   sysid::Series series;

@@ -1,6 +1,6 @@
 #pragma once
-// The page of a finger: how it is, what is suspected and what to do, every number over time with what was
-// mended in between.
+// Writes the page of a finger: its state, the candidate faults and remedies, and every indicator over time
+// with the repairs.
 
 #include <string>
 #include <vector>
@@ -11,7 +11,7 @@
 
 namespace softgrip::tools::health {
 
-/// What a page says of where it comes from.
+/// The sources that a page states.
 struct HealthSource {
   std::string baseline;  ///< folder
   ScoreBase base;
@@ -22,7 +22,7 @@ struct HealthSource {
 [[nodiscard]] sysid::Page health_page(const FingerHealth& health, const Suspicion& suspicion,
                                       const HealthSource& source);
 
-/// What settles a suspicion at the desk: a command.
+/// Returns the command that confirms a candidate fault without the rig.
 [[nodiscard]] std::string settling_command(const std::string& baseline);
 
 }  // namespace softgrip::tools::health

@@ -11,11 +11,12 @@ namespace {
 
 /// Odds of 20 to 1 that a change of the difference is this finger's.
 const double sure = std::log(20.0);
-/// A change that the mates show by so much of it is shared.
+/// A change is shared if the peer fingers show at least this share of it.
 constexpr double alike = 0.5;
-/// A finger's own values about a change: the last ones since, and those before.
+/// Number of a finger's own values around a change: the last ones since, and those before.
 constexpr std::size_t points_since = 3, points_before = 10;
-/// Of fewer values nobody knows whether they take after each other: averaging them is worth nothing then.
+/// Smallest number of values for an estimate of their correlation; with fewer, averaging has no proven
+/// benefit.
 constexpr std::size_t least_for_averaging = 15;
 
 const RunningReference* longest(const ControlChart& chart) {
@@ -152,7 +153,8 @@ ChartValues NumberWatch::difference_at(std::size_t finger, std::size_t point, co
   return values;
 }
 
-/// The finger's points since its last note, as if these mates had always been all.
+/// Compares the finger's points since its last maintenance record again, as if the peer fingers had always
+/// been these.
 void NumberWatch::compare_anew(std::size_t finger, Mates mates) {
   note_differences(finger);
   Watched& watched = watched_[finger];
@@ -171,7 +173,7 @@ void NumberWatch::add_beside(std::size_t finger, std::size_t moment) {
   Watched& watched = watched_[finger];
   Mates mates = mates_of(finger);
   if (mates != watched.mates) {
-    // What an alarm rests on stays as it was.
+    // The data of an alarm do not change afterwards.
     if (!watched.alarm) compare_anew(finger, std::move(mates));
     return;
   }
@@ -308,7 +310,7 @@ HealthAlarm NumberWatch::alarm_of(std::size_t finger, bool beside) const {
 void NumberWatch::raise(std::size_t finger, bool beside) {
   Watched& watched = watched_[finger];
   watched.alarm = alarm_of(finger, beside);
-  // What is usual of the finger is what was before.
+  // The reference of the finger is from before the change.
   const auto first = std::lower_bound(watched.own_at.begin(), watched.own_at.end(), watched.alarm->since);
   watched.own.take_alarm(static_cast<std::size_t>(first - watched.own_at.begin()));
 }
@@ -357,7 +359,7 @@ void NumberWatch::close(std::size_t finger) {
     }
   }
   if (!watched.alarm) return;
-  // By how much it is another, with all that came since it was noticed.
+  // The size of the change includes all points since its detection.
   const auto& now = watched.alarm->beside.empty() ? watched.own.alarm() : watched.beside.alarm();
   if (now) watched.alarm->change = now->change;
   health.alarms.push_back(*watched.alarm);

@@ -22,7 +22,7 @@ class NumberWatch {
   [[nodiscard]] std::vector<SharedChange> run(std::size_t moments);
 
  private:
-  /// With whom a finger is compared: its mate's index and how often that was mended.
+  /// The peer fingers of a finger: index and number of repairs.
   using Mates = std::vector<std::pair<std::size_t, std::size_t>>;
 
   struct Watched {
@@ -33,7 +33,7 @@ class NumberWatch {
     std::size_t next = 0;  ///< point
     std::optional<HealthAlarm> alarm{};
     std::optional<std::size_t> shared{};  ///< since the last note; index
-    /// What was known since the last note, also before a shared change: slopes by recipe, spread.
+    /// Knowledge since the last maintenance record, also before a shared change: slopes by recipe, spread.
     std::map<std::string, double> per_c{};
     double widest_spread = 0;
   };
@@ -60,7 +60,7 @@ class NumberWatch {
   /// By how much the finger's own values moved: the last of them since `from` against those before.
   [[nodiscard]] std::optional<double> moved(std::size_t finger, std::size_t from_moment) const;
   [[nodiscard]] std::optional<double> mates_moved(std::size_t finger, std::size_t from_moment) const;
-  /// Variance of moved() where nothing but what is usual happens.
+  /// Returns the variance of moved() in control.
   [[nodiscard]] double usual_variance(std::size_t finger) const;
   [[nodiscard]] std::size_t moment_of(std::size_t finger, std::size_t point) const;
   /// The finger's points since its last note that have the number, as far as they were looked at.

@@ -30,14 +30,14 @@ struct FingerRuns {
   ScoreBase base;  ///< gives the differences that matter to nobody
 };
 
-/// A change that several fingers have in common.
+/// A change that several fingers share.
 struct SharedChange {
   sysid::HealthNumber number = sysid::HealthNumber::gain;
   double change = 0;           ///< of the finger that showed it first, in the number's unit
   std::string since, noticed;  ///< labels of points
   std::vector<std::string> fingers;
   bool temperature_recorded = false;  ///< and allowed for, as far as it is known what it does
-  /// False: something was mended since, another one came after it, or a finger's alarm explains it.
+  /// False: a later repair or a later shared change ended it, or the alarm of a finger explains it.
   bool stands = true;
 };
 
@@ -46,11 +46,12 @@ struct RigHealth {
   std::vector<SharedChange> shared;   ///< by number, and in the order in which they were noticed
 };
 
-/// Runs of the same name are of the same grip; fingers that have some in common are mates.
+/// Judges all fingers of a rig. Runs of the same name belong to the same grip; fingers with common runs are
+/// peer fingers.
 [[nodiscard]] RigHealth judge_rig(std::vector<FingerRuns> fingers, const std::vector<Note>& notes,
                                   const HealthOptions& options);
 
-/// A finger without mates.
+/// Judges a finger without peer fingers.
 [[nodiscard]] FingerHealth judge_finger(const std::string& finger, std::vector<ScoredRun> runs,
                                         const std::vector<Note>& notes, const ScoreBase& base,
                                         const HealthOptions& options);

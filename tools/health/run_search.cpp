@@ -26,7 +26,8 @@ bool is_run(const fs::path& path) {
   return !fs::is_directory(path, ignored) || fs::exists(path / "run.csv", ignored);
 }
 
-/// Of the whole run: a finger follows the room slower than a grip takes.
+/// Returns the temperature of the whole run: a finger follows the room temperature more slowly than a grip
+/// lasts.
 double temperature_of(const sysid::Log& log) {
   std::vector<double> known;
   for (const double temperature_c : log.temperature_c) {

@@ -13,7 +13,7 @@ namespace softgrip::tools::health {
 /// A folder with a run.csv, or a log, stands for itself; any other folder for the recordings in it, by name.
 [[nodiscard]] std::vector<std::string> find_runs(const std::vector<std::string>& paths);
 
-/// What a finger is compared with, and the name of it that its scores carry.
+/// The baseline of a finger, and its id in the scores.
 struct FingerBase {
   ScoreBase base;
   std::string id;

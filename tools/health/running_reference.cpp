@@ -8,7 +8,7 @@ namespace {
 
 /// Of fewer values a change that is not noticed at once would pass for persistence.
 constexpr double least_for_persistence = 15;
-/// So many standard errors less than what is found.
+/// The estimate is reduced by this number of standard errors.
 constexpr double surely = 0.5;
 constexpr double most_persistence = 0.95;
 /// Fewer values, or values at nearly one temperature, tell no slope.

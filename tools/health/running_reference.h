@@ -15,8 +15,8 @@
 
 namespace softgrip::tools::health {
 
-/// What Student's t with so many degrees of freedom (at least 1) would be if it were standard normal, by
-/// Wallace's formula (Annals of Mathematical Statistics 30, 1959).
+/// Returns the standard normal equivalent of a Student's t value with these degrees of freedom (at least 1),
+/// by Wallace's formula (Annals of Mathematical Statistics 30, 1959).
 [[nodiscard]] double normal_of_t(double t, double degrees_of_freedom);
 
 /// Sums of a series y over x and of both with themselves one step before, counted from the first pair.
@@ -52,7 +52,7 @@ struct TemperatureSlope {
   [[nodiscard]] double at(double temperature_c) const { return mean + per_c * (temperature_c - mean_c); }
 };
 
-/// What was seen so far.
+/// Sums over the values so far.
 class RunningReference {
  public:
   static constexpr double no_temperature = std::numeric_limits<double>::quiet_NaN();
@@ -62,7 +62,7 @@ class RunningReference {
   /// @param least_spread  what a spread is taken for where it is smaller, > 0.
   [[nodiscard]] std::optional<double> judge(double value, double least_spread,
                                             double temperature_c = no_temperature) const;
-  /// What the next value would be; the mean where no temperature is known or none is followed.
+  /// Returns the expected next value; the mean if the temperature is unknown or has no significant effect.
   [[nodiscard]] double expected(double temperature_c = no_temperature) const;
 
   [[nodiscard]] std::size_t count() const { return static_cast<std::size_t>(all_.count()); }
