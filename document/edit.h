@@ -16,7 +16,7 @@ namespace softgrip::document {
 /// The node below `node` along `path`, or nullptr.
 [[nodiscard]] const Node* below(const Node* node, const std::vector<std::string_view>& path) noexcept;
 
-/// Where a place of the text stands in bytes; nothing beyond its end.
+/// Returns the byte offset of a location in the text; empty beyond its end.
 [[nodiscard]] std::optional<std::size_t> offset_of(std::string_view text, Location at) noexcept;
 
 /// Collects changes and makes them at once. Every function returns false, and changes nothing, where the text
@@ -25,7 +25,7 @@ class Edit {
  public:
   explicit Edit(const Document& document) : document_(document) {}
 
-  /// Other numbers in the place of those of a list, each where it stands.
+  /// Replaces the numbers of a list, each in place.
   bool replace_numbers(const Node& list, const std::vector<std::string>& numbers);
   /// One more key at the end of a map: behind its last entry in a flow map, on a line of its own in a block
   /// map. The last entry must be a plain word, a number or a list of them in brackets.

@@ -1,5 +1,5 @@
 #pragma once
-// What was probably meant by a key that nobody knows.
+// Suggests the key that was probably meant instead of an unknown one.
 
 #include <string>
 #include <string_view>
@@ -16,8 +16,8 @@ struct KeyHint {
 };
 
 /// @param key    the unknown key
-/// @param value  what stands under it
-/// @param known  keys that may stand in the map and do not yet
+/// @param value  its value
+/// @param known  permitted keys that the map does not contain yet
 [[nodiscard]] KeyHint hint_for_key(std::string_view key, const Node& value,
                                    const std::vector<std::string>& known);
 

@@ -24,9 +24,9 @@ struct Node {
   Kind kind = Kind::null;
   Location at;
   std::string scalar;          ///< the text of a scalar, unquoted
-  bool quoted = false;         ///< the scalar stood in quotes: a string, never a number
-  std::string stands_for;      ///< `$name` where the file has that, and the scalar is its number; or empty
-  bool refused = false;        ///< already reported or cut short: present, not to be judged again
+  bool quoted = false;         ///< the scalar was quoted: a string, never a number
+  std::string stands_for;      ///< `$name` if the file has it in place of the number of the scalar; or empty
+  bool refused = false;        ///< already reported or truncated: present, not to be checked again
   std::vector<Node> items;     ///< of a sequence
   std::vector<Entry> entries;  ///< of a map, in the order of the text, keys unique
 };
@@ -41,8 +41,8 @@ struct Document {
   std::string file;
   std::string text;
   Node root;
-  /// False when parsing had to stop before the end: what is missing then may stand further down, so readers
-  /// do not report it.
+  /// False if parsing stopped before the end. A missing key may then be further down, so readers do not
+  /// report it.
   bool complete = true;
 
   /// A problem at `at`, with the line's text filled in.

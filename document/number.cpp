@@ -80,7 +80,7 @@ std::string repaired(std::string_view text, char from, std::string_view to) {
   return split(out) ? out : std::string{};
 }
 
-/// What was probably meant by a text that is no decimal number.
+/// Suggests the probable meaning of a text that is not a decimal number.
 std::string hint_for(std::string_view text) {
   const std::string word = lower(text);
   if (one_of(word, {".nan", ".inf", "-.inf", "+.inf", "nan", "inf", "-inf", "+inf", "infinity"})) {

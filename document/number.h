@@ -25,11 +25,11 @@ struct Parsed {
 /// `true` or `false`.
 [[nodiscard]] Parsed<bool> parse_boolean(const Node& node);
 
-/// "the decimal mark is a point: 0.5" where a comma between two nodes of one line was meant as one, as in
-/// `[0,5]` and `{hold_s: 0,5}`; or empty. `after` is what stands behind the comma.
+/// Returns "the decimal mark is a point: 0.5" if a comma between two nodes of one line was probably a decimal
+/// mark, as in `[0,5]` and `{hold_s: 0,5}`; or empty. `after` is the location behind the comma.
 [[nodiscard]] std::string hint_for_comma(const Node& before, Location after, std::string_view text_after);
 
-/// What a node is, for "found ...": "a list", "a map", "nothing", "`text`".
+/// Returns the kind of a node, for "found ...": "a list", "a map", "nothing", "`text`".
 [[nodiscard]] std::string found(const Node& node);
 
 }  // namespace softgrip::document

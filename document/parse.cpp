@@ -87,7 +87,7 @@ class TreeBuilder final : public YAML::EventHandler {
   /// The innermost map or sequence that is still open, or nullptr.
   [[nodiscard]] const Node* open_node() const { return frames_.empty() ? nullptr : &frames_.back().node; }
 
-  /// Puts what stands on the stack into the tree, after the parser left early.
+  /// Moves the open nodes of the stack into the tree, after the parser stopped early.
   void fold() {
     while (!frames_.empty()) {
       const Frame* parent = frames_.size() > 1 ? &frames_[frames_.size() - 2] : nullptr;
@@ -95,7 +95,7 @@ class TreeBuilder final : public YAML::EventHandler {
       if (is_key) {
         frames_.pop_back();
       } else {
-        // Of `[1, 2` nobody knows how it goes on; items of a block list are whole.
+        // The end of `[1, 2` is unknown; items of a block list are complete.
         frames_.back().node.refused = frames_.back().flow;
         close();
       }
@@ -162,8 +162,8 @@ class TreeBuilder final : public YAML::EventHandler {
     return false;
   }
 
-  /// Of a value that is not there the parser names the place of what comes next, perhaps lines below. Go
-  /// back to the end of what stands before.
+  /// For a missing value, the parser gives the location of the next token, perhaps lines below. Returns the
+  /// end of the preceding text instead.
   [[nodiscard]] Location empty_value_at(const YAML::Mark& mark) const {
     const std::string& text = document_.text;
     auto position = std::min(static_cast<std::size_t>(std::max(mark.pos, 0)), text.size());

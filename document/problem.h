@@ -51,7 +51,7 @@ class Problems {
   /// break unless there is nothing to say.
   [[nodiscard]] std::string format() const;
 
-  /// The same without repetitions: a file that was read more than once has the same problems each time.
+  /// Returns the problems without repetitions: a file that was read more than once repeats its problems.
   [[nodiscard]] Problems without_repeats() const;
 
  private:

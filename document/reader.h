@@ -37,7 +37,7 @@ class MapReader {
   /// A required number in `range`. Missing, not a number, not finite or out of range: a problem, and
   /// the nearest allowed value (or 0 clamped to the range) is returned.
   double number(std::string_view key, Range range);
-  /// The same for a key that may be absent.
+  /// Reads a number in `range` under a key that may be absent. A wrong value is a problem, as for number().
   std::optional<double> optional_number(std::string_view key, Range range);
   /// A required whole number in [lower, upper].
   std::int64_t integer(std::string_view key, std::int64_t lower, std::int64_t upper);
@@ -59,18 +59,18 @@ class MapReader {
   std::vector<double> numbers(std::string_view key, std::size_t count, Range range);
   std::optional<std::vector<double>> optional_numbers(std::string_view key, std::size_t count, Range range);
 
-  /// True if the key stands in the map. Does not count as reading it.
+  /// Returns true if the map contains the key. Does not count as reading it.
   [[nodiscard]] bool has(std::string_view key) const;
   /// True if the key stands in the map and its getter found nothing wrong: what a check of several keys
   /// together asks first.
   [[nodiscard]] bool good(std::string_view key) const;
   /// All keys in the order of the text.
   [[nodiscard]] std::vector<std::string> keys() const;
-  /// Where a key stands, or the map itself.
+  /// Returns the location of a key, or of the map itself.
   [[nodiscard]] Location where(std::string_view key) const;
   /// A problem of meaning that only the caller can see, at a key's value.
   void report(std::string_view key, std::string message, std::string hint = {});
-  /// The same for what is allowed but probably not meant.
+  /// Reports a warning at a key's value: the value is permitted but probably not meant.
   void warn(std::string_view key, std::string message, std::string hint = {});
   /// Reports keys that nobody asked for and those that are missing. Further getters must not be called.
   void finish();

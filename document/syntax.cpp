@@ -57,7 +57,7 @@ std::string place(Location at) {
   return std::to_string(at.line) + ":" + std::to_string(at.column);
 }
 
-/// Of a bracket that closes another kind, or that stands behind everything.
+/// Returns the message on a bracket that closes another kind, or that follows the end.
 SyntaxMessage wrong_end(const Document& document, Location at) {
   const std::vector<Bracket> open = open_brackets(document.text, at);
   if (open.empty()) return {"a closing bracket stands here without an opening one", ""};

@@ -1,5 +1,5 @@
 #pragma once
-// What the YAML parser says of a syntax error, in words that help.
+// Explains the syntax errors of the YAML parser.
 
 #include <string>
 #include <string_view>

@@ -68,7 +68,7 @@ void for_each_line(std::string_view text, See&& see) {
   }
 }
 
-/// Directives stand before the document: `%YAML 1.2`.
+/// Directives precede the document: `%YAML 1.2`.
 std::optional<Location> find_directive(std::string_view text) {
   std::optional<Location> found;
   for_each_line(text, [&](std::string_view line, int number) {

@@ -1,5 +1,5 @@
 #pragma once
-// What is checked of a document's text before the YAML parser sees it.
+// Checks the text of a document before the YAML parser reads it.
 
 #include "document/node.h"
 
