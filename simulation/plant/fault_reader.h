@@ -1,6 +1,6 @@
 #pragma once
-// What can be wrong with a finger, as YAML says it: the same words and bounds in the events of a rig file and
-// in the emulator's faults file.
+// Reads the faults of a finger from YAML, with equal words and bounds for the events of a rig file and the
+// emulator's faults file.
 
 #include <string_view>
 
@@ -9,9 +9,9 @@
 
 namespace softgrip::simulation {
 
-/// Reads what a fault of this kind has beside its kind: `share` of a line that leaks.
+/// Reads the keys of a line fault in addition to its kind: `share` of a leak.
 void read_own_keys(document::MapReader& reader, LineFault& fault);
-/// The same: of a sensor that is off by how much, under `offset_key` [mm].
+/// Reads the keys of a sensor fault in addition to its kind: its size under `offset_key` [mm].
 void read_own_keys(document::MapReader& reader, SensorFault& fault, std::string_view offset_key);
 /// `{position_mm, yielding}`
 [[nodiscard]] PlantObject read_object(const document::Document& document, const document::Node& node,

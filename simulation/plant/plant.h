@@ -1,6 +1,6 @@
 #pragma once
-// One simulated finger: valve, actuator, load and sensor of a model, an object that may stand in its way, and
-// what can go wrong with it. The simulated board and the emulator drive the same plant.
+// Simulates one finger: valve, actuator, load and sensor of a model, an optional object in its way, and
+// faults. The simulated board and the emulator use the same plant.
 
 #include <cstdint>
 #include <memory>
@@ -19,7 +19,7 @@ struct PlantObject {
   bool operator==(const PlantObject&) const = default;
 };
 
-/// What is wrong with the pneumatic line.
+/// A fault of the pneumatic line.
 struct LineFault {
   enum class Kind : std::uint8_t {
     none,
@@ -30,7 +30,7 @@ struct LineFault {
   double share = 0;  ///< leaking: 0 to 1
 };
 
-/// What is wrong with the displacement sensor.
+/// A fault of the displacement sensor.
 struct SensorFault {
   enum class Kind : std::uint8_t {
     none,
@@ -71,15 +71,15 @@ class Plant {
   void advance(double duration_s) noexcept;
 
   [[nodiscard]] double held_command_kpa() const noexcept;
-  /// What the sensor shows [mm], with noise and faults; see sees_nothing().
+  /// Returns the sensor reading [mm], with noise and faults; see sees_nothing().
   [[nodiscard]] double reading_mm() const noexcept;
-  /// Where the finger is [mm], without the sensor.
+  /// Returns the true displacement of the finger [mm], without the sensor.
   [[nodiscard]] double displacement_mm() const noexcept;
-  /// What a pressure monitor shows [kPa], with noise.
+  /// Returns the reading of a pressure monitor [kPa], with noise.
   [[nodiscard]] double measured_pressure_kpa() const noexcept;
   /// Without noise.
   [[nodiscard]] double pressure_kpa() const noexcept;
-  /// What a temperature sensor shows, with noise.
+  /// Returns the reading of a temperature sensor, with noise.
   [[nodiscard]] double measured_temperature_c() const noexcept;
   /// True while the sensor is out of range: reading_mm() means nothing.
   [[nodiscard]] bool sees_nothing() const noexcept;

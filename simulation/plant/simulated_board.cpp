@@ -13,7 +13,8 @@ namespace {
 
 using Kind = SimulatedEvent::Kind;
 
-/// `value` as a converter of so many bits over [lower, upper] has it. NaN-free input.
+/// Returns `value` as a converter with `bits` bits over [lower, upper] represents it. The input must not be
+/// NaN.
 double quantised(double value, double lower, double upper, int bits) noexcept {
   if (bits <= 0 || !(upper > lower)) return value;
   const double step = (upper - lower) / (std::exp2(bits) - 1);
@@ -179,7 +180,7 @@ std::size_t SimulatedBoard::channels() const noexcept {
 
 drivers::BusStatus SimulatedBoard::connect(std::chrono::nanoseconds) noexcept {
   Parts& parts = *parts_;
-  // Time passes for the plants while nobody is connected.
+  // The plants continue while no client is connected.
   if (parts.started) parts.act_until(parts.clock.now());
   parts.connected = parts.bus != drivers::BusStatus::disconnected;
   if (!parts.connected) return parts.say(drivers::BusStatus::disconnected, "the simulated bus is down");

@@ -19,13 +19,13 @@ namespace softgrip::simulation {
 /// Something that happens at a scripted time.
 struct SimulatedEvent {
   enum class Kind : std::uint8_t {
-    object,         ///< `object` stands there from now on; none: it is pulled out
+    object,         ///< places `object` in the way of the finger; none: removes it
     line_fault,     ///< `line`
     sensor_fault,   ///< `sensor`
     bus_lost,       ///< every exchange ends with `status`; while that is `disconnected`, connect() fails too
     bus_restored,   ///< exchanges work again, after a connect() if the status was one that ends the session
-    write_refused,  ///< outputs keep their value; an exchange that asks for another one says so
-    write_taken,    ///< and follow again
+    write_refused,  ///< outputs keep their value; an exchange with a new value reports it
+    write_taken,    ///< outputs follow again
   };
   /// All channels.
   static constexpr std::size_t every_channel = static_cast<std::size_t>(-1);
@@ -56,8 +56,8 @@ struct SimulatedChannel {
 struct SimulatedBoardSettings {
   std::vector<SimulatedChannel> channels;
   std::vector<SimulatedEvent> events;  ///< in any order
-  /// Outputs go to `vented_kpa` when no exchange came for so long [s], and stay there until connect(); 0: no
-  /// watchdog.
+  /// Time without an exchange after which the outputs go to `vented_kpa` [s]; they stay there until
+  /// connect(). 0: no watchdog.
   double watchdog_timeout_s = 0;
 };
 
