@@ -64,11 +64,12 @@
 
 namespace softgrip::model {
 
-/// Where a block stands. A chain's blocks are ordered by station and, inside one, by kind: pressure blocks,
-/// elements, displacement blocks, reading blocks; among equals, as the model file lists them.
+/// The station of a block in the chain. A chain's blocks are ordered by station and, inside a station, by
+/// kind: pressure blocks, elements, displacement blocks, reading blocks. Equal blocks keep the order of the
+/// model file.
 enum class Station : std::uint8_t { valve, actuator, load, sensor };
 
-/// What a block does to the signal that walks the chain.
+/// The effect of a block on the signal in the chain.
 enum class Kind : std::uint8_t {
   pressure,      ///< kPa in, kPa out, in series
   element,       ///< kPa in, mm out; all elements of a chain see the same pressure and their outputs add
@@ -86,7 +87,7 @@ enum class Inverse : std::uint8_t {
   ignored,   ///< not to be inverted (noise, quantisation)
 };
 
-/// What a block says of itself.
+/// Description of a block type.
 struct BlockInfo {
   std::string_view id;  ///< YAML key, cause id
   Station station;
@@ -95,13 +96,13 @@ struct BlockInfo {
   std::string_view title;     ///< "Transport delay"
   std::string_view meaning;   ///< one line for the manual
   std::string_view equation;  ///< what it computes, in plain text
-  bool repeatable = false;    ///< may stand in a chain more than once (two stops, two disturbances)
+  bool repeatable = false;    ///< may occur in a chain more than once (two stops, two disturbances)
 };
 
-/// For block_info(): the block may stand in a chain more than once.
+/// For block_info(): the block may occur in a chain more than once.
 struct Repeatable {};
 
-/// What a block says of itself, in the order of the members above. The meaning is a sentence.
+/// Returns the description of a block, in the order of the members above. The meaning is a sentence.
 consteval BlockInfo block_info(std::string_view id, Station station, Kind kind, Inverse inverse,
                                std::string_view title, std::string_view meaning, std::string_view equation) {
   if (id.empty() || title.empty() || !meaning.ends_with('.'))
@@ -116,7 +117,7 @@ consteval BlockInfo block_info(std::string_view id, Station station, Kind kind, 
   return info;
 }
 
-/// What a block may need to prepare itself, besides its parameters.
+/// Inputs for the preparation of a block in addition to its parameters.
 struct Preparation {
   double sample_time_s = 0;  ///< nominal; 0 when samples are irregular
   std::uint64_t seed = 0;    ///< of this block's random numbers, distinct per block and channel
@@ -136,7 +137,7 @@ concept SaysItsParts = requires {
   std::size_t{Block::max_parts};
 };
 
-/// It is a value made of its numbers, which can be put to rest and says where it stands.
+/// Requires a copyable value that is made from its parameters, has a rest state and returns its output.
 template <class Block, class T>
 concept StandsSomewhere = std::copyable<Block> &&
     requires(Block block, const Block& still, const T& input, std::span<const T> values,
@@ -180,7 +181,7 @@ concept ElementBlock = SaysWhatItIs<Block> && StandsSomewhere<Block, T> && Turns
 template <class Block, class T>
 concept ReadingBlock = SaysWhatItIs<Block> && StandsSomewhere<Block, T> && Samples<Block, T>;
 
-/// Compiles for a block that keeps to its contract; what is missing stands in the compiler's message.
+/// Compiles for a block that fulfils its contract; otherwise the compiler's message names the missing part.
 template <template <class> class Block, class T>
 consteval bool keeps_contract() {
   using B = Block<T>;

@@ -1,6 +1,6 @@
 #pragma once
-// What the blocks say of themselves, as plain data by index: for everything that lists, reads, writes or fits
-// blocks and need not step them. Filled from the list in registry.h.
+// Lists the descriptions of all blocks as plain data by index. Code that lists, reads, writes or fits blocks
+// uses it without stepping them. It is filled from the list in registry.h.
 
 #include <cstddef>
 #include <optional>

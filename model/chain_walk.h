@@ -18,7 +18,8 @@ AnyBlock<T> make_block(std::size_t type, std::span<const T> values, const Prepar
   return AnyBlock<T>(std::in_place_index<I>, values, preparation);
 }
 
-// The seed of a block: by its id and how often it stood there before, so that other blocks may come and go.
+// Returns the seed of a block, by its id and the number of earlier blocks with this id. Thus other blocks may
+// be added or removed.
 inline std::uint64_t seed_of(const Model& model, std::size_t index, std::uint64_t seed) {
   std::uint64_t part = 0;
   for (const char c : catalogue()[model.blocks[index].type].info.id) {
@@ -34,7 +35,7 @@ inline constexpr Kind kind_of = std::remove_cvref_t<Block>::info.kind;
 /// that an inverse does not see, takes their sum for a parabola: behind 44 kPa within 10 ms an inertia of 45
 /// ms was off by 0.07 mm, in parts by 1e-4.
 inline constexpr double longest_way_kpa = 5;
-/// Whatever the command is.
+/// Largest number of parts, for every command.
 inline constexpr double most_parts = 100;
 
 template <class Block>
@@ -176,8 +177,8 @@ void Chain<T>::walk_elements(const Segment<T>& segment, const Surroundings& surr
   add_elements(segment, surroundings);
 }
 
-// What is done for each block is inlined whatever the compiler thinks of its size, here and in peek(): left
-// to itself, GCC 12 calls Kelvin-Voigt out of line (41 ns instead of 17 for a trial with derivative).
+// The code for each block is always inlined, here and in peek(). By default, GCC 12 calls Kelvin-Voigt out of
+// line (41 ns instead of 17 for a trial with derivative).
 template <class T>
 void Chain<T>::add_elements(const Segment<T>& segment, const Surroundings& surroundings) {
   Segment<T> sum{segment.duration_s, T(0.0), T(0.0), T(0.0)};

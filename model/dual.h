@@ -5,7 +5,7 @@
 
 namespace softgrip::model {
 
-/// Value `a` and derivative `v` with respect to whatever was seeded with v = 1.
+/// Value `a` and derivative `v` with respect to the variable that was seeded with v = 1.
 template <class S>
 struct Dual {
   S a{};

@@ -1,5 +1,5 @@
 #pragma once
-// A gain that stays positive whatever its argument, for effects that drift without bound.
+// Computes a gain that is positive for every argument, for effects that drift without bound.
 
 #include "model/number.h"
 

@@ -1,5 +1,5 @@
 #pragma once
-// What a leak at a finger takes of the pressure that a regulator holds before the line to it.
+// Computes the pressure drop between a regulator and a finger with a leak.
 
 #include "model/number.h"
 

@@ -1,5 +1,6 @@
 #pragma once
-// A model as a plain value: which blocks stand in the chain and with what numbers. No behaviour, no state.
+// Defines a model as a plain value: the blocks of the chain and their numbers. It has no behaviour and no
+// state.
 
 #include <cstddef>
 #include <optional>
@@ -33,7 +34,7 @@ struct Model {
   bool operator==(const Model&) const = default;
 };
 
-/// What is wrong with a model, one sentence each; empty for a valid one.
+/// Returns the problems of a model, one sentence each; empty for a valid one.
 [[nodiscard]] std::vector<std::string> validate(const Model& model);
 
 /// A block of a type with its default values (`parts` of them where parts repeat).
@@ -48,7 +49,7 @@ struct Model {
 /// The model with only those blocks for which `keep(info)` holds.
 [[nodiscard]] Model only(Model model, bool (*keep)(const BlockInfo& info));
 
-/// Where the first block of a type stands in the model, or nothing.
+/// Returns the position of the first block of a type in the model, or an empty value.
 [[nodiscard]] std::optional<std::size_t> position_of(const Model& model, std::size_t type);
 [[nodiscard]] std::optional<std::size_t> position_of(const Model& model, std::string_view id);
 
@@ -67,7 +68,7 @@ struct ParameterPlace {
 [[nodiscard]] std::size_t parameter_count(const Model& model);
 /// Where the flat index points to; it must be below parameter_count().
 [[nodiscard]] ParameterPlace place_of(const Model& model, std::size_t flat_index);
-/// "kelvin_voigt.k2_kpa_per_mm"; of a block that stands there again, "contact_2.position_mm".
+/// Returns "kelvin_voigt.k2_kpa_per_mm"; for a repeated block, "contact_2.position_mm".
 [[nodiscard]] std::string parameter_path(const Model& model, std::size_t flat_index);
 /// The flat index of such a path, or nothing.
 [[nodiscard]] std::optional<std::size_t> find_path(const Model& model, std::string_view path);

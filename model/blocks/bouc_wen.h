@@ -23,7 +23,7 @@
 
 namespace softgrip::model {
 
-/// What loading has more and unloading less than the mean of the two. All zero: nothing.
+/// Difference of loading (plus) and unloading (minus) from their mean. All zero: no effect.
 template <class T>
 struct BoucWenSkew {
   T delta_per_kpa{0.0};    ///< of gamma
@@ -31,7 +31,7 @@ struct BoucWenSkew {
   T beta_share{0.0};       ///< of beta, as a share of it
 };
 
-/// What the loop has more where the pressure moves fast.
+/// Change of the loop at a high rate of the pressure.
 template <class T>
 struct BoucWenRate {
   T share{0.0};           ///< of its width, or of eta
@@ -115,9 +115,9 @@ class BoucWen {
                : std::string_view{};
   }
 
-  /// Makes loading and unloading differ, `skew` being what loading has more and unloading less than the mean.
-  /// `delta_per_kpa` is limited to +-eta and +-(gamma + eta), the levelling off to what keeps the state
-  /// bounded: beyond, h would grow while the pressure returns. Once per block.
+  /// Makes loading and unloading differ. `skew` is added for loading and subtracted for unloading.
+  /// `delta_per_kpa` is limited to +-eta and +-(gamma + eta), and the saturation to the values that keep the
+  /// state bounded. Beyond these limits, h would grow while the pressure returns. Call it once per block.
   void skew(const BoucWenSkew<T>& skew) {
     const T eta = (growing_[0] - shrinking_[0]) * 0.5;
     const T most = value_of(eta) < value_of(growing_[0]) ? eta : growing_[0];
@@ -167,10 +167,10 @@ class BoucWen {
   [[nodiscard]] T output() const { return output_; }
   /// h [mm]
   [[nodiscard]] const T& hysteresis_mm() const { return hysteresis_; }
-  /// dh/dp where the block stands, for a pressure that rises or falls from here [mm/kPa].
+  /// Returns dh/dp at the present state, for a rising or falling pressure [mm/kPa].
   [[nodiscard]] T slope(bool rising) const { return slope_at(hysteresis_, rising ? 1.0 : -1.0); }
   [[nodiscard]] const T& alpha_mm_per_kpa() const { return alpha_; }
-  /// Of loading or unloading, whichever is larger.
+  /// Returns the larger value of loading and unloading.
   [[nodiscard]] const T& beta_mm_per_kpa() const {
     return value_of(beta_[0]) > value_of(beta_[1]) ? beta_[0] : beta_[1];
   }
@@ -270,7 +270,8 @@ class BoucWen {
     const T k = rate(h0, direction) * (h0 * direction >= 0.0 ? direction : -direction);
     const U end = hysteresis_ + change * (gain - k * hysteresis_) * phi1(U(-k * change));
     if (h0 * value_of(end) >= 0.0) return end;
-    // h passes zero after -h0/beta * log(1 + x)/x of pressure, x = -k h0 / beta; from there it starts anew.
+    // h passes zero after -h0/beta * log(1 + x)/x of pressure, x = -k h0 / beta; the integration continues
+    // from there.
     using std::log1p;
     const T x = -k * hysteresis_ / gain;
     const T stretch = std::abs(value_of(x)) < 1e-5 ? T(1.0 - x * 0.5 + x * x * (1.0 / 3.0)) : T(log1p(x) / x);
@@ -356,9 +357,9 @@ class BoucWen {
   T output_{0.0};
 };
 
-/// What the parts of the chain's Bouc-Wen element have in common that stand in the model as blocks of their
-/// own: they declare `void shape(BoucWen<T>&) const`, which the chain calls once, when all its blocks are
-/// made, and add nothing themselves. Without bouc_wen in the chain they do nothing.
+/// Common base of the parts of the chain's Bouc-Wen element that are separate blocks in the model. They
+/// declare `void shape(BoucWen<T>&) const`, which the chain calls once after all its blocks are made. They
+/// add nothing to the displacement themselves. Without bouc_wen in the chain, they have no effect.
 template <class T>
 class BoucWenPart {
  public:

@@ -98,7 +98,7 @@ class PressureDependentCreep {
   static U above(const U& pressure, const T& hinge) {
     return value_of(pressure) >= value_of(hinge) ? U(pressure - hinge) : U(0.0);
   }
-  /// Of a straight way from `begin` to `end`.
+  /// Returns the mean over a straight line from `begin` to `end`.
   template <class U>
   static U mean_above(const T& begin, const U& end, const T& hinge) {
     const U first(above(begin, hinge)), last = above(end, hinge);

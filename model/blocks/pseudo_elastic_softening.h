@@ -62,8 +62,8 @@ class PseudoElasticSoftening {
   }
 
  private:
-  /// q at a pressure while the largest load stays. What is missing to a number's derivatives comes with one
-  /// step of Newton's over that number.
+  /// Returns q at a pressure with a constant largest load. One Newton step over a number completes its
+  /// derivatives.
   template <class U>
   [[nodiscard]] U map(const U& p) const {
     const double pressure = value_of(p), largest = value_of(largest_kpa_);
@@ -75,8 +75,8 @@ class PseudoElasticSoftening {
     return from + (p * (1.0 + share) - from) * (1.0 / slope(from, pressure, largest));
   }
 
-  /// Newton's method between p and m, where the root is, from where the block stands; halving where it would
-  /// leave them. To half the digits: the last step is map()'s.
+  /// Solves by Newton's method between p and m, which contain the root, from the present output. Bisection
+  /// replaces a step that leaves the interval. The result has half the digits; map() makes the last step.
   [[nodiscard]] double solved(double pressure, double largest) const {
     double low = pressure, high = largest, q = std::clamp(value_of(output_), low, high);
     const double strength = value_of(softening_per_kpa_) * largest, range = value_of(range_kpa_);

@@ -1,5 +1,5 @@
 #pragma once
-// The zero of the sensor wanders to and fro.
+// Models a slow sinusoidal drift of the sensor zero.
 
 #include <cmath>
 #include <numbers>

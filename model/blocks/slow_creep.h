@@ -7,8 +7,8 @@
 
 namespace softgrip::model {
 
-/// tau x' = gain p - x. The same as a Kelvin-Voigt branch of stiffness 1/gain and damping tau/gain, but
-/// defined at gain 0 and apart from the branches of the given model.
+/// Models tau x' = gain p - x. It is equivalent to a Kelvin-Voigt branch of stiffness 1/gain and damping
+/// tau/gain. It is also defined at gain 0, and it is separate from the branches of the given model.
 template <class T>
 class SlowCreep {
  public:

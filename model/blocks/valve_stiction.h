@@ -7,11 +7,11 @@
 
 namespace softgrip::model {
 
-/// The pressure stays until the command differs by more than the band, then jumps to it and sticks anew; a
-/// ramp becomes a staircase. Stiction of positioners (stick band equal to slip jump: Choudhury, Thornhill and
-/// Shah, Control Engineering Practice 13, 2005) and dead band of digital regulators. All jumps of a segment
-/// are passed on at their times. A command that crosses a band in less than `rest_s` is followed to where it
-/// stops: the spool does not come to rest in between.
+/// Keeps the pressure until the command differs by more than the band, then jumps to the command and sticks
+/// again; a ramp becomes a series of steps. It models the stiction of positioners (stick band equal to slip
+/// jump: Choudhury, Thornhill and Shah, Control Engineering Practice 13, 2005) and the dead band of digital
+/// regulators. All jumps of a segment are passed on at their times. If a command crosses a band in less than
+/// `rest_s`, the valve follows it to its end, because the spool does not come to rest in between.
 template <class T>
 class ValveStiction {
  public:

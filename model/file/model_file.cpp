@@ -60,7 +60,7 @@ bool does_something(const BlockSpec& block) {
   return false;
 }
 
-/// Whether a key of the map is none of the block that has the id today, but of what the earlier one held.
+/// Returns true if a key of the map belongs to the earlier block with the id and not to the present one.
 bool has_key_of_another(const Node& map, const EarlierBlock& earlier, std::size_t today) {
   const auto has = [](std::size_t type, const std::string& key) {
     const BlockDescriptor& descriptor = catalogue()[type];
@@ -191,7 +191,7 @@ class ModelReader {
         document_.problem(entry.key_at, "unknown block " + entry.key + " in the station " + where, hint));
   }
 
-  // Order of kinds inside the station, and blocks that must not stand there twice.
+  // Checks the order of kinds inside the station, and blocks that must not occur twice.
   void check_place(const Node::Entry& entry, const BlockInfo& info, const Model& model) {
     for (const BlockSpec& block : model.blocks) {
       const BlockInfo& other = catalogue()[block.type].info;

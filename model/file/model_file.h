@@ -39,8 +39,8 @@ namespace softgrip::model {
 /// read_model(parse(to_yaml(m))) == m for every valid m.
 [[nodiscard]] std::string to_yaml(const Model& model);
 
-/// 16 hexadecimal digits that stand for the blocks and numbers of a model in provenance records: FNV-1a (64
-/// bit) of to_yaml(). The same on every machine; changes with any digit.
+/// Returns 16 hexadecimal digits that identify the blocks and numbers of a model in provenance records:
+/// FNV-1a (64 bit) of to_yaml(). The hash is equal on every machine and changes with any digit.
 [[nodiscard]] std::string model_hash(const Model& model);
 
 }  // namespace softgrip::model
