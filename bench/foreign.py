@@ -65,6 +65,7 @@ def parsed(words):
     parser.add_argument("--threads", type=int, default=1, help="of each softgrip call")
     parser.add_argument("--at-most-s", type=float, default=3600, help="for one call")
     parser.add_argument("--reference", type=pathlib.Path, default=REFERENCE, help="results of an earlier version")
+    parser.add_argument("--title", default="Data of other laboratories", help="of the page [%(default)s]")
     parser.add_argument("--page", type=pathlib.Path, nargs="?", const=PAGE, help=f"Markdown [{PAGE.relative_to(ROOT)}]")
     return parser.parse_args(words)
 
@@ -160,7 +161,7 @@ def main(words=None):
         print("stopped; the same command continues", file=sys.stderr)
         return 1
     if options.page:
-        foreign_page.write(options.page, values, read_json(options.reference))
+        foreign_page.write(options.page, values, read_json(options.reference), options.title)
         print(f"page: {options.page}")
     failed = [case for case in values["cases"] if has_failed(case)]
     return 1 if failed or problems else 0

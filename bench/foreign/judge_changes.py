@@ -100,7 +100,8 @@ def summary_of_changes(cases):
     beyond = [case for case in good if case["exceeds_spread"]]
     within = [case for case in good if case["exceeds_spread"] is False]
     detected = [case for case in beyond if case["changed"]]
-    return {"cases": len(good), "failed": len(cases) - len(good), "beyond_spread": len(beyond), "detected": len(detected),
+    return {"changed": sum(case["changed"] for case in good), "listed": sum(case["listed"] for case in good),
+            "cases": len(good), "failed": len(cases) - len(good), "beyond_spread": len(beyond), "detected": len(detected),
             "named_or_listed": sum(case["listed"] for case in detected), "within_spread": len(within),
             "within_reported_unchanged": sum(not case["changed"] for case in within),
             "wrong_alone": sum(case["wrong_alone"] for case in good)}

@@ -47,7 +47,8 @@ class Answers(unittest.TestCase):
                                                   change(False, True, False, True), change(False, False, False, False),
                                                   change(None, True, True, False), {"error": "x"}])
         self.assertEqual(found, {"cases": 5, "failed": 1, "beyond_spread": 2, "detected": 1, "named_or_listed": 1,
-                                 "within_spread": 2, "within_reported_unchanged": 1, "wrong_alone": 1})
+                                 "within_spread": 2, "within_reported_unchanged": 1, "wrong_alone": 1,
+                                 "changed": 3, "listed": 2})
 
 
 @unittest.skipUnless(SCIPY, "python3-scipy is not installed")

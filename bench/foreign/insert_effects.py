@@ -1,0 +1,148 @@
+#!/usr/bin/python3
+"""Inserts known effects into real repeated runs, as data sets for bench/foreign.py.
+
+    bench/foreign/insert_effects.py --out DIR [--data DIR]
+    bench/foreign.py --data DIR --only changes --out RESULTS --page PAGE
+
+The runs are those that a laboratory recorded without a change in between (`repeats` of the table of a set). In the later
+run an effect is inserted into the readings; the baseline runs stay as they were recorded. So the finger, the valve, the
+noise and the differences between runs are real, and only the effect is known. With 1 set of DIR for each set of --data.
+Sizes are shares of the stroke (highest minus lowest reading), noise that an operation removes is added again (0.1 % of the
+stroke, seed 1).
+"""
+import argparse
+import pathlib
+import sys
+
+import numpy as np
+
+HERE = pathlib.Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE))
+
+import set_table  # noqa: E402
+from log_reading import OUTPUT, read_log  # noqa: E402
+
+SHARED = HERE.parent.parent.parent / "shared/data"
+DELAY_S, LAG_S = 0.25, 0.3
+
+
+def noisy(readings, stroke):
+    return readings + 0.001 * stroke * np.random.default_rng(1).standard_normal(len(readings))
+
+
+def later_by(time_s, values, by_s):
+    return np.interp(np.asarray(time_s) - by_s, time_s, values)
+
+
+def lagged(time_s, readings, lag_s):
+    out, state, steps = [], readings[0], np.diff(time_s, prepend=time_s[0])
+    for reading, step_s in zip(readings, steps):
+        state += (reading - state) * -np.expm1(-step_s / lag_s)
+        out.append(state)
+    return np.array(out)
+
+
+def with_play(readings, width):
+    out, state = [], readings[0]
+    for reading in readings:
+        state = min(max(state, reading - width / 2), reading + width / 2)
+        out.append(state)
+    return np.array(out)
+
+
+# name: (label, causes that name it correctly, new readings from time, readings, lowest reading and stroke)
+EFFECTS = {
+    "contact": ("an object in the way at 60 % of the stroke, 4 times as stiff", ["contact"],
+                lambda t, y, low, s: np.where(y > low + 0.6 * s, low + 0.6 * s + 0.25 * (y - low - 0.6 * s), y)),
+    "stop": ("a stop at 70 % of the stroke", ["contact", "sensor_saturation"],
+             lambda t, y, low, s: noisy(np.minimum(y, low + 0.7 * s), s)),
+    "gain": ("15 % less stroke", ["ageing", "payload", "stress_softening", "thermal_gain"],
+             lambda t, y, low, s: low + 0.85 * (y - low)),
+    "weight": ("a weight: 10 % less stroke, and 5 % of the stroke lower", ["payload", "ageing"],
+               lambda t, y, low, s: low - 0.05 * s + 0.9 * (y - low)),
+    "drift": ("the zero drifts by 20 % of the stroke during the run", ["sensor_drift"],
+              lambda t, y, low, s: y + 0.2 * s * (np.asarray(t) - t[0]) / (t[-1] - t[0])),
+    "delay": (f"displacement and pressure {DELAY_S} s later", ["transport_delay", "valve_lag", "sensor_lag"],
+              lambda t, y, low, s: later_by(t, y, DELAY_S)),
+    "filter": (f"a filter of {LAG_S} s behind the sensor", ["sensor_lag", "valve_lag", "transport_delay"],
+               lambda t, y, low, s: lagged(t, y, LAG_S)),
+    "play": ("play of 10 % of the stroke before the sensor", ["backlash", "hysteresis_shape", "asymmetric_hysteresis"],
+             lambda t, y, low, s: noisy(with_play(y, 0.1 * s), s)),
+    "bend": ("the sensor reads 10 % of the stroke too much in the middle", ["sensor_nonlinearity", "stiffening"],
+             lambda t, y, low, s: y + 0.4 * (y - low) * (1 - (y - low) / s)),
+}
+
+
+def filled(values):
+    """Missing readings between their neighbours: an effect acts on every sample."""
+    values = np.array(values, dtype=float)
+    known = np.isfinite(values)
+    return np.interp(np.arange(len(values)), np.flatnonzero(known), values[known])
+
+
+def inserted(log, effect):
+    """The columns of a log with an effect."""
+    readings = filled(log.columns["displacement"])
+    low, stroke = readings.min(), np.ptp(readings)
+    columns = {**log.columns, "displacement": EFFECTS[effect][2](log.time_s, readings, low, stroke)}
+    if effect == "delay" and "pressure" in columns:
+        columns["pressure"] = later_by(log.time_s, columns["pressure"], DELAY_S)
+    return columns
+
+
+def write_set(data_set, pairs, folder):
+    """The logs and the table of 1 set; `pairs` are those of its `repeats` that are used."""
+    folder.mkdir(parents=True, exist_ok=True)
+    entries, changes = {}, []
+
+    def written(name, log, begin):
+        log_name = name.replace(" ", "_")
+        (folder / f"{log_name}.csv").write_text(log.text())
+        columns = ", ".join(f"{column}: {OUTPUT[column]}" for column in OUTPUT if column in log.columns)
+        entries[log_name] = f"- {{name: {log_name}, file: {log_name}.csv, begin: {begin}, time: time_s, {columns}}}"
+        return log_name
+
+    def log_of(name):
+        return read_log(data_set.logs[name], data_set.folder), data_set.logs[name].begin
+
+    for pair in pairs:
+        baseline = [written(name, *log_of(name)) for name in pair.baseline]
+        for effect, (label, causes, _) in EFFECTS.items():
+            log, begin = log_of(pair.later)
+            log.columns = inserted(log, effect)
+            later = written(f"{pair.later}-{effect}", log, begin)
+            changes.append(f"- {{baseline: [{', '.join(baseline)}], later: {later}, label: \"{label}\", "
+                           f"causes: [{', '.join(causes)}], because: inserted by bench/foreign/insert_effects.py}}")
+    about = " ".join([*data_set.about.split(), "Each later run has an inserted effect (bench/foreign/insert_effects.py)."])
+    (folder / set_table.OWN_TABLE).write_text("\n".join([
+        f"title: \"{data_set.title}, with inserted effects\"", f"about: \"{about}\"", f"source: \"{data_set.source}\"",
+        f"licence: \"{data_set.licence}\"", "logs:", *entries.values(), "changes:", *changes, "identification: []", ""]))
+
+
+def chosen(pairs):
+    """For each later run the pair with most baseline runs. Pulses of 1 recording are left out."""
+    most = {}
+    for pair in pairs:
+        if pair.group == "runs" and len(pair.baseline) > len(getattr(most.get(pair.later), "baseline", [])):
+            most[pair.later] = pair
+    return list(most.values())
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--out", type=pathlib.Path, required=True)
+    parser.add_argument("--data", type=pathlib.Path, default=SHARED if SHARED.is_dir() else HERE / "data")
+    args = parser.parse_args()
+    sets, problems = set_table.find_sets([args.data], HERE / "sets", args.out / "tables")
+    for problem in problems:
+        print(problem, file=sys.stderr)
+    for data_set in sets:
+        pairs = chosen(data_set.repeats)
+        if pairs:
+            write_set(data_set, pairs, args.out / f"{data_set.name}_inserted")
+            print(f"{args.out / data_set.name}_inserted: {len(pairs)} runs with {len(EFFECTS)} effects each")
+    return 1 if problems else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
