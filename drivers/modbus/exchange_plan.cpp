@@ -33,7 +33,8 @@ void cover(const BoardMap& map, const RegisterBlock& block, std::vector<std::siz
   const std::uint32_t most = most_readable(map, block.function);
   std::optional<Range> open;
   for (const std::size_t index : indices) {
-    const std::uint32_t begin = block.address_of(index);
+    // Not address_of(): beyond 65535 it continues at 0, where the board has other registers.
+    const auto begin = static_cast<std::uint32_t>(block.address + index * words_of(block.kind));
     const std::uint32_t end = begin + words_of(block.kind);
     if (open && end - open->begin > most) {
       ranges.push_back(*open);
