@@ -50,9 +50,9 @@ struct RegisterBlock {
   [[nodiscard]] constexpr std::uint16_t registers() const noexcept {
     return static_cast<std::uint16_t>(count * words_of(kind));
   }
-  /// Address of the number `index`.
-  [[nodiscard]] constexpr std::uint16_t address_of(std::size_t index) const noexcept {
-    return static_cast<std::uint16_t>(address + index * words_of(kind));
+  /// Address of the number `index`. Beyond 65535 no board has it, and it does not continue at 0.
+  [[nodiscard]] constexpr std::uint32_t address_of(std::size_t index) const noexcept {
+    return static_cast<std::uint32_t>(address + index * words_of(kind));
   }
 };
 

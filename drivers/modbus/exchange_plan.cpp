@@ -33,8 +33,7 @@ void cover(const BoardMap& map, const RegisterBlock& block, std::vector<std::siz
   const std::uint32_t most = most_readable(map, block.function);
   std::optional<Range> open;
   for (const std::size_t index : indices) {
-    // Not address_of(): beyond 65535 it continues at 0, where the board has other registers.
-    const auto begin = static_cast<std::uint32_t>(block.address + index * words_of(block.kind));
+    const std::uint32_t begin = block.address_of(index);
     const std::uint32_t end = begin + words_of(block.kind);
     if (open && end - open->begin > most) {
       ranges.push_back(*open);
@@ -151,7 +150,7 @@ void plan_writes(const BoardMap& map, const std::vector<ChannelWiring>& wiring, 
   const std::uint16_t most =
       std::min(map.max_registers, map.has_fc23 ? max_fc23_write_registers : max_write_registers);
   for (const std::size_t channel : order) {
-    const std::uint16_t address = block.address_of(wiring[channel].valve.output);
+    const std::uint32_t address = block.address_of(wiring[channel].valve.output);
     plan.channels[channel].output_word = plan.output_words;
     const bool continues = !plan.writes.empty() && block.function == MODBUS_FC_WRITE_MULTIPLE_REGISTERS &&
                            plan.writes.back().address + plan.writes.back().count == address &&
@@ -159,13 +158,13 @@ void plan_writes(const BoardMap& map, const std::vector<ChannelWiring>& wiring, 
     if (continues) {
       plan.writes.back().count = static_cast<std::uint16_t>(plan.writes.back().count + words);
     } else {
-      plan.writes.push_back({block.function, address, words, plan.output_words});
+      plan.writes.push_back({block.function, static_cast<std::uint16_t>(address), words, plan.output_words});
     }
     plan.output_words += words;
   }
 }
 
-Slot slot_of(const std::vector<ReadStep>& reads, std::uint8_t function, std::uint16_t address) {
+Slot slot_of(const std::vector<ReadStep>& reads, std::uint8_t function, std::uint32_t address) {
   for (std::size_t step = 0; step < reads.size(); ++step) {
     const ReadStep& read = reads[step];
     if (read.function == function && address >= read.address && address < read.address + read.count) {

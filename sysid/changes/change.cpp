@@ -488,8 +488,9 @@ tl::expected<ChangeDiagnosis, std::string> diagnose_change(const std::vector<Log
     return fit_base(before.records, Judged::displacement, drive, base);
   };
   bool pressure = has_pressure(healthy) && has_pressure(later);
-  Prepared before = driven_records(healthy, pressure ? Drive::measured : Drive::command, options);
-  Base finger_base = fitted(before, pressure ? Drive::measured : Drive::command);
+  const Drive drive = pressure ? Drive::measured : Drive::command;
+  Prepared before = driven_records(healthy, drive, options);
+  Base finger_base = fitted(before, drive);
   if (pressure) {
     Prepared commanded = driven_records(healthy, Drive::command, options);
     Base by_command = fitted(commanded, Drive::command);

@@ -19,18 +19,16 @@ constexpr std::array<BusAdvice, 5> bus_advices{{
     {BusStatus::disconnected,
      "check power and cable of the board, its address in the rig file, and that no other master holds it"},
     {BusStatus::closed_at_once,
-     "the board can be reached and serves no further client: end the other programs that are connected to "
-     "it, "
-     "or wait until it drops a connection that was cut"},
+     "the board can be reached and serves no further client: end the other programs that are connected "
+     "to it, or wait until it drops a connection that was cut"},
     {BusStatus::timed_out,
      "check power and cable of the board and `unit` in the rig file; a board that ignores what comes first "
      "after a connection needs `settle_s`"},
     {BusStatus::bad_reply,
      "look for a second master or a gateway that mixes replies; check `unit` in the rig file"},
     {BusStatus::exception,
-     "the board is reached and refuses the request: compare function, address and count in the board map "
-     "with "
-     "its manual"},
+     "the board is reached and refuses the request: compare function, address and count in the board "
+     "map with its manual"},
 }};
 
 }  // namespace

@@ -268,19 +268,25 @@ TEST(ModbusTcpLink, AnEndBehindAnAnswerIsNoConnectionThatWasClosedAtOnce) {
   EXPECT_EQ(session.ask(1, read_four, now() + generous), BusStatus::closed_at_once) << "a new connection";
 }
 
+/// A listener on a free port of this machine.
+int listening(int backlog, std::uint16_t& port) {
+  const int listener = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  socklen_t size = sizeof address;
+  EXPECT_EQ(::bind(listener, reinterpret_cast<sockaddr*>(&address), size), 0);
+  EXPECT_EQ(::listen(listener, backlog), 0);
+  EXPECT_EQ(::getsockname(listener, reinterpret_cast<sockaddr*>(&address), &size), 0);
+  port = ntohs(address.sin_port);
+  return listener;
+}
+
 /// A server that takes a connection, sends `greeting`, and closes it if `closes`.
 class Greeter {
  public:
   Greeter(const std::string& greeting, bool closes) {
-    listener_ = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
-    sockaddr_in address{};
-    address.sin_family = AF_INET;
-    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    socklen_t size = sizeof address;
-    EXPECT_EQ(::bind(listener_, reinterpret_cast<sockaddr*>(&address), size), 0);
-    EXPECT_EQ(::listen(listener_, 4), 0);
-    EXPECT_EQ(::getsockname(listener_, reinterpret_cast<sockaddr*>(&address), &size), 0);
-    port = ntohs(address.sin_port);
+    listener_ = listening(4, port);
     thread_ = std::thread([this, greeting, closes] {
       socket_ = ::accept(listener_, nullptr, nullptr);
       if (socket_ < 0) return;
@@ -439,19 +445,13 @@ TEST(ModbusTcpLink, NamesAreNotResolved) {
 
 // A listener whose queue is full drops the first packet of every further connection: nothing ever answers.
 TEST(ModbusTcpLink, ConnectingIsBoundedWhenNobodyAnswers) {
-  const int listener = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  socklen_t size = sizeof address;
-  ASSERT_EQ(::bind(listener, reinterpret_cast<sockaddr*>(&address), size), 0);
-  ASSERT_EQ(::listen(listener, 0), 0);
-  ASSERT_EQ(::getsockname(listener, reinterpret_cast<sockaddr*>(&address), &size), 0);
+  std::uint16_t port = 0;
+  const int listener = listening(0, port);
   std::vector<std::unique_ptr<ModbusTcpLink>> queue;
   BusStatus status = BusStatus::ok;
   Nanoseconds took = 0;
   for (int i = 0; i < 8 && status == BusStatus::ok; ++i) {
-    queue.push_back(std::make_unique<ModbusTcpLink>(TcpAddress{"127.0.0.1", ntohs(address.sin_port)}));
+    queue.push_back(std::make_unique<ModbusTcpLink>(TcpAddress{"127.0.0.1", port}));
     const Nanoseconds before = now();
     status = queue.back()->open(before + deadline);
     took = now() - before;

@@ -32,17 +32,29 @@ TEST(Bins, AThinnedRecordThatEndsSoonerGoesOnWithItsLastValue) {
   EXPECT_EQ(with_bins({1, 2, 3}, 2), (std::vector<double>{1, 2}));
 }
 
-TEST(Bins, AnAutoregressionIsMadeWhite) {
-  std::mt19937 random(3);
-  std::normal_distribution<double> normal(0, 0.5);
-  Binned residual(2, std::vector<double>(4000)), haste(2, std::vector<double>(4000, 0.0));
+constexpr double innovation = 0.5;
+
+/// 2 runs of an autoregression of order 1 about a zero, with the standard deviation `innovation` in each
+/// step.
+Binned autoregression(double weight, double zero, unsigned seed) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> normal(0, innovation);
+  Binned residual(2, std::vector<double>(4000));
   for (auto& series : residual) {
     double last = 0;
-    for (double& v : series) v = last = 0.9 * last + normal(random);
+    for (double& v : series) {
+      last = weight * last + normal(random);
+      v = last + zero;
+    }
   }
+  return residual;
+}
+
+TEST(Bins, AnAutoregressionIsMadeWhite) {
+  const Binned residual = autoregression(0.9, 0, 3), haste(2, std::vector<double>(4000, 0.0));
   const Whitener whitener = whitener_of(residual, haste, 3);
   EXPECT_NEAR(whitener.before[0], 0.9, 0.05);
-  EXPECT_NEAR(whitener.spread_at(0), 0.5, 0.02);
+  EXPECT_NEAR(whitener.spread_at(0), innovation, 0.02);
   const WhiteRows rows(residual, haste, whitener);
   const Eigen::VectorXd white = rows(residual);
   const Eigen::Index n = white.size() - 1;
@@ -51,17 +63,8 @@ TEST(Bins, AnAutoregressionIsMadeWhite) {
 }
 
 TEST(Bins, TheZeroOfARunDoesNotWidenTheSpread) {
-  std::mt19937 random(5);
-  std::normal_distribution<double> normal(0, 0.5);
-  Binned residual(2, std::vector<double>(4000)), haste(2, std::vector<double>(4000, 0.0));
-  for (auto& series : residual) {
-    double last = 0;
-    for (double& v : series) {
-      last = 0.5 * last + normal(random);
-      v = last + 35;
-    }
-  }
-  EXPECT_NEAR(whitener_of(residual, haste, 3).spread_at(0), 0.5, 0.02);
+  const Binned haste(2, std::vector<double>(4000, 0.0));
+  EXPECT_NEAR(whitener_of(autoregression(0.5, 35, 5), haste, 3).spread_at(0), innovation, 0.02);
 }
 
 TEST(Bins, WhatIsHastyHasASpreadOfItsOwn) {
