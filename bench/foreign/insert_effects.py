@@ -113,7 +113,7 @@ def write_set(data_set, pairs, folder):
             later = written(f"{pair.later}-{effect}", log, begin)
             changes.append(f"- {{baseline: [{', '.join(baseline)}], later: {later}, label: \"{label}\", "
                            f"causes: [{', '.join(causes)}], because: inserted by bench/foreign/insert_effects.py}}")
-    about = " ".join([*data_set.about.split(), "Each later run has an inserted effect (bench/foreign/insert_effects.py)."])
+    about = " ".join([*data_set.about.split(), "Each later run has an inserted effect (`bench/foreign/insert_effects.py`)."])
     (folder / set_table.OWN_TABLE).write_text("\n".join([
         f"title: \"{data_set.title}, with inserted effects\"", f"about: \"{about}\"", f"source: \"{data_set.source}\"",
         f"licence: \"{data_set.licence}\"", "logs:", *entries.values(), "changes:", *changes, "identification: []", ""]))

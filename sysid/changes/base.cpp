@@ -109,6 +109,15 @@ Binned left_by(const Candidate& candidate, const std::vector<Record>& records, c
   return left;
 }
 
+/// Play operators and creep, driven as the records are.
+Candidate play_candidate(Drive drive) {
+  const BaseStructure play{
+      .hysteresis = HysteresisForm::play, .delay = drive == Drive::command, .hinged_creep = true};
+  return {description_of(play), {}, [play, drive](const std::vector<Record>& driven) {
+            return point_of(fit_form(driven, play, grid_for(driven), {}), driven, drive);
+          }};
+}
+
 std::vector<Candidate> candidates(const std::vector<Record>& records, const Base& base,
                                   const BaseOptions& options) {
   const auto nothing = [](const std::vector<Record>&) { return FitPoint{}; };
@@ -116,11 +125,8 @@ std::vector<Candidate> candidates(const std::vector<Record>& records, const Base
     return {{"filter bank", {}, nothing},
             {"a regulator", fit_regulator(records, base.largest_kpa, ReadBy::gauge), nothing}};
   const bool command = base.drive == Drive::command;
-  const BaseStructure play{.hysteresis = HysteresisForm::play, .delay = command, .hinged_creep = true};
-  const auto fit_play = [play, drive = base.drive](const std::vector<Record>& driven) {
-    return point_of(fit_form(driven, play, grid_for(driven), {}), driven, drive);
-  };
-  std::vector<Candidate> all{{description_of(play), {}, fit_play},
+  const Candidate play = play_candidate(base.drive);
+  std::vector<Candidate> all{play,
                              {"Bouc-Wen and two creep branches",
                               {},
                               [&options, drive = base.drive](const std::vector<Record>& driven) {
@@ -128,7 +134,7 @@ std::vector<Candidate> candidates(const std::vector<Record>& records, const Base
                               }}};
   if (command) {
     const Regulator regulator = fit_regulator(records, base.largest_kpa);
-    all.push_back({"a regulator, " + description_of(play), regulator, fit_play});
+    all.push_back({"a regulator, " + play.description, regulator, play.fit});
   }
   if (options.given) {
     const model::Model model = deterministic_part(*options.given, base.drive);
@@ -323,6 +329,29 @@ Record with_echo_taken_off(const Driven& driven) {
 }
 
 }  // namespace
+
+double finger_bin_s(const std::vector<Record>& records) {
+  return bin_s(records, shortest_finger_bin_s);
+}
+
+Binned left_out_by_play(const std::vector<Record>& records, Drive drive, double bin_s, unsigned threads) {
+  const Units units(records);
+  const Candidate play = play_candidate(drive);
+  std::vector<Binned> fitted_without(units.count());
+  parallel_for(units.count(), threads, [&](std::size_t unit) {
+    model::Model model;
+    fitted_without[unit] = left_by(play, records, units, unit, bin_s, model);
+  });
+  Binned left = fitted_without.front();
+  for (std::size_t r = 0; r < left.size(); ++r) {
+    for (std::size_t b = 0; b < left[r].size(); ++b) {
+      const double middle_s = (static_cast<double>(b) + 0.5) * bin_s;
+      left[r][b] = middle_s > begin_s(records[r]) ? fitted_without[units.unit_of(r, middle_s)][r][b]
+                                                  : std::numeric_limits<double>::quiet_NaN();
+    }
+  }
+  return left;
+}
 
 Driven driven_by(const Base& base, const Record& record, const std::vector<model::BlockSpec>& valve,
                  const RegulatorFault& fault, const StartState* start) {

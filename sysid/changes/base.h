@@ -66,6 +66,14 @@ struct BaseOptions {
 [[nodiscard]] Base fit_base(const std::vector<Record>& records, Judged judged, Drive drive,
                             const BaseOptions& options);
 
+/// Length of a bin in which a finger behind a measured pressure is judged [s].
+[[nodiscard]] double finger_bin_s(const std::vector<Record>& records);
+/// Reading minus the prediction of play operators and creep that were fitted without the unit of the reading,
+/// in bins. NaN in the first readings of a record, from which its start is estimated.
+/// @param records  healthy, driven as `drive` says.
+[[nodiscard]] Binned left_out_by_play(const std::vector<Record>& records, Drive drive, double bin_s,
+                                      unsigned threads);
+
 /// A record behind the valve of a base, the model's prediction there, and what the echo adds to it.
 struct Driven {
   Record record;       ///< driven by what the finger sees at the samples

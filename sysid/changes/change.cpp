@@ -412,9 +412,9 @@ void warn(const std::vector<Log>& healthy, const std::vector<Log>& later,
         "pressure_kpa is recorded in one of the two only: the valve and the finger are judged as one");
 }
 
-std::string unused_pressure(const Base& by_pressure, const Base& by_command) {
+std::string unused_pressure(const DriveChoice& choice) {
   return "The command predicts healthy runs that were left out better than the measured pressure does (" +
-         significant(by_command.left_mm, 2) + " and " + significant(by_pressure.left_mm, 2) +
+         significant(choice.by_command_mm, 2) + " and " + significant(choice.by_pressure_mm, 2) +
          " mm RMS): pressure_kpa is not used";
 }
 
@@ -484,31 +484,26 @@ tl::expected<ChangeDiagnosis, std::string> diagnose_change(const std::vector<Log
   warn(healthy, later, diagnosis.warnings);
   const ThreadBudget budget(options.threads);
   const BaseOptions base{options.given, options.seed, options.threads, options.progress};
-  const auto fitted = [&](const Prepared& before, Drive drive) {
-    return fit_base(before.records, Judged::displacement, drive, base);
-  };
   bool pressure = has_pressure(healthy) && has_pressure(later);
-  const Drive drive = pressure ? Drive::measured : Drive::command;
-  Prepared before = driven_records(healthy, drive, options);
-  Base finger_base = fitted(before, drive);
+  Prepared before = driven_records(healthy, pressure ? Drive::measured : Drive::command, options);
   if (pressure) {
     Prepared commanded = driven_records(healthy, Drive::command, options);
-    Base by_command = fitted(commanded, Drive::command);
-    if (command_predicts_better(by_command, finger_base, options.seed)) {
-      diagnosis.warnings.push_back(unused_pressure(finger_base, by_command));
+    const DriveChoice choice = chosen_drive(before.records, commanded.records, options.seed, options.threads);
+    if (choice.drive == Drive::command) {
+      diagnosis.warnings.push_back(unused_pressure(choice));
       pressure = false;
       before = std::move(commanded);
-      finger_base = std::move(by_command);
     }
   }
-  const Prepared after = driven_records(later, finger_base.drive, options);
+  const Drive drive = pressure ? Drive::measured : Drive::command;
+  const Prepared after = driven_records(later, drive, options);
   judge_outliers(before.outliers, after.outliers, measured_noise_mm(after.records), diagnosis);
   if (pressure) {
     Judge valve(fit_base(pressure_records(healthy, options.held), Judged::pressure, Drive::command, base),
                 options, true);
     valve.judge(pressure_records(later, options.held), diagnosis);
   }
-  Judge finger(std::move(finger_base), options, pressure);
+  Judge finger(fit_base(before.records, Judged::displacement, drive, base), options, pressure);
   finger.judge(after.records, diagnosis);
   add_intervals(diagnosis);
   std::stable_sort(diagnosis.causes.begin(), diagnosis.causes.end(),

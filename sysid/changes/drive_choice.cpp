@@ -1,39 +1,35 @@
 #include "sysid/changes/drive_choice.h"
 
-#include <algorithm>
 #include <cmath>
-#include <limits>
+#include <numeric>
 
+#include "base/statistics.h"
+#include "sysid/changes/base.h"
 #include "sysid/changes/echo_fit.h"
+#include "sysid/evidence/tolerance.h"
 
 namespace softgrip::sysid {
 namespace {
 
-/// Means of the bins whose middle is within each longer bin.
-Binned in_longer_bins(const Binned& series, double from_s, double to_s, const Binned& shape) {
-  Binned longer;
-  for (std::size_t r = 0; r < series.size(); ++r) {
-    std::vector<double> sum(shape[r].size(), 0), count(shape[r].size(), 0);
-    for (std::size_t b = 0; b < series[r].size() && !sum.empty(); ++b) {
-      if (!std::isfinite(series[r][b])) continue;
-      const auto bin = static_cast<std::size_t>((static_cast<double>(b) + 0.5) * from_s / to_s);
-      sum[std::min(bin, sum.size() - 1)] += series[r][b];
-      count[std::min(bin, sum.size() - 1)] += 1;
-    }
-    for (std::size_t b = 0; b < sum.size(); ++b)
-      sum[b] = count[b] > 0 ? sum[b] / count[b] : std::numeric_limits<double>::quiet_NaN();
-    longer.push_back(std::move(sum));
-  }
-  return longer;
+double rms(const std::vector<double>& squares, const std::vector<double>& rows) {
+  const double count = std::accumulate(rows.begin(), rows.end(), 0.0);
+  return count > 0 ? std::sqrt(std::accumulate(squares.begin(), squares.end(), 0.0) / count) : 0;
 }
 
 }  // namespace
 
-bool command_predicts_better(const Base& by_command, const Base& by_pressure, std::uint64_t seed) {
-  const Binned command =
-      in_longer_bins(by_command.left, by_command.bin_s, by_pressure.bin_s, by_pressure.left);
-  return is_better(
-      compare(losses_of(by_pressure.left, command, by_pressure.units, by_pressure.bin_s), 0, seed));
+DriveChoice chosen_drive(const std::vector<Record>& by_pressure, const std::vector<Record>& by_command,
+                         std::uint64_t seed, unsigned threads) {
+  const double bin_s = finger_bin_s(by_pressure);
+  const Units units(by_pressure);
+  const PairedLosses losses =
+      losses_of(left_out_by_play(by_pressure, Drive::measured, bin_s, threads),
+                left_out_by_play(by_command, Drive::command, bin_s, threads), units, bin_s);
+  DriveChoice choice{Drive::measured, rms(losses.worse, losses.rows), rms(losses.better, losses.rows)};
+  const bool beyond_spread =
+      square(choice.by_pressure_mm) > run_to_run_factor(units.runs()) * square(choice.by_command_mm);
+  if (beyond_spread && is_better(compare(losses, 0, seed))) choice.drive = Drive::command;
+  return choice;
 }
 
 }  // namespace softgrip::sysid

@@ -2,16 +2,25 @@
 // Which signal drives the finger: its measured pressure, or the command.
 
 #include <cstdint>
+#include <vector>
 
-#include "sysid/changes/base.h"
+#include "sysid/logs/record.h"
 
 namespace softgrip::sysid {
 
-/// Whether the command predicts left-out healthy displacements better than the measured pressure does, by the
-/// rule for any two hypotheses. A measured pressure does not determine the displacement where a flow moves
-/// the actuator, or where the gauge is far from it.
-/// @param by_command, by_pressure  bases of the displacement, fitted to the same healthy logs.
-[[nodiscard]] bool command_predicts_better(const Base& by_command, const Base& by_pressure,
-                                           std::uint64_t seed);
+/// RMS error in left-out healthy runs [mm], and the signal that predicts them better.
+struct DriveChoice {
+  Drive drive = Drive::measured;
+  double by_pressure_mm = 0, by_command_mm = 0;
+};
+
+/// Chooses the command if it predicts left-out healthy displacements better than the measured pressure does:
+/// by the rule for any two hypotheses, and by more than two healthy runs may differ (run_to_run_factor()).
+/// Both drive play operators and creep. A measured pressure does not determine the displacement where a flow
+/// moves the actuator, or where the gauge is far from it.
+/// @param by_pressure, by_command  records of the same healthy logs.
+[[nodiscard]] DriveChoice chosen_drive(const std::vector<Record>& by_pressure,
+                                       const std::vector<Record>& by_command, std::uint64_t seed,
+                                       unsigned threads = 0);
 
 }  // namespace softgrip::sysid

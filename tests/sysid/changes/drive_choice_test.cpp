@@ -14,8 +14,9 @@ namespace {
 using test::Finger;
 using test::logs_of;
 
-Base base_of(const std::vector<Log>& healthy, Drive drive) {
-  return fit_base(make_records(healthy, {.drive = drive}), Judged::displacement, drive, {});
+DriveChoice choice_of(const std::vector<Log>& healthy) {
+  return chosen_drive(make_records(healthy, {.drive = Drive::measured}),
+                      make_records(healthy, {.drive = Drive::command}), 1);
 }
 
 /// A gauge in the pipe, as on an actuator that a flow moves: it shows how fast the command changes.
@@ -38,16 +39,13 @@ bool is_unused(const ChangeDiagnosis& d) {
 }
 
 TEST(DriveChoice, ThePressureOfTheFingerDrivesIt) {
-  const std::vector<Log> healthy = logs_of({.valve_lag_s = 0.3}, 1, true);
-  EXPECT_FALSE(
-      command_predicts_better(base_of(healthy, Drive::command), base_of(healthy, Drive::measured), 1));
+  EXPECT_EQ(choice_of(logs_of({.valve_lag_s = 0.3}, 1, true)).drive, Drive::measured);
 }
 
 TEST(DriveChoice, TheCommandDrivesWhatTheGaugeDoesNotShow) {
-  const std::vector<Log> healthy = with_gauge_in_the_pipe(logs_of({}, 1));
-  const Base by_command = base_of(healthy, Drive::command), by_pressure = base_of(healthy, Drive::measured);
-  EXPECT_LT(by_command.left_mm, 0.5 * by_pressure.left_mm);
-  EXPECT_TRUE(command_predicts_better(by_command, by_pressure, 1));
+  const DriveChoice choice = choice_of(with_gauge_in_the_pipe(logs_of({}, 1)));
+  EXPECT_LT(choice.by_command_mm, 0.5 * choice.by_pressure_mm);
+  EXPECT_EQ(choice.drive, Drive::command);
 }
 
 TEST(DriveChoice, AChangeIsFoundAlthoughTheGaugeDoesNotShowWhatMovesTheFinger) {
