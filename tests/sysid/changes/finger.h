@@ -46,6 +46,15 @@ inline std::vector<double> command_kpa(unsigned seed, std::size_t samples, doubl
   return out;
 }
 
+/// A first-order lag of a pressure that goes straight from one sample to the next, which is what a record
+/// states of its command.
+/// @param lagged_kpa, from_kpa  at the sample before. @param to_kpa  at this sample.
+inline double lagged_kpa(double lagged_kpa, double from_kpa, double to_kpa, double step_s, double lag_s) {
+  if (lag_s <= 0) return to_kpa;
+  const double behind_kpa = lag_s * (to_kpa - from_kpa) / step_s;
+  return to_kpa - behind_kpa + (lagged_kpa - from_kpa + behind_kpa) * std::exp(-step_s / lag_s);
+}
+
 /// @param samples  at 50 Hz.
 inline Log log_of(const Finger& finger, unsigned seed, bool with_pressure = false,
                   std::size_t samples = 2000) {
@@ -55,16 +64,15 @@ inline Log log_of(const Finger& finger, unsigned seed, bool with_pressure = fals
   Log log;
   log.name = "log" + std::to_string(seed);
   log.pressure_command_kpa = command_kpa(seed, samples, rate_hz);
-  double play = 0, creep = 0, lost = 0, behind = 0, between = 0;
+  double play = 0, creep = 0, lost = 0, behind = 0, wanted = 0, between = 0;
   const double phase = 2 * seed;
   const auto late = static_cast<std::size_t>(finger.delay_s * rate_hz);
   for (std::size_t i = 0; i < log.pressure_command_kpa.size(); ++i) {
     const double u = log.pressure_command_kpa[i >= late ? i - late : 0];
     const double before = log.pressure_command_kpa[i > late ? i - late - 1 : 0];
     lost = u == before ? std::min(lost + finger.lost_kpa_per_s / rate_hz * u / 60, 1.5) : 0.8 * lost;
-    behind +=
-        (u - lost - behind) * (finger.valve_lag_s > 0 ? -std::expm1(-1 / (rate_hz * finger.valve_lag_s)) : 1);
-    const double p = behind;
+    const double p = behind = lagged_kpa(behind, wanted, u - lost, 1 / rate_hz, finger.valve_lag_s);
+    wanted = u - lost;
     play = std::clamp(play, p - 3, p + 3);
     creep += (p - creep) / (rate_hz * 4);
     const double t = static_cast<double>(i) / rate_hz;
