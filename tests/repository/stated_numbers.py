@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Numbers and names that documents state are those of the sources: threads, fingers, worlds, files that include Ceres."""
+"""Numbers and names that documents state are those of the sources: threads, fingers, worlds, files that include Ceres,
+and the figures of README.md those of the pages that it links."""
 
 import re
 import sys
@@ -41,8 +42,9 @@ def threads():
 
 def fingers():
     most = re.search(r"max_channels = (\d+);", text("control/tick/settings.h")).group(1)
-    if f"for up to {most} soft fingers" not in one_line("README.md"):
-        yield f"README.md does not say that softgripd drives up to {most} fingers"
+    for page, says in (("README.md", f"drives 1 to {most} fingers"), ("docs/README.md", f"for up to {most} soft fingers")):
+        if says not in one_line(page):
+            yield f"{page} does not say: {says}"
 
 
 def worlds():
@@ -66,8 +68,18 @@ def includes_of_ceres():
         yield f"libraries.md: Ceres is included by {', '.join(files)}"
 
 
+def front_page():
+    """Each figure of README.md that counts or compares is in a page to which its row or sentence links."""
+    body = text("README.md").split("## Four results")[1]
+    for part in re.split(r"\n(?=[|-]|\n)", body):
+        linked = " ".join(one_line(re.sub(r"#.*", "", link)) for link in re.findall(r"\]\(([^)]+\.md[^)]*)\)", part))
+        for figure in re.findall(r"\d[\d,.]* (?:of [\d,]+|times|kPa)", part):
+            if linked and not re.search(rf"(?<![\d.,]){re.escape(figure)}(?!\d)", linked):
+                yield f"README.md: `{figure}` is in no page that its row or sentence links"
+
+
 def main():
-    wrong = [sentence for part in (threads, fingers, worlds, includes_of_ceres) for sentence in part()]
+    wrong = [sentence for part in (threads, fingers, worlds, includes_of_ceres, front_page) for sentence in part()]
     print("\n".join(wrong) or "the stated numbers are those of the sources")
     return 1 if wrong else 0
 
