@@ -9,7 +9,9 @@ namespace softgrip::sysid {
 
 double run_to_run_factor(std::size_t runs) {
   constexpr double directions = limits::run_directions;
-  return f_quantile(limits::probability, directions, directions * static_cast<double>(runs));
+  if (runs < 2) return f_quantile(limits::probability, directions, directions);
+  const auto n = static_cast<double>(runs);
+  return f_quantile(limits::probability, directions, directions * (n - 1)) * (1 - 1 / (n * n));
 }
 
 Tolerance::Tolerance(const std::vector<NullGains>& units, std::size_t runs)

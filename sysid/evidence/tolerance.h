@@ -11,8 +11,12 @@ namespace softgrip::sysid {
 /// Of one unit that was predicted without having been fitted: what each cause improves there, per row.
 using NullGains = std::map<std::string, double, std::less<>>;
 
-/// How much another run may differ from n repeated runs: the F quantile of limits::run_directions and as many
-/// for each run. It is 9.3 for one run (three times in root mean square), 4.8 for two and 3.2 for six.
+/// How much more the squared error of another run may be than its mean over n runs, each predicted by the
+/// others. Both errors are differences from a mean, of n and of n - 1 runs. In each of
+/// limits::run_directions, n runs have n - 1 differences. The ratio is therefore (1 - 1/n^2) F, with F
+/// distributed for run_directions and run_directions (n - 1) degrees of freedom. The factor is 9.3 for one
+/// run (three times in root mean square, whose halves replace the runs), 7.0 for two, 4.2 for three and 3.2
+/// for six.
 [[nodiscard]] double run_to_run_factor(std::size_t runs);
 
 class Tolerance {
