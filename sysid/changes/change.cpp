@@ -135,6 +135,13 @@ class RunSpread {
   bool are_runs_ = false;
 };
 
+std::string other_start(const std::string& record) {
+  return record +
+         " begins as no healthy log does (under pressure, or without): a slow change after its start is not "
+         "judged. "
+         "Record a healthy log that begins in the same way";
+}
+
 /// One reading from its healthy records to what it shows of the later ones.
 class Judge {
  public:
@@ -158,6 +165,8 @@ class Judge {
     judged.noise_mm = base_.noise_mm;
     judged.healthy_mm = spread_.usual_rms();
     judged.allowed_mm = spread_.allowed_rms();
+    const std::vector<std::string> other_starts = readings.other_starts();
+    for (const std::string& name : other_starts) diagnosis.warnings.push_back(other_start(name));
     std::vector<FittedEffect> found;
     Eigen::VectorXd white = readings.white(found);
     judged.misfit_before = judged.misfit_left = per_bin(readings, white);
@@ -176,8 +185,9 @@ class Judge {
       }
       // A further cause is sought only in an error that another run would not show.
       const double rms = readings.plain_rms(found);
-      if (step == 0 ? !spread_.admits_a_change(rms, judged.misfit_left)
-                    : !spread_.is_exceeded(rms, judged.misfit_left))
+      const bool is_comparable = step == 0 && other_starts.empty();
+      if (is_comparable ? !spread_.admits_a_change(rms, judged.misfit_left)
+                        : !spread_.is_exceeded(rms, judged.misfit_left))
         break;
       const std::optional<ChangeCause> cause = first_change(readings, ranked, white, found, judged);
       if (!cause) break;

@@ -12,7 +12,6 @@ using Values = std::vector<double>;
 
 /// A valve may follow at once; where its pressure is not recorded, the finger's own lag goes on top.
 constexpr std::array valve_lags_s{0.0, 0.015, 0.03, 0.06, 0.12, 0.25, 0.5, 1.0, 2.0};
-constexpr std::array finger_lags_s{0.02, 0.06, 0.2, 0.6, 2.0, 6.0, 20.0, 60.0};
 
 template <class F>
 Values each(const Values& x, F&& f) {

@@ -3,6 +3,7 @@
 // finger, or for the whole way from a command to a measured pressure. Weighted, they foretell and explain
 // nothing; they are there so that a change stands out against less.
 
+#include <array>
 #include <vector>
 
 #include <Eigen/Core>
@@ -16,6 +17,11 @@ enum class EchoKind {
   finger,            ///< pressure to displacement: bends and plays
   valve_and_finger,  ///< command to displacement: what either of them may do
 };
+
+/// Time constants of the filters of a finger [s]. The last four are slower than most motions: they also
+/// describe the transient after the start of a log.
+inline constexpr std::array finger_lags_s{0.02, 0.06, 0.2, 0.6, 2.0, 6.0, 20.0, 60.0};
+inline constexpr std::size_t slow_lags = 4;
 
 /// One row per sample and one column per weight, all of the size of the drive [kPa]. As many for every
 /// record: what a supply that is not recorded would tell is 0.

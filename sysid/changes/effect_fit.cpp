@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include <Eigen/Cholesky>
 
 #include "base/statistics.h"
+#include "sysid/changes/echo.h"
 #include "sysid/fitting/start_estimate.h"
 
 namespace softgrip::sysid {
@@ -18,6 +20,22 @@ constexpr std::size_t followed = 2;
 constexpr double least_curvature = 0.01;
 /// More starts than these are so dense that none needs another size.
 constexpr std::size_t most_sized = 16;
+
+/// Time constants of the transient after a start that no healthy record shows [s].
+constexpr auto transient_lags_s = std::span(finger_lags_s).last<slow_lags>();
+
+bool begins_as_a_healthy_one(const Base& base, const Record& record) {
+  return base.judged == Judged::pressure ||
+         std::any_of(base.records.begin(), base.records.end(),
+                     [&](const Record& healthy) { return healthy.start_unknown == record.start_unknown; });
+}
+
+std::vector<double> transient(std::size_t bins, double bin_s, double lag_s) {
+  std::vector<double> series(bins);
+  for (std::size_t b = 0; b < bins; ++b)
+    series[b] = std::exp(-(static_cast<double>(b) + 0.5) * bin_s / lag_s);
+  return series;
+}
 
 /// A gain is free within what another run of an unchanged finger may have; beyond, it is a change.
 double free_gain(const Base& base) {
@@ -163,20 +181,33 @@ LaterReadings::LaterReadings(const Base& base, std::vector<Record> later, Binned
       driven_(std::move(driven)),
       rows_(left_, all_haste_of(later_, base.bin_s, left_), base.whitener) {
   target_ = rows_(left_);
-  const std::size_t n = later_.size();
-  slack_.resize(target_.size(), static_cast<Eigen::Index>(n) + 1);
-  price_ = Eigen::VectorXd::Zero(slack_.cols());
-  Binned ones = plain_;
+  std::vector<Eigen::VectorXd> columns;
+  std::vector<double> prices;
+  const auto add = [&](const Binned& series, double price) {
+    columns.push_back(rows_(series));
+    prices.push_back(price);
+  };
+  Binned none = plain_;
+  for (auto& series : none) std::fill(series.begin(), series.end(), 0.0);
+  Binned ones = none;
   for (auto& series : ones) std::fill(series.begin(), series.end(), 1.0);
-  slack_.col(0) = rows_(ones);
-  for (std::size_t r = 0; r < n; ++r) {
-    Binned own = ones;
-    for (std::size_t s = 0; s < n; ++s) {
-      if (s != r) std::fill(own[s].begin(), own[s].end(), 0.0);
-    }
-    slack_.col(static_cast<Eigen::Index>(r) + 1) = rows_(own);
-    price_(static_cast<Eigen::Index>(r) + 1) = 1 / base_.zero_spread_mm;
+  add(ones, 0);
+  for (std::size_t r = 0; r < later_.size(); ++r) {
+    Binned own = none;
+    own[r] = ones[r];
+    add(own, 1 / base_.zero_spread_mm);
   }
+  for (std::size_t r = 0; r < later_.size(); ++r) {
+    Binned own = none;
+    for (const double lag_s : transient_lags_s) {
+      if (begins_as_a_healthy_one(base_, later_[r])) continue;
+      own[r] = transient(own[r].size(), base_.bin_s, lag_s);
+      add(own, 0);
+    }
+  }
+  slack_.resize(target_.size(), static_cast<Eigen::Index>(columns.size()));
+  for (std::size_t k = 0; k < columns.size(); ++k) slack_.col(static_cast<Eigen::Index>(k)) = columns[k];
+  price_ = Eigen::Map<const Eigen::VectorXd>(prices.data(), slack_.cols());
   Eigen::MatrixXd normal = slack_.transpose() * slack_;
   normal.diagonal() += price_.cwiseAbs2();
   normal.diagonal().array() += 1e-9;
@@ -263,12 +294,49 @@ LaterReadings::Slack LaterReadings::slack(const std::vector<FittedEffect>& effec
   return {split.zeros(0), split.gain};
 }
 
+std::vector<std::string> LaterReadings::other_starts() const {
+  std::vector<std::string> names;
+  for (const Record& record : later_) {
+    if (!begins_as_a_healthy_one(base_, record)) names.push_back(record.name);
+  }
+  return names;
+}
+
+std::vector<double> LaterReadings::without_transient(std::size_t record,
+                                                     const std::vector<double>& series) const {
+  if (begins_as_a_healthy_one(base_, later_[record])) return series;
+  constexpr Eigen::Index lags = transient_lags_s.size();
+  const auto bins = static_cast<Eigen::Index>(series.size());
+  Eigen::MatrixXd columns = Eigen::MatrixXd::Ones(bins, lags + 1);
+  for (Eigen::Index l = 0; l < lags; ++l) {
+    const std::vector<double> own =
+        transient(series.size(), base_.bin_s, transient_lags_s[static_cast<std::size_t>(l)]);
+    columns.col(l) = Eigen::Map<const Eigen::VectorXd>(own.data(), bins);
+  }
+  Eigen::MatrixXd normal = Eigen::MatrixXd::Identity(lags + 1, lags + 1) * 1e-9;
+  Eigen::VectorXd right = Eigen::VectorXd::Zero(lags + 1);
+  for (Eigen::Index b = 0; b < bins; ++b) {
+    const double value = series[static_cast<std::size_t>(b)];
+    if (!std::isfinite(value)) continue;
+    normal += columns.row(b).transpose() * columns.row(b);
+    right += columns.row(b).transpose() * value;
+  }
+  const Eigen::VectorXd taken = columns * normal.ldlt().solve(right);
+  std::vector<double> left = series;
+  for (Eigen::Index b = 0; b < bins; ++b) left[static_cast<std::size_t>(b)] -= taken(b);
+  return left;
+}
+
 double LaterReadings::plain_rms(const std::vector<FittedEffect>& effects) const {
   const Binned added = this->added(effects);
   double misses = 0, products = 0, motions = 0, count = 0;
   for (std::size_t r = 0; r < left_.size(); ++r) {
+    std::vector<double> error = left_[r];
+    for (std::size_t b = 0; b < error.size(); ++b) error[b] -= added[r][b];
+    error = without_transient(r, error);
+    const std::vector<double> motion = without_transient(r, plain_[r]);
     PairSums own;
-    for (std::size_t b = 0; b < left_[r].size(); ++b) own.add(plain_[r][b], left_[r][b] - added[r][b]);
+    for (std::size_t b = 0; b < error.size(); ++b) own.add(motion[b], error[b]);
     if (own.count == 0) continue;
     misses += own.yy - own.y * own.y / own.count;
     products += own.covariance() / own.count;

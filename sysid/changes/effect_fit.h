@@ -35,6 +35,9 @@ class LaterReadings {
   [[nodiscard]] const WhiteRows& rows() const { return rows_; }
   [[nodiscard]] const Base& base() const { return base_; }
   [[nodiscard]] const std::vector<Record>& records() const { return later_; }
+  /// Names of the records that begin as no healthy record does: under pressure, or without pressure. The
+  /// healthy records do not show their slow transient, so it is no change, either.
+  [[nodiscard]] std::vector<std::string> other_starts() const;
   [[nodiscard]] const Binned& left() const { return left_; }
   /// What the unchanged base predicts, in bins.
   [[nodiscard]] const Binned& plain() const { return plain_; }
@@ -60,6 +63,8 @@ class LaterReadings {
     double gain = 0;
   };
   [[nodiscard]] Split split(const std::vector<FittedEffect>& effects) const;
+  [[nodiscard]] std::vector<double> without_transient(std::size_t record,
+                                                      const std::vector<double>& series) const;
   [[nodiscard]] Eigen::VectorXd white_of(const Split& split) const;
 
   const Base& base_;
@@ -69,7 +74,8 @@ class LaterReadings {
   std::vector<Driven> driven_;
   WhiteRows rows_;
   Eigen::VectorXd target_;
-  Eigen::MatrixXd slack_, solver_;        ///< columns of zeros; what turns a residual into their sizes
+  /// Columns of zeros and of transients after other starts; what turns a residual into their sizes.
+  Eigen::MatrixXd slack_, solver_;
   Eigen::VectorXd price_;                 ///< root of what each costs
   Eigen::VectorXd motion_, motion_left_;  ///< the base's own motion, whole and without what zeros take
 };
