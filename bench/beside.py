@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """The demo's identification in Octave and in Python with SciPy, beside softgrip, on one page.
 
-    bench/beside.py [--build build/release] [--page docs/explanation/beside-octave-and-scipy.md] [--runs 3]
+    bench/beside.py [--build build/release] [--page docs/results/beside-octave-and-scipy.md] [--runs 3]
 
 Needs Debian's octave, octave-optim, liboctave-dev, python3-scipy and python3-pandas (scripts/packages.sh tests readers benchmarks).
 Octave's and SciPy's programs stand in bench/beside; the simulator that both drive is compiled C. Every number of the page
@@ -19,6 +19,9 @@ import sys
 import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
+sys.path.append(str(ROOT / "scripts"))
+import results_page  # noqa: E402
+
 BESIDE = ROOT / "bench/beside"
 SIGNALS = ("tp1", "steps", "sp2")
 TRUTH = ROOT / "config/models/bench_twin.yaml"
@@ -60,6 +63,7 @@ def table(head, rows):
 
 class Study:
     def __init__(self, build, runs, folder):
+        self.version = results_page.version_of(build)
         self.softgrip, self.runs, self.folder = build / "tools/softgrip", runs, folder
         self.octave = ["octave-cli", "--quiet", "--no-history", "--norc", "--eval"]
 
@@ -156,8 +160,12 @@ class Study:
 
     def page(self):
         return "\n".join([
-            "# Compared with Octave and SciPy",
-            "",
+            *results_page.head(
+                "Compared with Octave and SciPy",
+                f"Octave, SciPy and `softgrip identify` fit the demo's log with {mm(self.octave_result['rmse_mm'])}, "
+                f"{mm(self.scipy['rmse_mm'])} and {mm(self.identified['rmse_mm']['tp1'])} mm; only softgrip needs no code of the user.",
+                self.version, f"bench/beside.py --runs {self.runs}",
+                f"simulated logs; {results_page.here()}"),
             "The demo's identification three times: in Octave with `lsqcurvefit` (the paper used MATLAB's), in Python with SciPy,",
             "and with `softgrip`. One log is fitted (`tp1`), two are predicted (`steps`, `sp2`); 20 starts each. This page is",
             "written by `bench/beside.py`, with every number in it; it needs `scripts/packages.sh tests readers benchmarks`.",
@@ -197,7 +205,7 @@ class Study:
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build/release")
-    parser.add_argument("--page", type=pathlib.Path, default=ROOT / "docs/explanation/beside-octave-and-scipy.md")
+    parser.add_argument("--page", type=pathlib.Path, default=ROOT / "docs/results/beside-octave-and-scipy.md")
     parser.add_argument("--runs", type=int, default=3)
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:

@@ -16,6 +16,9 @@ import sys
 import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
+sys.path.append(str(ROOT / "scripts"))
+import results_page  # noqa: E402
+
 NUMBER_OF = {"transport_delay": "delay_s", "valve_lag": "time_constant_s"}
 
 
@@ -72,13 +75,16 @@ def cell(row):
     return f"{value:.4f} s{interval}, inclusion {inclusion:.2f}"
 
 
-def page(results, verdicts, real, options):
-    lines = ["# The demo's logs, all seven subsets", "",
-             f"The demo's finger has a transport delay of {real['transport_delay']} s and a valve lag of {real['valve_lag']} s. The given", "model has "
-             "neither. This page was written by", "", "```",
-             "$ bench/demo_subsets.py --build build/release --page docs/reference/demo-subsets.md", "```", "",
-             f"(`softgrip simulate` with `{' '.join(options)}`, `softgrip diagnose --model config/models/zhang2025.yaml`). "
-             "If the", "logs do not show the presence of the lag, the interval of the delay contains both answers.", "",
+def page(results, verdicts, real, options, version):
+    both = sum(verdict == "cause_found" and real.keys() <= rows.keys() for verdict, rows in zip(verdicts.values(), results.values()))
+    lines = [*results_page.head(
+                 "The demo's logs, all seven subsets",
+                 f"{both} of {len(results)} combinations of the demo's logs are sufficient to name the delay and the lag without an "
+                 "alternative.", version, "bench/demo_subsets.py --build build/release --page docs/results/demo-subsets.md",
+                 f"simulated logs, `softgrip simulate` with `{' '.join(options)}`, `softgrip diagnose --model "
+                 "config/models/zhang2025.yaml`"),
+             f"The demo's finger has a transport delay of {real['transport_delay']} s and a valve lag of {real['valve_lag']} s. The given",
+             "model has neither. If the", "logs do not show the presence of the lag, the interval of the delay contains both answers.", "",
              "| logs | verdict | transport delay | valve lag |", "|---|---|---|---|"]
     for subset, rows in results.items():
         lines.append(f"| {' + '.join(subset)} | {verdicts[subset]} | {cell(rows.get('transport_delay'))} | "
@@ -110,7 +116,7 @@ def main():
             print(" + ".join(subset), verdicts[subset], {c: cell(r) for c, r in results[subset].items()}, flush=True)
     real = truth()
     if args.page:
-        args.page.write_text(page(results, verdicts, real, options))
+        args.page.write_text(page(results, verdicts, real, options, results_page.version_of(args.build)))
     wrong = complaints(results, real)
     print("\n".join(wrong), file=sys.stderr)
     sys.exit(1 if args.check and wrong else 0)

@@ -31,7 +31,7 @@ from outcomes import UNREADABLE, Failed, described, read_json, write_whole  # no
 from runner import Runner  # noqa: E402
 
 SHARED, COPY = ROOT.parent / "shared/data", HERE / "data"
-PAGE, REFERENCE = ROOT / "docs/reference/foreign-data.md", HERE / "reference.json"
+PAGE, REFERENCE = ROOT / "docs/results/foreign-data.md", HERE / "reference.json"
 
 
 class Judge:
@@ -161,7 +161,9 @@ def main(words=None):
         print("stopped; the same command continues", file=sys.stderr)
         return 1
     if options.page:
-        foreign_page.write(options.page, values, read_json(options.reference), options.title)
+        command = "bench/foreign.py --out DIR" + (" --data DATA" if options.data != [SHARED if SHARED.is_dir() else COPY] else "")
+        command += f" --only {' '.join(options.only)}" if options.only != list(JUDGES) else ""
+        foreign_page.write(options.page, values, read_json(options.reference), options.title, f"{command} --page")
         print(f"page: {options.page}")
     failed = [case for case in values["cases"] if has_failed(case)]
     return 1 if failed or problems else 0

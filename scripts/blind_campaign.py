@@ -3,7 +3,7 @@
 
     scripts/blind_campaign.py --work DIR [--build build/release] [--seeds 20] [--clean 200] [--outside 60] [--pairs 60]
                               [--strengths 8 2] [--causes ID ...] [--first-seed 1000] [--workers 1]
-                              [--variation X] [--closed-loop] [--page docs/reference/blind-campaign.md]
+                              [--variation X] [--closed-loop] [--page docs/results/blind-campaign.md]
 
 --variation X lets the runs vary (tests/blind/variation.h); the page states it.
 Resumable: every world's outcome is one line of DIR/results.jsonl, and worlds that stand there are not run again.
@@ -20,6 +20,7 @@ sys.path.insert(0, str(ROOT / "tests/blind"))
 sys.path.insert(0, str(ROOT / "scripts"))
 
 import blind_page  # noqa: E402
+import results_page  # noqa: E402
 import campaign  # noqa: E402
 import judging  # noqa: E402
 import varying  # noqa: E402
@@ -84,7 +85,7 @@ def main():
             "first_seed", "seeds", "clean", "outside", "pairs", "strengths", "causes", "variation", "closed_loop"))
         rows = [row for row in ledger.rows if varying.belongs(row, args)]
         keys = {ledger.key(world) for world in (*planned, *rows)}
-        blind_page.write(args.page, rows, len(keys), command, varying.text(args))
+        blind_page.write(args.page, rows, len(keys), command, varying.text(args), results_page.version_of(args.build))
 
 
 if __name__ == "__main__":

@@ -2,7 +2,7 @@
 """Lets `softgrip investigate` resolve what is ambiguous, on blind worlds (tests/blind) as the rig.
 
     scripts/blind_investigation.py --work DIR [--build build/release] [--campaign DIR] [--seeds 5] [--strengths 8 2]
-                                   [--causes ID ...] [--first-seed 3000] [--page docs/reference/blind-investigation.md]
+                                   [--causes ID ...] [--first-seed 3000] [--page docs/results/blind-investigation.md]
 
 The worlds are the ambiguous ones of a campaign (scripts/blind_campaign.py --work DIR) and fresh ones that first write
 one log of triangles alone, where much is ambiguous. Where the diagnosis of the logs lists the truth among rivals, the
@@ -20,6 +20,7 @@ sys.path.insert(0, str(ROOT / "tests/blind"))
 sys.path.insert(0, str(ROOT / "scripts"))
 
 import judging  # noqa: E402
+import results_page  # noqa: E402
 from blind_page import interval  # noqa: E402
 from investigating import investigate_world, is_indistinguishable  # noqa: E402
 from ledger import Ledger  # noqa: E402
@@ -41,7 +42,7 @@ def share(part, whole):
     return f"{len(part)} of {len(whole)}, {interval(len(part), len(whole))}"
 
 
-def page(results, command):
+def page(results, command, version):
     asked = [r for r in results if r["outcome"] != "not_ambiguous"]
     resolved = [r for r in asked if r["outcome"] == "right"]
     by_gauge = [r for r in resolved if r["resolved_by"] == "gauge_check"]
@@ -49,10 +50,12 @@ def page(results, command):
     open_still = [r for r in asked if r["outcome"] == "ambiguous_right"]
     twins = [r for r in open_still if is_indistinguishable(r)]
     others = [r for r in asked if r not in resolved and r not in wrong and r not in open_still]
-    lines = ["# Blind investigations", "",
-             f"Written by `{command}`: {sum(not r['poor'] for r in results)} ambiguous worlds of the campaign and "
-             f"{sum(r['poor'] for r in results)} worlds that wrote one log of triangles alone. {len(asked)} first "
-             "diagnoses were ambiguous with the truth among what they listed; these were investigated, with the world as "
+    meaning = (f"Further experiments and a gauge check resolve {len(resolved)} of {len(asked)} ambiguous diagnoses of simulated "
+               f"fingers to the true cause, and {len(wrong)} to a wrong one.")
+    lines = [*results_page.head("Blind investigations", meaning, version, command,
+                                f"{sum(not r['poor'] for r in results)} ambiguous cases of the campaign and "
+                                f"{sum(r['poor'] for r in results)} that wrote one log of triangles alone"),
+             f"{len(asked)} first diagnoses were ambiguous with the truth among what they listed; these were investigated, with the world as "
              "the rig and its sensor on a gauge. The position of the gauge's target has an error of 0.01 mm (standard deviation). A "
              "reading is the mean of 2 s, with the noise, quantisation, drift, disturbances and wrong samples of the "
              "simulated case.", "",
@@ -110,7 +113,8 @@ def main():
     if args.page:
         campaign = " --campaign DIR" if args.campaign else ""
         args.page.write_text(page(ledger.rows, f"scripts/blind_investigation.py --work DIR{campaign} --seeds {args.seeds} "
-                                           f"--first-seed {args.first_seed} --page {args.page}"))
+                                           f"--first-seed {args.first_seed} --page {args.page}",
+                                  results_page.version_of(args.build)))
 
 
 if __name__ == "__main__":

@@ -4,7 +4,7 @@
     scripts/changed_campaign.py --work DIR [--build build/release] [--seeds 4] [--unchanged 60] [--strengths 0.15 1]
                                 [--columns pressure command] [--first-seed 1] [--workers 2] [--most-minutes M]
                                 [--variation X] [--closed-loop] [--baseline-runs 3]
-                                [--page docs/reference/changed-campaign.md]
+                                [--page docs/results/changed-campaign.md]
 
 --seeds counts per family, cause, strength and kind of columns. Worlds of both families (tests/blind, tests/blind/textbook),
 their measured pressure recorded or not. The later day has another input, another zero (up to 0.5 mm) and another
@@ -27,6 +27,7 @@ for folder in ("tests/blind", "scripts"):
 
 import campaign  # noqa: E402
 import changing  # noqa: E402
+import results_page  # noqa: E402
 import varying  # noqa: E402
 from blind_page import interval  # noqa: E402
 from ledger import Ledger  # noqa: E402
@@ -89,13 +90,24 @@ def smallest_found(changed):
     return lines
 
 
-def page(rows, command, planned, variation):
+def meaning(changed, still):
+    def share(among, good):
+        return interval(sum(r["outcome"] in good for r in among), len(among)).split(" (")[0]
+
+    first = [share([r for r in changed if r["strength"] == strength], ("first",)) for strength in (1, 0.15)]
+    return (f"A change of a simulated finger since its healthy logs is named first in {first[0]} of the cases at the usual "
+            f"strength, and in {first[1]} at 0.15 of it. {share(still, ('unchanged',))} of the unchanged fingers are reported as "
+            "unchanged.")
+
+
+def page(rows, command, planned, variation, version):
     rows = with_runs(rows)
     changed = [r for r in rows if r["cause"] != "none" and r["outcome"] != "failed"]
     still = [r for r in rows if r["cause"] == "none" and r["outcome"] != "failed"]
     failed = sum(r["outcome"] == "failed" for r in rows)
-    lines = ["# Campaign of changed fingers", "", f"Written by `{command}`: {len(rows)} worlds of {planned} planned, "
-             f"{failed} of them failed. Stopped before its end, it is a sample of the plan in random order.", "",
+    lines = [*results_page.head("Campaign of changed fingers", meaning(changed, still), version, command,
+                                f"{len(rows)} simulated cases of {planned} planned, {failed} of them failed. Stopped before its "
+                                "end, it is a sample of the plan in random order."),
              *changing_text(), "", variation, "", "| measure | wanted | measured (95 % interval) | worlds |", "|---|---|---|---|"]
     for strength, wanted in ((0.15, 90), (1, 97)):
         own = [r for r in changed if r["strength"] == strength]
@@ -161,7 +173,7 @@ def main():
                                     "closed_loop", "baseline_runs"))
         wanted = {ledger.key(world) for world in planned}
         rows = [row for row in ledger.rows if ledger.key(row) in wanted]
-        args.page.write_text(page(rows, command, len(planned), varying.text(args)))
+        args.page.write_text(page(rows, command, len(planned), varying.text(args), results_page.version_of(build)))
 
 
 if __name__ == "__main__":

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Every fault of tests/system/fault_matrix.yaml in every phase of a grip, against the real daemon over real sockets:
 #   scripts/fault_matrix.sh [--page] [--jobs N] [FAULT | FAULT/PHASE | /PHASE ...]
-# --page writes docs/reference/fault-matrix.md from what was measured. All of it takes about eight minutes; the processes
+# --page writes docs/results/fault-matrix.md from what was measured. All of it takes about eight minutes; the processes
 # mostly wait. Exit code 6 if a cell did not come to what the table says.
 # Needs a built tree (build/release, or SOFTGRIP_BUILD=...) and python3-yaml.
 set -euo pipefail

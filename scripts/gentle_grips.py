@@ -39,6 +39,7 @@ args = parser.parse_args()
 os.environ["SOFTGRIP_BUILD"] = str(args.build.resolve())
 
 import gripping  # noqa: E402
+import results_page  # noqa: E402
 
 ALLOWED_KPA = gripping.bound_kpa((ROOT / "config/sequences/pick_stone.yaml").read_text())
 
@@ -74,7 +75,7 @@ def table(groups):
     return "".join("| " + " | ".join(row) + " |\n" for row in rows)
 
 
-def page(groups, problems, off, wire):
+def page(groups, problems, off, wire, version):
     others = "".join(f"- {abs(percent)} % {'farther' if percent > 0 else 'less far'}: {summary(judged)}, "
                      f"{len(found)} promises broken.\n" for percent, (judged, found) in off.items())
     over_the_wire = "" if wire is None else f"""
@@ -87,14 +88,19 @@ promises broken.
 
 {table(wire[0])}"""
     wanted = f"--seeds {args.seeds}" + (f" --wire {args.wire}" if args.wire else "")
-    return f"""# Gripping pressure of the shipped sequence
-
-This page was written by `scripts/gentle_grips.py {wanted} --page docs/reference/gentle-grips.md`:
+    judged = [one for group in groups.values() for one in group]
+    off_model = max(one.peak_kpa for found, _ in off.values() for group in found.values() for one in group)
+    head = results_page.head(
+        "Gripping pressure of the shipped sequence",
+        f"In {len(judged)} simulated grips, the gripping pressure was at most {max(one.peak_kpa for one in judged):.1f} kPa, where "
+        f"{ALLOWED_KPA:g} kPa are allowed. If the fingers differ from the model by 2 %, it was at most {off_model:.1f} kPa.", version, f"scripts/gentle_grips.py {wanted} --page docs/results/gentle-grips.md",
+        "simulated rig; virtual time, and real time over Modbus TCP" if wire else "simulated rig, virtual time")
+    return "\n".join(head) + f"""
 `config/sequences/pick_stone.yaml`, with its two places at the expected place of each part, on the simulated rig of
 `config/rig.yaml` in virtual time. The approach ends {gripping.APPROACH_MM} mm before that place, the grip searches to {gripping.REACH_MM} mm behind
 it. Each seed draws the part, one finger or two, and the distance of the part from its place. Largest gripping pressure: the true
 pressure at the finger minus the pressure that the free finger would need to rest at its true place, from the first contact on
-([gripping pressure](sequence-file.md#contact-and-gripping-pressure)). The sequence allows
+([gripping pressure](../reference/sequence-file.md#contact-and-gripping-pressure)). The sequence allows
 {ALLOWED_KPA:g} kPa; noise and the board's last bit may add {gripping.TOLERANCE_KPA:g}.
 
 {summary(groups)}, {len(problems)} promises broken: no gripping pressure above
@@ -136,7 +142,7 @@ def main():
         off = {percent: grips(gripping.Finger(softgrip, folder, percent), seeds[::3], folder) for percent in (2, -2)}
         wire = grips(gripping.Finger(softgrip, folder), seeds[:args.wire], folder / "wire", gripping.play_on_the_wire,
                      args.side_by_side) if args.wire else None
-    text = page(groups, problems, off, wire)
+    text = page(groups, problems, off, wire, results_page.version_of(args.build))
     problems += [problem for _, found in off.values() for problem in found] + (wire[1] if wire else [])
     if args.page:
         args.page.write_text(text)

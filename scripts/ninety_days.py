@@ -28,6 +28,7 @@ import time
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "tests/system"))
 
+import results_page  # noqa: E402
 import working_life  # noqa: E402
 
 FIRST = datetime.datetime(2026, 3, 1)
@@ -266,11 +267,15 @@ def page(args, seen, eventful, healthy, wall_s):
                    f"|---|---|---|---|---|---|---|---|---|\n{event_rows(seen[t])}\n"
                    f"False alarms: {'; '.join(eventful[t]['false']) or 'none'}. Warnings without an alarm: "
                    f"{'; '.join(eventful[t]['warnings']) or 'nothing'}.\n\n" for t in TOGETHER)
-    return f"""# Ninety days of a rig at work
-
-This page was written by `scripts/ninety_days.py --healthy {args.healthy} --seed {args.seed} --page docs/reference/ninety-days.md`, with
-{len(HOURS)} grips a day of two fingers in virtual time: {(args.healthy + 1) * DAYS * len(HOURS)} recordings of `softgrip
-run`{took}. The changes of a finger are simulated in its plant; `softgrip health` reads only the recordings.
+    found = sum(bool(one and one["right"]) for _, one in seen[True])
+    head = results_page.head(
+        "Ninety days of a rig at work",
+        f"With a thermometer, `softgrip health` finds {found} of {len(seen[True])} simulated changes, with false alarms for "
+        f"{fingers_in(healthy, True, 'false')} of {2 * args.healthy} healthy fingers in 90 days.",
+        results_page.version_of(args.build), f"scripts/ninety_days.py --healthy {args.healthy} --seed {args.seed} --page "
+        "docs/results/ninety-days.md", f"simulated rig, virtual time, {len(HOURS)} grips a day of two fingers")
+    return "\n".join(head) + f"""
+{(args.healthy + 1) * DAYS * len(HOURS)} recordings of `softgrip run` were judged{took}. The changes of a finger are simulated in its plant; `softgrip health` reads only the recordings.
 
 Every life has weather of {WEATHER_C:g} °C (standard deviation, correlated by {WEATHER_STAYS:g} from day to day), {DAY_C:g} °C within the day, a
 gain of {100 * GAIN_PER_C["left"]:g} (left) and {100 * GAIN_PER_C["right"]:g} (right) % per °C, parts with a place that varies by {PART_MM:g} mm (standard deviation), and wear of {-100 * WEAR_PER_DAY * DAYS:.1g} % in ninety

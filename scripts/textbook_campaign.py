@@ -4,7 +4,7 @@
     scripts/textbook_campaign.py --work DIR [--build build/release] [--clean 100] [--seeds 4] [--pairs 40] [--triples 20]
                                  [--strengths 8 4 2] [--columns pressure command] [--given plain] [--first-seed 1000]
                                  [--workers 2] [--variation X] [--closed-loop]
-                                 [--page docs/reference/textbook-campaign.md]
+                                 [--page docs/results/textbook-campaign.md]
 
 --seeds counts per cause, strength and kind of columns; --clean, --pairs and --triples per kind of columns. Resumable:
 every world's outcome is one line of DIR/textbook.jsonl, and worlds that stand there are not run again. Whenever it is
@@ -23,6 +23,7 @@ for folder in ("tests/blind", "tests/blind/textbook", "scripts"):
     sys.path.insert(0, str(ROOT / folder))
 
 import campaign  # noqa: E402
+import results_page  # noqa: E402
 import textbook_page  # noqa: E402
 import trial  # noqa: E402
 import varying  # noqa: E402
@@ -101,7 +102,7 @@ def main():
             "variation", "closed_loop"))
         rows = [row for row in ledger.rows if varying.belongs(row, args)]
         keys = {ledger.key(world) for world in (*planned, *rows)}
-        textbook_page.write(args.page, rows, len(keys), command, varying.text(args))
+        textbook_page.write(args.page, rows, len(keys), command, varying.text(args), results_page.version_of(args.build))
 
 
 if __name__ == "__main__":

@@ -24,6 +24,8 @@ import statistics
 import subprocess
 import sys
 
+import results_page
+
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 NOISE_MM = 0.04  # of the fingers' sensor
 SENSITIVITIES = (2, 1.6, 1.3, 1.15)
@@ -172,8 +174,14 @@ def ratios(results, hz, scheme, measure):
     return [measure(best_pid(r, hz)) / measure(r["errors_mm"][hz, scheme]) for r in results]
 
 
-def page(results, frequencies_hz, command):
-    lines = ["# Textbook fingers in closed loop", "", f"Written by `{command}`.", "",
+def page(results, frequencies_hz, command, version):
+    every = [x for hz in frequencies_hz for x in ratios(results, hz, "identified", beyond_noise)]
+    raw = [x for hz in frequencies_hz for x in ratios(results, hz, "identified", float)]
+    exact = [best_pid(r, hz) / NOISE_MM for r in results for hz in frequencies_hz]
+    meaning = (f"With an identified model and PID, the tracking error is {statistics.median(raw):.1f} times smaller than with the "
+               f"best PID, where a perfect controller reaches {statistics.median(exact):.1f} times.")
+    lines = [*results_page.head("Textbook fingers in closed loop", meaning, version, command,
+                                f"{len(results)} simulated fingers in real time on Modbus TCP, 200 Hz"),
              " ".join(__doc__.split("\n\n")[2].replace("(tests/blind/textbook)", "(`tests/blind/textbook`)").split()), "",
              f"{len(results)} fingers; sines of a quarter of their span about the middle. The sensor's noise is "
              f"{NOISE_MM} mm: no scheme reads less.", "",
@@ -188,9 +196,6 @@ def page(results, frequencies_hz, command):
         lines.append(f"| {hz:g} Hz | " + " | ".join(f"{m:.3f} mm" for m in median) +
                      f" | {statistics.median(read):.1f} times | {min(read):.1f} times | {statistics.median(free):.1f} times | "
                      f"{statistics.median(paper):.1f} times |")
-    every = [x for hz in frequencies_hz for x in ratios(results, hz, "identified", beyond_noise)]
-    raw = [x for hz in frequencies_hz for x in ratios(results, hz, "identified", float)]
-    exact = [best_pid(r, hz) / NOISE_MM for r in results for hz in frequencies_hz]
     lines += ["", f"Over all fingers and frequencies: {statistics.median(raw):.1f} times better than the best PID as it is read, "
               f"where a finger that followed exactly would read {statistics.median(exact):.1f} times; "
               f"{statistics.median(every):.1f} times without the noise.", "", "## Finger by finger, as it is read", "",
@@ -225,7 +230,7 @@ def main():
                 f"{result['errors_mm'][hz, 'paper']:.3f} mm" for hz in args.frequencies_hz), flush=True)
     if args.page:
         command = f"scripts/textbook_control.py --work DIR --fingers {args.fingers} --page {args.page}"
-        args.page.write_text(page(results, args.frequencies_hz, command), encoding="utf-8")
+        args.page.write_text(page(results, args.frequencies_hz, command, results_page.version_of(build)), encoding="utf-8")
     return 0
 
 

@@ -6,6 +6,7 @@ import pathlib
 import statistics
 
 import blind_page
+import results_page
 from blind_page import interval
 from trial import HELD_OUT_AT_MOST, NOISE_MM
 
@@ -131,13 +132,21 @@ def wrong_table(rows):
     return table(("hidden", "strength", "make", "columns", "seed", "wrong", "named besides", "verdict"), sorted(lines))
 
 
-def made(results, planned, command):
+def meaning(rows):
+    measured = {what: text.split(" (")[0] for what, _, text, _ in summary(rows)}
+    found = [measured.get(f"one effect at {strength} times the noise: found", "-") for strength in (8, 2)]
+    return (f"In fingers and valves that share no equation with softgrip, the diagnosis finds the true cause in {found[0]} of the "
+            f"cases at 8 times the noise, and in {found[1]} at 2 times. It names something wrong in "
+            f"{measured.get('one effect: something wrong is named', '-')}.")
+
+
+def made(results, planned):
     failed = [r for r in results if r["outcome"] == "failed"]
     walls = [r["wall_s"] for r in results if "wall_s" in r]
     of_planned = f" of {planned} planned" if len(results) < planned else ""
     unreachable = sum(not r.get("reachable", True) for r in results)
-    return (f"Written by `{command}`: {len(results)} worlds{of_planned}, {len(failed)} of them failed, in {unreachable} the "
-            f"effect missed its strength. Median time of a diagnosis on one core of a machine that others use too: "
+    return (f"{len(results)} simulated cases{of_planned}, {len(failed)} of them failed, in {unreachable} the effect missed its "
+            f"strength. Median time of a diagnosis on one core of a machine that others use too: "
             f"{statistics.median(walls):.0f} s, longest {max(walls):.0f} s.")
 
 
@@ -162,7 +171,7 @@ the command. The next column is the error of the diagnosis' own model on its hel
 drives the finger (`--drive measured`), and the valve is judged by it."""
 
 
-def write(path, results, planned, command, variation):
+def write(path, results, planned, command, variation, version):
     """`variation`: the sentences on run-to-run variation."""
     path = pathlib.Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
@@ -179,7 +188,7 @@ def write(path, results, planned, command, variation):
                 r["named"].append(name)
                 r["rivals"].append(rivals)
     confusion_path.write_text(blind_page.confusion(plain))
-    lines = ["# Textbook campaign", "", made(results, planned, command), "",
+    lines = [*results_page.head("Textbook campaign", meaning(rows), version, command, made(results, planned)),
              f"Every outcome is a line of [{rows_path.name}]({rows_path.name}): as `DIR/textbook.jsonl` the command goes on from it.",
              "", *INTRODUCTION.splitlines(), "", variation, "",
              *table(("measure", "wanted", "measured (95 % interval)", "worlds"), summary(rows)),

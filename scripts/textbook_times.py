@@ -20,6 +20,7 @@ for folder in ("tests/blind", "tests/blind/textbook", "scripts"):
     sys.path.insert(0, str(ROOT / folder))
 
 import campaign  # noqa: E402
+import results_page  # noqa: E402
 import textbook_campaign  # noqa: E402
 import trial  # noqa: E402
 from textbook_page import table  # noqa: E402
@@ -78,10 +79,12 @@ def page(args, rows, command):
     median, longest = statistics.median(r["wall_s"] for r in rows), max(r["wall_s"] for r in rows)
     slowest = sorted(rows, key=lambda r: -r["wall_s"])[:5]
     return "\n".join([
-        "# Duration of a diagnosis", "",
-        f"Written by `{command}`: {len(rows)} worlds of textbook physics, three "
-        f"logs each, {statistics.median(r['samples'] for r in rows) / 3:.0f} samples in a log (median), {args.threads} "
-        f"threads of {os.cpu_count()} processors, closed loop and report included.", "",
+        *results_page.head(
+            "Duration of a diagnosis", f"A diagnosis of three logs takes {median:.1f} s at the median, and at most {longest:.1f} s.",
+            results_page.version_of(args.build), command,
+            f"{len(rows)} cases of textbook physics, three logs each, "
+            f"{statistics.median(r['samples'] for r in rows) / 3:.0f} samples in a log (median), {args.threads} threads of "
+            f"{os.cpu_count()} processors, closed loop and report included"),
         f"Required: median at most {WANTED['median']} s, longest at most {WANTED['longest']} s. Measured: {median:.1f} s and "
         f"{longest:.1f} s.", "",
         *table(("", "worlds", "median [s]", "longest [s]", "processor time, median [s]"), summary(rows)),

@@ -2,7 +2,7 @@
 """The workflow over many small logs: on the cores of this machine, on a Slurm of this machine, killed and gone on with,
 beside a plain loop.
 
-    scripts/workflow_campaign.py --work DIR [--rows 1000] [--cores 2] [--batch 25] [--page docs/reference/workflow-campaign.md]
+    scripts/workflow_campaign.py --work DIR [--rows 1000] [--cores 2] [--batch 25] [--page docs/results/workflow-campaign.md]
 
 Each row is `softgrip identify` of a simulated log of 25 s at 20 Hz, another finger each. Root is needed for Slurm.
 """
@@ -18,6 +18,8 @@ import signal
 import subprocess
 import sys
 import time
+
+import results_page
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 RUN = ROOT / "workflows/run.py"
@@ -95,17 +97,20 @@ def models(folders):
 
 
 def page(args, figures):
-    rows = args.rows
-    lines = ["# The workflow compared with a plain loop", "",
-             f"Written by `scripts/workflow_campaign.py --work DIR --rows {rows} --cores {args.cores} --batch {args.batch} --page "
-             f"{args.page}` on {os.cpu_count()} processors, which other programs used, too. The "
-             "load is the mean of the last minute. Each row is `softgrip identify --threads 1` of another simulated finger, 25 s at 20 Hz. "
+    rows, seconds = args.rows, [way[1] for way in figures["ways"]]
+    same = len({way[2] for way in figures["ways"]}) == 1
+    first_s, second_s, done, twice = figures["killed"]
+    lines = [*results_page.head(
+                 "The workflow compared with a plain loop",
+                 f"On {rows} short rows the workflow takes {seconds[1] / seconds[0]:.1f} times as long as a plain loop. After a kill it "
+                 f"repeats {twice} of the {done} rows that were done.", results_page.version_of(args.build),
+                 f"scripts/workflow_campaign.py --work DIR --rows {rows} --cores {args.cores} --batch {args.batch} --page {args.page}",
+                 f"{os.cpu_count()} processors, which other programs used, too"),
+             "The load is the mean of the last minute. Each row is `softgrip identify --threads 1` of another simulated finger, 25 s at 20 Hz. "
              "Such short rows are the workflow's worst case: its overhead per row is the same for rows of minutes.", "",
              "| how | wall time | per row | load | models, hash over all |", "|---|---|---|---|---|"]
     for name, seconds, (digest, count), load in figures["ways"]:
         lines.append(f"| {name} | {seconds:.0f} s | {seconds / rows:.2f} s | {load:.1f} | {count}, `{digest}` |")
-    same = len({way[2] for way in figures["ways"]}) == 1
-    first_s, second_s, done, twice = figures["killed"]
     whole_s = figures["whole_s"]
     lines += ["", f"The models are {'the same, byte by byte' if same else 'NOT the same'}.", "",
               f"Killed with SIGKILL after {first_s:.0f} s, when {done} of {rows} rows were done, and begun again: {second_s:.0f} s "

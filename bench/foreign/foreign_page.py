@@ -1,6 +1,10 @@
 """The page of bench/foreign.py: required and reached values, then the cases of each judge."""
 import math
 import pathlib
+import sys
+
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[2] / "scripts"))
+import results_page
 
 from judge_identification import METHODS, held_out_percent, linear_is_better
 
@@ -181,22 +185,44 @@ def failures_section(values):
     return ["## Failed cases", "", *table(["judge", "set", "case", "reason"], rows)] if rows else []
 
 
-def written_by(values):
+def meaning(values):
+    """The counts that decide whether an answer on such data can be trusted."""
+    summary, parts = values.get("summary", {}), []
+    if "runs" in summary.get("repeats", {}):
+        part = summary["repeats"]["runs"]
+        parts.append(f"{of(part['changed'], part['cases'])} repeated runs without a change are reported as changed")
+    if "changes" in summary:
+        part = summary["changes"]
+        parts.append(f"{of(part.get('listed', '-'), part['cases'])} labelled changes get the labelled cause, and "
+                     f"{of(part['wrong_alone'], part['cases'])} only a wrong one")
+    if "stiction" in summary:
+        part = summary["stiction"]["sticking"]
+        parts.append(f"stiction is named in {of(part['stiction_named'], part['cases'])} sticking valves")
+    if "identification" in summary:
+        part = summary["identification"]
+        parts.append(f"a linear model predicts better than `auto` by more than 10 % in {of(part['linear_better']['auto'], part['rows'])} "
+                     "fits")
+    parts = parts or ["no judge ran"]
+    return " ".join([f"On data that the project did not make, {parts[0]}.", *(f"{part[0].upper()}{part[1:]}." for part in parts[1:])])
+
+
+def head(values, title, command):
     machine = values["machine"]
     loads = [case["load_1min"] for case in values["cases"] if case["load_1min"] is not None]
     load = f"{number(min(loads))} to {number(max(loads))}" if loads else "-"
-    return [f"Written by `bench/foreign.py --page` with {values['softgrip']['version']}, "
-            f"{machine['processors']} processors, {machine['threads']} thread per call, 1-minute load {load}. "
-            "Times are of all calls of a case; cases that share an identification both count it. "
+    lines = results_page.head(title, meaning(values), values["softgrip"]["version"], command,
+                              f"{machine['processors']} processors, {machine['threads']} thread per call, 1-minute load {load}",
+                              values["began"][:10])
+    return [*lines, "Times are of all calls of a case; cases that share an identification both count it. "
             "[How to run the judges](../how-to/measure.md#data-of-other-laboratories)."]
 
 
-def write(path, values, reference=None, title="Data of other laboratories"):
-    sections = [written_by(values), required_table(values, reference)]
+def write(path, values, reference=None, title="Data of other laboratories", command="bench/foreign.py --out DIR --page"):
+    sections = [head(values, title, command), required_table(values, reference)]
     judges = {case["judge"] for case in values["cases"]}
     sections += [section(values) for judge, section in SECTIONS.items() if judge in judges]
     sections += [failures_section(values), sets_section(values)]
     text = "\n\n".join("\n".join(lines) for lines in sections if lines)
     path = pathlib.Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(f"# {title}\n\n{text}\n")
+    path.write_text(f"{text}\n")

@@ -69,11 +69,11 @@ def includes_of_ceres():
 
 
 def front_page():
-    """Each figure of README.md that counts or compares is in a page to which its row or sentence links."""
+    """Each version, and each figure that counts or compares, is in a page to which its row or sentence links."""
     body = text("README.md").split("## Four results")[1]
     for part in re.split(r"\n(?=[|-]|\n)", body):
         linked = " ".join(one_line(re.sub(r"#.*", "", link)) for link in re.findall(r"\]\(([^)]+\.md[^)]*)\)", part))
-        for figure in re.findall(r"\d[\d,.]* (?:of [\d,]+|times|kPa)", part):
+        for figure in re.findall(r"\d[\d,.]* (?:of [\d,]+|times|kPa)|\b[0-9a-f]{8}(?=, `)", part):
             if linked and not re.search(rf"(?<![\d.,]){re.escape(figure)}(?!\d)", linked):
                 yield f"README.md: `{figure}` is in no page that its row or sentence links"
 

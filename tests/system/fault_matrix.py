@@ -1,6 +1,6 @@
 """Runs cells of fault_matrix.yaml: a real softgripd, a real softgrip-rig, real sockets, and a spoiled wire between.
 
-scripts/fault_matrix.sh runs all of them and publishes docs/reference/fault-matrix.md; test_fault_matrix.py has a few.
+scripts/fault_matrix.sh runs all of them and publishes docs/results/fault-matrix.md; test_fault_matrix.py has a few.
 With --vacuum the same faults meet the rig of config/vacuum, whose outputs are below their rest pressure.
 """
 
@@ -28,7 +28,7 @@ import serial_rig
 import wire_proxy
 
 TABLE = pathlib.Path(__file__).with_name("fault_matrix.yaml")
-PAGE = bench.SOURCE / "docs" / "reference" / "fault-matrix.md"
+PAGE = bench.SOURCE / "docs" / "results" / "fault-matrix.md"
 # In the phase of the rig file's safe_action; `connect` is none.
 PHASE_OF = {"idle": "idle", "closing": "closing", "holding": "holding", "venting": "releasing"}
 # How long a fault that shows nothing is looked at, in cycles.
@@ -561,7 +561,7 @@ def main():
           f"{len(wrong)} not, {sum(r['attempts'] > 1 for r in results)} tried more than once")
     if arguments.page:
         import fault_matrix_page
-        PAGE.write_text(fault_matrix_page.page(table, results))
+        PAGE.write_text(fault_matrix_page.page(table, results, bench.BUILD))
     return 6 if wrong else 0
 
 

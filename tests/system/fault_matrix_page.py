@@ -1,16 +1,15 @@
-"""docs/reference/fault-matrix.md out of the table and what was measured."""
+"""docs/results/fault-matrix.md out of the table and what was measured."""
 
-HEAD = """# Fault matrix
+import pathlib
+import sys
 
-This page shows every fault in every phase of a grip, against the real daemon over real sockets: the result, the number of cycles of the
-loop, and the outputs at the board. It was written by
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[2] / "scripts"))
+import results_page
 
-```
-$ scripts/fault_matrix.sh --page
-```
-
-from `tests/system/fault_matrix.yaml`, which defines the required result of each cell. A cell with another result is marked **WRONG**
-and fails the command. A part of it runs with every test (`system.test_fault_matrix`).
+EXPLANATION = """\
+This page shows every fault in every phase of a grip: the result, the number of cycles of the loop, and the outputs at the board.
+`tests/system/fault_matrix.yaml` defines the required result of each cell. A cell with another result is marked **WRONG** and fails
+the command. A part of it runs with every test (`system.test_fault_matrix`).
 
 - **F103 20/22 vent**: this fault latched 20 cycles after its first effect, where 22 are allowed by the thresholds below. Then the
   outputs were vented. *board*: the board's own watchdog vented them, because no write was possible. The cycles are ticks in the
@@ -62,9 +61,17 @@ def summary(results):
             f"cycles. {tried} cells were repeated after a pause of the machine.")
 
 
-def page(table, results):
+def meaning(results):
+    wrong, unseen = (sum(bool(kind(r)) for r in results) for kind in (
+        lambda r: r["wrong"], lambda r: not r["wrong"] and r["expected"]["ends"] == "unseen"))
+    return (f"{len(results) - wrong} of {len(results)} cells have the required result, but in {unseen} of them the software cannot "
+            "detect the fault, and the note states the remaining protection.")
+
+
+def page(table, results, build):
     notes = []
-    lines = [HEAD, summary(results), "", "## Thresholds", "",
+    lines = [*results_page.head("Fault matrix", meaning(results), results_page.version_of(build), "scripts/fault_matrix.sh --page",
+                                "real daemon and emulated board over real sockets"), EXPLANATION, summary(results), "", "## Thresholds", "",
              "`config/rig_tcp.yaml` with these changes; bounds are expressions of them:", "",
              "| key | |", "|---|---|"]
     lines += [f"| `{key}` | {value} |" for key, value in table.rig.items()]
