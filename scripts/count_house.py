@@ -5,7 +5,7 @@
 
 Prints a table in Markdown; --names adds the places behind the counts. A folder counts as a room, and an include as one
 between rooms where the header lies in another folder. Product lines are those of .h and .cpp outside tests/ and bench/.
-docs/explanation/house-counts.md shows two versions side by side.
+docs/results/house-counts.md shows two versions side by side.
 """
 
 import argparse
