@@ -252,7 +252,7 @@ NAMES = {True: "with the temperature", False: "without it"}
 
 
 def page(args, seen, eventful, healthy, wall_s):
-    took = "" if args.keep else f" and what is said of them, {wall_s / 60:.1f} minutes on {os.cpu_count()} cores"
+    took = "" if args.keep else f", with their simulation in {wall_s / 60:.1f} minutes on {os.cpu_count()} cores"
     slopes = [slope for told in healthy for slope in told[True]["slopes"]]
     counts = "".join(
         f"| {NAMES[temperature]} | {fingers_in(healthy, temperature, 'false')} of {2 * args.healthy} | "
