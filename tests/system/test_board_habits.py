@@ -1,8 +1,30 @@
 """Boards with habits that people report: what status, events and doctor say of them."""
 
 import json
+import socket
+import socketserver
+import threading
 
 import bench
+
+
+class OneTable(socketserver.ThreadingTCPServer):
+    """In front of an emulator, which answers both read functions: here the inputs, registers 0 to 15, have one."""
+    daemon_threads = allow_reuse_address = True
+
+    def __init__(self, behind, function, code):
+        class Connection(socketserver.BaseRequestHandler):
+            def handle(self):
+                with socket.create_connection(("127.0.0.1", behind)) as board:
+                    while request := self.request.recv(300):
+                        of_inputs = request[7] in (3, 4) and int.from_bytes(request[8:10], "big") < 16
+                        if of_inputs and request[7] != function:
+                            self.request.sendall(request[:4] + bytes([0, 3, request[6], request[7] | 128, code]))
+                        else:
+                            board.sendall(request)
+                            self.request.sendall(board.recv(300))
+        super().__init__(("127.0.0.1", 0), Connection)
+        threading.Thread(target=self.serve_forever, daemon=True).start()
 
 
 class BoardHabits(bench.BenchTest):
@@ -65,14 +87,15 @@ class BoardHabits(bench.BenchTest):
         """A rig with this board map and these keys of the session."""
         return self.rig(port, [(r"map: boards/adam-6024.yaml", f"map: boards/{board}.yaml"), (r"unit: 1", "unit: 1" + session)])
 
-    def examined(self, described, emulated, *arguments, fault="", session=""):
+    def examined(self, described, emulated, *arguments, fault="", session="", in_front=None):
         """What the doctor says of a board that is not as its map says."""
         if fault:
             arguments += ("--faults", self.write("fault.yaml", f"faults:\n  - {{name: it, kind: {fault}}}\n"))
         emulator = self.emulator(*arguments, board=emulated)
         if fault:
             emulator.ask("fault it")
-        report = json.loads(self.softgrip("doctor", "--rig", self.described(emulator.port, described, session), "--json",
+        port = in_front(emulator.port) if in_front else emulator.port
+        report = json.loads(self.softgrip("doctor", "--rig", self.described(port, described, session), "--json",
                                           expect=6).stdout)
         found = [f for f in report["findings"] if f["name"].startswith("modbus ")]
         self.assertEqual(len(found), 1, report)
@@ -95,6 +118,27 @@ class BoardHabits(bench.BenchTest):
         at = {n: self.board(f"at_{n}", (inputs, inputs.replace("0", str(n)))) for n in (1, 400, 401)}
         self.assert_says(self.examined(at[1], self.board("plain")), "one register lower", "address_base: 1")
         self.assert_says(self.examined(at[400], at[401]), "one register higher, from 401 on, it answers", "by one")
+
+    def test_the_doctor_says_the_other_read_function(self):
+        inputs, apart = "function: 3\n  address: 0\n  count: 8", ("fc23: true", "fc23: false")
+        of = {3: self.board("of_3", apart), 4: self.board("of_4", apart, (inputs, inputs.replace("3", "4", 1)))}
+        plain = self.board("plain")
+
+        def only(function, code):
+            def in_front(port):
+                server = OneTable(port, function, code)
+                self.addCleanup(server.server_close)
+                self.addCleanup(server.shutdown)
+                return server.server_address[1]
+            return in_front
+
+        for function, other in ((3, 4), (4, 3)):
+            for code in (1, 2):
+                with self.subTest(function=function, code=code):
+                    self.assert_says(self.examined(of[function], of[other], in_front=only(other, code)),
+                                     f"(exception {code}); function {other} answers",
+                                     f"write `function: {other}` for `inputs` in the board map")
+        self.assert_says(self.examined(plain, plain, in_front=only(4, 2)), "function 4 answers", "`inputs` and `fc23: false`")
 
     def test_the_doctor_says_what_an_exception_means(self):
         plain = self.board("plain")

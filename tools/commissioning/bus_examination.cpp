@@ -28,6 +28,7 @@ using drivers::WordOrder;
 // Functions that read registers, and exceptions that say what to try (Modbus Application Protocol V1.1b3, 6
 // and 7).
 constexpr std::uint8_t read_holding = 3;
+constexpr std::uint8_t read_input = 4;
 constexpr unsigned illegal_function = 1;
 constexpr unsigned illegal_address = 2;
 constexpr unsigned illegal_value = 3;
@@ -132,9 +133,10 @@ class BusInquiry {
   void judge_exception(const Heard& heard, Findings& findings) {
     switch (heard.exception) {
       case illegal_function:
+        if (try_other_function(heard, findings)) return;
         break;
       case illegal_address:
-        if (try_other_addresses(heard, findings)) return;
+        if (try_other_function(heard, findings) || try_other_addresses(heard, findings)) return;
         break;
       case illegal_value:
         if (try_fewer_registers(heard, findings)) return;
@@ -150,6 +152,24 @@ class BusInquiry {
     }
     findings.fail(name_, heard.detail,
                   "compare function, address and count in the board map with its manual");
+  }
+
+  /// A board has its inputs in holding registers (function 3) or in input registers (4).
+  bool try_other_function(const Heard& heard, Findings& findings) {
+    const drivers::RegisterBlock& inputs = map_.inputs.registers;
+    const int left = inputs.address + static_cast<int>(inputs.registers()) - asked_.address;
+    const bool of_inputs = inputs.function == asked_.function && asked_.address >= inputs.address && left > 0;
+    if (!of_inputs) return false;
+    RegisterRead other = asked_;
+    other.function = asked_.function == read_holding ? read_input : read_holding;
+    other.count = static_cast<std::uint16_t>(std::min<int>(asked_.count, left));
+    const Heard from = ask(other);
+    const bool is_sensible = inputs_.empty() || read_as(from.words, map_.word_order).has_value();
+    if (from.status != BusStatus::ok || (heard.exception == illegal_address && !is_sensible)) return false;
+    findings.fail(name_, fmt::format("{}; function {} answers", heard.detail, other.function),
+                  fmt::format("write `function: {}` for `inputs`{} in the board map", other.function,
+                              map_.has_fc23 ? " and `fc23: false`" : ""));
+    return true;
   }
 
   bool try_other_addresses(const Heard& heard, Findings& findings) {
