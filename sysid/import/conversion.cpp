@@ -9,6 +9,7 @@
 #include "base/enumerated.h"
 #include "base/numbers.h"
 #include "sysid/import/clock.h"
+#include "sysid/import/fingers.h"
 #include "sysid/import/proposal.h"
 #include "sysid/import/samples.h"
 #include "sysid/logs/log_columns.h"
@@ -48,6 +49,7 @@ class Converter {
     check_account(samples.size());
     if (problems_.size() != before) return std::nullopt;
     name_unused_times();
+    refuse_rows_of_fingers();
     name_unused_columns();
     name_idle_options();
     return ImportedLog{log_of(std::move(samples)), std::move(remarks_.notes), std::move(remarks_.warnings),
@@ -393,12 +395,31 @@ class Converter {
     }
   }
 
+  /// Rows of several fingers, told apart by a column of numbers.
+  void refuse_rows_of_fingers() {
+    for (std::size_t i = 0; i < table_.columns.size() && !table_.is_text; ++i) {
+      const TableColumn& column = table_.columns[i];
+      if (is_used(i) || !names_channel(column.name)) continue;
+      std::vector<std::string> fingers;
+      for (const double value : column.values) {
+        const std::string finger = std::isfinite(value) ? shortest(value) : "";
+        const bool is_new = std::find(fingers.begin(), fingers.end(), finger) == fingers.end();
+        if (!finger.empty() && is_new) fingers.push_back(finger);
+        if (fingers.size() > most_fingers) break;
+      }
+      if (fingers.size() > 1 && fingers.size() <= most_fingers)
+        refuse("the rows are of " + std::to_string(fingers.size()) + " fingers: '" +
+                   document::shown(column.name, 40) + "' has " +
+                   with_commas(fingers, [](const std::string& finger) { return finger; }),
+               "export the rows of each finger, or a text with this column");
+    }
+  }
+
   void name_unused_columns() {
     constexpr std::size_t names_a_note = 8;
     std::vector<std::string> names;
     for (std::size_t i = 0; i < table_.columns.size(); ++i) {
-      const bool is_channel =
-          lower_case(table_.columns[i].name) == channel_column && !table_.channels.empty();
+      const bool is_channel = !table_.channels.empty() && table_.columns[i].name == table_.channel_column;
       if (!is_used(i) && !is_channel) names.push_back("'" + document::shown(word_of(table_, i), 40) + "'");
     }
     for (std::size_t i = 0; i < names.size(); i += names_a_note) {

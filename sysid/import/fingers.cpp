@@ -105,6 +105,20 @@ std::vector<std::string> tokens_of(std::string_view name) {
   return tokens;
 }
 
+bool names_channel(std::string_view name) {
+  constexpr std::array<std::string_view, 3> channels{"channel", "finger", "actuator"};
+  constexpr std::array<std::string_view, 6> fillers{"id", "no", "nr", "num", "number", "name"};
+  const auto is_one_of = [](const auto& words, const std::string& token) {
+    return std::find(words.begin(), words.end(), token) != words.end();
+  };
+  const std::vector<std::string> tokens = tokens_of(name.substr(name.find_last_of("/.") + 1));
+  return std::count_if(tokens.begin(), tokens.end(),
+                       [&](const std::string& token) { return is_one_of(channels, token); }) == 1 &&
+         std::all_of(tokens.begin(), tokens.end(), [&](const std::string& token) {
+           return is_one_of(channels, token) || is_one_of(fillers, token);
+         });
+}
+
 std::vector<std::string> fingers_of(const ForeignTable& table) {
   const std::set<std::string> words = finger_set(table);
   std::vector<std::string> fingers;

@@ -77,6 +77,70 @@ class LvmReader {
     return found == header.end() || found->second.empty() ? std::string() : found->second.front();
   }
 
+  /// Of each channel. Where each has an X column, the cells of these columns are empty.
+  [[nodiscard]] std::vector<std::string> of_channels(const Header& header, const std::string& key) const {
+    const auto found = header.find(key);
+    if (found == header.end()) return {};
+    std::vector<std::string> values;
+    for (std::size_t i = 0; i < found->second.size(); ++i) {
+      const std::string& value = found->second[i];
+      if (i % 2 == 0 || x_columns_ != "multi") values.push_back(value);
+      if (i % 2 == 1 && x_columns_ == "multi" && !value.empty()) return found->second;
+    }
+    return values;
+  }
+
+  /// When each channel begins; of those that do not state it, when the first does.
+  [[nodiscard]] std::vector<Nanoseconds> starts_of(const Header& section) const {
+    const std::vector<std::string> dates = of_channels(section, "Date");
+    const std::vector<std::string> times = of_channels(section, "Time");
+    std::vector<Nanoseconds> starts;
+    for (std::size_t k = 0; k < std::min(dates.size(), times.size()); ++k) {
+      const auto moment = moment_of(dates[k] + " " + times[k]);
+      if (!moment && starts.empty()) return {};
+      starts.push_back(moment ? moment->time : starts.front());
+    }
+    return starts;
+  }
+
+  /// Without an X column of its own, a channel has the times of the first.
+  bool has_one_clock(const Header& section, std::size_t line) {
+    if (x_columns_ == "multi") return true;
+    for (const char* const key : {"Delta_X", "X0"}) {
+      const std::vector<std::string> values = of_channels(section, key);
+      for (const std::string& value : values) {
+        if (std::isfinite(number(values.front())) && !value.empty() &&
+            number(value) != number(values.front()))
+          refuse(line, "the channels have one X column, but differ in " + std::string(key) + ": " +
+                           values.front() + " and " + value);
+        if (!good_) return false;
+      }
+    }
+    const double delta_s = number(first_of(section, "Delta_X"));
+    const std::vector<Nanoseconds> starts = starts_of(section);
+    for (const Nanoseconds start : starts) {
+      const double apart_s = std::abs(seconds(start - starts.front()));
+      if (!(apart_s > 0.5 * delta_s)) continue;
+      refuse(line,
+             "the channels have one X column, but begin " + significant(apart_s) + " s apart (Date, Time)");
+      return false;
+    }
+    return true;
+  }
+
+  /// X values count from the start of their channel.
+  void shift_starts(const Header& section, std::size_t begin) {
+    const std::vector<Nanoseconds> starts = starts_of(section);
+    for (std::size_t k = 1; k < starts.size() && x_columns_ == "multi"; ++k) {
+      const double apart_s = seconds(starts[k] - starts.front());
+      if (apart_s == 0 || 2 * k >= table_.columns.size()) continue;
+      std::vector<double>& x = table_.columns[2 * k].values;
+      for (std::size_t i = begin; i < x.size(); ++i) x[i] += apart_s;
+      table_.notes.push_back("channel " + std::to_string(k + 1) + " begins " + significant(apart_s) +
+                             " s after the first (Date, Time)");
+    }
+  }
+
   /// With a point for the decimal mark of the file.
   [[nodiscard]] std::string pointed(std::string text) const {
     if (decimal_ == ',') std::replace(text.begin(), text.end(), ',', '.');
@@ -113,7 +177,7 @@ class LvmReader {
     std::vector<std::string> names = cells_of(lines[at++], separator_);
     const bool comment = !names.empty() && names.back() == "Comment";
     if (comment) names.pop_back();
-    if (!take_names(names, section, names_line + 1)) return;
+    if (!take_names(names, section, names_line + 1) || !has_one_clock(section, names_line + 1)) return;
     const double x0 = number(first_of(section, "X0"));
     const double delta = number(first_of(section, "Delta_X"));
     const std::size_t begin = table_.rows();
@@ -123,6 +187,7 @@ class LvmReader {
       if (line.starts_with("Channels")) break;
       add_row(lines[at], at + 1, x0 + static_cast<double>(row++) * delta);
     }
+    shift_starts(section, begin);
     place(section, begin, delta);
   }
 
@@ -157,16 +222,14 @@ class LvmReader {
       refuse(line, "the text has more than " + std::to_string(most_values) + " values");
       return false;
     }
-    const auto units = section.find("Y_Unit_Label");
+    const std::vector<std::string> units = of_channels(section, "Y_Unit_Label");
     for (std::size_t i = 0; i < names.size(); ++i) {
       TableColumn column;
       column.name = names[i];
       const std::size_t channel = x_columns_ == "multi" ? i / 2 : i - 1;
       const bool is_x = names[i].starts_with("X_Value");
       if (is_x) column.unit = "s";
-      if (!is_x && split_unit(names[i]).unit.empty() && units != section.end() &&
-          channel < units->second.size())
-        column.unit = units->second[channel];
+      if (!is_x && split_unit(names[i]).unit.empty() && channel < units.size()) column.unit = units[channel];
       table_.columns.push_back(std::move(column));
     }
     return true;
@@ -191,7 +254,9 @@ class LvmReader {
 
   void add_cell(std::size_t i, const std::string& text, std::size_t line, double counted_x) {
     TableColumn& column = table_.columns[i];
-    const bool counts = column.name.starts_with("X_Value") && (text.empty() || x_columns_ == "no");
+    // The X column of a channel that has ended is empty.
+    const bool may_count = x_columns_ == "no" || (text.empty() && x_columns_ != "multi");
+    const bool counts = may_count && column.name.starts_with("X_Value");
     const CellValue cell = cell_value(pointed(text), options_.missing);
     if (cell.missing_word >= 0) ++table_.missing_cells[static_cast<std::size_t>(cell.missing_word)];
     if (cell.kind == CellKind::text || cell.kind == CellKind::moment) {

@@ -175,7 +175,7 @@ std::vector<std::string> read_fingers(const ForeignTable& table, const std::vect
 
 FingerChoice choose_finger(const ForeignTable& table, const Mapping& given, Proposal& proposal) {
   FingerChoice choice{fingers_of(table), lower_case(given.channel)};
-  const bool by_rows = !table.channels.empty();
+  const bool by_rows = table.channels.size() > (given.channel.empty() ? 1 : 0);
   if (by_rows) return {};
   const auto known = [&](const std::string& name) {
     return std::find(choice.fingers.begin(), choice.fingers.end(), name) != choice.fingers.end();
@@ -230,7 +230,8 @@ void choose_times(const ForeignTable& table, const FingerChoice& choice, Proposa
   std::vector<std::string> words;
   for (const std::size_t index : times) words.push_back(word_of(table, index));
   const auto of_roles = times_of_roles(table, proposal.mapping, times);
-  if (!of_roles) {
+  // A place that is left of all columns says nothing against the column that is called a time.
+  if (!of_roles || std::find(of_roles->begin(), of_roles->end(), chosen) == of_roles->end()) {
     proposal.questions.push_back(
         {"the times of the columns " + quoted(words) + " differ",
          "--time COLUMN takes one of them for all values; given twice, each holds for the "

@@ -91,13 +91,19 @@ void join(ForeignSamples& samples, std::size_t into, std::size_t from) {
 
 /// Coarse time stamps: their cause and the remedy.
 std::string about_repeats(const std::vector<double>& time_s, std::size_t repeated) {
-  const double span_s = time_s.back() - time_s.front();
   std::vector<double> steps;
+  std::vector<std::size_t> changes;
   for (std::size_t i = 1; i < time_s.size(); ++i) {
-    if (time_s[i] > time_s[i - 1]) steps.push_back(time_s[i] - time_s[i - 1]);
+    if (time_s[i] <= time_s[i - 1]) continue;
+    steps.push_back(time_s[i] - time_s[i - 1]);
+    changes.push_back(i);
   }
   if (steps.empty()) return "all rows have one time; --rate-hz R in place of --time counts the rows";
-  const double rate = static_cast<double>(time_s.size() - 1) / span_s;
+  // The first and the last time may have fewer rows than the others.
+  const std::size_t rows = changes.size() > 1 ? changes.back() - changes.front() : time_s.size() - 1;
+  const double rows_s =
+      changes.size() > 1 ? time_s[changes.back()] - time_s[changes.front()] : time_s.back() - time_s.front();
+  const double rate = static_cast<double>(rows) / rows_s;
   return std::to_string(repeated) + " of " + std::to_string(time_s.size()) +
          " rows have the time of the row before: the time stamps have steps of " +
          significant(median_of(std::span<double>(steps))) + " s. If the rows are evenly spaced, --rate-hz " +

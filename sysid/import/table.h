@@ -48,10 +48,12 @@ struct ForeignTable {
   std::string format;  ///< in words: "CSV, ';' between columns, decimal comma"
   std::string sha256;  ///< of the file's bytes
   std::vector<TableColumn> columns;
-  std::vector<int> line;              ///< of each row in the text; empty of a binary file
-  std::vector<std::string> channels;  ///< texts of a column named "channel", in the order of their first rows
-  std::vector<std::string> notes;     ///< what was passed over
-  RowAccount account;                 ///< of a text's rows, but of a binary file's only those left out
+  std::vector<int> line;  ///< of each row in the text; empty of a binary file
+  std::vector<std::string>
+      channels;                    ///< texts of the column of the fingers, in the order of their first rows
+  std::string channel_column;      ///< its name; empty: there is none, or topics stand for it
+  std::vector<std::string> notes;  ///< what was passed over
+  RowAccount account;              ///< of a text's rows, but of a binary file's only those left out
   bool is_text = false;
   bool has_separators = false;             ///< characters between the columns
   std::string sheet;                       ///< of a workbook, the one that was read
@@ -67,7 +69,7 @@ struct TableOptions {
   char separator = 0;  ///< 0: found
   std::vector<std::string>
       missing;          ///< what stands where nothing was read, besides empty cells, NaN, NA and the like
-  std::string channel;  ///< only rows whose column "channel" says this; empty: all
+  std::string channel;  ///< only rows whose column of the fingers says this; empty: all
   bool skip_bad_lines = false;  ///< leave out lines of another width, and count them
   std::string sheet{};          ///< of a workbook; empty: the only one with numbers
 };

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "sysid/import/cell_value.h"
+#include "sysid/import/fingers.h"
 #include "sysid/import/text_dialect.h"
 #include "sysid/import/text_encoding.h"
 #include "sysid/import/units.h"
@@ -34,8 +35,12 @@ class RowReader {
     for (std::size_t i = 0; i < dialect.width; ++i) {
       if (!dialect.names.empty()) table_.columns[i].name = dialect.names[i];
       if (!dialect.units.empty()) table_.columns[i].unit = dialect.units[i];
-      if (channel_ == dialect.width && lower_case(table_.columns[i].name) == channel_column) channel_ = i;
+      const bool as_in_a_log = lower_case(table_.columns[i].name) == channel_column;
+      const bool is_first = channel_ == dialect.width && names_channel(table_.columns[i].name);
+      if (is_first || (as_in_a_log && !is_log_channel_)) channel_ = i;
+      is_log_channel_ = is_log_channel_ || as_in_a_log;
     }
+    if (channel_ < dialect.width) table_.channel_column = table_.columns[channel_].name;
   }
 
   void read(const TextLine& line, bool is_last) {
@@ -97,6 +102,12 @@ class RowReader {
     const std::string channel = cell_text(cells_[channel_].text);
     if (std::find(table_.channels.begin(), table_.channels.end(), channel) == table_.channels.end())
       table_.channels.push_back(channel);
+    // So many differ in a column of readings only.
+    if (table_.channels.size() > most_fingers && !is_log_channel_ && options_.channel.empty()) {
+      channel_ = dialect_.width;
+      table_.channels.clear();
+      table_.channel_column.clear();
+    }
     return options_.channel.empty() || channel == options_.channel;
   }
 
@@ -155,6 +166,7 @@ class RowReader {
   std::vector<Clock> moments_;
   std::vector<Cell> cells_;
   std::size_t channel_ = dialect_.width;
+  bool is_log_channel_ = false;  ///< called as in a log
   TextLine comma_;
   TextLine point_;
   std::vector<int> skipped_;

@@ -51,18 +51,25 @@ struct Spelling {
   std::string_view meant;
 };
 constexpr std::array spellings{
-    Spelling{"sec", "s"},           Spelling{"secs", "s"},         Spelling{"second", "s"},
-    Spelling{"seconds", "s"},       Spelling{"msec", "ms"},        Spelling{"millis", "ms"},
-    Spelling{"milliseconds", "ms"}, Spelling{"usec", "us"},        Spelling{"micros", "us"},
-    Spelling{"microseconds", "us"}, Spelling{"nanoseconds", "ns"}, Spelling{"minutes", "min"},
-    Spelling{"hours", "h"},         Spelling{"hr", "h"},           Spelling{"days", "d"},
-    Spelling{"psig", "psi"},        Spelling{"barg", "bar"},       Spelling{"pascal", "pa"},
-    Spelling{"millimeter", "mm"},   Spelling{"millimetre", "mm"},  Spelling{"micron", "um"},
-    Spelling{"microns", "um"},      Spelling{"inch", "in"},        Spelling{"inches", "in"},
-    Spelling{"meter", "m"},         Spelling{"metre", "m"},        Spelling{"celsius", "c"},
-    Spelling{"degc", "c"},          Spelling{"kelvin", "k"},       Spelling{"degf", "f"},
-    Spelling{"fahrenheit", "f"},    Spelling{"degree", "deg"},     Spelling{"degrees", "deg"},
-    Spelling{"radian", "rad"},      Spelling{"radians", "rad"},
+    Spelling{"sec", "s"},           Spelling{"secs", "s"},
+    Spelling{"second", "s"},        Spelling{"seconds", "s"},
+    Spelling{"msec", "ms"},         Spelling{"millis", "ms"},
+    Spelling{"milliseconds", "ms"}, Spelling{"usec", "us"},
+    Spelling{"micros", "us"},       Spelling{"microseconds", "us"},
+    Spelling{"nanoseconds", "ns"},  Spelling{"minutes", "min"},
+    Spelling{"nsec", "ns"},         Spelling{"nanosec", "ns"},
+    Spelling{"hours", "h"},         Spelling{"hr", "h"},
+    Spelling{"days", "d"},          Spelling{"psig", "psi"},
+    Spelling{"barg", "bar"},        Spelling{"pascal", "pa"},
+    Spelling{"millimeter", "mm"},   Spelling{"millimetre", "mm"},
+    Spelling{"micron", "um"},       Spelling{"microns", "um"},
+    Spelling{"inch", "in"},         Spelling{"inches", "in"},
+    Spelling{"meter", "m"},         Spelling{"metre", "m"},
+    Spelling{"celsius", "c"},       Spelling{"degc", "c"},
+    Spelling{"kelvin", "k"},        Spelling{"degf", "f"},
+    Spelling{"fahrenheit", "f"},    Spelling{"degree", "deg"},
+    Spelling{"degrees", "deg"},     Spelling{"radian", "rad"},
+    Spelling{"radians", "rad"},
 };
 constexpr std::array<std::string_view, 14> raw_units{
     "v", "mv", "volt", "volts", "ma", "a", "counts", "count", "lsb", "adc", "raw", "%", "percent", "digits"};

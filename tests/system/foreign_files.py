@@ -420,9 +420,57 @@ def reports():
              "\n".join(line.rsplit(",", 1)[0] if i in (40, 41, 200) else line for i, line in enumerate(PLAIN.split("\n"))),
              "--skip-bad-lines", columns={key: without({39, 40, 199})[key] for key in BASIC}, left_out={"bad_line": 3},
              says="leaves out 3 lines of another width: 41, 42, 201"),
+        *other_fingers_and_clocks(),
         File("idle_sheet.mcap", "an MCAP recording with options of other formats", exported(bytes),
              "--channel left --sheet Run --separator tab", columns=MEASURED, left_out={"other_channel": 300},
              says="--separator has no effect: the file is no text"),
+    ]
+
+
+def other_fingers_and_clocks():
+    """Fingers in rows, and channels with steps or starts of their own."""
+    rows = [(round(t + delay, 3), finger, *values) for t, *both in zip(T, COMMAND, TIP) for delay, finger, values in
+            ((0, 1, both), (0.002, 2, [60 - both[0], 12 - both[1]]))]
+    of_first = {"left_out": {"other_channel": COUNT}}
+    by_word = table(["time_s", "Finger", "set_kpa", "tip_mm"], [
+        [row[0] for row in rows], [("left", "right")[row[1] - 1] for row in rows], *zip(*(row[2:] for row in rows))])
+    by_number = table(["time_s", "actuator_no", "set_kpa", "tip_mm"], list(zip(*rows)))
+    names = ("time_s", "finger", "set_kPa", "tip_mm")
+    readings = table(["time_s", "set_kpa", "finger"], [T, COMMAND, TIP])
+    one_x = lvm("No", 1)
+    # The second channel begins 20 ms later, has half the rate, and ends early.
+    own_x = lvm("Multi", 1).replace("kPa\tmm", "kPa\t\tmm").replace(
+        "12:59:50,938\t12:59:50,938", "12:59:50,938\t\t12:59:50,958").replace("2024/06/13\t2024", "2024/06/13\t\t2024").replace(
+        "X_Value\tSet\tTip", "X_Value\tSet\tX_Value\tTip")
+    own_x = own_x[:own_x.index("Comment\n") + 8] + "".join(
+        "\t".join((f"{T[i]:.6f}", f"{COMMAND[i]:.6f}", *((f"{2 * T[i]:.6f}", f"{TIP[2 * i + 2]:.6f}") if 2 * i + 2 < COUNT else ("", "")))
+                  ).replace(".", ",") + "\n" for i in range(COUNT))
+    late = BASIC_OF | {"displacement_mm": [TIP[i] if i > 0 and i % 2 == 0 else math.nan for i in range(COUNT)]}
+    slow = {name: tdms.Channel(values[::2], {"unit_string": unit}) for name, values, unit in (("t", T, "s"), ("tip", TIP, "mm"))}
+    fast = {name: tdms.Channel(values, {"unit_string": unit}) for name, values, unit in (("t", T, "s"), ("set", COMMAND, "kPa"))}
+    stamp = [1717156800 + int(t) for t in T], [round(t % 1 * 1e9) for t in T]
+    return [
+        File("finger_rows.csv", "fingers in rows, by another name than channel", by_word, refused="the file holds 2 channels: 'left', 'right'"),
+        File("finger_rows_left.csv", "the same, and one of them", by_word, "--channel left", **of_first),
+        File("finger_numbers.csv", "fingers in rows by their number", by_number, "--channel 1", **of_first),
+        File("finger_rows.mat", "MATLAB 5: fingers in rows by their number", matlab_5(structures("run", [
+            {name: matrix("", values) for name, values in zip(names, zip(*rows))}])),
+             refused="the rows are of 2 fingers: 'run.finger' has 1, 2"),
+        File("finger_readings.csv", "readings in a column called finger", readings, "--displacement finger --unit displacement=mm"),
+        File("two_steps.lvm", "a LabVIEW measurement without X columns, with 2 rates", one_x.replace("0,01\t0,01", "0,01\t0,02"),
+             refused="the channels have one X column, but differ in Delta_X: 0,01 and 0,02"),
+        File("two_starts.lvm", "a LabVIEW measurement without X columns, with 2 starts", one_x.replace("50,938\t\n", "51,138\t\n"),
+             refused="the channels have one X column, but begin 0.2 s apart"),
+        File("own_times.lvm", "a LabVIEW measurement with an X column per channel: another start, rate and length", own_x,
+             columns=late, joined=149, left_out={"empty": 151}, says="channel 2 begins 0.02 s after the first"),
+        File("two_lengths.tdms", "LabVIEW TDMS: groups with times of their own", tdms.file([
+            tdms.segment("valve", fast), tdms.segment("laser", slow)]), refused="'laser/tip' is passed over: 150 values where others have 300"),
+        File("seconds_and_rest.csv", "seconds and nanoseconds in two columns", table(
+            ["stamp_sec", "stamp_nsec", "set_kpa", "tip_mm"], [*stamp, COMMAND, TIP]),
+             refused="the times of the columns 'stamp_sec', 'stamp_nsec' differ"),
+        File("place_of_no_time.csv", "a clock of whole seconds left of a time", table(
+            ["board_s", "set_kpa", "tip_mm", "log_time_s"], [[7000 + 2 * int(50 * t) / 100 for t in T], COMMAND, TIP, T]),
+             refused="the times of the columns 'board_s', 'log_time_s' differ"),
     ]
 
 
@@ -613,7 +661,7 @@ def files():
                    ";")),
         File("coarse_times.csv", "time stamps of 50 ms in a log of 100 Hz",
              table(["time_s", "set_kpa", "tip_mm"], [[round(0.05 * (i // 5), 6) for i in range(COUNT)], COMMAND, TIP]),
-             columns={key: TRUTH[key][::5] for key in BASIC}, says="--rate-hz 101.4 in place of --time keeps every row",
+             columns={key: TRUTH[key][::5] for key in BASIC}, says="--rate-hz 100 in place of --time keeps every row",
              left_out={"repeated_time": 240}),
         File("coarser_times.csv", "time stamps of 1 s in a log of 100 Hz",
              table(["time_s", "set_kpa", "tip_mm"], [[i // 100 for i in range(COUNT)], COMMAND, TIP]),

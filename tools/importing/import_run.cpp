@@ -112,6 +112,7 @@ bool prepare(Job& job, const sysid::Mapping& given, document::Problems& problems
   if (proposal.missing.empty() && proposal.questions.empty()) return true;
   std::fprintf(stderr, "%s: %s\n%s", job.file.c_str(), job.table.format.c_str(),
                sysid::mapping_table(job.table, job.mapping).c_str());
+  for (const std::string& note : job.table.notes) std::fprintf(stderr, "  %s\n", on_screen(note).c_str());
   for (const std::string& missing : proposal.missing)
     problems.add({job.table.file, {1, 1}, {}, "no column looks like " + missing, {}});
   for (const sysid::Proposal::Question& question : proposal.questions)
