@@ -18,6 +18,11 @@ namespace {
 constexpr double large_pressure_kpa = 1000;
 /// The largest pressure of a soft finger in MPa is below this.
 constexpr double small_as_mpa = 0.2;
+/// A soft finger that moves by more per kPa does so below this pressure only if the pressure is in psi.
+constexpr double small_as_psi = 20;
+constexpr double large_gain_mm_per_kpa = 1;
+constexpr double large_gain_deg_per_kpa = 5;
+constexpr double small_as_mbar = 20e3;
 constexpr double large_displacement_mm = 500;
 constexpr double slow_sampling_s = 1;
 constexpr double atmosphere_kpa = 101.325;
@@ -131,18 +136,43 @@ void doubt_free_motion(const Log& log, std::vector<std::string>& doubts) {
                    "judged by them; record a run that touches nothing");
 }
 
+/// The column, its largest value, and how to state the unit that it probably has.
+std::string state_unit(const PressureColumn& column, const ColumnExtent& p, const char* unit) {
+  const double largest = -p.lowest > p.highest ? p.lowest : p.highest;
+  return " The largest value of `" + column.name + "` is " + significant(largest, 3) +
+         ". State its unit: `softgrip import --unit " + column.role + "=" + unit + "`, or `(" + unit +
+         ")` in its header";
+}
+
+void doubt_pressure(const Log& log, const PressureColumn& column, std::vector<std::string>& doubts) {
+  const auto p = extent_of(log.pressure_command_kpa);
+  if (!p || p->width() <= 0) return;
+  const auto y = extent_of(log.displacement_mm);
+  const double largest = std::max(-p->lowest, p->highest);
+  const double large_gain =
+      log.output_unit == model::OutputUnit::deg ? large_gain_deg_per_kpa : large_gain_mm_per_kpa;
+  if (largest < small_as_mpa) {
+    doubts.push_back("the pressure stays below " + significant(small_pressure_kpa) +
+                     " kPa: MPa, bar or V in a column taken for kPa?" + state_unit(column, *p, "MPa"));
+  } else if (largest < small_pressure_kpa) {
+    doubts.push_back("the pressure stays below " + significant(small_pressure_kpa) +
+                     " kPa: bar or V in a column taken for kPa?" + state_unit(column, *p, "bar"));
+  } else if (largest < small_as_psi && y && y->width() > large_gain * p->width()) {
+    doubts.push_back("the pressure stays below " + significant(small_as_psi) +
+                     " kPa, and the finger moves by " +
+                     model::in_unit(significant(y->width() / p->width(), 3) + " mm", log.output_unit) +
+                     " per kPa: psi in a column taken for kPa?" + state_unit(column, *p, "psi"));
+  } else if (largest > large_pressure_kpa) {
+    doubts.push_back("the pressure reaches " + significant(largest) +
+                     " kPa, and no soft finger bears that: Pa or mbar in a column taken for kPa?" +
+                     state_unit(column, *p, largest < small_as_mbar ? "mbar" : "Pa"));
+  }
+}
+
 void doubt_spans(const Log& log, std::vector<std::string>& doubts) {
   using model::OutputUnit;
   const OutputUnit unit = log.output_unit;
   if (const auto p = extent_of(log.pressure_command_kpa); p && p->width() > 0) {
-    const double largest = std::max(-p->lowest, p->highest);
-    if (largest < small_pressure_kpa)
-      doubts.push_back("the pressure stays below " + significant(small_pressure_kpa) +
-                       " kPa: " + (largest < small_as_mpa ? "MPa, bar or V" : "bar or V") +
-                       " in a column taken for kPa?");
-    if (largest > large_pressure_kpa)
-      doubts.push_back("the pressure reaches " + significant(largest) +
-                       " kPa, and no soft finger bears that: Pa or mbar in a column taken for kPa?");
     if (p->lowest > 0.9 * atmosphere_kpa && p->lowest < 1.1 * atmosphere_kpa)
       doubts.push_back("the pressure never falls below " + significant(p->lowest) +
                        " kPa, about an atmosphere: absolute? `softgrip import --zero` subtracts it");
@@ -163,11 +193,12 @@ void doubt_spans(const Log& log, std::vector<std::string>& doubts) {
 
 }  // namespace
 
-std::vector<std::string> doubts_about(const Log& log) {
+std::vector<std::string> doubts_about(const Log& log, const PressureColumn& column) {
   std::vector<std::string> doubts;
   doubt_response(log, doubts);
   doubt_free_motion(log, doubts);
   doubt_measured_pressure(log, doubts);
+  doubt_pressure(log, column, doubts);
   doubt_spans(log, doubts);
   if (log.size() > 1) {
     const double interval = sampling_of(log).median_interval_s;

@@ -8,11 +8,17 @@
 
 namespace softgrip::sysid {
 
+/// The column that the pressure of a log is from, and its role in an import.
+struct PressureColumn {
+  std::string name = "pressure_command_kpa";
+  std::string role = "command";
+};
+
 /// Sentences, each with the number that gave it away and what would mend it: a reading that falls when the
 /// pressure rises or moves before it, a grip taken for free motion, a command and a measured pressure that
 /// differ by the factor of a unit or where the measured one comes first, absolute pressure, spans that no
 /// soft finger has, samples too far apart.
-[[nodiscard]] std::vector<std::string> doubts_about(const Log& log);
+[[nodiscard]] std::vector<std::string> doubts_about(const Log& log, const PressureColumn& column = {});
 
 /// Those about every log, each with the log's name where there are several, logs with
 /// the samples of an earlier one, and logs in which the finger moves as much farther or less far than in the

@@ -450,6 +450,8 @@ def other_fingers_and_clocks():
     fast = {name: tdms.Channel(values, {"unit_string": unit}) for name, values, unit in (("t", T, "s"), ("set", COMMAND, "kPa"))}
     stamp = [1717156800 + int(t) for t in T], [round(t % 1 * 1e9) for t in T]
     return [
+        File("psi_as_kpa.csv", "psi in a column that claims kPa", table(["time_s", "set_kpa", "tip_mm"], [T, scaled(COMMAND, PSI), TIP]),
+             columns=BASIC_OF | {"pressure_command_kpa": scaled(COMMAND, PSI)}, says="The largest value of `set_kpa` is 8.7"),
         File("finger_rows.csv", "fingers in rows, by another name than channel", by_word, refused="the file holds 2 channels: 'left', 'right'"),
         File("finger_rows_left.csv", "the same, and one of them", by_word, "--channel left", **of_first),
         File("finger_numbers.csv", "fingers in rows by their number", by_number, "--channel 1", **of_first),

@@ -156,6 +156,12 @@ bool agreed(const std::vector<Job>& jobs, const ImportOptions& options) {
   return false;
 }
 
+sysid::PressureColumn pressure_column(const sysid::Mapping& mapping) {
+  const auto role = mapping[sysid::Role::command].given() ? sysid::Role::command : sysid::Role::pressure;
+  if (!mapping[role].given()) return {};
+  return {mapping[role].columns.front(), std::string(sysid::spec_of(role).word)};
+}
+
 bool finish(Job& job, document::Problems& problems) {
   if (!job.is_log) {
     auto result = sysid::convert(job.table, job.mapping, problems);
@@ -163,7 +169,7 @@ bool finish(Job& job, document::Problems& problems) {
     job.result = std::move(*result);
     job.warnings.insert(job.warnings.end(), job.result.warnings.begin(), job.result.warnings.end());
   }
-  job.doubts = sysid::doubts_about(job.result.log);
+  job.doubts = sysid::doubts_about(job.result.log, pressure_column(job.mapping));
   return true;
 }
 

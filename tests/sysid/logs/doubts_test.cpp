@@ -68,8 +68,25 @@ TEST(Doubts, AUnitThatIsFarFromKpaIsNamed) {
     EXPECT_NE(doubts(sign * 0.06, sign * 20).find("MPa, bar or V"), std::string::npos) << sign;
     EXPECT_NE(doubts(sign * 0.6, sign * 20).find("kPa: bar or V"), std::string::npos) << sign;
     EXPECT_NE(doubts(sign * 60e3, sign * 20).find("Pa or mbar"), std::string::npos) << sign;
+    EXPECT_NE(doubts(sign * 8.7, sign * 20).find("moves by 2.3 mm per kPa: psi in a column"),
+              std::string::npos)
+        << doubts(sign * 8.7, sign * 20);
+    EXPECT_EQ(doubts(sign * 8.7, sign * 4), "") << "a part of the range, by a finger as usual";
     EXPECT_NE(doubts(sign * 60, sign * 0.02).find("metres"), std::string::npos) << sign;
     EXPECT_NE(doubts(sign * 60, sign * 20e3).find("micrometres"), std::string::npos) << sign;
+  }
+}
+
+/// With the largest value of its column and what states the unit.
+TEST(Doubts, AUnitIsNamedWithItsColumn) {
+  Log log = simulated(loaded("bench_twin"), model::SignalName::tp1, 50, 0.05, 7);
+  const std::vector<double> kpa = log.pressure_command_kpa;
+  for (const auto& [unit, factor] :
+       {std::pair{"psi", 6.894757}, {"bar", 100.0}, {"MPa", 1e3}, {"Pa", 1e-3}}) {
+    for (std::size_t i = 0; i < kpa.size(); ++i) log.pressure_command_kpa[i] = kpa[i] / factor;
+    const std::string doubts = all_of(doubts_about(log, {"P set", "pressure"}));
+    EXPECT_NE(doubts.find("The largest value of `P set` is "), std::string::npos) << unit << doubts;
+    EXPECT_NE(doubts.find("--unit pressure=" + std::string(unit) + "`"), std::string::npos) << doubts;
   }
 }
 
