@@ -40,7 +40,7 @@ void ArrayCollector::add(const std::string& name, const std::string& unit, std::
 }
 
 void ArrayCollector::pass_over(const std::string& name, const std::string& what) {
-  notes_.push_back("'" + document::shown(name) + "' is passed over: " + what);
+  notes_.push_back("'" + document::shown(name) + "' is skipped: " + what);
 }
 
 std::optional<ForeignTable> ArrayCollector::table(const std::string& format,
@@ -63,7 +63,7 @@ std::optional<ForeignTable> ArrayCollector::table(const std::string& format,
       table.columns.push_back(column);
     } else {
       table.notes.push_back("'" + document::shown(column.name) +
-                            "' is passed over: " + std::to_string(column.values.size()) +
+                            "' is skipped: " + std::to_string(column.values.size()) +
                             " values where others have " + std::to_string(length));
     }
   }

@@ -395,7 +395,7 @@ class Converter {
     }
   }
 
-  /// Rows of several fingers, told apart by a column of numbers.
+  /// Rows of several fingers, which a column of numbers names.
   void refuse_rows_of_fingers() {
     for (std::size_t i = 0; i < table_.columns.size() && !table_.is_text; ++i) {
       const TableColumn& column = table_.columns[i];

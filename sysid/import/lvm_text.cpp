@@ -77,7 +77,7 @@ class LvmReader {
     return found == header.end() || found->second.empty() ? std::string() : found->second.front();
   }
 
-  /// Of each channel. Where each has an X column, the cells of these columns are empty.
+  /// Returns the value of each channel. If each has an X column, the cells of these columns are empty.
   [[nodiscard]] std::vector<std::string> of_channels(const Header& header, const std::string& key) const {
     const auto found = header.find(key);
     if (found == header.end()) return {};

@@ -102,7 +102,7 @@ class RowReader {
     const std::string channel = cell_text(cells_[channel_].text);
     if (std::find(table_.channels.begin(), table_.channels.end(), channel) == table_.channels.end())
       table_.channels.push_back(channel);
-    // So many differ in a column of readings only.
+    // Only a column of readings has more different cells than a rig has fingers.
     if (table_.channels.size() > most_fingers && !is_log_channel_ && options_.channel.empty()) {
       channel_ = dialect_.width;
       table_.channels.clear();

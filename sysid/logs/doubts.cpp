@@ -144,7 +144,8 @@ std::string state_unit(const PressureColumn& column, const ColumnExtent& p, cons
          ")` in its header";
 }
 
-void doubt_pressure(const Log& log, const PressureColumn& column, std::vector<std::string>& doubts) {
+void judge_unit_of_pressure(const Log& log, const PressureColumn& column,
+                            std::vector<std::string>& warnings) {
   const auto p = extent_of(log.pressure_command_kpa);
   if (!p || p->width() <= 0) return;
   const auto y = extent_of(log.displacement_mm);
@@ -152,20 +153,20 @@ void doubt_pressure(const Log& log, const PressureColumn& column, std::vector<st
   const double large_gain =
       log.output_unit == model::OutputUnit::deg ? large_gain_deg_per_kpa : large_gain_mm_per_kpa;
   if (largest < small_as_mpa) {
-    doubts.push_back("the pressure stays below " + significant(small_pressure_kpa) +
-                     " kPa: MPa, bar or V in a column taken for kPa?" + state_unit(column, *p, "MPa"));
+    warnings.push_back("the pressure stays below " + significant(small_pressure_kpa) +
+                       " kPa: MPa, bar or V in a column taken for kPa?" + state_unit(column, *p, "MPa"));
   } else if (largest < small_pressure_kpa) {
-    doubts.push_back("the pressure stays below " + significant(small_pressure_kpa) +
-                     " kPa: bar or V in a column taken for kPa?" + state_unit(column, *p, "bar"));
+    warnings.push_back("the pressure stays below " + significant(small_pressure_kpa) +
+                       " kPa: bar or V in a column taken for kPa?" + state_unit(column, *p, "bar"));
   } else if (largest < small_as_psi && y && y->width() > large_gain * p->width()) {
-    doubts.push_back("the pressure stays below " + significant(small_as_psi) +
-                     " kPa, and the finger moves by " +
-                     model::in_unit(significant(y->width() / p->width(), 3) + " mm", log.output_unit) +
-                     " per kPa: psi in a column taken for kPa?" + state_unit(column, *p, "psi"));
+    warnings.push_back("the pressure stays below " + significant(small_as_psi) +
+                       " kPa, and the finger moves by " +
+                       model::in_unit(significant(y->width() / p->width(), 3) + " mm", log.output_unit) +
+                       " per kPa: psi in a column taken for kPa?" + state_unit(column, *p, "psi"));
   } else if (largest > large_pressure_kpa) {
-    doubts.push_back("the pressure reaches " + significant(largest) +
-                     " kPa, and no soft finger bears that: Pa or mbar in a column taken for kPa?" +
-                     state_unit(column, *p, largest < small_as_mbar ? "mbar" : "Pa"));
+    warnings.push_back("the pressure reaches " + significant(largest) +
+                       " kPa, and no soft finger bears that: Pa or mbar in a column taken for kPa?" +
+                       state_unit(column, *p, largest < small_as_mbar ? "mbar" : "Pa"));
   }
 }
 
@@ -198,7 +199,7 @@ std::vector<std::string> doubts_about(const Log& log, const PressureColumn& colu
   doubt_response(log, doubts);
   doubt_free_motion(log, doubts);
   doubt_measured_pressure(log, doubts);
-  doubt_pressure(log, column, doubts);
+  judge_unit_of_pressure(log, column, doubts);
   doubt_spans(log, doubts);
   if (log.size() > 1) {
     const double interval = sampling_of(log).median_interval_s;

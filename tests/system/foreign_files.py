@@ -290,7 +290,7 @@ def measurements():
         File("interleaved.tdms", "LabVIEW TDMS: interleaved channels", tdms.file([tdms.segment("log", times, interleaved=True)])),
         File("segments.tdms", "LabVIEW TDMS: segments that repeat the metadata", tdms.file(tdms.in_segments("log", times, 50))),
         File("stamps.tdms", "LabVIEW TDMS: time stamps, a text, integers", tdms.file([tdms.segment("log", stamps)]),
-             says="'log/comment' is passed over: a text", tolerance=1e-6),
+             says="'log/comment' is skipped: a text", tolerance=1e-6),
         File("waveform.tdms", "LabVIEW TDMS: waveforms", tdms.file([tdms.segment("log", steps)]),
              says="'wf_time' counts from wf_start_offset in steps of wf_increment"),
         File("cut_off.tdms", "LabVIEW TDMS, interleaved and cut off", tdms.file([tdms.segment("log", times, interleaved=True)])[:-100 * 24 - 5],
@@ -466,7 +466,7 @@ def other_fingers_and_clocks():
         File("own_times.lvm", "a LabVIEW measurement with an X column per channel: another start, rate and length", own_x,
              columns=late, joined=149, left_out={"empty": 151}, says="channel 2 begins 0.02 s after the first"),
         File("two_lengths.tdms", "LabVIEW TDMS: groups with times of their own", tdms.file([
-            tdms.segment("valve", fast), tdms.segment("laser", slow)]), refused="'laser/tip' is passed over: 150 values where others have 300"),
+            tdms.segment("valve", fast), tdms.segment("laser", slow)]), refused="'laser/tip' is skipped: 150 values where others have 300"),
         File("seconds_and_rest.csv", "seconds and nanoseconds in two columns", table(
             ["stamp_sec", "stamp_nsec", "set_kpa", "tip_mm"], [*stamp, COMMAND, TIP]),
              refused="the times of the columns 'stamp_sec', 'stamp_nsec' differ"),

@@ -202,7 +202,7 @@ class Bombs(bench_files.Files):
             (self.folder / "bomb.mat").write_bytes(header + small + large)
             self.assertLess((self.folder / "bomb.mat").stat().st_size, 2 << 20)
             self.limited("import", "bomb.mat", "--yes", "--out", "from_mat.csv", code=0)
-            self.assertIn("'bomb' is passed over", (self.folder / "from_mat.import.yaml").read_text())
+            self.assertIn("'bomb' is skipped", (self.folder / "from_mat.import.yaml").read_text())
             self.assertEqual(len((self.folder / "from_mat.csv").read_text().splitlines()), 51)
 
     def test_matlab_cells(self):
@@ -224,8 +224,8 @@ class Bombs(bench_files.Files):
             file.create_dataset("chunk", (50,), "f8", chunks=(100 << 20,), maxshape=(None,), compression="gzip")
         self.limited("import", "bomb.h5", "--yes", "--out", "from_h5.csv", code=0)
         said = (self.folder / "from_h5.import.yaml").read_text()
-        self.assertIn("'rows' is passed over", said)
-        self.assertIn("'chunk' is passed over: its chunks have more than 256 MiB", said)
+        self.assertIn("'rows' is skipped", said)
+        self.assertIn("'chunk' is skipped: its chunks have more than 256 MiB", said)
 
 
 class OtherFiles(bench_files.Files):
