@@ -3,7 +3,7 @@
 #include <ctime>
 #include <limits>
 
-#include "base/grid.h"
+#include "base/periodic_schedule.h"
 
 namespace softgrip {
 

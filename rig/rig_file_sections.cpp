@@ -151,7 +151,7 @@ void read_faults(Context& context, MapReader& top) {
   faults.readback_tolerance_kpa = reader.number("readback_tolerance_kpa", {0.001, 1000});
   faults.readback_delay_s = reader.number("readback_delay_s", {0, 10});
   read_pressure_fault(context, reader);
-  faults.slipped_cycles = cycles(reader, "slipped_cycles", 0);
+  faults.overrun_cycles = cycles(reader, "slipped_cycles", 0);
   faults.model_unfit_is_fault = reader.boolean("model_unfit_is_fault");
   faults.unsteady_is_fault = reader.optional_boolean("unsteady_is_fault").value_or(false);
 }

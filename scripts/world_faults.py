@@ -26,11 +26,11 @@ FAULTS = (
     ("what a sequence left on its way may rise after its end", "daemon/loop/bus.cpp",
      "if (commands.may_rise && inhibited_ == FaultCode::none) return;", "if (inhibited_ == FaultCode::none) return;"),
     ("a lost session writes what was commanded before it was rebuilt", "daemon/loop/bus.cpp",
-     "if (!connected && wires_.commands.fetch()) unheard_ = 0;", ""),
+     "if (!connected && shared_.commands.fetch()) unheard_ = 0;", ""),
     ("readings from before a gap count as evidence", "control/tick/rig_controller.cpp",
      "if (gap <= channels_[i].longest_age ||", "if (gap >= 0 ||"),
     ("a vent waits behind all other requests", "daemon/loop/loop.cpp",
-     "if (!wires_.vents.pop(input.request) &&", "if (!wires_.requests.pop(input.request) && !wires_.vents.pop(input.request) &&"),
+     "if (!shared_.vents.pop(input.request) &&", "if (!shared_.requests.pop(input.request) && !shared_.vents.pop(input.request) &&"),
     ("a start that a vent has overtaken moves nevertheless", "control/tick/supervisor.cpp",
      "if (input.request.id < halted_by_ || ", "if ("),
     ("acknowledging a fault that is still there", "control/tick/supervisor.cpp",
@@ -52,8 +52,8 @@ FAULTS = (
      "  return {crosses ? in_range(limits, resting_kpa(limits) + 2.9 * slew * elapsed_s) : reached,\n"
      "          in_range(limits, wanted_kpa) != wanted_kpa, reached != inside, false, capped};"),
     ("every report of the bus is kept", "daemon/loop/bus.cpp",
-     "wires_.bus.publish(report_);",
-     "wires_.bus.publish(report_);\n  static auto& kept = *new std::vector<BusReport>;\n  kept.push_back(report_);", 600),
+     "shared_.bus.publish(report_);",
+     "shared_.bus.publish(report_);\n  static auto& kept = *new std::vector<BusReport>;\n  kept.push_back(report_);", 600),
     ("the file of every recording stays open", "daemon/recording/run_folder.cpp",
      "if (descriptor_ >= 0) ::close(descriptor_);", ""),
     ("a motion by hand goes on after a gap in which the board has vented (defect 1)", *GAP_BY_HAND, 60, "calibrate"),
@@ -69,7 +69,7 @@ FAULTS = (
     ("softgrip-plc forgets the reaction while there is no daemon (defect 10)", "tools/plc/gateway.cpp",
      "if (!connected_ || reaction_ ||", "if (!connected_) watch_.confirm();\n  if (!connected_ || reaction_ ||", 60, "plc"),
     ("softgrip run ends with 0 after a signal (defect 3)", "daemon/service/daemon.cpp",
-     "return outcome.left_safely ? ExitCode::not_acceptable : ExitCode::failed;", "return done;", 60, "run"),
+     "return outcome.safe_state_confirmed ? ExitCode::not_acceptable : ExitCode::failed;", "return done;", 60, "run"),
 )
 
 

@@ -68,8 +68,8 @@ Fault FaultMonitor::observe(const TickInput& input, std::span<const ChannelOutpu
   note(cause_);
   note(bus(input.bus, starting));
   for (std::size_t i = 0; i < channels_.size(); ++i) note(channel(i, input, seen[i], starting));
-  if (settings_.slipped_cycles > 0 && input.slipped_cycles >= settings_.slipped_cycles) {
-    note({FaultCode::cycles_lost, whole_rig, static_cast<double>(input.slipped_cycles)});
+  if (settings_.overrun_cycles > 0 && input.overrun_cycles >= settings_.overrun_cycles) {
+    note({FaultCode::cycles_lost, whole_rig, static_cast<double>(input.overrun_cycles)});
   }
   return first;
 }

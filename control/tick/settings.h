@@ -69,7 +69,7 @@ struct FaultSettings {
   double pressure_delay_s = 0.5;      ///< how far back that window of past commands reaches
   bool model_unfit_is_fault = false;  ///< false: model health is only reported
   bool unsteady_is_fault = false;     ///< a sensor that jumps there and back; false: it is only reported
-  std::uint32_t slipped_cycles = 0;   ///< this number of cycles missed at once is a fault; 0: only counted
+  std::uint32_t overrun_cycles = 0;   ///< this number of cycles missed at once is a fault; 0: only counted
 };
 
 /// All settings of a RigController.

@@ -84,7 +84,7 @@ struct TickInput {
   bool emergency_stop = false;       ///< the level of the input, true = stop
   bool interlock_open = false;       ///< a start is refused while true; opening it does not end a sequence
   bool inputs_lost = false;          ///< the digital inputs cannot be read, so their state is unknown
-  std::uint32_t slipped_cycles = 0;  ///< cycles that the loop missed just before this tick
+  std::uint32_t overrun_cycles = 0;  ///< cycles that the loop missed just before this tick
 };
 
 /// One channel in one tick. It is written in place: what the tick before left here is what this tick's

@@ -50,13 +50,13 @@ FaultCode fault_of(BusStatus status) noexcept {
 }
 
 Bus::Bus(drivers::Board& board, const control::RigSettings& rig, const rig::LoopSettings& loop,
-         const rig::ReconnectSettings& reconnect, const Clock& clock, Wires& wires,
+         const rig::ReconnectSettings& reconnect, const Clock& clock, SharedState& shared,
          BusStatistics& statistics) noexcept
     : board_(board),
       loop_(loop),
       reconnect_(reconnect),
       clock_(clock),
-      wires_(wires),
+      shared_(shared),
       statistics_(statistics),
       channels_(std::min(board.channels(), control::max_channels)),
       watchdog_(board.watchdog_time().count()),
@@ -67,15 +67,15 @@ Bus::Bus(drivers::Board& board, const control::RigSettings& rig, const rig::Loop
   }
 }
 
-void Bus::run(Grid grid, std::chrono::nanoseconds leave_deadline) noexcept {
+void Bus::run(PeriodicSchedule schedule, std::chrono::nanoseconds shutdown_deadline) noexcept {
   Nanoseconds give_up = 0;
-  while (!wires_.left_safely.load(std::memory_order_relaxed)) {
-    clock_.sleep_until(grid.due());
-    step(grid.due());
+  while (!shared_.safe_state_confirmed.load(std::memory_order_relaxed)) {
+    clock_.sleep_until(schedule.due());
+    step(schedule.due());
     const Nanoseconds now = clock_.now();
-    statistics_.slips.add(grid.advance(now));
-    if (!wires_.leave.load(std::memory_order_relaxed)) continue;
-    if (give_up == 0) give_up = now + leave_deadline.count();
+    statistics_.overruns.add(schedule.advance(now));
+    if (!shared_.shutdown_requested.load(std::memory_order_relaxed)) continue;
+    if (give_up == 0) give_up = now + shutdown_deadline.count();
     if (now >= give_up) return;
   }
 }
@@ -87,7 +87,7 @@ void Bus::step(Nanoseconds due) noexcept {
   const bool connected = session_ != Session::none;
   if (ensure_session()) {
     // Connecting takes its time: what the loop has said meanwhile counts.
-    if (!connected && wires_.commands.fetch()) unheard_ = 0;
+    if (!connected && shared_.commands.fetch()) unheard_ = 0;
     exchange();
   } else {
     ++report_.health.consecutive_failures;
@@ -97,11 +97,11 @@ void Bus::step(Nanoseconds due) noexcept {
 
 /// False as long as the loop has never spoken.
 bool Bus::listen() noexcept {
-  if (wires_.commands.fetch()) {
+  if (shared_.commands.fetch()) {
     spoken_ = true;
     unheard_ = 0;
     obey_if_heard();
-  } else if (spoken_ && !wires_.commands.value().last && ++unheard_ == loop_.max_missed_commands) {
+  } else if (spoken_ && !shared_.commands.value().last && ++unheard_ == loop_.max_missed_commands) {
     inhibit(FaultCode::cycles_lost);
     tell(BusEvent::Kind::loop_silent, BusStatus::ok);
   }
@@ -114,7 +114,7 @@ void Bus::inhibit(FaultCode reason) noexcept {
 }
 
 void Bus::obey_if_heard() noexcept {
-  const Commands& commands = wires_.commands.value();
+  const Commands& commands = shared_.commands.value();
   if (inhibited_ == FaultCode::none || commands.inhibit != report_.health.inhibit || commands.may_rise)
     return;
   for (std::size_t i = 0; i < channels_; ++i) {
@@ -155,7 +155,7 @@ void Bus::exchange() noexcept {
   const Nanoseconds began = clock_.now();
   judge_gap(began, watchdog_margin_);
   choose_outputs();
-  const bool last = wires_.commands.value().last;
+  const bool last = shared_.commands.value().last;
   const BusStatus status =
       board_.exchange(std::span(written_kpa_).first(channels_), std::span(report_.readings).first(channels_),
                       std::chrono::nanoseconds(nanoseconds(loop_.exchange_deadline_s)));
@@ -182,11 +182,11 @@ void Bus::exchange() noexcept {
   judge_gap(ended, 0);
   last_good_ = began;
   note_success(ended - began);
-  if (last) wires_.left_safely.store(true, std::memory_order_release);
+  if (last) shared_.safe_state_confirmed.store(true, std::memory_order_release);
 }
 
 void Bus::choose_outputs() noexcept {
-  const Commands& commands = wires_.commands.value();
+  const Commands& commands = shared_.commands.value();
   written_kpa_ = silent() ? commands.safe_kpa : commands.command_kpa;
   if (commands.may_rise && inhibited_ == FaultCode::none) return;
   for (std::size_t i = 0; i < channels_; ++i) {
@@ -271,11 +271,11 @@ void Bus::tell(BusEvent::Kind kind, BusStatus status, const char* detail) noexce
   event.status = status;
   std::snprintf(event.detail.data(), event.detail.size(), "%s", detail);
   if (kind == BusEvent::Kind::failed) told_ = event.detail;
-  wires_.bus_events.push(event);
+  shared_.bus_events.push(event);
 }
 
 void Bus::publish() noexcept {
-  wires_.bus.publish(report_);
+  shared_.bus.publish(report_);
 }
 
 }  // namespace softgrip::daemon

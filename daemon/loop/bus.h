@@ -8,11 +8,11 @@
 #include <optional>
 
 #include "base/clock.h"
-#include "base/grid.h"
+#include "base/periodic_schedule.h"
 #include "control/elements/fault.h"
 #include "control/tick/settings.h"
+#include "daemon/loop/shared_state.h"
 #include "daemon/loop/statistics.h"
-#include "daemon/loop/wires.h"
 #include "drivers/board/board.h"
 #include "rig/loop_settings.h"
 
@@ -38,16 +38,16 @@ class Bus {
  public:
   /// All references outlive the bus. `rig`: one channel per channel of the board.
   Bus(drivers::Board& board, const control::RigSettings& rig, const rig::LoopSettings& loop,
-      const rig::ReconnectSettings& reconnect, const Clock& clock, Wires& wires,
+      const rig::ReconnectSettings& reconnect, const Clock& clock, SharedState& shared,
       BusStatistics& statistics) noexcept;
 
   /// Tries to open the session before the first step, so that what connecting measures is known. Blocks up to
   /// connect_deadline.
   bool open() noexcept { return ensure_session(); }
 
-  /// Runs on the grid until the last commands are confirmed, or until `leave_deadline` has passed since the
-  /// shutdown request to the loop.
-  void run(Grid grid, std::chrono::nanoseconds leave_deadline) noexcept;
+  /// Runs on the schedule until the last commands are confirmed, or until `shutdown_deadline` has passed
+  /// since the shutdown request to the loop.
+  void run(PeriodicSchedule schedule, std::chrono::nanoseconds shutdown_deadline) noexcept;
 
   /// One exchange, or one attempt to rebuild the session if it is due. `due` is when it should have begun.
   void step(Nanoseconds due) noexcept;
@@ -74,7 +74,7 @@ class Bus {
   const rig::LoopSettings& loop_;
   const rig::ReconnectSettings& reconnect_;
   const Clock& clock_;
-  Wires& wires_;
+  SharedState& shared_;
   BusStatistics& statistics_;
   std::size_t channels_;
   std::array<double, control::max_channels> rest_kpa_{};

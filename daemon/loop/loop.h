@@ -5,10 +5,10 @@
 #include <cstdint>
 
 #include "base/clock.h"
-#include "base/grid.h"
+#include "base/periodic_schedule.h"
 #include "control/tick/tick.h"
+#include "daemon/loop/shared_state.h"
 #include "daemon/loop/statistics.h"
-#include "daemon/loop/wires.h"
 
 namespace softgrip::control {
 class RigController;
@@ -20,11 +20,11 @@ namespace softgrip::daemon {
 class Loop {
  public:
   /// A row is recorded every `decimation` ticks, at least 1. All references outlive the loop.
-  Loop(control::RigController& controller, std::uint32_t decimation, const Clock& clock, Wires& wires,
+  Loop(control::RigController& controller, std::uint32_t decimation, const Clock& clock, SharedState& shared,
        LoopStatistics& statistics) noexcept;
 
-  /// Ticks on the grid until wires.leave is set; then leave().
-  void run(Grid grid) noexcept;
+  /// Ticks on the schedule until shared.shutdown_requested is set; then leave().
+  void run(PeriodicSchedule schedule) noexcept;
 
   /// One tick that was due at `due`, for callers that keep the time themselves.
   void tick(Nanoseconds due) noexcept;
@@ -39,19 +39,19 @@ class Loop {
   void tell_events() noexcept;
   void record_rows(bool last) noexcept;
   void show(const control::BusHealth& bus) noexcept;
-  void count_slips(std::uint64_t skipped, bool woken_late) noexcept;
+  void count_overruns(std::uint64_t skipped, bool woken_late) noexcept;
 
   control::RigController& controller_;
   const Clock& clock_;
-  Wires& wires_;
+  SharedState& shared_;
   LoopStatistics& statistics_;
   const control::TickOutput& output_;  // the controller's, of the last tick
   std::size_t channels_;
   std::uint32_t decimation_;
   std::uint64_t ticks_ = 0;
-  std::uint32_t unreported_ = 0;  // ticks since the bus last reported
-  std::uint32_t inhibit_ = 0;     // as the bus last counted it
-  std::uint32_t slipped_ = 0;     // told to the next tick
+  std::uint32_t unreported_ = 0;      // ticks since the bus last reported
+  std::uint32_t inhibit_ = 0;         // as the bus last counted it
+  std::uint32_t overrun_cycles_ = 0;  // input of the next tick
   Nanoseconds woken_ = 0;
   Nanoseconds ended_ = 0;
 };

@@ -20,23 +20,23 @@ class Counter {
   std::atomic<std::uint64_t> value_{0};
 };
 
-/// A slip (missed cycle) is a period of the grid in which no tick started.
+/// An overrun (missed cycle) is a period of the schedule in which no tick started.
 struct LoopStatistics {
-  Histogram wake_up;      ///< from the grid's time to the first instruction of the tick
+  Histogram wake_up;      ///< from the scheduled time to the first instruction of the tick
   Histogram compute;      ///< from there to the end of the tick
   Histogram reading_age;  ///< of the oldest channel, at the tick that uses it
   Counter ticks;
-  Counter slips_woken_late;  ///< because the thread was woken a period late or more
-  Counter slips_took_long;   ///< because the tick itself did not end in time
+  Counter overruns_woken_late;  ///< because the thread was woken a period late or more
+  Counter overruns_took_long;   ///< because the tick itself did not end in time
 };
 
 struct BusStatistics {
   Histogram wake_up;
   Histogram exchange;  ///< duration of good exchanges
-  Counter steps;       ///< of its grid, with an exchange or without
+  Counter steps;       ///< of its schedule, with an exchange or without
   Counter exchanges;
   Counter failures;
-  Counter slips;
+  Counter overruns;
   Counter sessions;                         ///< successful connects
   std::atomic<std::uint64_t> attempts{0};   ///< to connect since the last good exchange
   std::atomic<Nanoseconds> retry_pause{0};  ///< upper limit of the time until the next one

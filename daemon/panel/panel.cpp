@@ -27,21 +27,21 @@ bool works(State state) noexcept {
 }  // namespace
 
 Panel::Panel(std::unique_ptr<drivers::GpioLines> lines, const rig::GpioSettings& settings, const Clock& clock,
-             Wires& wires, const LoopStatistics& loop) noexcept
+             SharedState& shared, const LoopStatistics& loop) noexcept
     : lines_(std::move(lines)),
       settings_(settings),
       clock_(clock),
-      wires_(wires),
+      shared_(shared),
       loop_(loop),
       look_interval_(nanoseconds(settings.look_interval_s)),
       stale_after_(nanoseconds(settings.stale_after_s)) {
   const Nanoseconds debounce = nanoseconds(settings.debounce_s);
   if (settings.has(GpioRole::emergency_stop)) emergency_stop_.emplace(debounce);
   if (settings.has(GpioRole::part_in_position)) part_.emplace(debounce);
-  wires.inputs.emergency_stop.store(emergency_stop_.has_value());
-  wires.inputs.interlock_open.store(part_.has_value());
-  wires.inputs.longest_silence = stale_after_;
-  wires.inputs.looked_at.store(clock.now());
+  shared.inputs.emergency_stop.store(emergency_stop_.has_value());
+  shared.inputs.interlock_open.store(part_.has_value());
+  shared.inputs.longest_silence = stale_after_;
+  shared.inputs.looked_at.store(clock.now());
   ticked_ = clock.now();
 }
 
@@ -97,29 +97,29 @@ void Panel::read_inputs() noexcept {
 }
 
 void Panel::publish(Nanoseconds now) noexcept {
-  const bool faulted = wires_.state.load(std::memory_order_relaxed) == State::faulted;
+  const bool faulted = shared_.state.load(std::memory_order_relaxed) == State::faulted;
   latched_ = latched_ || faulted;
   if (emergency_stop_) {
     const bool pressed = emergency_stop_->tripped() || !latched_;
-    if (wires_.inputs.emergency_stop.exchange(pressed, std::memory_order_relaxed) != pressed) {
+    if (shared_.inputs.emergency_stop.exchange(pressed, std::memory_order_relaxed) != pressed) {
       tell(pressed ? PanelEvent::Kind::emergency_stop_pressed : PanelEvent::Kind::emergency_stop_released,
            now);
     }
   }
   if (part_) {
     const bool open = part_->tripped();
-    if (wires_.inputs.interlock_open.exchange(open, std::memory_order_relaxed) != open) {
+    if (shared_.inputs.interlock_open.exchange(open, std::memory_order_relaxed) != open) {
       tell(open ? PanelEvent::Kind::part_away : PanelEvent::Kind::part_in_position, now);
     }
   }
-  if (faulted && !hung_) wires_.inputs.lost.store(false, std::memory_order_relaxed);
-  wires_.inputs.looked_at.store(now, std::memory_order_relaxed);
+  if (faulted && !hung_) shared_.inputs.lost.store(false, std::memory_order_relaxed);
+  shared_.inputs.looked_at.store(now, std::memory_order_relaxed);
 }
 
 void Panel::lose(Nanoseconds now) noexcept {
   lost_ = true;
-  wires_.inputs.lost.store(true, std::memory_order_relaxed);
-  if (part_) wires_.inputs.interlock_open.store(true, std::memory_order_relaxed);
+  shared_.inputs.lost.store(true, std::memory_order_relaxed);
+  if (part_) shared_.inputs.interlock_open.store(true, std::memory_order_relaxed);
   tell(PanelEvent::Kind::gpio_lost, now);
 }
 
@@ -129,12 +129,12 @@ bool Panel::loop_hangs(Nanoseconds now) noexcept {
     ticks_ = ticks;
     ticked_ = now;
   }
-  const bool leaving = wires_.leave.load(std::memory_order_relaxed);
+  const bool leaving = shared_.shutdown_requested.load(std::memory_order_relaxed);
   const bool hangs = !leaving && now - ticked_ > stale_after_;
   if (hangs && !hung_) {
     tell(PanelEvent::Kind::loop_hangs, now);
     // Should it come back, it shall not go on as if nothing had happened.
-    wires_.inputs.lost.store(true, std::memory_order_relaxed);
+    shared_.inputs.lost.store(true, std::memory_order_relaxed);
   }
   hung_ = hangs;
   return hangs;
@@ -143,24 +143,24 @@ bool Panel::loop_hangs(Nanoseconds now) noexcept {
 /// Rises when the rig is ready; what a fault does to it is the rig file's choice, but an emergency stop, lost
 /// inputs and a loop that hangs always drop it. While it is being found out whether all is well, it stays.
 bool Panel::enable_wanted(State state, bool hangs) const noexcept {
-  if (hangs || lost_ || wires_.inputs.emergency_stop.load(std::memory_order_relaxed)) return false;
+  if (hangs || lost_ || shared_.inputs.emergency_stop.load(std::memory_order_relaxed)) return false;
   if (works(state)) return true;
   const bool on = written_[static_cast<std::size_t>(GpioRole::enable)].value_or(false);
   return on && (state == State::starting || !settings_.enable_drops_on_fault);
 }
 
 void Panel::drive(Nanoseconds now) noexcept {
-  const State state = wires_.state.load(std::memory_order_relaxed);
+  const State state = shared_.state.load(std::memory_order_relaxed);
   const bool hangs = loop_hangs(now);
   const bool enable = enable_wanted(state, hangs);
   const auto& was = written_[static_cast<std::size_t>(GpioRole::enable)];
   const bool changed = settings_.has(GpioRole::enable) && was.value_or(false) != enable;
   write(GpioRole::enable, enable);
-  wires_.enable_on.store(enable && !dropped_.load(), std::memory_order_relaxed);
+  shared_.enable_on.store(enable && !dropped_.load(), std::memory_order_relaxed);
   if (changed) tell(enable ? PanelEvent::Kind::enable_on : PanelEvent::Kind::enable_off, now);
   const bool broken = hangs || lost_;
   // If the loop has stalled, the state of the fingers is unknown; the fault lamp is then steady.
-  const bool dark = !broken && wires_.under_pressure.load(std::memory_order_relaxed) && in_dark_half(now);
+  const bool dark = !broken && shared_.under_pressure.load(std::memory_order_relaxed) && in_dark_half(now);
   write(GpioRole::ready_lamp, works(state) && !broken && !dark);
   write(GpioRole::fault_lamp, (state == State::faulted || broken) && !dark);
 }
@@ -184,7 +184,7 @@ void Panel::drop() noexcept {
 }
 
 void Panel::tell(PanelEvent::Kind kind, Nanoseconds now) noexcept {
-  wires_.panel_events.push(PanelEvent{kind, now});
+  shared_.panel_events.push(PanelEvent{kind, now});
 }
 
 }  // namespace softgrip::daemon

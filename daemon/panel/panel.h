@@ -8,8 +8,8 @@
 #include <optional>
 
 #include "base/clock.h"
+#include "daemon/loop/shared_state.h"
 #include "daemon/loop/statistics.h"
-#include "daemon/loop/wires.h"
 #include "daemon/panel/trip_input.h"
 #include "drivers/gpio/gpio_lines.h"
 #include "rig/gpio_settings.h"
@@ -27,9 +27,9 @@ namespace softgrip::daemon {
 /// the line has been steadily released. Motion then still needs a reset (acknowledge).
 class Panel {
  public:
-  /// All references outlive it. Sets the inputs of `wires` to what they are before anything is known.
+  /// All references outlive it. Sets the inputs of `shared` to what they are before anything is known.
   Panel(std::unique_ptr<drivers::GpioLines> lines, const rig::GpioSettings& settings, const Clock& clock,
-        Wires& wires, const LoopStatistics& loop) noexcept;
+        SharedState& shared, const LoopStatistics& loop) noexcept;
   Panel(const Panel&) = delete;
   Panel& operator=(const Panel&) = delete;
   Panel(Panel&&) = delete;
@@ -61,7 +61,7 @@ class Panel {
   std::unique_ptr<drivers::GpioLines> lines_;
   const rig::GpioSettings& settings_;
   const Clock& clock_;
-  Wires& wires_;
+  SharedState& shared_;
   const LoopStatistics& loop_;
   Nanoseconds look_interval_;
   Nanoseconds stale_after_;

@@ -1,16 +1,16 @@
 #pragma once
 // An input that stops something: trips on doubt, clears only when it has been steady.
 
-#include "base/grid.h"
+#include "base/periodic_schedule.h"
 
 namespace softgrip::daemon {
 
 /// Debounces one input from edges with the kernel's times and from levels read now and then; either alone
 /// would do, edges are faster and levels cannot be lost. Tripped from the start.
 ///
-///   trips   when the line has asked for it for `debounce` without a break, and no later than 2 `debounce`
-///   after
-///           it began to, however it chatters; a disturbance shorter than `debounce` trips nothing
+///   trips   when the line was at its trip level for `debounce` without a break, and at the latest
+///           2 `debounce` after the first edge to it, even if the line chatters. A disturbance shorter than
+///           `debounce` does not trip.
 ///   clears  when the line has been steadily clear for `debounce`
 class TripInput {
  public:

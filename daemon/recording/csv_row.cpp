@@ -82,11 +82,11 @@ CsvRows::CsvRows(std::vector<std::string> channel_names, bool with_pressure, boo
 
 std::string CsvRows::header() const {
   std::string text(columns);
-  const auto leave_out = [&](std::string_view column) {
+  const auto omit_column = [&](std::string_view column) {
     text.erase(text.find("," + std::string(column)) + 1, column.size());
   };
-  if (!with_pressure_) leave_out(pressure_column);
-  if (!with_temperature_) leave_out(temperature_column);
+  if (!with_pressure_) omit_column(pressure_column);
+  if (!with_temperature_) omit_column(temperature_column);
   return text + '\n';
 }
 

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "daemon/loop/wires.h"
+#include "daemon/loop/shared_state.h"
 
 namespace softgrip::daemon {
 

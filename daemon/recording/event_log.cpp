@@ -137,7 +137,7 @@ void describe_contact(const Event& event, const Sequence*, EventEntry& entry) {
       then = "it stays with the pressure of its first touch, and the step has failed";
       break;
     case control::OnContact::ignore:
-      then = "the step goes on all the same";
+      then = "the step goes on nevertheless";
       break;
     case control::OnContact::squeeze:
       then = "it squeezes";
@@ -204,7 +204,7 @@ void describe_unsteady(const Event& event, const Sequence*, EventEntry& entry) {
 }
 
 void describe_release(const Event&, const Sequence*, EventEntry& entry) {
-  entry.text = "A release was asked for.";
+  entry.text = "A release was requested.";
 }
 
 void describe_check(const Event&, const Sequence*, EventEntry& entry) {

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "control/tick/parameter.h"
-#include "daemon/loop/wires.h"
+#include "daemon/loop/shared_state.h"
 
 namespace softgrip::daemon {
 

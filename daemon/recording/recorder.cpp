@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "base/grid.h"
+#include "base/periodic_schedule.h"
 #include "base/wall_clock.h"
 
 namespace softgrip::daemon {
@@ -54,24 +54,24 @@ struct Recorder::Recording {
 };
 
 Recorder::Recorder(const rig::RecorderSettings& settings, const Provenance& provenance,
-                   std::string only_folder, Nanoseconds origin, Wires& wires, EventLog& events,
-                   const SequenceShelf& shelf)
+                   std::string only_folder, Nanoseconds origin, SharedState& shared, EventLog& events,
+                   const SequenceStore& sequence_store)
     : settings_(settings),
       provenance_(provenance),
       only_folder_(std::move(only_folder)),
       always_(!only_folder_.empty() || settings.mode == rig::RecorderSettings::Mode::always),
       origin_(origin),
-      wires_(wires),
-      loop_events_(wires.events),
+      shared_(shared),
+      loop_events_(shared.events),
       events_(events),
-      shelf_(shelf),
+      sequence_store_(sequence_store),
       rows_(provenance.channel_names, provenance.measures_pressure, provenance.measures_temperature),
       batch_(batch_records) {}
 
 Recorder::~Recorder() = default;
 
 void Recorder::drain() {
-  for (std::size_t count = wires_.records.pop(batch_); count > 0; count = wires_.records.pop(batch_)) {
+  for (std::size_t count = shared_.records.pop(batch_); count > 0; count = shared_.records.pop(batch_)) {
     for (std::size_t i = 0; i < count; ++i) take(batch_[i]);
     if (recording_ && recording_->text.size() >= text_bytes) flush(false);
   }
@@ -144,7 +144,7 @@ void Recorder::begin(Nanoseconds at, const control::Event* event) {
   Recording& now = *recording_;
   now.begin = at;
   now.last_motion = at;
-  now.dropped_before = wires_.records_dropped.load(std::memory_order_relaxed);
+  now.dropped_before = shared_.records_dropped.load(std::memory_order_relaxed);
   now.synced_at = at;
   now.text.reserve(2 * text_bytes);
   const bool fault = !always_ && event != nullptr && event->kind == Kind::fault_latched;
@@ -168,7 +168,7 @@ std::string Recorder::folder_for(Nanoseconds at, const control::Event* event) co
       provenance_.virtual_time ? fmt::format("run-{:04}", recordings_ + 1) : utc_text(wall_time(at));
   for (char& c : name) c = c == ':' ? '-' : c;
   if (event != nullptr && event->kind == Kind::sequence_started) {
-    const auto sequence = shelf_.find(event->request);
+    const auto sequence = sequence_store_.find(event->request);
     if (sequence) name += "_" + file_name_of(sequence->prepared.name);
   } else if (event != nullptr && event->kind == Kind::fault_latched && !always_) {
     name += "_fault";
@@ -192,7 +192,7 @@ void Recorder::write(const Record& row) {
 void Recorder::write(const StampedEvent& event) {
   Recording& now = *recording_;
   if (event.event.kind == Kind::sequence_started) {
-    now.story.sequence = shelf_.find(event.event.request);
+    now.story.sequence = sequence_store_.find(event.event.request);
     now.story.request = event.event.request;
   }
   if (now.story.events.size() == events_per_file) {
@@ -225,7 +225,7 @@ void Recorder::flush(bool last) {
 
 bool Recorder::write_json() {
   Recording& now = *recording_;
-  now.story.dropped_rows = wires_.records_dropped.load(std::memory_order_relaxed) - now.dropped_before;
+  now.story.dropped_rows = shared_.records_dropped.load(std::memory_order_relaxed) - now.dropped_before;
   now.story.error = now.folder.error();
   now.json_due = false;
   now.json_at = now_;
@@ -268,7 +268,7 @@ void Recorder::tell(const char* kind, Severity severity, std::string text) {
 
 void Recorder::show() {
   const std::scoped_lock lock(status_mutex_);
-  status_.dropped_rows = wires_.records_dropped.load(std::memory_order_relaxed);
+  status_.dropped_rows = shared_.records_dropped.load(std::memory_order_relaxed);
   status_.active = recording_ != nullptr;
   if (!recording_) return;
   status_.folder = recording_->folder.path();

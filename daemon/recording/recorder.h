@@ -9,13 +9,13 @@
 #include <string>
 #include <vector>
 
-#include "daemon/loop/wires.h"
+#include "daemon/loop/shared_state.h"
 #include "daemon/recording/csv_row.h"
 #include "daemon/recording/event_log.h"
 #include "daemon/recording/provenance.h"
 #include "daemon/recording/run_folder.h"
 #include "daemon/recording/run_json.h"
-#include "daemon/recording/sequence_shelf.h"
+#include "daemon/recording/sequence_store.h"
 #include "rig/recorder_settings.h"
 
 namespace softgrip::daemon {
@@ -35,10 +35,10 @@ struct RecorderStatus {
 /// status() come from one thread.
 class Recorder {
  public:
-  /// `only_folder`: if not empty, everything goes into this one folder from start to stop, whatever the mode.
+  /// `only_folder`: if not empty, everything goes into this one folder from start to stop, in every mode.
   /// `origin`: time 0 of the event log. All references outlive the recorder.
   Recorder(const rig::RecorderSettings& settings, const Provenance& provenance, std::string only_folder,
-           Nanoseconds origin, Wires& wires, EventLog& events, const SequenceShelf& shelf);
+           Nanoseconds origin, SharedState& shared, EventLog& events, const SequenceStore& sequence_store);
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;
   Recorder(Recorder&&) = delete;
@@ -79,12 +79,12 @@ class Recorder {
   std::string only_folder_;
   bool always_;  // one recording from start to stop
   Nanoseconds origin_;
-  Wires& wires_;
+  SharedState& shared_;
   Broadcast<StampedEvent>::Reader loop_events_;
   std::optional<StampedEvent> waiting_;  // newer than the newest row
   std::uint64_t events_lost_ = 0;        // reported so far
   EventLog& events_;
-  const SequenceShelf& shelf_;
+  const SequenceStore& sequence_store_;
   CsvRows rows_;
   std::vector<Record> batch_;
   std::deque<Record> past_rows_;  // while nothing is recorded

@@ -11,7 +11,7 @@
 #include "control/tick/parameter.h"
 #include "daemon/recording/event_log.h"
 #include "daemon/recording/provenance.h"
-#include "daemon/recording/sequence_shelf.h"
+#include "daemon/recording/sequence_store.h"
 
 namespace softgrip::daemon {
 

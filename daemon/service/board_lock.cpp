@@ -22,7 +22,7 @@
 #include <fmt/format.h>
 
 #include "base/clock.h"
-#include "base/grid.h"
+#include "base/periodic_schedule.h"
 #include "base/sha256.h"
 #include "daemon/service/trusted_user.h"
 #include "drivers/iio/iio_device.h"

@@ -21,7 +21,7 @@
 namespace softgrip::daemon {
 
 /// Returns the devices that a rig drives: "modbus 192.168.1.5 port 502 unit 1", a serial device or a
-/// converter by its real path; one entry each. Empty for a simulated board.
+/// converter by its real path; one entry each. The list is empty for a simulated board.
 [[nodiscard]] std::vector<std::string> driven_by(const rig::RigFile& rig);
 
 /// A file of the runtime folder that this process has locked. Its end removes the file.

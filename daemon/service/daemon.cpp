@@ -101,14 +101,14 @@ DaemonParts::DaemonParts(rig::RigFile rig_file, DaemonOptions run_options)
       board(make_board(rig, clock)),
       board_text(board->describe()),
       controller(rig.settings),
-      wires(records_of(rig.settings)),
+      shared(records_of(rig.settings)),
       events(events_kept),
       loader(std::make_shared<const SequenceLoader>(rig.settings, rig.socket.sequence_directory)),
-      loop(controller, rig.recorder.decimation, clock, wires, loop_statistics),
-      bus(*board, rig.settings, rig.loop, rig.reconnect, clock, wires, bus_statistics),
-      recorder(rig.recorder, provenance, options.record_folder, origin, wires, events, shelf),
-      service(provenance.channel_names, origin, wires, events, shelf) {
-  if (options.sequence) errand.emplace(options.sequence, patience);
+      loop(controller, rig.recorder.decimation, clock, shared, loop_statistics),
+      bus(*board, rig.settings, rig.loop, rig.reconnect, clock, shared, bus_statistics),
+      recorder(rig.recorder, provenance, options.record_folder, origin, shared, events, sequence_store),
+      service(provenance.channel_names, origin, shared, events, sequence_store) {
+  if (options.sequence) one_shot_run.emplace(options.sequence, patience);
 }
 
 Nanoseconds DaemonParts::period() const noexcept {
@@ -131,33 +131,33 @@ void DaemonParts::conclude(Outcome& outcome) {
   outcome.last = service.snapshot();
   outcome.channel_names = provenance.channel_names;
   outcome.ticks = loop_statistics.ticks.value();
-  outcome.slips = loop_statistics.slips_took_long.value() + loop_statistics.slips_woken_late.value();
+  outcome.overruns = loop_statistics.overruns_took_long.value() + loop_statistics.overruns_woken_late.value();
   if (!options.record_folder.empty()) outcome.recording_error = recorder.status().error;
-  outcome.left_safely = wires.left_safely.load(std::memory_order_acquire);
+  outcome.safe_state_confirmed = shared.safe_state_confirmed.load(std::memory_order_acquire);
   for (std::size_t i = 0; i < outcome.last.channel_count; ++i) {
     const bool on = control::pressed(rig.settings.channels[i].limits, outcome.last.channels[i].safe_kpa);
     outcome.pressure_left_on = outcome.pressure_left_on || on;
     if (on) outcome.vents_after_s = seconds(board->watchdog_time().count());
   }
-  if (outcome.ending == Ending::asked && errand) conclude_errand(*errand, outcome);
+  if (outcome.ending == Ending::asked && one_shot_run) conclude_one_shot_run(*one_shot_run, outcome);
 }
 
-void conclude_errand(const Errand& errand, Outcome& outcome) {
-  outcome.sequence_end = errand.end();
+void conclude_one_shot_run(const OneShotRun& one_shot_run, Outcome& outcome) {
+  outcome.sequence_end = one_shot_run.end();
   // The last step can end in the tick before the bus reports that the board has vented.
   if (outcome.sequence_end == control::SequenceEnd::done && outcome.last.state == control::State::faulted)
     outcome.sequence_end = control::SequenceEnd::faulted;
-  if (!errand.over()) {
+  if (!one_shot_run.over()) {
     outcome.ending = outcome.sequence_end ? Ending::sequence_ended : Ending::interrupted;
     if (!outcome.sequence_end) outcome.sequence_end = control::SequenceEnd::stopped;
     return;
   }
-  switch (errand.state()) {
-    case Errand::State::refused:
+  switch (one_shot_run.state()) {
+    case OneShotRun::State::refused:
       outcome.ending = Ending::sequence_refused;
-      outcome.message = control::name_of(errand.refusal());
+      outcome.message = control::name_of(one_shot_run.refusal());
       break;
-    case Errand::State::not_idle:
+    case OneShotRun::State::not_idle:
       outcome.ending = Ending::not_idle;
       outcome.message =
           fmt::format("the rig did not become idle within {} s{}", patience / ns_per_s,
@@ -187,17 +187,17 @@ bool reached_the_board(Ending ending) noexcept {
 }
 
 ExitCode exit_code_of(const Outcome& outcome) noexcept {
-  const ExitCode done = !outcome.left_safely              ? ExitCode::failed
+  const ExitCode done = !outcome.safe_state_confirmed     ? ExitCode::failed
                         : outcome.recording_error.empty() ? ExitCode::done
                                                           : ExitCode::io;
   switch (outcome.ending) {
     case Ending::asked:
       return done;
     case Ending::sequence_ended:
-      if (outcome.sequence_end == control::SequenceEnd::done || !outcome.left_safely) return done;
+      if (outcome.sequence_end == control::SequenceEnd::done || !outcome.safe_state_confirmed) return done;
       return ExitCode::not_acceptable;
     case Ending::interrupted:
-      return outcome.left_safely ? ExitCode::not_acceptable : ExitCode::failed;
+      return outcome.safe_state_confirmed ? ExitCode::not_acceptable : ExitCode::failed;
     case Ending::gpio_refused:
       return ExitCode::input_refused;
     case Ending::socket_failed:
@@ -230,7 +230,7 @@ tl::expected<std::unique_ptr<Daemon>, std::string> Daemon::create(rig::RigFile r
     }
     if (options.sequence && !options.duration_s && waits_for_a_release(options.sequence->prepared)) {
       return tl::unexpected(
-          std::string("nobody can ask for a release in virtual time: this sequence would hold for ever"));
+          std::string("no client can request a release in virtual time: this sequence would hold for ever"));
     }
   }
   return std::unique_ptr<Daemon>(

@@ -14,10 +14,10 @@
 
 #include "base/clock.h"
 #include "base/exit_code.h"
+#include "daemon/loop/shared_state.h"
 #include "daemon/loop/statistics.h"
-#include "daemon/loop/wires.h"
 #include "daemon/recording/event_log.h"
-#include "daemon/socket/errand.h"
+#include "daemon/socket/one_shot_run.h"
 #include "daemon/socket/sequence_loader.h"
 #include "drivers/board/board.h"
 #include "drivers/gpio/gpio_lines.h"
@@ -68,13 +68,13 @@ struct Outcome {
   std::optional<control::SequenceEnd> sequence_end;
   Snapshot last;  ///< the last tick
   std::vector<std::string> channel_names;
-  std::string recording_error;    ///< why record_folder does not hold all of the run; empty: it does
-  bool left_safely = false;       ///< the board confirmed the safe outputs at the end
-  bool pressure_left_on = false;  ///< control::pressed() of the safe output of a channel
+  std::string recording_error;        ///< why record_folder does not hold all of the run; empty: it does
+  bool safe_state_confirmed = false;  ///< the board confirmed the safe outputs at the end
+  bool pressure_left_on = false;      ///< control::pressed() of the safe output of a channel
   double vents_after_s = 0;  ///< pressure was left on, and the board's watchdog vents it so soon; 0: neither
   int signal = 0;  ///< the first signal that requested the end, until the outputs were safe; 0: none
   std::uint64_t ticks = 0;
-  std::uint64_t slips = 0;
+  std::uint64_t overruns = 0;
   double wall_s = 0;  ///< how long it took
 };
 

@@ -18,7 +18,7 @@
 namespace softgrip::daemon {
 
 /// How long the board may take to confirm the last outputs.
-inline constexpr Nanoseconds leave_deadline = ns_per_s;
+inline constexpr Nanoseconds shutdown_deadline = ns_per_s;
 
 struct DaemonParts {
   DaemonParts(rig::RigFile rig_file, DaemonOptions run_options);
@@ -43,9 +43,9 @@ struct DaemonParts {
   std::unique_ptr<drivers::Board> board;
   std::string board_text;
   control::RigController controller;
-  Wires wires;
+  SharedState shared;
   EventLog events;
-  SequenceShelf shelf;
+  SequenceStore sequence_store;
   std::shared_ptr<const SequenceLoader> loader;
   LoopStatistics loop_statistics;
   BusStatistics bus_statistics;
@@ -53,12 +53,12 @@ struct DaemonParts {
   Bus bus;
   Recorder recorder;
   Service service;
-  std::optional<Errand> errand;
+  std::optional<OneShotRun> one_shot_run;
   std::uint64_t delivered = 0;  // id of the last event given to on_event
 };
 
 /// Updates the result from the one-shot task, finished or not.
-void conclude_errand(const Errand& errand, Outcome& outcome);
+void conclude_one_shot_run(const OneShotRun& one_shot_run, Outcome& outcome);
 
 /// Ticks as fast as it can, in this thread alone.
 [[nodiscard]] Outcome run_in_virtual_time(DaemonParts& parts, Signals& signals);

@@ -125,11 +125,11 @@ void EventPrinter::print_end(const Outcome& outcome) {
   for (std::size_t i = 0; i < outcome.last.channel_count; ++i) {
     logger_->info("{}: {}", outcome.channel_names[i], control::title_of(outcome.last.channels[i].result));
   }
-  logger_->info("{} ticks, {} slips, {:.3f} s", outcome.ticks, outcome.slips, outcome.wall_s);
+  logger_->info("{} ticks, {} slips, {:.3f} s", outcome.ticks, outcome.overruns, outcome.wall_s);
   if (!reached_the_board(outcome.ending)) return;
   if (!outcome.recording_error.empty())
     logger_->error("the recording is not whole: {}", outcome.recording_error);
-  if (outcome.left_safely) {
+  if (outcome.safe_state_confirmed) {
     logger_->info("the board confirmed the safe outputs");
     if (outcome.vents_after_s > 0)
       logger_->warn("they hold only until the board's watchdog vents them, {:g} s from now",

@@ -31,7 +31,7 @@ bool PanelRun::open(Outcome& outcome) {
   const auto& open_lines = options_.open_gpio ? options_.open_gpio : drivers::open_gpio_lines;
   auto lines = open_lines(rig_.gpio->lines);
   if (lines) {
-    panel_.emplace(std::move(*lines), *rig_.gpio, clock_, wires_, loop_);
+    panel_.emplace(std::move(*lines), *rig_.gpio, clock_, shared_, loop_);
     guard_.emplace(*panel_);
     return true;
   }

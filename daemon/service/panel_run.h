@@ -15,9 +15,9 @@ namespace softgrip::daemon {
 /// Does nothing for a rig without digital lines. All references outlive it.
 class PanelRun {
  public:
-  PanelRun(const rig::RigFile& rig, const DaemonOptions& options, const Clock& clock, Wires& wires,
+  PanelRun(const rig::RigFile& rig, const DaemonOptions& options, const Clock& clock, SharedState& shared,
            const LoopStatistics& loop)
-      : rig_(rig), options_(options), clock_(clock), wires_(wires), loop_(loop) {}
+      : rig_(rig), options_(options), clock_(clock), shared_(shared), loop_(loop) {}
   PanelRun(const PanelRun&) = delete;
   PanelRun& operator=(const PanelRun&) = delete;
   PanelRun(PanelRun&&) = delete;
@@ -35,7 +35,7 @@ class PanelRun {
   const rig::RigFile& rig_;
   const DaemonOptions& options_;
   const Clock& clock_;
-  Wires& wires_;
+  SharedState& shared_;
   const LoopStatistics& loop_;
   std::optional<Panel> panel_;
   std::optional<PanelGuard> guard_;

@@ -73,7 +73,7 @@ class RealRun {
   RealRun(DaemonParts& parts, Signals& signals)
       : parts_(parts),
         signals_(signals),
-        panel_(parts.rig, parts.options, parts.clock, parts.wires, parts.loop_statistics) {}
+        panel_(parts.rig, parts.options, parts.clock, parts.shared, parts.loop_statistics) {}
 
   Outcome run();
 
@@ -123,7 +123,7 @@ class RealRun {
   std::atomic<bool> service_done_{false};
   std::atomic<bool> recorder_done_{false};
   Counter service_turns_;
-  std::atomic<bool> errand_over_{false};
+  std::atomic<bool> one_shot_over_{false};
   std::atomic<bool> broken_{false};
   std::mutex broken_mutex_;
   std::string broken_text_;
@@ -153,7 +153,7 @@ void RealRun::prepare(int priority, const char* who, RealTimeReport& report) {
 
 void RealRun::loop_body() {
   prepare(parts_.rig.real_time.priority, "the loop", loop_report_);
-  parts_.loop.run(Grid(start_, parts_.period()));
+  parts_.loop.run(PeriodicSchedule(start_, parts_.period()));
   loop_done_.store(true);
 }
 
@@ -161,8 +161,8 @@ void RealRun::bus_body() {
   // One below the loop: an exchange that is late must not delay a tick.
   const int priority = parts_.rig.real_time.priority;
   prepare(priority > 1 ? priority - 1 : priority, "the bus", bus_report_);
-  parts_.bus.run(Grid(start_ + parts_.bus_offset(), parts_.period()),
-                 std::chrono::nanoseconds{leave_deadline});
+  parts_.bus.run(PeriodicSchedule(start_ + parts_.bus_offset(), parts_.period()),
+                 std::chrono::nanoseconds{shutdown_deadline});
   bus_done_.store(true);
 }
 
@@ -184,7 +184,7 @@ void RealRun::service_body() {
                         parts_.origin,
                         &report_,
                         parts_.rig.gpio ? &*parts_.rig.gpio : nullptr,
-                        &parts_.wires};
+                        &parts_.shared};
   SocketApi api(sources, parts_.rig.socket, parts_.loader, parts_.events,
                 [this](ClientId client, std::string_view line, bool skippable) {
                   return server_ && server_->send(client, line, skippable);
@@ -199,9 +199,9 @@ void RealRun::service_body() {
   while (!stop_service_.is_set()) {
     service_turns_.add();
     parts_.service.pump();
-    if (parts_.errand) {
-      parts_.errand->step(parts_.service, parts_.clock.now());
-      errand_over_.store(parts_.errand->over());
+    if (parts_.one_shot_run) {
+      parts_.one_shot_run->step(parts_.service, parts_.clock.now());
+      one_shot_over_.store(parts_.one_shot_run->over());
     }
     const Nanoseconds now = parts_.clock.now();
     const Nanoseconds next = api.on_time(now);
@@ -253,7 +253,7 @@ void RealRun::start() {
     outcome_.message = "real_time: required, and something could not be verified";
   }
   // A loop with a shutdown request before its first tick still sends the safe outputs.
-  if (outcome_.ending != Ending::asked) parts_.wires.leave.store(true);
+  if (outcome_.ending != Ending::asked) parts_.shared.shutdown_requested.store(true);
   start_ = parts_.clock.now() + lead_time;
   go_.count_down();
 }
@@ -263,7 +263,7 @@ bool RealRun::over(Nanoseconds now) {
     outcome_.ending = Ending::broken;
     return true;
   }
-  if (errand_over_.load()) return true;
+  if (one_shot_over_.load()) return true;
   const auto& duration = parts_.options.duration_s;
   return duration && now - start_ >= nanoseconds(*duration);
 }
@@ -271,7 +271,7 @@ bool RealRun::over(Nanoseconds now) {
 std::string RealRun::status_line() {
   const LoopStatistics& loop = parts_.loop_statistics;
   return fmt::format("{} Hz, {} slips, {} failed exchanges", parts_.rig.settings.rate_hz,
-                     loop.slips_took_long.value() + loop.slips_woken_late.value(),
+                     loop.overruns_took_long.value() + loop.overruns_woken_late.value(),
                      parts_.bus_statistics.failures.value());
 }
 
@@ -317,9 +317,9 @@ bool RealRun::wait_for(const std::function<bool()>& condition, Nanoseconds longe
 }
 
 bool RealRun::stop_loop_and_bus() {
-  parts_.wires.leave.store(true);
+  parts_.shared.shutdown_requested.store(true);
   return wait_for([this] { return loop_done_.load() && bus_done_.load(); },
-                  leave_deadline + longest_join + longest_bus_call());
+                  shutdown_deadline + longest_join + longest_bus_call());
 }
 
 void RealRun::stop() {
@@ -362,7 +362,7 @@ void RealRun::note_and_keep(const BoardLock& lock) {
 
 /// As long as pressure may be on, the safe outputs need the rig that put it there.
 void RealRun::forget_if_rested() {
-  if (outcome_.left_safely && !outcome_.pressure_left_on) forget_rig(parts_.rig.path);
+  if (outcome_.safe_state_confirmed && !outcome_.pressure_left_on) forget_rig(parts_.rig.path);
 }
 
 Outcome RealRun::run() {

@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "base/grid.h"
+#include "base/periodic_schedule.h"
 #include "daemon/service/board_lock.h"
 #include "daemon/service/daemon.h"
 #include "daemon/service/daemon_answers.h"
@@ -83,7 +83,7 @@ bool safe_outputs_needed(const std::string& service_result) noexcept {
   return service_result != "success";
 }
 
-SafeOutputsReport leave_safe_outputs(const rig::RigFile& rig) {
+SafeOutputsReport vent_rig(const rig::RigFile& rig) {
   if (daemon_answers(rig.socket.path)) {
     return {SafeOutputsEnd::daemon_running,
             fmt::format("a daemon answers on {}; use `softgrip vent`", rig.socket.path)};

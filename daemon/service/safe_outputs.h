@@ -43,6 +43,6 @@ struct SafeOutputsReport {
 /// Vents for a process that has no board yet. Yields to a daemon that answers on the rig's socket and to a
 /// softgrip program that holds the board's lock. A program of a user without the right to the lock does not
 /// count, nor one that does not answer.
-[[nodiscard]] SafeOutputsReport leave_safe_outputs(const rig::RigFile& rig);
+[[nodiscard]] SafeOutputsReport vent_rig(const rig::RigFile& rig);
 
 }  // namespace softgrip::daemon

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "base/grid.h"
+#include "base/periodic_schedule.h"
 
 namespace softgrip::daemon {
 

@@ -5,7 +5,7 @@
 #include <csignal>
 #include <ctime>
 
-#include "base/grid.h"
+#include "base/periodic_schedule.h"
 
 namespace softgrip::daemon {
 

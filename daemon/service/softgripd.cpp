@@ -66,7 +66,7 @@ void declare(CLI::App& program, Arguments& arguments) {
   program
       .add_option("--sequence", arguments.sequence, "start this sequence when the rig is idle, end after it")
       ->type_name("FILE");
-  program.add_option("--duration-s", arguments.duration_s, "end after so many seconds")
+  program.add_option("--duration-s", arguments.duration_s, "end after S seconds")
       ->type_name("S")
       ->check(CLI::PositiveNumber);
   program.add_option("--record", arguments.record, "record everything into this one folder")
@@ -138,7 +138,7 @@ ExitCode safe_outputs(const Arguments& arguments) {
   const auto kept = daemon::kept_rig(arguments.config);
   const auto rig = kept ? kept : rig::load_rig(arguments.config, problems);
   if (!rig || !problems.empty()) return refuse(problems);
-  daemon::SafeOutputsReport report = daemon::leave_safe_outputs(*rig);
+  daemon::SafeOutputsReport report = daemon::vent_rig(*rig);
   if (kept) report.text += "; with the rig file as the last softgripd read it";
   const bool safe = daemon::exit_code_of(report.end) == ExitCode::done;
   if (kept && safe) daemon::forget_rig(arguments.config);
@@ -155,8 +155,8 @@ tl::expected<void, std::string> write_histograms(const std::string& path, const 
           "# Failed exchanges: {}\n",
           loop.wake_up.cyclictest_text("loop wake-up, us"), loop.compute.cyclictest_text("loop compute, us"),
           loop.reading_age.cyclictest_text("reading age, us"), bus.wake_up.cyclictest_text("bus wake-up, us"),
-          bus.exchange.cyclictest_text("exchange, us"), loop.ticks.value(), loop.slips_woken_late.value(),
-          loop.slips_took_long.value(), bus.exchanges.value(), bus.failures.value()));
+          bus.exchange.cyclictest_text("exchange, us"), loop.ticks.value(), loop.overruns_woken_late.value(),
+          loop.overruns_took_long.value(), bus.exchanges.value(), bus.failures.value()));
 }
 
 ExitCode run(const Arguments& arguments) {

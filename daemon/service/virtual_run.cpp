@@ -17,7 +17,7 @@ void exchange(DaemonParts& parts, Nanoseconds due) {
 
 void look(DaemonParts& parts, Nanoseconds now) {
   parts.service.pump();
-  if (parts.errand) parts.errand->step(parts.service, now);
+  if (parts.one_shot_run) parts.one_shot_run->step(parts.service, now);
   parts.recorder.drain();
   parts.deliver_events();
 }
@@ -38,15 +38,15 @@ Outcome run_in_virtual_time(DaemonParts& parts, Signals& signals) {
     exchange(parts, due + parts.bus_offset());
     if (tick % ticks_per_look != 0) continue;
     look(parts, due);
-    if ((parts.errand && parts.errand->over()) || signals.wait(0) != 0) {
+    if ((parts.one_shot_run && parts.one_shot_run->over()) || signals.wait(0) != 0) {
       due += period;  // leaving is a tick of its own: a recording has every time once
       break;
     }
   }
   parts.virtual_clock.set(due);
   parts.loop.leave();
-  for (const Nanoseconds give_up = due + leave_deadline; due < give_up && !parts.wires.left_safely;
-       due += period) {
+  for (const Nanoseconds give_up = due + shutdown_deadline;
+       due < give_up && !parts.shared.safe_state_confirmed; due += period) {
     exchange(parts, due + parts.bus_offset());
   }
   look(parts, due);

@@ -9,7 +9,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "daemon/recording/sequence_shelf.h"
+#include "daemon/recording/sequence_store.h"
 #include "daemon/socket/role.h"
 #include "daemon/socket/sequence_loader.h"
 #include "document/problem.h"

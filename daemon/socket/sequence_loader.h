@@ -12,7 +12,7 @@
 
 #include "control/tick/parameter.h"
 #include "control/tick/settings.h"
-#include "daemon/recording/sequence_shelf.h"
+#include "daemon/recording/sequence_store.h"
 #include "document/problem.h"
 
 namespace softgrip::daemon {

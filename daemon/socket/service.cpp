@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "base/grid.h"
+#include "base/periodic_schedule.h"
 #include "daemon/socket/overall_result.h"
 
 namespace softgrip::daemon {
@@ -27,14 +27,14 @@ control::Fault fault_in(const control::Event& event) {
 
 }  // namespace
 
-Service::Service(std::vector<std::string> channel_names, Nanoseconds origin, Wires& wires, EventLog& log,
-                 SequenceShelf& shelf)
+Service::Service(std::vector<std::string> channel_names, Nanoseconds origin, SharedState& shared,
+                 EventLog& log, SequenceStore& sequence_store)
     : channel_names_(std::move(channel_names)),
       origin_(origin),
-      wires_(wires),
-      events_(wires.events),
+      shared_(shared),
+      events_(shared.events),
       log_(log),
-      shelf_(shelf),
+      sequence_store_(sequence_store),
       results_(channel_names_.size()) {}
 
 std::optional<std::uint32_t> Service::submit(control::Request::Kind kind,
@@ -59,7 +59,7 @@ std::optional<std::uint32_t> Service::submit_stop_of(std::uint32_t start, const 
   request.kind = control::Request::Kind::stop;
   request.id = last_request_ + 1;
   request.of_start = start;
-  if (!wires_.named_stops.push(request)) return std::nullopt;
+  if (!shared_.named_stops.push(request)) return std::nullopt;
   stops_of_[start] = request.id;
   note_submitted(request.id, client);
   return request.id;
@@ -92,24 +92,24 @@ std::string Service::client_of(std::uint32_t request) const {
 bool Service::push(const control::Request& request, std::shared_ptr<const LoadedSequence> sequence) {
   switch (request.kind) {
     case control::Request::Kind::vent:
-      if (!wires_.vents.push(request)) return false;
+      if (!shared_.vents.push(request)) return false;
       last_vent_ = request.id;
       return true;
     case control::Request::Kind::stop:
-      if (!wires_.stops.push(request)) return false;
+      if (!shared_.stops.push(request)) return false;
       last_stop_ = request.id;
       return true;
     default:
       break;
   }
-  if (sequence) shelf_.put(request.id, std::move(sequence));
-  if (wires_.requests.push(request)) return true;
-  shelf_.drop(request.id);
+  if (sequence) sequence_store_.put(request.id, std::move(sequence));
+  if (shared_.requests.push(request)) return true;
+  sequence_store_.drop(request.id);
   return false;
 }
 
 void Service::pump() {
-  for (BusEvent event; wires_.bus_events.pop(event);) {
+  for (BusEvent event; shared_.bus_events.pop(event);) {
     EventEntry entry = describe(event);
     entry.time_s = seconds(event.at - origin_);
     const bool fails = event.kind == BusEvent::Kind::failed || event.kind == BusEvent::Kind::not_connected;
@@ -117,13 +117,13 @@ void Service::pump() {
     if (event.kind == BusEvent::Kind::recovered) bus_failure_ = {};
     log_.add(std::move(entry));
   }
-  for (PanelEvent event; wires_.panel_events.pop(event);) {
+  for (PanelEvent event; shared_.panel_events.pop(event);) {
     EventEntry entry = describe(event);
     entry.time_s = seconds(event.at - origin_);
     log_.add(std::move(entry));
   }
   for (StampedEvent event; events_.pop(event);) take(event);
-  const std::uint64_t dropped = wires_.events_dropped.load(std::memory_order_relaxed) + events_.lost();
+  const std::uint64_t dropped = shared_.events_dropped.load(std::memory_order_relaxed) + events_.lost();
   if (dropped != events_dropped_) {
     EventEntry entry;
     entry.kind = "events_lost";
@@ -138,15 +138,15 @@ void Service::pump() {
 void Service::take(const StampedEvent& stamped) {
   const control::Event& event = stamped.event;
   if (event.kind == EventKind::sequence_started) {
-    sequence_ = shelf_.find(event.request);
+    sequence_ = sequence_store_.find(event.request);
     sequence_request_ = event.request;
-    shelf_.drop_before(event.request);
+    sequence_store_.drop_before(event.request);
     std::fill(results_.begin(), results_.end(), control::GripResult::none);
     overall_ = control::GripResult::none;
   }
   // The loop has let go of it.
   if (event.kind == EventKind::request_refused || event.kind == EventKind::start_checked)
-    shelf_.drop(event.request);
+    sequence_store_.drop(event.request);
   if (event.kind == EventKind::sequence_finished) {
     ending_ = {event.request, static_cast<control::SequenceEnd>(event.detail)};
   }
@@ -192,8 +192,8 @@ Service::Answer Service::take_answer(std::uint32_t request) {
 }
 
 const Snapshot& Service::snapshot() noexcept {
-  wires_.snapshot.fetch();
-  return wires_.snapshot.value();
+  shared_.snapshot.fetch();
+  return shared_.snapshot.value();
 }
 
 }  // namespace softgrip::daemon

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "daemon/loop/wires.h"
+#include "daemon/loop/shared_state.h"
 #include "daemon/recording/event_log.h"
-#include "daemon/recording/sequence_shelf.h"
+#include "daemon/recording/sequence_store.h"
 
 namespace softgrip::daemon {
 
@@ -18,8 +18,8 @@ namespace softgrip::daemon {
 class Service {
  public:
   /// `origin`: time 0 of the event log.
-  Service(std::vector<std::string> channel_names, Nanoseconds origin, Wires& wires, EventLog& log,
-          SequenceShelf& shelf);
+  Service(std::vector<std::string> channel_names, Nanoseconds origin, SharedState& shared, EventLog& log,
+          SequenceStore& sequence_store);
 
   /// Passes a request to the loop. Returns its id, or an empty value if the loop has not taken the last ones
   /// yet. Vent and stop have separate lanes that pass all other requests, and always return an id. If their
@@ -60,7 +60,8 @@ class Service {
   /// The request that started it, or 0.
   [[nodiscard]] std::uint32_t sequence_request() const noexcept { return sequence_request_; }
 
-  /// Returns the client of a request. Empty if the client is unknown, or if too many requests followed.
+  /// Returns the client of a request. The text is empty if the client is unknown, or if too many requests
+  /// followed.
   [[nodiscard]] std::string client_of(std::uint32_t request) const;
   /// Returns true if the request has started a sequence that has not ended.
   [[nodiscard]] bool runs(std::uint32_t request) const noexcept {
@@ -88,10 +89,10 @@ class Service {
 
   std::vector<std::string> channel_names_;
   Nanoseconds origin_;
-  Wires& wires_;
+  SharedState& shared_;
   Broadcast<StampedEvent>::Reader events_;
   EventLog& log_;
-  SequenceShelf& shelf_;
+  SequenceStore& sequence_store_;
   std::uint32_t last_request_ = 0;
   std::uint32_t last_vent_ = 0;
   std::uint32_t last_stop_ = 0;

@@ -9,7 +9,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "base/grid.h"
+#include "base/periodic_schedule.h"
 #include "base/wall_clock.h"
 #include "daemon/socket/reply_json.h"
 

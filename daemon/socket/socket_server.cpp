@@ -14,7 +14,7 @@
 
 #include <fmt/format.h>
 
-#include "base/grid.h"
+#include "base/periodic_schedule.h"
 #include "daemon/socket/reply_json.h"
 
 namespace softgrip::daemon {
@@ -124,8 +124,8 @@ void SocketServer::accept_some(const Entrance& entrance) {
   }
 }
 
-/// Nothing if nobody waits, or if there is no descriptor even without the longest silent client. Who looks
-/// takes none from those who operate.
+/// Returns an invalid descriptor if no client waits, or if there is no descriptor even without the client
+/// that was silent for longest. A client that only reads takes no descriptor from one that operates.
 Descriptor SocketServer::accept_one(const Entrance& entrance) {
   for (;;) {
     Descriptor socket(accept4(entrance.listener.get(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
@@ -160,7 +160,7 @@ bool SocketServer::displace_one(Role role, bool any) {
     if (found == clients_.end() || rank(client) < rank(found->second)) found = entry;
   }
   if (found == clients_.end()) return false;
-  // Best effort: nobody waits for a client that does not read.
+  // Best effort: the server does not wait for a client that does not read.
   const std::string line = too_many();
   [[maybe_unused]] const ssize_t sent =
       ::send(found->second.socket.get(), line.data(), line.size(), MSG_NOSIGNAL);
@@ -172,7 +172,7 @@ bool SocketServer::displace_one(Role role, bool any) {
 
 std::string SocketServer::too_many() const {
   return error_line(std::nullopt, "too_many_clients",
-                    fmt::format("at most {} clients at a time; stop and vent are heard all the same",
+                    fmt::format("at most {} clients at a time; stop and vent are heard nevertheless",
                                 settings_.max_clients));
 }
 

@@ -25,7 +25,7 @@ class SocketServer {
   struct Handlers {
     std::function<void(std::uint64_t client, std::string_view line)> on_line;
     std::function<void(std::uint64_t client)> on_closed;
-    /// Whether a line must be heard even of a client for which there is no place.
+    /// Returns true if a line must be heard even from a client for which there is no place.
     std::function<bool(std::string_view line)> is_urgent;
     /// Before its first line.
     std::function<void(std::uint64_t client, Role role)> on_opened = nullptr;
@@ -100,7 +100,7 @@ class SocketServer {
   std::uint64_t last_id_ = 0;
   Nanoseconds now_ = 0;
   Nanoseconds accepts_again_ = 0;  // out of descriptors until then
-  bool lines_left_ = false;        // somebody's, for the next call
+  bool lines_left_ = false;        // of any client, for the next call
 };
 
 }  // namespace softgrip::daemon

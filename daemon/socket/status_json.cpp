@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "base/grid.h"
+#include "base/periodic_schedule.h"
 #include "daemon/recording/csv_row.h"
 #include "daemon/socket/overall_result.h"
 #include "daemon/socket/under_pressure.h"
@@ -152,15 +152,15 @@ Json json_of(const RealTimeReport* report) {
   return {{"degraded", report->degraded()}, {"steps", std::move(steps)}};
 }
 
-/// What is known of the digital lines; null for those that the rig does not have.
-Json json_of_gpio(const rig::GpioSettings* gpio, const Wires* wires) {
-  if (gpio == nullptr || wires == nullptr) return nullptr;
-  const InputLevels& inputs = wires->inputs;
+/// Returns the states of the digital lines; null for lines that the rig does not have.
+Json json_of_gpio(const rig::GpioSettings* gpio, const SharedState* shared) {
+  if (gpio == nullptr || shared == nullptr) return nullptr;
+  const InputLevels& inputs = shared->inputs;
   Json json{{"emergency_stop", nullptr}, {"part_in_position", nullptr}, {"enable", nullptr}};
   using drivers::GpioRole;
   if (gpio->has(GpioRole::emergency_stop)) json["emergency_stop"] = inputs.emergency_stop.load();
   if (gpio->has(GpioRole::part_in_position)) json["part_in_position"] = !inputs.interlock_open.load();
-  if (gpio->has(GpioRole::enable)) json["enable"] = wires->enable_on.load();
+  if (gpio->has(GpioRole::enable)) json["enable"] = shared->enable_on.load();
   json["lost"] = inputs.lost.load();
   return json;
 }
@@ -212,7 +212,7 @@ Json status_json(const StatusSources& sources) {
             {"rig_file", rig_file_of(sources.provenance)},
             {"simulated", sources.provenance.simulated},
             {"rate_hz", sources.provenance.rate_hz},
-            // Before the first tick there is nothing whose age could be told.
+            // Before the first tick, no snapshot has a time.
             {"time_s", snapshot.ticks == 0 ? 0.0 : seconds(snapshot.at - sources.origin)},
             {"state", control::name_of(snapshot.state)},
             {"under_pressure", under_pressure_json(sources.rig.channels, snapshot)},
@@ -225,12 +225,13 @@ Json status_json(const StatusSources& sources) {
   }
   json["bus"] = json_of_bus(sources, snapshot.bus);
   const Histogram::Summary wake_up = sources.loop.wake_up.summary();
-  json["loop"] = {{"ticks", snapshot.ticks},
-                  {"slips", sources.loop.slips_woken_late.value() + sources.loop.slips_took_long.value()},
-                  {"wake_up_p99_us", static_cast<double>(wake_up.p99_ns) * us_per_ns},
-                  {"wake_up_max_us", static_cast<double>(wake_up.max_ns) * us_per_ns}};
+  json["loop"] = {
+      {"ticks", snapshot.ticks},
+      {"slips", sources.loop.overruns_woken_late.value() + sources.loop.overruns_took_long.value()},
+      {"wake_up_p99_us", static_cast<double>(wake_up.p99_ns) * us_per_ns},
+      {"wake_up_max_us", static_cast<double>(wake_up.max_ns) * us_per_ns}};
   json["recording"] = json_of(sources.recorder.status());
-  json["gpio"] = json_of_gpio(sources.gpio, sources.wires);
+  json["gpio"] = json_of_gpio(sources.gpio, sources.shared);
   json["real_time"] = json_of(sources.real_time);
   return json;
 }
@@ -241,8 +242,8 @@ Json statistics_json(const StatusSources& sources, const std::vector<EventCount>
   const BusStatistics& bus = sources.bus;
   return {{"loop",
            {{"ticks", loop.ticks.value()},
-            {"slips_woken_late", loop.slips_woken_late.value()},
-            {"slips_took_long", loop.slips_took_long.value()},
+            {"slips_woken_late", loop.overruns_woken_late.value()},
+            {"slips_took_long", loop.overruns_took_long.value()},
             {"wake_up", json_of(loop.wake_up, with_histograms)},
             {"compute", json_of(loop.compute, with_histograms)},
             {"reading_age", json_of(loop.reading_age, with_histograms)}}},
@@ -250,7 +251,7 @@ Json statistics_json(const StatusSources& sources, const std::vector<EventCount>
            {{"exchanges", bus.exchanges.value()},
             {"failures", bus.failures.value()},
             {"sessions", bus.sessions.value()},
-            {"slips", bus.slips.value()},
+            {"slips", bus.overruns.value()},
             {"wake_up", json_of(bus.wake_up, with_histograms)},
             {"exchange", json_of(bus.exchange, with_histograms)}}},
           {"events", json_of(events)}};

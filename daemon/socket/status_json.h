@@ -1,5 +1,5 @@
 #pragma once
-// What the socket API says of the daemon, as JSON. docs/reference/socket-api.md is the contract.
+// The replies of the socket API about the daemon, as JSON. docs/reference/socket-api.md is the contract.
 
 #include <string>
 #include <vector>
@@ -29,7 +29,7 @@ struct StatusSources {
   Nanoseconds origin = 0;
   const RealTimeReport* real_time = nullptr;  ///< absent in virtual time
   const rig::GpioSettings* gpio = nullptr;    ///< absent without digital lines
-  const Wires* wires = nullptr;               ///< needed with them
+  const SharedState* shared = nullptr;        ///< needed with them
 };
 
 /// {"code", "name", "channel"} of a fault, the channel null where it concerns the whole rig; null of none.

@@ -7,12 +7,12 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "control/tick/settings.h"
-#include "daemon/loop/wires.h"
+#include "daemon/loop/shared_state.h"
 
 namespace softgrip::daemon {
 
-/// Null where no finger stays under pressure; else `channels`, a list of `name` and
-/// `command_kpa`; `command`, which ends it; and `text`, which says both in a sentence or two.
+/// Returns null if no finger stays under pressure. Otherwise it returns `channels` (a list of `name` and
+/// `command_kpa`), `command` (vents them) and `text` (both in one or two sentences).
 [[nodiscard]] nlohmann::ordered_json under_pressure_json(
     const std::vector<control::ChannelSettings>& channels, const Snapshot& snapshot);
 

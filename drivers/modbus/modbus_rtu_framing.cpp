@@ -11,7 +11,7 @@
 #include "base/clock.h"
 #include "base/descriptor_wait.h"
 #include "base/errno_text.h"
-#include "base/grid.h"
+#include "base/periodic_schedule.h"
 
 namespace softgrip::drivers {
 

@@ -14,7 +14,7 @@
 #include "base/clock.h"
 #include "base/descriptor_wait.h"
 #include "base/errno_text.h"
-#include "base/grid.h"
+#include "base/periodic_schedule.h"
 #include "base/time.h"
 #include "drivers/modbus/serial_device.h"
 

@@ -9,7 +9,7 @@
 #include <cstdio>
 #include <string>
 
-#include "base/grid.h"
+#include "base/periodic_schedule.h"
 
 namespace softgrip::clock_test {
 namespace {

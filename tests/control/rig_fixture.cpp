@@ -86,8 +86,8 @@ const TickOutput& SimulatedRig::tick() {
   input.emergency_stop = emergency_stop;
   input.interlock_open = interlock_open;
   input.inputs_lost = inputs_lost;
-  input.slipped_cycles = slipped_cycles;
-  slipped_cycles = 0;
+  input.overrun_cycles = overrun_cycles;
+  overrun_cycles = 0;
   request_ = {};
   const TickOutput before = output_;
   around_tick(true);

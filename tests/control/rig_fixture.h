@@ -37,7 +37,7 @@ class SimulatedRig {
   bool emergency_stop = false;
   bool inputs_lost = false;
   bool interlock_open = false;
-  std::uint32_t slipped_cycles = 0;  ///< for the next tick only
+  std::uint32_t overrun_cycles = 0;  ///< for the next tick only
   FaultCode bus_fault = FaultCode::none;
   std::vector<double> outputs_kpa;  ///< what the bus says of the outputs; empty: nothing
   struct OfChannel {

@@ -76,7 +76,7 @@ class BlocksInWorld final : public Guest {
     const Nanoseconds passed = seen_ == 0 ? 0 : now - seen_;
     seen_ = now;
     DaemonInWorld* const daemon = host_.daemon();
-    if (daemon == nullptr || daemon->wires.leave.load()) return;
+    if (daemon == nullptr || daemon->shared.shutdown_requested.load()) return;
     const bool disturbed = excuse.paused || excuse.no_line;
     for (Started& started : started_) {
       if (started.life != life_ || !started.request) continue;

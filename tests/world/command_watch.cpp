@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "base/grid.h"
+#include "base/periodic_schedule.h"
 #include "tools/plc/process_image.h"
 
 namespace softgrip::world {

@@ -12,15 +12,15 @@ namespace {
 
 using control::Request;
 
-using daemon::leave_deadline;
+using daemon::shutdown_deadline;
 
 constexpr Nanoseconds look_pause = ns_per_s / 20;
 constexpr Nanoseconds service_pause = ns_per_s / 50;
 constexpr Nanoseconds heartbeat_patience = ns_per_s / 2;
 /// WatchdogSec of the unit.
 constexpr Nanoseconds manager_patience = 2 * ns_per_s;
-/// How long the rig may take to become idle before the errand is given up.
-constexpr Nanoseconds errand_patience = 10 * ns_per_s;
+/// How long the rig may take to become idle before the one-shot run is given up.
+constexpr Nanoseconds one_shot_patience = 10 * ns_per_s;
 
 daemon::Provenance provenance_of(const rig::RigFile& rig) {
   daemon::Provenance provenance;
@@ -42,19 +42,19 @@ DaemonInWorld::DaemonInWorld(const rig::RigFile& rig_file, Scheduler& scheduler,
       loop_clock(scheduler),
       origin(scheduler.shown()),
       controller(rig.settings),
-      wires(1 << 14),
+      shared(1 << 14),
       events(10'000),
       provenance(provenance_of(rig)),
-      loop(controller, rig.recorder.decimation, loop_clock, wires, loop_statistics),
-      bus(board, rig.settings, rig.loop, rig.reconnect, bus_clock, wires, bus_statistics),
+      loop(controller, rig.recorder.decimation, loop_clock, shared, loop_statistics),
+      bus(board, rig.settings, rig.loop, rig.reconnect, bus_clock, shared, bus_statistics),
       recorder((rig.recorder.directory = std::move(life.folder), rig.recorder), provenance,
-               life.record_folder, origin, wires, events, shelf),
-      service(provenance.channel_names, origin, wires, events, shelf),
+               life.record_folder, origin, shared, events, sequence_store),
+      service(provenance.channel_names, origin, shared, events, sequence_store),
       scheduler_(scheduler) {
-  if (life.sequence) errand.emplace(std::move(life.sequence), errand_patience);
+  if (life.sequence) one_shot_run.emplace(std::move(life.sequence), one_shot_patience);
   if (life.loader) {
     socket.emplace(daemon::StatusSources{rig.settings, provenance, service, recorder, loop_statistics,
-                                         bus_statistics, rig.name, origin, nullptr, nullptr, &wires},
+                                         bus_statistics, rig.name, origin, nullptr, nullptr, &shared},
                    rig.socket, std::move(life.loader), events);
   }
   actors_.resize(part_count);
@@ -79,20 +79,20 @@ void DaemonInWorld::main_body() {
     actors_[static_cast<std::size_t>(part)] = scheduler_.add("", std::move(body));
   };
   begin(Part::loop, [this, start, period] {
-    loop.run(Grid(start, period));
+    loop.run(PeriodicSchedule(start, period));
     loop_done_ = true;
   });
   begin(Part::bus, [this, start, period, offset] {
-    bus.run(Grid(start + offset, period), std::chrono::nanoseconds(leave_deadline));
+    bus.run(PeriodicSchedule(start + offset, period), std::chrono::nanoseconds(shutdown_deadline));
     bus_done_ = true;
   });
   begin(Part::service, [this] { service_body(); });
   begin(Part::recorder, [this] { recorder_body(); });
   look_after();
 
-  wires.leave.store(true);
+  shared.shutdown_requested.store(true);
   const Nanoseconds give_up =
-      clock.now() + leave_deadline + ns_per_s + rig.reconnect.connect_deadline.count();
+      clock.now() + shutdown_deadline + ns_per_s + rig.reconnect.connect_deadline.count();
   while (!(loop_done_ && bus_done_) && clock.now() < give_up)
     clock.sleep_until(clock.now() + ns_per_s / 1000);
   stop_others_ = true;
@@ -121,7 +121,7 @@ void DaemonInWorld::look_after() {
 void DaemonInWorld::service_body() {
   while (!stop_others_) {
     serve();
-    if (errand) errand->step(service, clock.now());
+    if (one_shot_run) one_shot_run->step(service, clock.now());
     if (socket) socket->serve(clock.now());
     clock.sleep_until(clock.now() + service_pause);
   }
@@ -159,9 +159,9 @@ daemon::Outcome DaemonInWorld::outcome() {
   daemon::Outcome outcome;
   outcome.last = service.snapshot();
   outcome.channel_names = provenance.channel_names;
-  outcome.left_safely = left_safely();
+  outcome.safe_state_confirmed = safe_state_confirmed();
   if (asked_to_end_) outcome.signal = SIGINT;
-  if (errand) daemon::conclude_errand(*errand, outcome);
+  if (one_shot_run) daemon::conclude_one_shot_run(*one_shot_run, outcome);
   return outcome;
 }
 

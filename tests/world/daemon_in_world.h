@@ -14,7 +14,7 @@
 #include "daemon/loop/loop.h"
 #include "daemon/recording/recorder.h"
 #include "daemon/service/daemon.h"
-#include "daemon/socket/errand.h"
+#include "daemon/socket/one_shot_run.h"
 #include "daemon/socket/service.h"
 #include "rig/rig_file.h"
 #include "tests/world/hardware.h"
@@ -51,7 +51,7 @@ class LoopClock final : public WorldClock {
 struct Life {
   std::string folder;         ///< of the recordings
   std::string record_folder;  ///< if not empty, everything is recorded into this one
-  std::shared_ptr<const daemon::LoadedSequence> sequence;  ///< an errand, after which it ends
+  std::shared_ptr<const daemon::LoadedSequence> sequence;  ///< a one-shot run, after which it ends
   std::shared_ptr<const daemon::SequenceLoader> loader;    ///< clients come on its socket
 };
 
@@ -75,8 +75,8 @@ class DaemonInWorld {
   [[nodiscard]] ActorId actor(Part part) const { return actors_[static_cast<std::size_t>(part)]; }
   [[nodiscard]] bool owns(ActorId id) const;
   [[nodiscard]] bool ended() const noexcept { return ended_; }
-  [[nodiscard]] bool left_safely() const { return wires.left_safely.load(); }
-  /// The outcome of its errand, when it has ended.
+  [[nodiscard]] bool safe_state_confirmed() const { return shared.safe_state_confirmed.load(); }
+  /// The outcome of its one-shot run, when it has ended.
   [[nodiscard]] daemon::Outcome outcome();
   /// Its heartbeat has stopped: the service manager kills it.
   [[nodiscard]] bool starved() const noexcept { return starved_; }
@@ -88,9 +88,9 @@ class DaemonInWorld {
   LoopClock loop_clock;  ///< the loop's own: looked at when a tick begins and when it ends
   Nanoseconds origin;
   control::RigController controller;
-  daemon::Wires wires;
+  daemon::SharedState shared;
   daemon::EventLog events;
-  daemon::SequenceShelf shelf;
+  daemon::SequenceStore sequence_store;
   daemon::LoopStatistics loop_statistics;
   daemon::BusStatistics bus_statistics;
   daemon::Provenance provenance;
@@ -98,7 +98,7 @@ class DaemonInWorld {
   daemon::Bus bus;
   daemon::Recorder recorder;
   daemon::Service service;
-  std::optional<daemon::Errand> errand;
+  std::optional<daemon::OneShotRun> one_shot_run;
   std::optional<SocketInWorld> socket;
 
   /// The service has taken a request of a client.
@@ -115,7 +115,7 @@ class DaemonInWorld {
   void recorder_body();
   void look_after();
   void serve();
-  [[nodiscard]] bool over() const { return asked_to_end_ || (errand && errand->over()); }
+  [[nodiscard]] bool over() const { return asked_to_end_ || (one_shot_run && one_shot_run->over()); }
 
   Scheduler& scheduler_;
   std::vector<ActorId> actors_;

@@ -1,6 +1,6 @@
 #include "tests/world/master_in_world.h"
 
-#include "base/grid.h"
+#include "base/periodic_schedule.h"
 #include "drivers/modbus_server/reply.h"
 
 namespace softgrip::world {

@@ -34,7 +34,7 @@ RigShape draw_shape(const rig::RigFile& example, std::uint64_t seed) {
       static_cast<std::uint32_t>(std::clamp(one_of(2.0, 5.0, 30.0, most_cycles), 1.0, most_cycles));
   settings.faults.invalid_reading_cycles = static_cast<std::uint32_t>(one_of(3, 5, 400));
   settings.faults.readback_cycles = static_cast<std::uint32_t>(one_of(5, 10));
-  settings.faults.slipped_cycles = static_cast<std::uint32_t>(one_of(0, 0, 50));
+  settings.faults.overrun_cycles = static_cast<std::uint32_t>(one_of(0, 0, 50));
   settings.faults.pressure_cycles = static_cast<std::uint32_t>(one_of(0, 20));
   shape.rig.loop.max_missed_commands = static_cast<std::uint32_t>(one_of(5, 10, 40));
   const double slew = one_of(15.0, 60.0, 300.0);

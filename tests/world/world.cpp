@@ -216,7 +216,7 @@ class World final : public Host {
         die("is killed by its service manager");
       } else if (daemon_->ended()) {
         trace("softgripd has ended");
-        if (daemon_->left_safely()) monitor_.left(now, hardware_.outputs_kpa());
+        if (daemon_->safe_state_confirmed()) monitor_.left(now, hardware_.outputs_kpa());
         outcome_ = daemon_->outcome();
         bury();
         boots_at_ = now + restart_pause;
@@ -224,7 +224,7 @@ class World final : public Host {
         if (managed()) look_at_memory(now);
         for (const auto& [id, asked] : daemon_->unanswered()) {
           // Who is asked while it ends hangs up instead.
-          if (!is_paused() && !daemon_->wires.leave.load() &&
+          if (!is_paused() && !daemon_->shared.shutdown_requested.load() &&
               now - std::max(asked.at, undisturbed_since_) > longest_answer)
             monitor_.answer_is_late(now, asked.at);
         }
@@ -295,7 +295,7 @@ class World final : public Host {
     // Nor where it is not known what stands there: the lower of what may.
     const std::uint64_t failures = daemon_->bus_statistics.failures.value();
     const bool unconfirmed = std::exchange(failures_, failures) != failures;
-    const bool safe_outputs = unconfirmed || daemon_->wires.leave.load() ||
+    const bool safe_outputs = unconfirmed || daemon_->shared.shutdown_requested.load() ||
                               now - last_tick_ > longest_tick_gap ||
                               now - last_tick_gap_end_ < ns_per_s / 5 ||
                               std::equal(commands.begin(), commands.end(), monitor_.safe_kpa().begin());
@@ -346,7 +346,7 @@ void World::carry_out(const Incident& incident, bool begins) {
     disk_was_full_ = true;
     fill_disk(begins);
   } else if (incident.kind == Kind::emergency_stop) {
-    if (daemon_) daemon_->wires.inputs.emergency_stop.store(begins);
+    if (daemon_) daemon_->shared.inputs.emergency_stop.store(begins);
   } else if (begins && daemon_ && incident.kind > Kind::kill) {
     pause(incident);
   } else if (begins && daemon_ && (incident.kind >= Kind::terminate || !guest_ || guest_->listens())) {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "daemon/recording/sequence_shelf.h"
+#include "daemon/recording/sequence_store.h"
 #include "rig/rig_file.h"
 #include "tests/world/incident.h"
 #include "tests/world/monitor.h"

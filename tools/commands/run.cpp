@@ -43,9 +43,10 @@ void report(const RunOptions& options, const daemon::Outcome& outcome) {
   };
   const bool began = daemon::reached_the_board(outcome.ending);
   if (options.json) {
-    const Json left_safely = began ? Json(outcome.left_safely) : Json(nullptr);
-    Json json{{"sequence_end", end},    {"left_safely", left_safely}, {"ticks", outcome.ticks},
-              {"slips", outcome.slips}, {"wall_s", outcome.wall_s},   {"results", Json::object()}};
+    const Json safe_state_confirmed = began ? Json(outcome.safe_state_confirmed) : Json(nullptr);
+    Json json{{"sequence_end", end},      {"left_safely", safe_state_confirmed},
+              {"ticks", outcome.ticks},   {"slips", outcome.overruns},
+              {"wall_s", outcome.wall_s}, {"results", Json::object()}};
     for (std::size_t i = 0; i < channels.size(); ++i) json["results"][channels[i]] = title(i);
     print_json(json);
     return;
@@ -59,10 +60,10 @@ void report(const RunOptions& options, const daemon::Outcome& outcome) {
   const bool by_signal = outcome.ending == daemon::Ending::interrupted && outcome.signal != 0;
   std::printf("sequence %s%s; %s ticks, %s slips in %s s; %s\n", end.c_str(),
               by_signal ? (" by " + name_of_signal(outcome.signal)).c_str() : "",
-              std::to_string(outcome.ticks).c_str(), std::to_string(outcome.slips).c_str(),
+              std::to_string(outcome.ticks).c_str(), std::to_string(outcome.overruns).c_str(),
               significant(outcome.wall_s, 4).c_str(),
-              outcome.left_safely ? "the board confirmed the safe outputs"
-                                  : "the board did NOT confirm the safe outputs");
+              outcome.safe_state_confirmed ? "the board confirmed the safe outputs"
+                                           : "the board did NOT confirm the safe outputs");
 }
 
 ExitCode run(const RunOptions& options) {

@@ -1,5 +1,5 @@
 #pragma once
-// Wires that were swapped: when one finger was moved, another one's sensor showed it.
+// SharedState that were swapped: when one finger was moved, another one's sensor showed it.
 
 #include <cstddef>
 #include <span>

@@ -16,8 +16,8 @@
 #include <fmt/format.h>
 
 #include "base/clock.h"
-#include "base/grid.h"
 #include "base/numbers.h"
+#include "base/periodic_schedule.h"
 #include "daemon/loop/histogram.h"
 #include "daemon/loop/real_time.h"
 #include "rig/rig_file.h"
@@ -65,12 +65,12 @@ void probe_timer(const rig::RigFile& rig, daemon::Histogram& wake_up) {
   const MonotonicClock clock;
   const Nanoseconds period = nanoseconds(1 / rig.settings.rate_hz);
   const Nanoseconds begin = clock.now() + period;
-  for (Grid grid(begin, period); grid.due() - begin < nanoseconds(probe_s);) {
-    const Nanoseconds due = grid.due();
+  for (PeriodicSchedule schedule(begin, period); schedule.due() - begin < nanoseconds(probe_s);) {
+    const Nanoseconds due = schedule.due();
     sleep_until(due);
     const Nanoseconds woken = clock.now();
     wake_up.add(woken - due);
-    grid.advance(woken);
+    schedule.advance(woken);
   }
 }
 

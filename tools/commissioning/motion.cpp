@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "base/grid.h"
+#include "base/periodic_schedule.h"
 #include "control/feedforward/running_model.h"
 #include "daemon/recording/csv_row.h"
 #include "rig/rig_file.h"

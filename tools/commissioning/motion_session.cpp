@@ -79,17 +79,17 @@ rig::ReconnectSettings steady(rig::ReconnectSettings reconnect) {
 struct MotionSession::Line {
   Line(const rig::RigFile& rig, drivers::Board& board, const Clock& clock)
       : reconnect(steady(rig.reconnect)),
-        bus(board, rig.settings, rig.loop, reconnect, clock, wires, statistics) {}
+        bus(board, rig.settings, rig.loop, reconnect, clock, shared, statistics) {}
 
   rig::ReconnectSettings reconnect;
-  daemon::Wires wires{1, 1};
+  daemon::SharedState shared{1, 1};
   daemon::BusStatistics statistics;
   daemon::BusEvent failed;  ///< the newest failure that the bus has reported
   daemon::Bus bus;
 
-  [[nodiscard]] const daemon::BusReport& report() const noexcept { return wires.bus.value(); }
+  [[nodiscard]] const daemon::BusReport& report() const noexcept { return shared.bus.value(); }
   void take_events() noexcept {
-    for (daemon::BusEvent event; wires.bus_events.pop(event);) {
+    for (daemon::BusEvent event; shared.bus_events.pop(event);) {
       const bool again = event.kind == daemon::BusEvent::Kind::not_connected;
       if (again || event.kind == daemon::BusEvent::Kind::failed) failed = event;
     }
@@ -103,7 +103,7 @@ MotionSession::MotionSession(const rig::RigFile& rig, drivers::Board& board, con
       clock_(clock),
       stop_(std::move(stop)),
       line_(std::make_unique<Line>(rig, board, clock)),
-      grid_(clock.now(), period_of(rig, board)),
+      schedule_(clock.now(), period_of(rig, board)),
       readings_(board.channels()) {
   for (const control::ChannelSettings& channel : rig.settings.channels) {
     rest_.push_back(control::resting_kpa(channel.limits));
@@ -122,7 +122,7 @@ const daemon::Histogram& MotionSession::exchange_times() const noexcept {
 MotionSession::Expected<void> MotionSession::connect() {
   const bool open = line_->bus.open();
   line_->take_events();
-  grid_ = Grid(clock_.now(), grid_.period());
+  schedule_ = PeriodicSchedule(clock_.now(), schedule_.period());
   if (open) return {};
   return tl::unexpected(
       MotionFailure{FailureKind::bus, board_.describe() + ": " + complaint(), line_->failed.status});
@@ -130,8 +130,8 @@ MotionSession::Expected<void> MotionSession::connect() {
 
 /// Publishes the commands as the loop does, and steps the bus once, at the next point of the grid.
 void MotionSession::exchange(bool may_rise, bool last) noexcept {
-  clock_.sleep_until(grid_.due());
-  daemon::Commands& commands = line_->wires.commands.draft();
+  clock_.sleep_until(schedule_.due());
+  daemon::Commands& commands = line_->shared.commands.write_slot();
   commands = {};
   commands.at = clock_.now();
   std::copy(commands_.begin(), commands_.end(), commands.command_kpa.begin());
@@ -139,14 +139,14 @@ void MotionSession::exchange(bool may_rise, bool last) noexcept {
   commands.may_rise = may_rise;
   commands.inhibit = line_->report().health.inhibit;
   commands.last = last;
-  line_->wires.commands.publish();
-  line_->bus.step(grid_.due());
-  take_report(grid_.advance(clock_.now()));
+  line_->shared.commands.publish();
+  line_->bus.step(schedule_.due());
+  take_report(schedule_.advance(clock_.now()));
 }
 
 /// Cycles that an exchange has overrun count as silent, as in the loop (daemon/loop/loop.cpp).
 void MotionSession::take_report(std::uint64_t skipped_cycles) noexcept {
-  line_->wires.bus.fetch();
+  line_->shared.bus.fetch();
   line_->take_events();
   const daemon::BusReport& report = line_->report();
   silent_cycles_ = report.health.consecutive_failures == 0 ? 0 : silent_cycles_ + 1 + skipped_cycles;
@@ -240,7 +240,7 @@ MotionSession::Expected<std::vector<ChannelSample>> MotionSession::sample(double
 }
 
 void MotionSession::follow_targets(double speed_kpa_per_s) noexcept {
-  const double elapsed_s = seconds(grid_.period());
+  const double elapsed_s = seconds(schedule_.period());
   for (std::size_t i = 0; i < commands_.size(); ++i) {
     const double furthest = speed_kpa_per_s * elapsed_s;
     const double wanted = std::clamp(targets_[i], commands_[i] - furthest, commands_[i] + furthest);
@@ -293,7 +293,7 @@ bool MotionSession::leave() noexcept {
   }
   Nanoseconds give_up = 0;
   // To rest in any case: a board that comes back late gets the end of the way, which is what is wanted of it.
-  while (!line_->wires.left_safely.load(std::memory_order_relaxed)) {
+  while (!line_->shared.safe_state_confirmed.load(std::memory_order_relaxed)) {
     follow_targets(fastest);
     const bool rested = commands_ == targets_;
     if (rested && give_up == 0) give_up = clock_.now() + nanoseconds(confirmation_s);

@@ -13,7 +13,7 @@
 #include <tl/expected.hpp>
 
 #include "base/clock.h"
-#include "base/grid.h"
+#include "base/periodic_schedule.h"
 #include "daemon/loop/histogram.h"
 #include "drivers/board/board.h"
 
@@ -112,12 +112,12 @@ class MotionSession {
   bool leave() noexcept;
 
   [[nodiscard]] double command_kpa(std::size_t channel) const { return commands_[channel]; }
-  [[nodiscard]] Nanoseconds period() const noexcept { return grid_.period(); }
+  [[nodiscard]] Nanoseconds period() const noexcept { return schedule_.period(); }
   /// Durations of the good exchanges so far.
   [[nodiscard]] const daemon::Histogram& exchange_times() const noexcept;
 
  private:
-  struct Line;  // the bus, and the wires on which the session speaks to it as the loop does
+  struct Line;  // the bus, and the shared on which the session speaks to it as the loop does
 
   [[nodiscard]] Expected<void> step(bool may_rise, const Watch& watch);
   void exchange(bool may_rise, bool last) noexcept;
@@ -135,7 +135,7 @@ class MotionSession {
   const Clock& clock_;
   StopRequest stop_;
   std::unique_ptr<Line> line_;
-  Grid grid_;
+  PeriodicSchedule schedule_;
   bool moved_ = false;
   std::optional<MotionFailure> ended_;
   std::vector<double> commands_;  // the present outputs, then the next write

@@ -153,7 +153,8 @@ tl::expected<std::string, NotPlayed> run_on(const ExperimentRig& rig, const std:
     return failed("the experiment did not run to its end" + (why.empty() ? std::string() : ": " + why),
                   daemon::exit_code_of(*outcome));
   }
-  if (!outcome->left_safely) return failed("the board did not confirm the safe outputs", ExitCode::io);
+  if (!outcome->safe_state_confirmed)
+    return failed("the board did not confirm the safe outputs", ExitCode::io);
   return options.record_folder;
 }
 

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "base/grid.h"
+#include "base/periodic_schedule.h"
 #include "control/elements/fault.h"
 #include "tools/plc/process_image.h"
 

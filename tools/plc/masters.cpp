@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <tuple>
 
-#include "base/grid.h"
+#include "base/periodic_schedule.h"
 
 namespace softgrip::plc {
 

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/grid.h"
+#include "base/periodic_schedule.h"
 #include "drivers/modbus_server/listener.h"
 
 namespace softgrip::plc {

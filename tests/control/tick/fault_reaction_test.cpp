@@ -28,7 +28,7 @@ std::function<void(SimulatedRig&)> validity(std::optional<model::Validity> value
 }
 
 RigSettings that_watches_all(RigSettings rig) {
-  rig.faults.slipped_cycles = 10;
+  rig.faults.overrun_cycles = 10;
   rig.faults.pressure_cycles = 10;
   rig.faults.pressure_tolerance_kpa = 5;
   rig.faults.pressure_delay_s = 0.3;
@@ -74,7 +74,7 @@ std::vector<FaultCase> fault_cases() {
        [](SimulatedRig& rig) { rig.emergency_stop = false; }, true},
       {"inputs_lost", FaultCode::inputs_lost, 1, [](SimulatedRig& rig) { rig.inputs_lost = true; },
        [](SimulatedRig& rig) { rig.inputs_lost = false; }, true},
-      {"cycles_lost", FaultCode::cycles_lost, 1, [](SimulatedRig& rig) { rig.slipped_cycles = 10; }, nothing},
+      {"cycles_lost", FaultCode::cycles_lost, 1, [](SimulatedRig& rig) { rig.overrun_cycles = 10; }, nothing},
   };
 }
 

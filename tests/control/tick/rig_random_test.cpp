@@ -51,7 +51,7 @@ class Chaos {
       action = chance(0.5) ? SafeAction::vent : SafeAction::hold;
     }
     settings.safety.on_emergency_stop = chance(0.5) ? SafeAction::vent : SafeAction::hold;
-    settings.faults.slipped_cycles = chance(0.5) ? 5 : 0;
+    settings.faults.overrun_cycles = chance(0.5) ? 5 : 0;
     settings.rest_timeout_s = 3;
     return settings;
   }
@@ -62,7 +62,7 @@ class Chaos {
     rig_.emergency_stop = chance(0.05);
     rig_.interlock_open = chance(0.1);
     rig_.bus_fault = chance(0.05) ? FaultCode::bus_bad_reply : FaultCode::none;
-    rig_.slipped_cycles = chance(0.05) ? 10 : 0;
+    rig_.overrun_cycles = chance(0.05) ? 10 : 0;
     for (auto& channel : rig_.fault) {
       channel = {};
       if (chance(0.05)) {

@@ -67,13 +67,13 @@ class OneOutput final : public drivers::Board {
 /// there, and starts again when asked.
 class LeastLoop {
  public:
-  explicit LeastLoop(Wires& wires) : wires_(wires) {}
+  explicit LeastLoop(SharedState& shared) : shared_(shared) {}
   bool runs = true;
   std::uint32_t heard = 0;  ///< the newest inhibition that came with its reason
 
   void tick() {
-    wires_.bus.fetch();
-    const BusReport& report = wires_.bus.value();
+    shared_.bus.fetch();
+    const BusReport& report = shared_.bus.value();
     if (control::inhibits(report.health.fault) || report.health.consecutive_failures >= 2) runs = false;
     if (report.health.fault != FaultCode::none) heard = report.health.inhibit;
     if (runs) {
@@ -81,24 +81,24 @@ class LeastLoop {
     } else {
       command_kpa_ = std::min(command_kpa_, report.outputs_kpa[0]);
     }
-    Commands& commands = wires_.commands.draft();
+    Commands& commands = shared_.commands.write_slot();
     commands.command_kpa[0] = command_kpa_;
     commands.safe_kpa[0] = std::max(0.0, command_kpa_ - 2);
     commands.may_rise = runs;
     commands.inhibit = report.health.inhibit;
     commands.last = false;
-    wires_.commands.publish();
+    shared_.commands.publish();
   }
   /// Only a loop that has latched nothing is started.
   bool start() {
-    wires_.bus.fetch();
-    const control::BusHealth& health = wires_.bus.value().health;
+    shared_.bus.fetch();
+    const control::BusHealth& health = shared_.bus.value().health;
     if (health.fault != FaultCode::none || health.consecutive_failures > 0) return false;
     return runs = true;
   }
 
  private:
-  Wires& wires_;
+  SharedState& shared_;
   double command_kpa_ = 0;
 };
 
@@ -126,10 +126,10 @@ std::string follow(std::span<const Step> path) {
   loop.exchange_deadline_s = 0.01;
   rig::ReconnectSettings reconnect;
   reconnect.first_pause = std::chrono::nanoseconds(0);
-  Wires wires(16, 16);
+  SharedState shared(16, 16);
   BusStatistics statistics;
-  Bus bus(board, rig, loop, reconnect, clock, wires, statistics);
-  LeastLoop controller(wires);
+  Bus bus(board, rig, loop, reconnect, clock, shared, statistics);
+  LeastLoop controller(shared);
 
   bool may_rise = true;  // nothing has happened since the last start that forbids it
   const auto exchange = [&]() -> std::string {
@@ -169,9 +169,9 @@ std::string follow(std::span<const Step> path) {
     if (!controller.runs) may_rise = false;
     if (const std::string broken = exchange(); !broken.empty()) return broken;
   }
-  if (controller.heard != wires.bus.value().health.inhibit) return "nobody heard why";
-  wires.bus.fetch();
-  if (wires.bus.value().health.fault != FaultCode::none) return "the bus never obeys again";
+  if (controller.heard != shared.bus.value().health.inhibit) return "nobody heard why";
+  shared.bus.fetch();
+  if (shared.bus.value().health.fault != FaultCode::none) return "the bus never obeys again";
   return {};
 }
 

@@ -24,20 +24,20 @@ class BusTest : public ::testing::Test {
     commands.safe_kpa.fill(safe_kpa);
     commands.may_rise = may_rise;
     commands.inhibit = inhibit;
-    wires_.commands.publish(commands);
+    shared_.commands.publish(commands);
   }
   void step() { step(bus_); }
   void step(Bus& bus) {
     bus.step(clock_.now());
     clock_.advance(period);
-    wires_.bus.fetch();
+    shared_.bus.fetch();
   }
-  Bus make_bus() { return Bus(board_, rig_, loop_, reconnect_, clock_, wires_, statistics_); }
-  FaultCode fault() { return wires_.bus.value().health.fault; }
+  Bus make_bus() { return Bus(board_, rig_, loop_, reconnect_, clock_, shared_, statistics_); }
+  FaultCode fault() { return shared_.bus.value().health.fault; }
   double last_written() const { return board_.written.back().front(); }
   std::vector<BusEvent::Kind> events() {
     std::vector<BusEvent::Kind> kinds;
-    for (BusEvent event; wires_.bus_events.pop(event);) kinds.push_back(event.kind);
+    for (BusEvent event; shared_.bus_events.pop(event);) kinds.push_back(event.kind);
     return kinds;
   }
 
@@ -46,9 +46,9 @@ class BusTest : public ::testing::Test {
   control::RigSettings rig_;
   rig::LoopSettings loop_;
   rig::ReconnectSettings reconnect_;
-  Wires wires_{16};
+  SharedState shared_{16};
   BusStatistics statistics_;
-  Bus bus_{board_, rig_, loop_, reconnect_, clock_, wires_, statistics_};
+  Bus bus_{board_, rig_, loop_, reconnect_, clock_, shared_, statistics_};
 };
 
 TEST_F(BusTest, WritesNothingBeforeTheLoopHasSpoken) {
@@ -61,7 +61,7 @@ TEST_F(BusTest, WritesTheNewestCommandsAndPublishesTheReadings) {
   command(12, 0, true);
   step();
   EXPECT_EQ(board_.written, (std::vector<std::vector<double>>{{12, 12}}));
-  const BusReport& report = wires_.bus.value();
+  const BusReport& report = shared_.bus.value();
   EXPECT_TRUE(report.health.connected);
   EXPECT_EQ(report.health.fault, FaultCode::none);
   EXPECT_EQ(report.readings[1].validity, model::Validity::valid);
@@ -78,22 +78,22 @@ TEST_F(BusTest, ASilentLoopMeansSafeOutputsUntilATickThatKnowsCommandsNoMoreThan
   step();
   EXPECT_EQ(last_written(), 3);
   EXPECT_EQ(fault(), FaultCode::cycles_lost);
-  EXPECT_EQ(wires_.bus.value().outputs_kpa[0], 3);
+  EXPECT_EQ(shared_.bus.value().outputs_kpa[0], 3);
   command(14, 3, true);  // the loop is back in the middle of its motion, from where the board no longer is
   step();
   EXPECT_EQ(last_written(), 3);
   command(4, 3, false);  // it ended its motion, but not because it knew
   step();
   EXPECT_EQ(last_written(), 3);
-  command(4, 3, false, wires_.bus.value().health.inhibit);  // it knows, and wants to rise nevertheless
+  command(4, 3, false, shared_.bus.value().health.inhibit);  // it knows, and wants to rise nevertheless
   step();
   EXPECT_EQ(last_written(), 3);
   EXPECT_EQ(fault(), FaultCode::cycles_lost);
-  command(2, 2, false, wires_.bus.value().health.inhibit);
+  command(2, 2, false, shared_.bus.value().health.inhibit);
   step();
   EXPECT_EQ(last_written(), 2);
   EXPECT_EQ(fault(), FaultCode::none);
-  command(5, 2, true, wires_.bus.value().health.inhibit);
+  command(5, 2, true, shared_.bus.value().health.inhibit);
   step();
   EXPECT_EQ(last_written(), 5);
   EXPECT_EQ(events(), (std::vector<BusEvent::Kind>{BusEvent::Kind::connected, BusEvent::Kind::loop_silent,
@@ -133,11 +133,11 @@ TEST_F(WatchedBusTest, AGapThatReachesTheWatchdogIsAFaultAndNothingRisesBehindIt
   step(bus);
   EXPECT_EQ(last_written(), 1);
   EXPECT_EQ(fault(), FaultCode::board_watchdog_tripped);
-  EXPECT_EQ(wires_.bus.value().outputs_kpa[1], 1);
+  EXPECT_EQ(shared_.bus.value().outputs_kpa[1], 1);
   command(35, 35, false);  // it latched something else: it does not know of this
   step(bus);
   EXPECT_EQ(last_written(), 1);
-  command(1, 1, false, wires_.bus.value().health.inhibit);
+  command(1, 1, false, shared_.bus.value().health.inhibit);
   step(bus);
   EXPECT_EQ(fault(), FaultCode::none);
 }
@@ -176,10 +176,10 @@ TEST_F(WatchedBusTest, AGapIsToldOnceHoweverLongExchangesFailBehindIt) {
   clock_.advance(watchdog);
   board_.next_exchange = BusStatus::exception;
   for (int i = 0; i < 200; ++i) {
-    command(1, 1, false, wires_.bus.value().health.inhibit);
+    command(1, 1, false, shared_.bus.value().health.inhibit);
     step(bus);
   }
-  EXPECT_EQ(wires_.bus.value().health.inhibit, 1U);
+  EXPECT_EQ(shared_.bus.value().health.inhibit, 1U);
   EXPECT_EQ(events(), (std::vector<BusEvent::Kind>{BusEvent::Kind::connected, BusEvent::Kind::failed}));
 }
 
@@ -203,7 +203,7 @@ TEST_F(WatchedBusTest, AnExchangeThatWasStoppedOnItsWayIsFoundOutAfterwards) {
   step(bus);
   board_.on_exchange = nullptr;
   EXPECT_EQ(fault(), FaultCode::board_watchdog_tripped);
-  EXPECT_EQ(wires_.bus.value().outputs_kpa[0], 1);
+  EXPECT_EQ(shared_.bus.value().outputs_kpa[0], 1);
   step(bus);
   EXPECT_EQ(last_written(), 1);
 }
@@ -245,11 +245,11 @@ TEST_F(VacuumBusTest, AWatchdogThatHasActedLeavesRestAndNotFullVacuum) {
     step(bus);
     EXPECT_EQ(last_written(), 0);
     EXPECT_EQ(fault(), FaultCode::board_watchdog_tripped);
-    command(-1, -1, false, wires_.bus.value().health.inhibit);  // it knows, and is not at rest
+    command(-1, -1, false, shared_.bus.value().health.inhibit);  // it knows, and is not at rest
     step(bus);
     EXPECT_EQ(last_written(), 0);
     EXPECT_EQ(fault(), FaultCode::board_watchdog_tripped);
-    command(0, 0, false, wires_.bus.value().health.inhibit);
+    command(0, 0, false, shared_.bus.value().health.inhibit);
     step(bus);
     EXPECT_EQ(fault(), FaultCode::none);
   }
@@ -262,20 +262,20 @@ TEST_F(VacuumBusTest, OutputsThatTheBoardDidNotConfirmAreTheNearerToRest) {
   board_.next_exchange = BusStatus::exception;
   command(-13, 0, true);
   step(bus);
-  EXPECT_EQ(wires_.bus.value().outputs_kpa[0], -12);
+  EXPECT_EQ(shared_.bus.value().outputs_kpa[0], -12);
   command(-11, 0, true);
   step(bus);
-  EXPECT_EQ(wires_.bus.value().outputs_kpa[0], -11);
+  EXPECT_EQ(shared_.bus.value().outputs_kpa[0], -11);
   command(3, 0, true);
   step(bus);
-  EXPECT_EQ(wires_.bus.value().outputs_kpa[0], 0) << "on two sides of rest: nothing else is safe";
+  EXPECT_EQ(shared_.bus.value().outputs_kpa[0], 0) << "on two sides of rest: nothing else is safe";
 }
 
 /// A client that comes and goes does not fill the log.
 TEST_F(BusTest, ThatNoSessionCanBeOpenedAgainIsToldOnceIfItIsForAnotherReason) {
   const auto failures = [this] {
     std::vector<std::string> texts;
-    for (BusEvent event; wires_.bus_events.pop(event);) {
+    for (BusEvent event; shared_.bus_events.pop(event);) {
       if (event.kind == BusEvent::Kind::failed) texts.emplace_back(event.detail.data());
       if (event.kind == BusEvent::Kind::not_connected)
         texts.push_back(std::string("again: ") + event.detail.data());
@@ -317,7 +317,7 @@ TEST_F(BusTest, ThatNoSessionCanBeOpenedAgainIsToldOnceIfItIsForAnotherReason) {
 TEST_F(BusTest, ASessionIsToldOfOnceTheBoardHasAnsweredInIt) {
   const auto told = [this] {
     std::vector<std::pair<BusEvent::Kind, BusStatus>> list;
-    for (BusEvent event; wires_.bus_events.pop(event);) list.emplace_back(event.kind, event.status);
+    for (BusEvent event; shared_.bus_events.pop(event);) list.emplace_back(event.kind, event.status);
     return list;
   };
   using Told = decltype(told());
@@ -336,7 +336,7 @@ TEST_F(BusTest, ASessionIsToldOfOnceTheBoardHasAnsweredInIt) {
   }
   EXPECT_EQ(told(), (Told{{Kind::not_connected, BusStatus::closed_at_once}})) << "once";
   EXPECT_EQ(fault(), FaultCode::bus_down);
-  EXPECT_FALSE(wires_.bus.value().health.connected);
+  EXPECT_FALSE(shared_.bus.value().health.connected);
   board_.next_exchange = BusStatus::exception;
   for (int i = 0; i < 3; ++i) {
     clock_.advance(60 * ns_per_s);
@@ -364,7 +364,7 @@ TEST_F(BusTest, AnotherClientThatFeedsTheWatchdogIsToldOnceASession) {
     board_.counted_clients = clients;
     step();
     BusEvent event;
-    EXPECT_EQ(wires_.bus_events.pop(event), clients == 3U);
+    EXPECT_EQ(shared_.bus_events.pop(event), clients == 3U);
     if (clients != 3U) continue;
     EXPECT_EQ(event.kind, BusEvent::Kind::another_client);
     EXPECT_STREQ(event.detail.data(), "3");
@@ -412,17 +412,17 @@ TEST_F(BusTest, WhatTheLoopSaidWhileTheSessionWasRebuiltIsWhatIsWritten) {
 }
 
 TEST_F(BusTest, OutputsThatTheBoardDidNotConfirmAreTheLowerOnes) {
-  EXPECT_TRUE(std::isinf(wires_.bus.value().outputs_kpa[0]));
+  EXPECT_TRUE(std::isinf(shared_.bus.value().outputs_kpa[0]));
   command(12, 0, true);
   step();
-  EXPECT_EQ(wires_.bus.value().outputs_kpa[0], 12);
+  EXPECT_EQ(shared_.bus.value().outputs_kpa[0], 12);
   board_.next_exchange = BusStatus::exception;
   command(13, 0, true);
   step();
-  EXPECT_EQ(wires_.bus.value().outputs_kpa[0], 12);
+  EXPECT_EQ(shared_.bus.value().outputs_kpa[0], 12);
   command(11, 0, true);
   step();
-  EXPECT_EQ(wires_.bus.value().outputs_kpa[0], 11);
+  EXPECT_EQ(shared_.bus.value().outputs_kpa[0], 11);
 }
 
 TEST_F(BusTest, ALostSessionIsRebuiltWithGrowingPauses) {
@@ -431,15 +431,15 @@ TEST_F(BusTest, ALostSessionIsRebuiltWithGrowingPauses) {
   step();
   board_.next_exchange = BusStatus::timed_out;
   step();
-  EXPECT_FALSE(wires_.bus.value().health.connected);
-  EXPECT_EQ(wires_.bus.value().health.fault, FaultCode::bus_timed_out);
+  EXPECT_FALSE(shared_.bus.value().health.connected);
+  EXPECT_EQ(shared_.bus.value().health.fault, FaultCode::bus_timed_out);
   board_.connect_attempts.clear();
   board_.next_connect = BusStatus::disconnected;
   for (Nanoseconds begin = clock_.now(); clock_.now() - begin < 2 * ns_per_s;) {
     command(12, 0, true);
     step();
   }
-  EXPECT_EQ(wires_.bus.value().health.fault, FaultCode::bus_down);
+  EXPECT_EQ(shared_.bus.value().health.fault, FaultCode::bus_down);
   const auto& attempts = board_.connect_attempts;
   ASSERT_GE(attempts.size(), 5U);
   const std::vector<Nanoseconds> pauses_ms{100, 200, 400, 400};
@@ -453,8 +453,8 @@ TEST_F(BusTest, ALostSessionIsRebuiltWithGrowingPauses) {
     command(12, 0, true);
     step();
   }
-  EXPECT_EQ(wires_.bus.value().health.fault, FaultCode::none);
-  EXPECT_EQ(wires_.bus.value().health.consecutive_failures, 0U);
+  EXPECT_EQ(shared_.bus.value().health.fault, FaultCode::none);
+  EXPECT_EQ(shared_.bus.value().health.consecutive_failures, 0U);
   EXPECT_EQ(events(), (std::vector<BusEvent::Kind>{BusEvent::Kind::connected, BusEvent::Kind::failed,
                                                    BusEvent::Kind::connected, BusEvent::Kind::recovered}));
 }
@@ -494,7 +494,7 @@ TEST_F(BusTest, CyclesWithoutASessionCountAsFailuresWhileItWaits) {
     command(12, 0, false);
     step();
   }
-  EXPECT_EQ(wires_.bus.value().health.consecutive_failures, 10U);
+  EXPECT_EQ(shared_.bus.value().health.consecutive_failures, 10U);
 }
 
 TEST_F(BusTest, AnAnswerThatRefusesKeepsTheSession) {
@@ -503,9 +503,9 @@ TEST_F(BusTest, AnAnswerThatRefusesKeepsTheSession) {
   for (const BusStatus status : {BusStatus::exception, BusStatus::write_refused}) {
     board_.next_exchange = status;
     step();
-    EXPECT_TRUE(wires_.bus.value().health.connected);
-    EXPECT_EQ(wires_.bus.value().health.fault, fault_of(status));
-    EXPECT_EQ(wires_.bus.value().health.consecutive_failures, status == BusStatus::exception ? 1U : 2U);
+    EXPECT_TRUE(shared_.bus.value().health.connected);
+    EXPECT_EQ(shared_.bus.value().health.fault, fault_of(status));
+    EXPECT_EQ(shared_.bus.value().health.consecutive_failures, status == BusStatus::exception ? 1U : 2U);
   }
   EXPECT_EQ(board_.connect_attempts.size(), 1U);
 }
@@ -517,7 +517,7 @@ TEST_F(BusTest, WhatTheBoardSaidOnceIsReportedAndNothingRisesUntilTheLoopHasHear
     EXPECT_EQ(last_written(), 12);
     board_.next_exchange = said;
     step();
-    EXPECT_EQ(wires_.bus.value().health.connected, said == BusStatus::write_refused)
+    EXPECT_EQ(shared_.bus.value().health.connected, said == BusStatus::write_refused)
         << "only a new session clears a watchdog";
     EXPECT_EQ(fault(), fault_of(said));
     board_.next_exchange = BusStatus::ok;
@@ -526,10 +526,10 @@ TEST_F(BusTest, WhatTheBoardSaidOnceIsReportedAndNothingRisesUntilTheLoopHasHear
       command(14, 0, true);
       step();
       EXPECT_EQ(fault(), fault_of(said));
-      EXPECT_TRUE(wires_.bus.value().health.connected);
+      EXPECT_TRUE(shared_.bus.value().health.connected);
       EXPECT_EQ(last_written(), outputs_kpa);
     }
-    command(outputs_kpa, 0, false, wires_.bus.value().health.inhibit);
+    command(outputs_kpa, 0, false, shared_.bus.value().health.inhibit);
     step();
     EXPECT_EQ(fault(), FaultCode::none);
   }
@@ -542,9 +542,9 @@ TEST_F(BusTest, TheLastCommandsAreConfirmedThoughTheLoopNeverHeardOfTheFault) {
   Commands last;
   last.last = true;
   last.command_kpa.fill(12);
-  wires_.commands.publish(last);
+  shared_.commands.publish(last);
   step();
-  EXPECT_TRUE(wires_.left_safely.load());
+  EXPECT_TRUE(shared_.safe_state_confirmed.load());
   EXPECT_EQ(last_written(), 0);
 }
 
@@ -552,14 +552,14 @@ TEST_F(BusTest, LeavesWhenTheBoardHasConfirmedTheLastCommands) {
   Commands last;
   last.last = true;
   last.command_kpa.fill(1);
-  wires_.commands.publish(last);
-  wires_.leave.store(true);
+  shared_.commands.publish(last);
+  shared_.shutdown_requested.store(true);
   board_.next_exchange = BusStatus::exception;
   step();
-  EXPECT_FALSE(wires_.left_safely.load());
+  EXPECT_FALSE(shared_.safe_state_confirmed.load());
   board_.next_exchange = BusStatus::ok;
   step();
-  EXPECT_TRUE(wires_.left_safely.load());
+  EXPECT_TRUE(shared_.safe_state_confirmed.load());
   EXPECT_EQ(last_written(), 1);
 }
 
@@ -570,16 +570,16 @@ TEST(BusThread, GivesUpLeavingWhenTheBoardDoesNotAnswer) {
   const control::RigSettings rig;
   rig::LoopSettings loop;
   rig::ReconnectSettings reconnect;
-  Wires wires(16);
+  SharedState shared(16);
   BusStatistics statistics;
-  Bus bus(board, rig, loop, reconnect, clock, wires, statistics);
+  Bus bus(board, rig, loop, reconnect, clock, shared, statistics);
   Commands last;
   last.last = true;
-  wires.commands.publish(last);
-  wires.leave.store(true);
+  shared.commands.publish(last);
+  shared.shutdown_requested.store(true);
   const Nanoseconds begin = clock.now();
-  bus.run(Grid(begin, period), std::chrono::milliseconds(50));
-  EXPECT_FALSE(wires.left_safely.load());
+  bus.run(PeriodicSchedule(begin, period), std::chrono::milliseconds(50));
+  EXPECT_FALSE(shared.safe_state_confirmed.load());
   EXPECT_GE(clock.now() - begin, 50'000'000);
   EXPECT_LT(clock.now() - begin, 2 * ns_per_s);
 }

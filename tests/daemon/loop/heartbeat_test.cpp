@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "base/grid.h"
+#include "base/periodic_schedule.h"
 
 namespace softgrip::daemon::heartbeat_test {
 namespace {

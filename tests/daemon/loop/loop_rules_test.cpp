@@ -160,9 +160,9 @@ TEST(LoopRules, NoTickAllocates) {
   parts->service.submit(Request::Kind::vent);
   ASSERT_TRUE(ticks.until(State::stopping));
   ASSERT_TRUE(ticks.until(State::idle));
-  parts->wires.inputs.emergency_stop.store(true);
+  parts->shared.inputs.emergency_stop.store(true);
   ASSERT_TRUE(ticks.until(State::faulted));
-  parts->wires.inputs.emergency_stop.store(false);
+  parts->shared.inputs.emergency_stop.store(false);
   ticks.tick();
   parts->service.submit(Request::Kind::acknowledge);
   ASSERT_TRUE(ticks.until(State::idle));
@@ -185,13 +185,14 @@ void run_threads(DaemonParts& parts, Nanoseconds duration, const Around& around)
   parts.bus.open();
   const Nanoseconds start = parts.clock.now() + ns_per_s / 50;
   std::atomic<bool> loop_ended{false};
-  std::thread bus(
-      [&] { parts.bus.run(Grid(start + parts.bus_offset(), parts.period()), std::chrono::seconds(1)); });
+  std::thread bus([&] {
+    parts.bus.run(PeriodicSchedule(start + parts.bus_offset(), parts.period()), std::chrono::seconds(1));
+  });
   std::thread loop([&] {
     RealTimeReport ignored;
     prepare_thread(parts.rig.real_time, parts.rig.real_time.priority, "the loop", ignored);
     around.before();
-    parts.loop.run(Grid(start, parts.period()));
+    parts.loop.run(PeriodicSchedule(start, parts.period()));
     around.after();
     loop_ended.store(true);
     around.last();
@@ -207,7 +208,7 @@ void run_threads(DaemonParts& parts, Nanoseconds duration, const Around& around)
     }
     sleep_until(parts.clock.now() + ns_per_s / 100);
   }
-  parts.wires.leave.store(true);
+  parts.shared.shutdown_requested.store(true);
   bus.join();
   while (!loop_ended.load()) sleep_until(parts.clock.now() + ns_per_s / 1000);
   around.ended();

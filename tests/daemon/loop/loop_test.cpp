@@ -55,11 +55,11 @@ class LoopTest : public ::testing::Test {
 
 TEST_F(LoopTest, EveryTickSendsCommandsASnapshotAndARowPerChannel) {
   tick();
-  EXPECT_TRUE(parts_->wires.commands.fetch());
+  EXPECT_TRUE(parts_->shared.commands.fetch());
   EXPECT_EQ(snapshot().ticks, 1U);
   EXPECT_EQ(snapshot().channel_count, 2U);
   std::vector<Record> records(32);
-  records.resize(parts_->wires.records.pop(records));
+  records.resize(parts_->shared.records.pop(records));
   EXPECT_EQ(records.size(), 2U);
   EXPECT_EQ(records.back().channel, 1);
 }
@@ -80,8 +80,8 @@ TEST_F(LoopTest, ComputingIsMeasuredFromTheWakeUpAndAnAgeOnlyOnceThereIsAReading
 
 TEST_F(LoopTest, InputsThatNobodyReadsAnyMoreAreLost) {
   ASSERT_TRUE(until(State::idle));
-  parts_->wires.inputs.longest_silence = 10 * parts_->period();
-  parts_->wires.inputs.looked_at = due_;
+  parts_->shared.inputs.longest_silence = 10 * parts_->period();
+  parts_->shared.inputs.looked_at = due_;
   tick();
   exchange();
   EXPECT_EQ(snapshot().state, State::idle);
@@ -95,26 +95,26 @@ TEST_F(LoopTest, InputsThatNobodyReadsAnyMoreAreLost) {
 
 TEST_F(LoopTest, InputsThatAreSaidToBeLostAreLostAtOnce) {
   ASSERT_TRUE(until(State::idle));
-  parts_->wires.inputs.longest_silence = 1'000 * parts_->period();
-  parts_->wires.inputs.looked_at = due_;
-  parts_->wires.inputs.lost = true;
+  parts_->shared.inputs.longest_silence = 1'000 * parts_->period();
+  parts_->shared.inputs.looked_at = due_;
+  parts_->shared.inputs.lost = true;
   tick();
   EXPECT_EQ(snapshot().state, State::faulted);
 }
 
 TEST_F(LoopTest, RowsThatFindNoRoomAreCountedAndEventsStillFindTheirs) {
-  const std::size_t capacity = parts_->wires.records.capacity();
+  const std::size_t capacity = parts_->shared.records.capacity();
   for (std::size_t i = 0; i < capacity; ++i) {
     tick();
     exchange();
     parts_->service.pump();
   }
-  EXPECT_GT(parts_->wires.records_dropped.load(), capacity / 2);
-  const std::size_t before = parts_->wires.records_dropped.load();
-  parts_->wires.inputs.emergency_stop.store(true);
+  EXPECT_GT(parts_->shared.records_dropped.load(), capacity / 2);
+  const std::size_t before = parts_->shared.records_dropped.load();
+  parts_->shared.inputs.emergency_stop.store(true);
   tick();
-  EXPECT_GT(parts_->wires.records_dropped.load(), before);
-  Broadcast<StampedEvent>::Reader reader(parts_->wires.events);
+  EXPECT_GT(parts_->shared.records_dropped.load(), before);
+  Broadcast<StampedEvent>::Reader reader(parts_->shared.events);
   std::vector<control::Event::Kind> kinds;
   for (StampedEvent event; reader.pop(event);) kinds.push_back(event.event.kind);
   EXPECT_EQ(std::count(kinds.begin(), kinds.end(), control::Event::Kind::fault_latched), 1);
@@ -179,9 +179,9 @@ TEST_F(LoopTest, LeavingSendsTheSafeOutputsAsTheLastOnes) {
   }
   ASSERT_GT(snapshot().channels[0].command_kpa, 1);
   parts_->loop.leave();
-  ASSERT_TRUE(parts_->wires.commands.fetch());
-  EXPECT_TRUE(parts_->wires.commands.value().last);
-  EXPECT_EQ(parts_->wires.commands.value().command_kpa[0], 0);
+  ASSERT_TRUE(parts_->shared.commands.fetch());
+  EXPECT_TRUE(parts_->shared.commands.value().last);
+  EXPECT_EQ(parts_->shared.commands.value().command_kpa[0], 0);
 }
 
 TEST_F(LoopTest, DecimationRecordsEveryNthTick) {
@@ -192,22 +192,22 @@ TEST_F(LoopTest, DecimationRecordsEveryNthTick) {
   DaemonParts parts(std::move(rig), options);
   for (int i = 0; i < 100; ++i) parts.loop.tick(parts.virtual_clock.now());
   std::vector<Record> records(1000);
-  records.resize(parts.wires.records.pop(records));
+  records.resize(parts.shared.records.pop(records));
   EXPECT_EQ(records.size(), 20U);
 }
 
 TEST(LoopThread, CyclesThatWereSleptThroughAreSlipsAndToldToTheController) {
   rig::RigFile rig = testing::example_rig("rig.yaml");
-  rig.settings.faults.slipped_cycles = 10;
+  rig.settings.faults.overrun_cycles = 10;
   DaemonParts parts(std::move(rig), {});
   parts.bus.open();
   // The grid lies in the past: the first tick is woken very late, all others in time.
   const Nanoseconds now = parts.clock.now();
-  std::thread loop([&] { parts.loop.run(Grid(now - 100 * parts.period(), parts.period())); });
+  std::thread loop([&] { parts.loop.run(PeriodicSchedule(now - 100 * parts.period(), parts.period())); });
   sleep_until(now + 3 * parts.period());
-  parts.wires.leave.store(true);
+  parts.shared.shutdown_requested.store(true);
   loop.join();
-  EXPECT_GE(parts.loop_statistics.slips_woken_late.value(), 100U);
+  EXPECT_GE(parts.loop_statistics.overruns_woken_late.value(), 100U);
   EXPECT_LE(parts.loop_statistics.ticks.value(), 10U) << "no burst";
   EXPECT_EQ(parts.service.snapshot().first_fault.code, FaultCode::cycles_lost);
 }

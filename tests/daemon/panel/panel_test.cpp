@@ -58,7 +58,7 @@ class PanelTest : public ::testing::Test {
  protected:
   void make(const rig::GpioSettings& settings) {
     settings_ = settings;
-    panel_.emplace(terminals_.lines(), settings_, clock_, wires_, statistics_);
+    panel_.emplace(terminals_.lines(), settings_, clock_, shared_, statistics_);
   }
   /// Steps for so long, with a loop that ticks.
   void run(double duration_s, bool loop_ticks = true) {
@@ -70,18 +70,18 @@ class PanelTest : public ::testing::Test {
   }
   /// As after the start: the loop has latched, the stop is released, somebody acknowledged.
   void make_ready() {
-    wires_.state.store(control::State::faulted);
+    shared_.state.store(control::State::faulted);
     run(0.03);
-    wires_.state.store(control::State::idle);
+    shared_.state.store(control::State::idle);
     run(0.03);
   }
-  [[nodiscard]] bool pressed() const { return wires_.inputs.emergency_stop.load(); }
+  [[nodiscard]] bool pressed() const { return shared_.inputs.emergency_stop.load(); }
   [[nodiscard]] bool is_on(GpioRole role) const { return terminals_.level(role); }
 
   rig::GpioSettings settings_;
   Terminals terminals_;
   MonotonicClock clock_;
-  Wires wires_{16};
+  SharedState shared_{16};
   LoopStatistics statistics_;
   std::optional<Panel> panel_;
 };
@@ -89,14 +89,14 @@ class PanelTest : public ::testing::Test {
 TEST_F(PanelTest, StartsPressedAndOpenBeforeAnythingIsRead) {
   make(all_lines());
   EXPECT_TRUE(pressed());
-  EXPECT_TRUE(wires_.inputs.interlock_open.load());
+  EXPECT_TRUE(shared_.inputs.interlock_open.load());
 }
 
 TEST_F(PanelTest, IsNotReleasedBeforeTheLoopHasLatchedIt) {
   make(all_lines());
   run(0.05);
   EXPECT_TRUE(pressed()) << "the line is released, but a loop that never saw it pressed would just go on";
-  wires_.state.store(control::State::faulted);
+  shared_.state.store(control::State::faulted);
   run(0.02);
   EXPECT_FALSE(pressed());
 }
@@ -107,7 +107,7 @@ TEST_F(PanelTest, AnInputThatTheRigDoesNotHaveSaysNothing) {
   make(settings);
   run(0.02);
   EXPECT_FALSE(pressed());
-  EXPECT_FALSE(wires_.inputs.interlock_open.load());
+  EXPECT_FALSE(shared_.inputs.interlock_open.load());
 }
 
 TEST_F(PanelTest, PressingIsSeenWithinTheDebounceTimeAndALook) {
@@ -132,10 +132,10 @@ TEST_F(PanelTest, PressingWithoutAnEdgeIsSeenAllTheSame) {
 TEST_F(PanelTest, ThePartOpensAndClosesTheInterlock) {
   make(all_lines());
   run(0.03);
-  EXPECT_TRUE(wires_.inputs.interlock_open.load());
+  EXPECT_TRUE(shared_.inputs.interlock_open.load());
   terminals_.set(GpioRole::part_in_position, true);
   run(0.03);
-  EXPECT_FALSE(wires_.inputs.interlock_open.load());
+  EXPECT_FALSE(shared_.inputs.interlock_open.load());
 }
 
 TEST_F(PanelTest, EnableAndLampsFollowTheState) {
@@ -143,18 +143,18 @@ TEST_F(PanelTest, EnableAndLampsFollowTheState) {
   run(0.01);
   EXPECT_FALSE(is_on(GpioRole::enable));
   EXPECT_FALSE(is_on(GpioRole::ready_lamp));
-  wires_.state.store(control::State::faulted);
+  shared_.state.store(control::State::faulted);
   run(0.03);
   EXPECT_TRUE(is_on(GpioRole::fault_lamp));
-  wires_.state.store(control::State::starting);
+  shared_.state.store(control::State::starting);
   run(0.02);
   EXPECT_FALSE(is_on(GpioRole::enable)) << "not before the rig is ready";
   EXPECT_FALSE(is_on(GpioRole::fault_lamp));
-  wires_.state.store(control::State::idle);
+  shared_.state.store(control::State::idle);
   run(0.02);
   EXPECT_TRUE(is_on(GpioRole::enable));
   EXPECT_TRUE(is_on(GpioRole::ready_lamp));
-  EXPECT_TRUE(wires_.enable_on.load());
+  EXPECT_TRUE(shared_.enable_on.load());
 }
 
 TEST_F(PanelTest, PressureThatStaysOnMakesTheLampBlinkThatIsOn) {
@@ -168,14 +168,14 @@ TEST_F(PanelTest, PressureThatStaysOnMakesTheLampBlinkThatIsOn) {
   };
   EXPECT_EQ(lit(GpioRole::ready_lamp), 0) << "it is on and stays on";
   EXPECT_TRUE(is_on(GpioRole::ready_lamp));
-  wires_.under_pressure.store(true);
+  shared_.under_pressure.store(true);
   EXPECT_NEAR(static_cast<double>(lit(GpioRole::ready_lamp)), 3.5, 1);
   EXPECT_FALSE(is_on(GpioRole::fault_lamp)) << "nothing is wrong";
   EXPECT_TRUE(is_on(GpioRole::enable)) << "what holds the part is not switched off";
-  wires_.state.store(control::State::faulted);
+  shared_.state.store(control::State::faulted);
   EXPECT_NEAR(static_cast<double>(lit(GpioRole::fault_lamp)), 3.5, 1);
   EXPECT_FALSE(is_on(GpioRole::ready_lamp));
-  wires_.under_pressure.store(false);
+  shared_.under_pressure.store(false);
   run(0.02);
   EXPECT_TRUE(is_on(GpioRole::fault_lamp));
   EXPECT_EQ(lit(GpioRole::fault_lamp), 0) << "steady again";
@@ -186,7 +186,7 @@ TEST_F(PanelTest, ALoopThatHangsUnderPressureHasASteadyFaultLamp) {
   settings.stale_after_s = 0.05;
   make(settings);
   make_ready();
-  wires_.under_pressure.store(true);
+  shared_.under_pressure.store(true);
   run(0.2, false);
   const std::size_t before = terminals_.written(GpioRole::fault_lamp).size();
   run(1.2, false);
@@ -202,10 +202,10 @@ TEST_F(PanelTest, AFaultDropsTheEnableOnlyIfTheRigSaysSo) {
     make(settings);
     make_ready();
     ASSERT_TRUE(is_on(GpioRole::enable));
-    wires_.state.store(control::State::faulted);
+    shared_.state.store(control::State::faulted);
     run(0.02);
     EXPECT_EQ(is_on(GpioRole::enable), !drops);
-    wires_.state.store(control::State::starting);  // acknowledged
+    shared_.state.store(control::State::starting);  // acknowledged
     run(0.02);
     EXPECT_EQ(is_on(GpioRole::enable), !drops);
   }
@@ -230,12 +230,12 @@ TEST_F(PanelTest, ALoopThatHangsDropsTheEnableAndMayNotGoOn) {
   run(0.1, false);
   EXPECT_FALSE(is_on(GpioRole::enable));
   EXPECT_TRUE(is_on(GpioRole::fault_lamp));
-  EXPECT_TRUE(wires_.inputs.lost.load()) << "a loop that wakes up again finds a fault";
+  EXPECT_TRUE(shared_.inputs.lost.load()) << "a loop that wakes up again finds a fault";
   run(0.02);
-  EXPECT_TRUE(wires_.inputs.lost.load()) << "until it has latched it";
-  wires_.state.store(control::State::faulted);
+  EXPECT_TRUE(shared_.inputs.lost.load()) << "until it has latched it";
+  shared_.state.store(control::State::faulted);
   run(0.02);
-  EXPECT_FALSE(wires_.inputs.lost.load());
+  EXPECT_FALSE(shared_.inputs.lost.load());
 }
 
 TEST_F(PanelTest, ALostChipLosesTheInputs) {
@@ -243,11 +243,11 @@ TEST_F(PanelTest, ALostChipLosesTheInputs) {
   make_ready();
   terminals_.fail();
   run(0.02);
-  EXPECT_TRUE(wires_.inputs.lost.load());
-  EXPECT_TRUE(wires_.inputs.interlock_open.load());
+  EXPECT_TRUE(shared_.inputs.lost.load());
+  EXPECT_TRUE(shared_.inputs.interlock_open.load());
   EXPECT_FALSE(is_on(GpioRole::enable));
   std::vector<PanelEvent::Kind> kinds;
-  for (PanelEvent event; wires_.panel_events.pop(event);) kinds.push_back(event.kind);
+  for (PanelEvent event; shared_.panel_events.pop(event);) kinds.push_back(event.kind);
   EXPECT_EQ(std::count(kinds.begin(), kinds.end(), PanelEvent::Kind::gpio_lost), 1);
 }
 
@@ -257,9 +257,9 @@ TEST_F(PanelTest, WhatWasDroppedStaysDropped) {
   panel_->drop();
   run(0.02);
   EXPECT_FALSE(is_on(GpioRole::enable));
-  wires_.state.store(control::State::faulted);
+  shared_.state.store(control::State::faulted);
   run(0.02);
-  wires_.state.store(control::State::idle);
+  shared_.state.store(control::State::idle);
   run(0.02);
   EXPECT_FALSE(is_on(GpioRole::enable));
   EXPECT_FALSE(is_on(GpioRole::ready_lamp));
@@ -289,9 +289,9 @@ TEST(PanelGuard, ACrashDropsTheEnableAndStillIsACrash) {
     if (child == 0) {
       const rig::GpioSettings settings = all_lines();
       const MonotonicClock clock;
-      Wires wires(16);
+      SharedState shared(16);
       const LoopStatistics statistics;
-      Panel panel(std::make_unique<PipeLines>(pipe[1]), settings, clock, wires, statistics);
+      Panel panel(std::make_unique<PipeLines>(pipe[1]), settings, clock, shared, statistics);
       const PanelGuard guard(panel);
       ::raise(signal);
       ::_exit(0);
@@ -397,7 +397,7 @@ TEST_F(PanelOfDaemon, StartsFaultedAndMovesOnlyAfterReleaseAndAcknowledgement) {
   ASSERT_TRUE(eventually([&] { return ask("acknowledge")["ok"] == true; }));
   ASSERT_TRUE(until_state("idle")) << "and there it stays";
   end();
-  EXPECT_TRUE(outcome_.left_safely);
+  EXPECT_TRUE(outcome_.safe_state_confirmed);
   EXPECT_FALSE(terminals_.level(GpioRole::enable)) << "dropped at the end";
   EXPECT_FALSE(terminals_.level(GpioRole::ready_lamp));
 }

@@ -12,7 +12,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "base/grid.h"
+#include "base/periodic_schedule.h"
 #include "tests/daemon/temporary_folder.h"
 
 namespace softgrip::daemon::recorder_test {
@@ -39,12 +39,13 @@ class RecorderTest : public ::testing::Test {
     auto sequence = std::make_shared<LoadedSequence>();
     sequence->prepared.name = "pick stone";
     sequence->sha256 = "00ff";
-    shelf_.put(7, sequence);
+    sequence_store_.put(7, sequence);
   }
 
   Recorder& recorder() {
     if (!recorder_) {
-      recorder_ = std::make_unique<Recorder>(settings_, provenance_, only_folder_, 0, wires_, log_, shelf_);
+      recorder_ =
+          std::make_unique<Recorder>(settings_, provenance_, only_folder_, 0, shared_, log_, sequence_store_);
     }
     return *recorder_;
   }
@@ -55,7 +56,7 @@ class RecorderTest : public ::testing::Test {
     event.event.kind = kind;
     event.event.detail = detail;
     event.event.request = request;
-    wires_.events.push(event);
+    shared_.events.push(event);
   }
 
   void ticks(int count, State state) {
@@ -66,7 +67,7 @@ class RecorderTest : public ::testing::Test {
         record.state = state;
         record.channel = channel;
         record.output.validity = model::Validity::valid;
-        wires_.records.push(record);
+        shared_.records.push(record);
       }
       now_ += period;
       recorder().drain();
@@ -96,9 +97,9 @@ class RecorderTest : public ::testing::Test {
   rig::RecorderSettings settings_;
   Provenance provenance_;
   std::string only_folder_;
-  Wires wires_{4096};
+  SharedState shared_{4096};
   EventLog log_{100};
-  SequenceShelf shelf_;
+  SequenceStore sequence_store_;
   std::unique_ptr<Recorder> recorder_;
   Nanoseconds now_ = 50 * ns_per_s;
 };
@@ -191,7 +192,7 @@ TEST_F(RecorderTest, ANamedFolderOverrulesTheMode) {
 TEST_F(RecorderTest, DroppedRowsAreCounted) {
   event(Event::Kind::sequence_started, 0, 7);
   ticks(1, State::running);
-  wires_.records_dropped.store(12);
+  shared_.records_dropped.store(12);
   ticks(1, State::running);
   recorder().finish();
   EXPECT_EQ(json(folders().front())["dropped_rows"], 12);

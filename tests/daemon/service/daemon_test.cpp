@@ -45,7 +45,7 @@ TEST(Daemon, RunsASequenceAndReportsItsResult) {
   EXPECT_EQ(outcome.ending, Ending::sequence_ended);
   EXPECT_EQ(outcome.sequence_end, control::SequenceEnd::done);
   EXPECT_EQ(outcome.last.channels[0].result, control::GripResult::released);
-  EXPECT_TRUE(outcome.left_safely);
+  EXPECT_TRUE(outcome.safe_state_confirmed);
   EXPECT_EQ(exit_code_of(outcome), ExitCode::done);
   EXPECT_NE(std::find(kinds.begin(), kinds.end(), "sequence_finished"), kinds.end());
 }
@@ -90,14 +90,14 @@ TEST(Daemon, AnExceptionOfTheCallersOwnStillEndsWithSafeOutputs) {
   const Outcome outcome = (*daemon)->run();
   EXPECT_EQ(outcome.ending, Ending::broken);
   EXPECT_EQ(outcome.message, "on purpose");
-  EXPECT_TRUE(outcome.left_safely);
+  EXPECT_TRUE(outcome.safe_state_confirmed);
   EXPECT_EQ(exit_code_of(outcome), ExitCode::failed);
   EXPECT_LT(outcome.wall_s, 10);
 }
 
 TEST(Daemon, EveryEndingHasItsExitCode) {
   Outcome outcome;
-  outcome.left_safely = true;
+  outcome.safe_state_confirmed = true;
   const auto code = [&outcome](Ending ending) {
     outcome.ending = ending;
     return exit_code_of(outcome);
@@ -118,7 +118,7 @@ TEST(Daemon, EveryEndingHasItsExitCode) {
     outcome.sequence_end = end;
     EXPECT_EQ(code(Ending::sequence_ended), expected);
   }
-  outcome.left_safely = false;
+  outcome.safe_state_confirmed = false;
   outcome.sequence_end = SequenceEnd::done;
   EXPECT_EQ(code(Ending::sequence_ended), ExitCode::failed)
       << "a board that was not left safely is a failure";

@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "base/clock.h"
-#include "base/grid.h"
+#include "base/periodic_schedule.h"
 #include "tests/daemon/temporary_folder.h"
 
 namespace softgrip::daemon::socket_server_test {

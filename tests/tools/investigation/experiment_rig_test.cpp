@@ -35,11 +35,11 @@ ExperimentRig rig_that_ends(const daemon::Outcome& outcome) {
   return rig;
 }
 
-daemon::Outcome outcome_of(Ending ending, std::optional<SequenceEnd> end, bool left_safely) {
+daemon::Outcome outcome_of(Ending ending, std::optional<SequenceEnd> end, bool safe_state_confirmed) {
   daemon::Outcome outcome;
   outcome.ending = ending;
   outcome.sequence_end = end;
-  outcome.left_safely = left_safely;
+  outcome.safe_state_confirmed = safe_state_confirmed;
   return outcome;
 }
 

@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/files.h"
-#include "base/grid.h"
+#include "base/periodic_schedule.h"
 #include "drivers/modbus_server/listener.h"
 #include "tests/tools/daemon_lines.h"
 #include "tools/client/reply_check.h"

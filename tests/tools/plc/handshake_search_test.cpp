@@ -16,7 +16,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "base/grid.h"
+#include "base/periodic_schedule.h"
 #include "tools/plc/gateway.h"
 
 namespace softgrip::plc::handshake_search_test {

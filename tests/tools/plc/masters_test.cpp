@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "base/grid.h"
+#include "base/periodic_schedule.h"
 
 namespace softgrip::plc::masters_test {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "base/grid.h"
+#include "base/periodic_schedule.h"
 #include "tools/web/access/origin.h"
 
 namespace softgrip::web {

@@ -1,6 +1,7 @@
 #pragma once
-// What runs between the loop and the threads around it. One thread writes each wire. One thread reads each
-// Latest and each Ring; log and recorder both read the events of the loop; any thread may read an atomic.
+// State that the loop shares with the threads around it. One thread writes each member. One thread reads each
+// TripleBuffer and each Ring. The log and the recorder both read the events of the loop. Any thread may read
+// an atomic.
 
 #include <array>
 #include <atomic>
@@ -9,8 +10,8 @@
 
 #include "control/tick/tick.h"
 #include "daemon/loop/broadcast.h"
-#include "daemon/loop/latest.h"
 #include "daemon/loop/ring.h"
+#include "daemon/loop/triple_buffer.h"
 #include "drivers/board/board.h"
 #include "model/reading.h"
 
@@ -112,14 +113,14 @@ struct PanelEvent {
   Nanoseconds at = 0;
 };
 
-struct Wires {
+struct SharedState {
   /// `record_capacity`: rows the recorder may lag behind; `event_capacity`: events that a client may.
-  explicit Wires(std::size_t record_capacity, std::size_t event_capacity = 4096)
+  explicit SharedState(std::size_t record_capacity, std::size_t event_capacity = 4096)
       : records(record_capacity), events(event_capacity) {}
 
-  Latest<Commands> commands;
-  Latest<BusReport> bus;
-  Latest<Snapshot> snapshot;
+  TripleBuffer<Commands> commands;
+  TripleBuffer<BusReport> bus;
+  TripleBuffer<Snapshot> snapshot;
   Ring<BusEvent> bus_events{256};
   Ring<Record> records;
   Broadcast<StampedEvent> events;
@@ -136,8 +137,8 @@ struct Wires {
   InputLevels inputs;
   std::atomic<std::uint64_t> records_dropped{0};  ///< no room: the recorder lagged
   std::atomic<std::uint64_t> events_dropped{0};   ///< more in a tick than it has room for
-  std::atomic<bool> leave{false};                 ///< to the loop: end after a last, safe tick
-  std::atomic<bool> left_safely{false};           ///< from the bus: the board confirmed the last commands
+  std::atomic<bool> shutdown_requested{false};    ///< to the loop: end after a last, safe tick
+  std::atomic<bool> safe_state_confirmed{false};  ///< from the bus: the board confirmed the last commands
 };
 
 }  // namespace softgrip::daemon

@@ -5,13 +5,13 @@
 #include <memory>
 #include <optional>
 
-#include "daemon/recording/sequence_shelf.h"
+#include "daemon/recording/sequence_store.h"
 #include "daemon/socket/service.h"
 
 namespace softgrip::daemon {
 
 /// Waits until the rig is idle, starts the sequence, waits until it has ended and the fingers came to rest.
-class Errand {
+class OneShotRun {
  public:
   enum class State : std::uint8_t {
     waiting,  ///< for the rig to be idle
@@ -23,7 +23,7 @@ class Errand {
   };
 
   /// `patience`: how long the rig may take to become idle.
-  Errand(std::shared_ptr<const LoadedSequence> sequence, Nanoseconds patience);
+  OneShotRun(std::shared_ptr<const LoadedSequence> sequence, Nanoseconds patience);
 
   /// To be called now and then, by the thread that calls the service, after its pump().
   void step(Service& service, Nanoseconds now);

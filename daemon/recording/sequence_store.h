@@ -21,7 +21,7 @@ struct LoadedSequence {
 
 /// By the request that starts them. The loop holds a bare pointer into an entry; the entry stays until its
 /// request was refused or its run has ended and been recorded.
-class SequenceShelf {
+class SequenceStore {
  public:
   void put(std::uint32_t request, std::shared_ptr<const LoadedSequence> sequence);
   /// nullptr if there is none.

@@ -1,5 +1,5 @@
 #pragma once
-// The absolute time grid of a periodic thread.
+// The periodic schedule of a thread, with absolute deadlines.
 
 #include <cerrno>
 #include <cstdint>
@@ -9,11 +9,11 @@
 
 namespace softgrip {
 
-/// Ticks lie at start + k * period. After an overrun the next tick is the next one on the grid: nothing is
-/// made up for in a burst, and the phase is kept.
-class Grid {
+/// Ticks lie at start + k * period. After an overrun, the next tick is the next one of the schedule: missed
+/// ticks are not repeated in a burst, and the phase is kept.
+class PeriodicSchedule {
  public:
-  Grid(Nanoseconds start, Nanoseconds period) noexcept : period_(period), due_(start) {}
+  PeriodicSchedule(Nanoseconds start, Nanoseconds period) noexcept : period_(period), due_(start) {}
 
   [[nodiscard]] Nanoseconds period() const noexcept { return period_; }
   /// When the current tick was or is due.

@@ -1,26 +1,26 @@
-#include "daemon/recording/sequence_shelf.h"
+#include "daemon/recording/sequence_store.h"
 
 #include <utility>
 
 namespace softgrip::daemon {
 
-void SequenceShelf::put(std::uint32_t request, std::shared_ptr<const LoadedSequence> sequence) {
+void SequenceStore::put(std::uint32_t request, std::shared_ptr<const LoadedSequence> sequence) {
   const std::scoped_lock lock(mutex_);
   sequences_.insert_or_assign(request, std::move(sequence));
 }
 
-std::shared_ptr<const LoadedSequence> SequenceShelf::find(std::uint32_t request) const {
+std::shared_ptr<const LoadedSequence> SequenceStore::find(std::uint32_t request) const {
   const std::scoped_lock lock(mutex_);
   const auto found = sequences_.find(request);
   return found == sequences_.end() ? nullptr : found->second;
 }
 
-void SequenceShelf::drop(std::uint32_t request) {
+void SequenceStore::drop(std::uint32_t request) {
   const std::scoped_lock lock(mutex_);
   sequences_.erase(request);
 }
 
-void SequenceShelf::drop_before(std::uint32_t request) {
+void SequenceStore::drop_before(std::uint32_t request) {
   const std::scoped_lock lock(mutex_);
   sequences_.erase(sequences_.begin(), sequences_.lower_bound(request));
 }

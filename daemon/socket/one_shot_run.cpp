@@ -1,8 +1,8 @@
-#include "daemon/socket/errand.h"
+#include "daemon/socket/one_shot_run.h"
 
 #include <utility>
 
-#include "base/grid.h"
+#include "base/periodic_schedule.h"
 
 namespace softgrip::daemon {
 
@@ -17,10 +17,10 @@ bool at_rest(control::State state) noexcept {
 
 }  // namespace
 
-Errand::Errand(std::shared_ptr<const LoadedSequence> sequence, Nanoseconds patience)
+OneShotRun::OneShotRun(std::shared_ptr<const LoadedSequence> sequence, Nanoseconds patience)
     : sequence_(std::move(sequence)), patience_(patience) {}
 
-void Errand::step(Service& service, Nanoseconds now) {
+void OneShotRun::step(Service& service, Nanoseconds now) {
   if (began_ < 0) began_ = now;
   const control::State rig = service.snapshot().state;
   switch (state_) {

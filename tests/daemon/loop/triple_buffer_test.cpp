@@ -1,4 +1,4 @@
-#include "daemon/loop/latest.h"
+#include "daemon/loop/triple_buffer.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 
 #include "tests/daemon/loop/torn_value.h"
 
-namespace softgrip::daemon::latest_test {
+namespace softgrip::daemon::triple_buffer_test {
 namespace {
 
 using testing::TornValue;
@@ -18,7 +18,7 @@ using testing::TornValue;
 template <class T>
 class TwoSlots {
  public:
-  T& draft() noexcept { return slots_[1 - current_.load()]; }
+  T& write_slot() noexcept { return slots_[1 - current_.load()]; }
   void publish() noexcept { current_.store(1 - current_.load()); }
   bool fetch() noexcept {
     held_ = current_.load();
@@ -49,7 +49,7 @@ Seen race(Cell& cell, std::uint64_t count) {
   std::uint64_t written = 0;
   std::thread writer([&cell, &reader_began, &done, &written, count] {
     for (std::uint64_t raced = 0; raced < count; raced += reader_began.load() ? 1U : 0U) {
-      cell.draft() = TornValue(++written);
+      cell.write_slot() = TornValue(++written);
       cell.publish();
     }
     done.store(true);
@@ -70,14 +70,14 @@ Seen race(Cell& cell, std::uint64_t count) {
   return seen;
 }
 
-TEST(Latest, GivesNothingBeforeTheFirstPublish) {
-  Latest<int> cell(7);
+TEST(TripleBuffer, GivesNothingBeforeTheFirstPublish) {
+  TripleBuffer<int> cell(7);
   EXPECT_FALSE(cell.fetch());
   EXPECT_EQ(cell.value(), 7);
 }
 
-TEST(Latest, GivesTheNewestOnce) {
-  Latest<int> cell;
+TEST(TripleBuffer, GivesTheNewestOnce) {
+  TripleBuffer<int> cell;
   for (int n = 1; n <= 5; ++n) cell.publish(n);
   EXPECT_TRUE(cell.fetch());
   EXPECT_EQ(cell.value(), 5);
@@ -88,8 +88,8 @@ TEST(Latest, GivesTheNewestOnce) {
   EXPECT_EQ(cell.value(), 6);
 }
 
-TEST(Latest, KeepsTheHeldValueWhileTheWriterGoesOn) {
-  Latest<int> cell;
+TEST(TripleBuffer, KeepsTheHeldValueWhileTheWriterGoesOn) {
+  TripleBuffer<int> cell;
   cell.publish(1);
   ASSERT_TRUE(cell.fetch());
   const int& held = cell.value();
@@ -104,12 +104,12 @@ TEST(Latest, KeepsTheHeldValueWhileTheWriterGoesOn) {
 template <class Cell>
 bool whole_when_interrupted(int publishes) {
   Cell cell;
-  cell.draft() = TornValue(1);
+  cell.write_slot() = TornValue(1);
   cell.publish();
   cell.fetch();
   TornValue::halfway = [&cell, publishes] {
     for (int n = 0; n < publishes; ++n) {
-      cell.draft() = TornValue(static_cast<std::uint64_t>(2 + n));
+      cell.write_slot() = TornValue(static_cast<std::uint64_t>(2 + n));
       cell.publish();
     }
   };
@@ -117,19 +117,19 @@ bool whole_when_interrupted(int publishes) {
   return copy.whole() && copy.number() == 1;
 }
 
-TEST(Latest, IsWholeHoweverOftenTheWriterPublishesDuringACopy) {
+TEST(TripleBuffer, IsWholeHoweverOftenTheWriterPublishesDuringACopy) {
   for (int publishes = 0; publishes < 10; ++publishes) {
-    EXPECT_TRUE(whole_when_interrupted<Latest<TornValue>>(publishes)) << publishes;
+    EXPECT_TRUE(whole_when_interrupted<TripleBuffer<TornValue>>(publishes)) << publishes;
   }
 }
 
-TEST(Latest, TheSameInterruptionTearsAWrongCell) {
+TEST(TripleBuffer, TheSameInterruptionTearsAWrongCell) {
   EXPECT_TRUE(whole_when_interrupted<TwoSlots<TornValue>>(1)) << "looks right at first";
   EXPECT_FALSE(whole_when_interrupted<TwoSlots<TornValue>>(2));
 }
 
-TEST(Latest, IsNeverTornNorOlderThanBeforeUnderARace) {
-  Latest<TornValue> cell;
+TEST(TripleBuffer, IsNeverTornNorOlderThanBeforeUnderARace) {
+  TripleBuffer<TornValue> cell;
   const std::uint64_t count = testing::thread_sanitizer ? 2000 : 50'000;
   const Seen seen = race(cell, count);
   EXPECT_GE(seen.last_written, count);
@@ -140,4 +140,4 @@ TEST(Latest, IsNeverTornNorOlderThanBeforeUnderARace) {
 }
 
 }  // namespace
-}  // namespace softgrip::daemon::latest_test
+}  // namespace softgrip::daemon::triple_buffer_test
