@@ -4,8 +4,8 @@
 
 namespace softgrip::control {
 
-void Contact::observe(double deficit_mm) noexcept {
-  if (std::isfinite(deficit_mm)) touching_ = deficit_mm >= (touching_ ? 0.5 * margin_mm_ : margin_mm_);
+void Contact::observe(double shortfall_mm) noexcept {
+  if (std::isfinite(shortfall_mm)) touching_ = shortfall_mm >= (touching_ ? 0.5 * margin_mm_ : margin_mm_);
 }
 
 void EvidenceWindow::start(double time_s, double window_s) noexcept {

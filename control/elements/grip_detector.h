@@ -15,7 +15,7 @@ class Contact {
   explicit Contact(double margin_mm) noexcept : margin_mm_(margin_mm) {}
   void reset() noexcept { touching_ = false; }
   /// An unknown shortfall (NaN) changes nothing.
-  void observe(double deficit_mm) noexcept;
+  void observe(double shortfall_mm) noexcept;
   [[nodiscard]] bool touching() const noexcept { return touching_; }
 
  private:

@@ -11,7 +11,7 @@
 namespace softgrip::control {
 
 /// Counts jumps that reverse. A jump is the change between two readings beyond the change of the model. A
-/// finger moves between nothing and slightly more than its free-motion model. A part that slips, is lost or
+/// finger moves between nothing and slightly more than its free-motion model. A part that slides, is lost or
 /// is pushed in also makes the finger jump, but in one direction only.
 class JumpWatch {
  public:

@@ -31,11 +31,11 @@ std::optional<BindingLimit> LimitWatch::observe(double time_s, BindingLimit now)
   } else if (now_ != BindingLimit::none && time_s - last_s_ > gap_s) {
     now_ = BindingLimit::none;
   }
-  const bool none_told = told_ == BindingLimit::none;
-  const bool binds =
-      now_ != BindingLimit::none && now_ != told_ && time_s - (none_told ? since_s_ : change_s_) >= moment_s;
-  if (binds) return told_ = now_;
-  if (now_ == BindingLimit::none && !none_told) return told_ = BindingLimit::none;
+  const bool none_reported = reported_ == BindingLimit::none;
+  const bool binds = now_ != BindingLimit::none && now_ != reported_ &&
+                     time_s - (none_reported ? since_s_ : change_s_) >= moment_s;
+  if (binds) return reported_ = now_;
+  if (now_ == BindingLimit::none && !none_reported) return reported_ = BindingLimit::none;
   return std::nullopt;
 }
 

@@ -29,13 +29,13 @@ class LimitWatch {
   static constexpr double moment_s = 0.5;
   static constexpr double gap_s = 0.1;
 
-  /// Processes one tick. Returns a value if stands() has just changed.
+  /// Processes one tick. Returns a value if reported() has just changed.
   std::optional<BindingLimit> observe(double time_s, BindingLimit now) noexcept;
   /// Returns the limit that was reported and is still active.
-  [[nodiscard]] BindingLimit stands() const noexcept { return told_; }
+  [[nodiscard]] BindingLimit reported() const noexcept { return reported_; }
 
  private:
-  BindingLimit told_ = BindingLimit::none;
+  BindingLimit reported_ = BindingLimit::none;
   BindingLimit now_ = BindingLimit::none;
   double since_s_ = 0;   ///< one or another binds
   double change_s_ = 0;  ///< the present one does

@@ -83,11 +83,11 @@ double FreeCurve::at(const std::vector<double>& table, double displacement_mm) c
   return table[whole] + (place - static_cast<double>(whole)) * (table[whole + 1] - table[whole]);
 }
 
-double FreeCurve::squeeze_for_kpa(double deficit_mm) const noexcept {
+double FreeCurve::squeeze_for_kpa(double shortfall_mm) const noexcept {
   double most = 0;
   for (std::size_t i = 0; i < points; ++i) {
     const double y_mm = lowest_mm_ + step_mm_ * static_cast<double>(i);
-    most = std::max(most, command_kpa(y_mm + deficit_mm) - command_kpa(y_mm));
+    most = std::max(most, command_kpa(y_mm + shortfall_mm) - command_kpa(y_mm));
   }
   return most;
 }

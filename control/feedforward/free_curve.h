@@ -25,9 +25,9 @@ class FreeCurve {
   [[nodiscard]] double pressure_kpa(double displacement_mm) const noexcept {
     return at(pressure_kpa_, displacement_mm);
   }
-  /// Returns the smallest gripping pressure that causes a displacement shortfall of `deficit_mm` at every
+  /// Returns the smallest gripping pressure that causes a displacement shortfall of `shortfall_mm` at every
   /// position of the curve [kPa].
-  [[nodiscard]] double squeeze_for_kpa(double deficit_mm) const noexcept;
+  [[nodiscard]] double squeeze_for_kpa(double shortfall_mm) const noexcept;
 
  private:
   [[nodiscard]] double at(const std::vector<double>& table, double displacement_mm) const noexcept;

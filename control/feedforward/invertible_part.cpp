@@ -43,7 +43,7 @@ double square_sum(const std::vector<double>& a, const std::vector<double>& b) {
   return sum;
 }
 
-void leave_out(InvertiblePart& part, std::size_t type) {
+void omit(InvertiblePart& part, std::size_t type) {
   part.model = model::without_block(std::move(part.model), type);
   part.left_out.emplace_back(model::catalogue()[type].info.id);
 }
@@ -59,7 +59,7 @@ std::optional<InvertiblePart> invertible_part(const model::Model& model, const L
   for (const model::BlockSpec& block : model.blocks) {
     if (!not_undone(std::array{model::catalogue()[block.type].info}).empty() &&
         model::position_of(part.model, block.type))
-      leave_out(part, block.type);
+      omit(part, block.type);
   }
   if (is_accepted(part.model)) {
     if (part.left_out.empty()) return std::nullopt;
@@ -77,7 +77,7 @@ std::optional<InvertiblePart> invertible_part(const model::Model& model, const L
     least = missed;
   }
   if (!least_missed) return std::nullopt;
-  leave_out(part, *least_missed);
+  omit(part, *least_missed);
   return part;
 }
 

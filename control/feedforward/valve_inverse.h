@@ -15,7 +15,7 @@ namespace softgrip::control {
 ///                  under a held input, so lead and the hold's half sample are one; tau is that of the
 ///                  direction in which the pressure goes, and of several lags in series their sum;
 ///   a regulator:   the command that takes its spool through the overlap, less what its integral does
-///                  already (RegulatorInverse), where no lag stands beside it;
+///                  already (RegulatorInverse), if the valve has no lag in addition;
 ///   without one:   u = (p[k-1] + p[k]) / 2, the middle of the stretch, for the same half sample;
 ///   a dead band before it: u and half the band in the direction of travel. One behind it is left alone.
 class ValveInverse {

@@ -22,9 +22,9 @@ namespace softgrip::control {
 ///
 ///   minimise  sum (y(t_i) - r(t_i))^2 + (w (u_{i+1} - 2 u_i + u_{i-1}))^2
 ///
-/// with y the model's answer, dead time taken out (it is made up for by preview), lag and saturation kept in.
-/// No inverse is needed, so models that move the wrong way first are served as well: the plan acts before the
-/// reference does, as far as it is given time for that.
+/// with y the response of the model without its dead time, which preview compensates, but with lag and
+/// saturation. No inverse is needed, so models with an inverse response can be planned too: the plan acts
+/// before the reference does, as far as its time allows.
 ///
 /// Levenberg-Marquardt over windows of a few seconds that look a little further than they decide, so that the
 /// time grows with the length of the reference and not with its cube. The derivatives are those of the chain

@@ -10,9 +10,9 @@
 namespace softgrip::control {
 
 /// Fits a sequence to a rig, and plans its motion for the channels that want it
-/// (control/sequences/sequence_plans.h). What does not fit is added to `problems`, each at its step; nothing
-/// is returned then. What is planned but out of reach is a warning. Planning can be asked to stop; then
-/// nothing is returned, for that reason.
+/// (control/sequences/sequence_plans.h). Adds each step that does not fit to `problems` and then returns
+/// nullopt. A planned position that is out of reach is a warning. Returns nullopt also if `stop` ends the
+/// planning.
 [[nodiscard]] std::optional<PreparedSequence> prepare(const Sequence& sequence, const RigSettings& settings,
                                                       document::Problems& problems,
                                                       const std::stop_token& stop = {});

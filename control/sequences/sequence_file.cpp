@@ -211,7 +211,8 @@ class FileReader {
         map.optional_number("squeeze_max_kpa", squeeze_kpa).value_or(bounds.squeeze_max_kpa);
   }
 
-  /// Who lets a touch be a failure says what comes then; a move with a tolerance has said so.
+  /// A step for which contact is a failure states the action that follows. A move with a tolerance has stated
+  /// it.
   void on_contact(MapReader& map, Step& step, OnContact otherwise) {
     const auto choice = map.optional_choice(
         "on_contact", names({OnContact::hold, OnContact::grip, OnContact::fail, OnContact::ignore}));

@@ -10,10 +10,10 @@
 
 namespace softgrip::control {
 
-/// Reads a sequence out of a parsed document, with the values that a start asks for in the place of its
-/// parameters' defaults. All errors are added to `problems`; nothing is returned then, nor when parsing had
-/// refused a part of the document. The sequence must be sound with its defaults, at both ends of each
-/// parameter's range and with the values asked for.
+/// Reads a sequence from a parsed document. The values of `arguments`, which a start requests, replace the
+/// defaults of the parameters. Adds all errors to `problems` and then returns nullopt. Returns nullopt also
+/// if parsing had refused a part of the document. The sequence must be valid with its defaults, at both ends
+/// of each parameter's range and with the requested values.
 [[nodiscard]] std::optional<Sequence> read_sequence(const document::Document& document,
                                                     document::Problems& problems,
                                                     std::span<const Argument> arguments = {});

@@ -15,7 +15,7 @@ namespace {
 
 /// How far into a hold a plan reaches: creep is all that is left to follow.
 constexpr double longest_hold_s = 20;
-/// A plan that misses its reference by more than this is told of.
+/// A plan that misses its reference by more than this is reported.
 constexpr double missed_mm = 0.2;
 
 bool planned(const ChannelSettings& channel) {
@@ -61,8 +61,8 @@ class Walk {
     return std::min({time_s, vent_s(), demand.reference->end_s() + longest_hold_s}) - since_s_;
   }
 
-  /// What the channel did since its step began, until its next one: planned where that moves it to a
-  /// displacement, followed where a pressure does.
+  /// Returns the motion of the channel from the start of its step to the start of its next one. A step to a
+  /// displacement is planned; a step to a pressure is followed.
   PressurePlan go_on_until(double time_s, const std::stop_token& stop) {
     PressurePlan plan;
     if (planner_ && step_ != nullptr) {

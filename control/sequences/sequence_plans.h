@@ -26,7 +26,7 @@ inline constexpr double most_planned_s = 600;
 /// command, no step fails, every settling time and every window takes what it must and nothing is waited for.
 /// The player of the loop makes the references, so the plans are for what will be followed. A plan reaches
 /// until the channel's next step, over a hold of any length for 20 s at most; after it the last command
-/// stays. What happens otherwise is in PlannedFeedforward (control/feedforward/feedforward_kinds.h). Fills
+/// stays. PlannedFeedforward (control/feedforward/feedforward_kinds.h) handles every deviation from it. Fills
 /// PreparedStep::plans and PreparedSequence::planned_s; of a sequence with more than most_planned_s the
 /// latter only. Asked to stop it returns soon, and the sequence is not to be used.
 [[nodiscard]] std::vector<MissedPlan> plan_steps(PreparedSequence& sequence, const RigSettings& settings,

@@ -26,7 +26,7 @@ constexpr double unnoticed_kpa = 0.5;
 /// Largest number of ticks that the model catches up after a gap. After a longer gap, the channel starts from
 /// rest.
 constexpr std::int64_t most_ticks = 1000;
-/// Ticks that a plan is carried over at most; beyond it the feedforward begins anew.
+/// Ticks that a plan is carried over at most; after that the feedforward starts again.
 constexpr std::int64_t most_planned_ticks = 10;
 
 FeedforwardSettings accepted(const ChannelSettings& settings, double tick_s) {
@@ -73,12 +73,12 @@ void ChannelController::tick(const ChannelInput& input, ChannelOutput& channel) 
   const std::int64_t ticks = advance(input.now, channel.command_kpa);
   const bool is_new = input.reading.sequence != sequence_;
   sequence_ = input.reading.sequence;
-  const bool sighted = displacement_used_ && channel.validity == model::Validity::valid;
+  const bool has_reading = displacement_used_ && channel.validity == model::Validity::valid;
   const double predicted_mm = take_reading(input, channel);
   if (is_new && displacement_used_) watch_jumps(input.reading, predicted_mm, channel);
   follow_finger(input.resynchronise, predicted_mm, channel);
   watch_model(input, predicted_mm, is_new, channel);
-  channel.deficit_mm = sighted ? -channel.residual_mm : not_known;
+  channel.shortfall_mm = has_reading ? -channel.residual_mm : not_known;
   weigh(predicted_mm, channel);
   send(input.demand, request(input.demand, ticks, channel), channel);
 }

@@ -46,7 +46,7 @@ void ChannelPlayer::answer_holding(double time_s) noexcept {
 
 GripEvidence ChannelPlayer::evidence_of(VerifyBy by) const noexcept {
   if (by == VerifyBy::pressure) return GripEvidence::pressure;
-  return traits_.sighted ? GripEvidence::displacement : GripEvidence::none;
+  return traits_.displacement_used ? GripEvidence::displacement : GripEvidence::none;
 }
 
 void ChannelPlayer::begin(const Step& step, const PressurePlan* plan, double time_s,
@@ -141,17 +141,17 @@ void ChannelPlayer::back_off(double time_s, const ChannelOutput& seen) noexcept 
 }
 
 bool ChannelPlayer::valid(const ChannelOutput& seen) const noexcept {
-  return traits_.sighted && seen.validity == model::Validity::valid;
+  return traits_.displacement_used && seen.validity == model::Validity::valid;
 }
 
 void ChannelPlayer::take(const ChannelOutput& seen) noexcept {
-  deficit_mm_ = valid(seen) ? -seen.residual_mm : std::numeric_limits<double>::quiet_NaN();
+  shortfall_mm_ = valid(seen) ? -seen.residual_mm : std::numeric_limits<double>::quiet_NaN();
 }
 
 void ChannelPlayer::feel(const ChannelOutput& seen, bool watched) noexcept {
   if (!watched) return;
-  contact_.observe(deficit_mm_);
-  follow_.observe(contact_.touching(), seen.displacement_mm, seen.displacement_mm + deficit_mm_);
+  contact_.observe(shortfall_mm_);
+  follow_.observe(contact_.touching(), seen.displacement_mm, seen.displacement_mm + shortfall_mm_);
 }
 
 bool ChannelPlayer::idle(double time_s, const ChannelOutput& seen) noexcept {
@@ -249,7 +249,7 @@ Progress ChannelPlayer::settle(double time_s, const ChannelOutput& seen) noexcep
 
 bool ChannelPlayer::usable(const Verify& verify, const ChannelOutput& seen) const noexcept {
   if (verify.by == VerifyBy::pressure) return std::isfinite(seen.pressure_kpa);
-  return std::isfinite(deficit_mm_) && !seen.stands_still;
+  return std::isfinite(shortfall_mm_) && !seen.stands_still;
 }
 
 bool ChannelPlayer::evident(const Verify& verify, const ChannelOutput& seen) const noexcept {
@@ -258,7 +258,7 @@ bool ChannelPlayer::evident(const Verify& verify, const ChannelOutput& seen) con
   }
   const bool inside = seen.displacement_mm >= verify.displacement_min_mm &&
                       seen.displacement_mm <= verify.displacement_max_mm;
-  return inside && (verify.by == VerifyBy::position || deficit_mm_ >= traits_.margin_mm);
+  return inside && (verify.by == VerifyBy::position || shortfall_mm_ >= traits_.margin_mm);
 }
 
 Progress ChannelPlayer::verify(double time_s, const ChannelOutput& seen) noexcept {
@@ -281,8 +281,8 @@ Progress ChannelPlayer::verify(double time_s, const ChannelOutput& seen) noexcep
 Progress ChannelPlayer::release(double time_s) noexcept {
   if (time_s < stage_end_s_) return Progress::pending;
   stage_ = Stage::free;
-  const bool free = std::isfinite(deficit_mm_) && !contact_.touching();
-  return !traits_.sighted || free ? pass() : Progress::pending;
+  const bool free = std::isfinite(shortfall_mm_) && !contact_.touching();
+  return !traits_.displacement_used || free ? pass() : Progress::pending;
 }
 
 void ChannelPlayer::watch_from(double time_s, double interval_s) noexcept {
@@ -298,7 +298,7 @@ bool ChannelPlayer::watch(double time_s, const ChannelOutput& seen) noexcept {
   if (result_ != GripResult::holding) return false;
   const bool inside = seen.displacement_mm >= held_by_.displacement_min_mm &&
                       seen.displacement_mm <= held_by_.displacement_max_mm;
-  double evidence = inside ? deficit_mm_ : 0;
+  double evidence = inside ? shortfall_mm_ : 0;
   if (held_by_.by == VerifyBy::pressure) {
     evidence = held_by_.below() ? -seen.pressure_kpa : seen.pressure_kpa;
   } else if (held_by_.by == VerifyBy::position) {

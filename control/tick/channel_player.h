@@ -19,10 +19,10 @@ enum class Progress : std::uint8_t { pending, passed, failed };
 
 /// Constant properties of a channel.
 struct ChannelTraits {
-  double margin_mm = 0;  ///< of grip detection
-  double rest_kpa = 0;   ///< the rest pressure
-  double preview_s = 0;  ///< how far ahead the feedforward uses the reference
-  bool sighted = true;   ///< the channel uses its displacement
+  double margin_mm = 0;           ///< of grip detection
+  double rest_kpa = 0;            ///< the rest pressure
+  double preview_s = 0;           ///< how far ahead the feedforward uses the reference
+  bool displacement_used = true;  ///< the channel uses its displacement
 };
 
 /// `seen` is everywhere what the last tick left behind.
@@ -64,7 +64,7 @@ class ChannelPlayer {
   /// On what a verification of this channel rests.
   [[nodiscard]] GripEvidence evidence_of(VerifyBy by) const noexcept;
   /// How much less than its free-motion envelope the finger moved, in the last tick; NaN: unknown [mm].
-  [[nodiscard]] double deficit_mm() const noexcept { return deficit_mm_; }
+  [[nodiscard]] double shortfall_mm() const noexcept { return shortfall_mm_; }
 
   /// Keeps the command where it is.
   void freeze() noexcept {
@@ -129,7 +129,7 @@ class ChannelPlayer {
   double ramp_end_s_ = 0;
   double stage_end_s_ = 0;
   double deadline_s_ = 0;
-  double deficit_mm_ = 0;
+  double shortfall_mm_ = 0;
   bool within_ = false;   ///< the tolerance
   Bounds bounds_;         ///< of the step, or of the one before a hold
   bool profile_ = false;  ///< the pressure is that of the step's profile

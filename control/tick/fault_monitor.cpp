@@ -50,7 +50,7 @@ FaultMonitor::FaultMonitor(const RigSettings& settings)
   const std::size_t ring =
       settings.faults.pressure_cycles > 0 ? std::max(readback_window_, pressure_window_) : readback_window_;
   for (std::size_t i = 0; i < channels_.size(); ++i) {
-    sighted_.push_back(settings.channels[i].displacement_used);
+    displacement_used_.push_back(settings.channels[i].displacement_used);
     channels_[i].sent_kpa.assign(ring, resting_kpa(settings.channels[i].limits));
   }
 }
@@ -98,7 +98,7 @@ Fault FaultMonitor::channel(std::size_t index, const TickInput& input, const Cha
   if (seen.request_invalid) {
     return {FaultCode::not_finite, number, 0};
   }
-  const Fault of_reading = sighted_[index] ? reading(channel, number, seen, starting) : Fault{};
+  const Fault of_reading = displacement_used_[index] ? reading(channel, number, seen, starting) : Fault{};
   const double readback = input.readings[index].command_readback_kpa;
   const bool readback_off = bus_good() && std::isfinite(readback) &&
                             off(channel, readback, readback_window_, settings_.readback_tolerance_kpa);

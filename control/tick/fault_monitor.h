@@ -51,7 +51,7 @@ class FaultMonitor {
   FaultSettings settings_;
   std::size_t readback_window_ = 0;  ///< commands, the newest included
   std::size_t pressure_window_ = 0;
-  std::vector<bool> sighted_;
+  std::vector<bool> displacement_used_;
   std::vector<Channel> channels_;
   std::size_t ring_at_ = 0;
   std::uint32_t bus_cycles_ = 0;

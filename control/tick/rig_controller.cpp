@@ -32,10 +32,10 @@ RigController::Channel::Channel(const RigSettings& rig, const ChannelSettings& s
       // Without displacement feedback, a finger is at rest if its command has not changed.
       rest(settings.displacement_used ? rig.rest_band_mm : 0, rig.rest_time_s),
       longest_age(nanoseconds(settings.plausibility.max_age_s)),
-      sighted(settings.displacement_used) {}
+      displacement_used(settings.displacement_used) {}
 
 bool RigController::Channel::valid(const ChannelOutput& seen) const noexcept {
-  return sighted && seen.validity == model::Validity::valid;
+  return displacement_used && seen.validity == model::Validity::valid;
 }
 
 bool RigController::Channel::at_rest(const ChannelOutput& seen) const noexcept {
@@ -43,7 +43,7 @@ bool RigController::Channel::at_rest(const ChannelOutput& seen) const noexcept {
 }
 
 bool RigController::Channel::rests(double time_s, const ChannelOutput& seen) noexcept {
-  if (!sighted) return rest.observe(time_s, seen.command_kpa);
+  if (!displacement_used) return rest.observe(time_s, seen.command_kpa);
   return rest.observe(time_s, valid(seen) ? std::optional(seen.displacement_mm) : std::nullopt);
 }
 
@@ -68,7 +68,7 @@ const TickOutput& RigController::tick(const TickInput& input) noexcept {
   const double time_s = static_cast<double>(input.now - began_) * 1e-9;
   output_.events.clear();
   forget_old_readings(input.now);
-  carry_out(supervisor_.tick(input, facts(input, time_s), output_.events), time_s);
+  carry_out(supervisor_.tick(input, supervisor_inputs(input, time_s), output_.events), time_s);
   play(input, time_s);
   for (std::size_t i = 0; i < channels_.size(); ++i) {
     const double last_kpa = output_.channels[i].command_kpa;
@@ -111,22 +111,22 @@ void RigController::forget_old_readings(Nanoseconds now) noexcept {
   }
 }
 
-Facts RigController::facts(const TickInput& input, double time_s) noexcept {
-  Facts facts;
-  facts.fault = monitor_.observe(input, output_.channels, supervisor_.state() == State::starting);
-  facts.cause = monitor_.cause();
-  facts.bus_good = monitor_.bus_good();
-  facts.phase = player_.phase();
+SupervisorInputs RigController::supervisor_inputs(const TickInput& input, double time_s) noexcept {
+  SupervisorInputs inputs;
+  inputs.fault = monitor_.observe(input, output_.channels, supervisor_.state() == State::starting);
+  inputs.cause = monitor_.cause();
+  inputs.bus_good = monitor_.bus_good();
+  inputs.phase = player_.phase();
   for (std::size_t i = 0; i < channels_.size(); ++i) {
     const ChannelOutput& seen = output_.channels[i];
-    facts.ready |= channels_[i].valid(seen) || !channels_[i].sighted ? channel_bit(i) : 0;
-    facts.at_rest |= channels_[i].at_rest(seen) ? channel_bit(i) : 0;
+    inputs.ready |= channels_[i].valid(seen) || !channels_[i].displacement_used ? channel_bit(i) : 0;
+    inputs.at_rest |= channels_[i].at_rest(seen) ? channel_bit(i) : 0;
   }
-  facts.answers = player_.has_answers();
+  inputs.answers = player_.has_answers();
   if (supervisor_.state() == State::resynchronising) {
-    facts.rest = look_for_rest(*supervisor_.sequence(), time_s);
+    inputs.rest = look_for_rest(*supervisor_.sequence(), time_s);
   }
-  return facts;
+  return inputs;
 }
 
 /// Waits until all channels of the sequence are at rest. The model of a vented (free) channel is then shifted
@@ -140,45 +140,47 @@ Rest RigController::look_for_rest(const PreparedSequence& sequence, double time_
     channel.resynchronise = false;
     if ((sequence.channels & channel_bit(i)) == 0) continue;
     const bool still = channel.rests(time_s, seen);
-    const bool follows = channel.sighted && channel.at_rest(seen);
+    const bool follows = channel.displacement_used && channel.at_rest(seen);
     channel.resynchronise = still && follows;
     const bool too_far = (sequence.needs_detection & channel_bit(i)) != 0 &&
                          std::abs(channel.controller.offset_mm()) > margin_mm_;
     const bool off_model = follows && (!seen.synchronised || too_far);
-    channel.lack = !still ? RestLack::moves : off_model ? RestLack::off_model : RestLack::none;
-    all = all && channel.lack == RestLack::none;
+    channel.unsettled = !still      ? UnsettledReason::moves
+                        : off_model ? UnsettledReason::off_model
+                                    : UnsettledReason::none;
+    all = all && channel.unsettled == UnsettledReason::none;
   }
   if (all) return Rest::at_rest;
   return time_s - seeking_since_s_ >= rest_timeout_s_ ? Rest::timed_out : Rest::pending;
 }
 
-void RigController::tell_lacks(std::uint32_t channels) noexcept {
+void RigController::report_unsettled(std::uint32_t channels) noexcept {
   for (std::size_t i = 0; i < channels_.size(); ++i) {
     const Channel& channel = channels_[i];
-    if ((channels & channel_bit(i)) != 0 && channel.lack != RestLack::none)
-      output_.events.add_of_channel(i, Event::Kind::not_at_rest, channel.lack, 0,
+    if ((channels & channel_bit(i)) != 0 && channel.unsettled != UnsettledReason::none)
+      output_.events.add_of_channel(i, Event::Kind::not_at_rest, channel.unsettled, 0,
                                     channel.controller.offset_mm());
   }
 }
 
-void RigController::carry_out(const Orders& orders, double time_s) noexcept {
+void RigController::carry_out(const SupervisorOutputs& outputs, double time_s) noexcept {
   EventList& events = output_.events;
-  if (orders.interrupt) player_.interrupt(*orders.interrupt, supervisor_.venting(), events);
-  if (orders.acknowledged_by) player_.acknowledge(*orders.acknowledged_by, events);
-  if (orders.vented != 0) player_.vented(orders.vented, events);
-  if (orders.no_rest != 0) {
-    tell_lacks(orders.no_rest);
-    player_.refuse(orders.no_rest, events);
+  if (outputs.interrupt) player_.interrupt(*outputs.interrupt, supervisor_.venting(), events);
+  if (outputs.acknowledged_by) player_.acknowledge(*outputs.acknowledged_by, events);
+  if (outputs.vented != 0) player_.vented(outputs.vented, events);
+  if (outputs.no_rest != 0) {
+    report_unsettled(outputs.no_rest);
+    player_.refuse(outputs.no_rest, events);
   }
-  if (orders.seek_rest) {
+  if (outputs.seek_rest) {
     seeking_since_s_ = time_s;
     for (Channel& channel : channels_) channel.rest.start();
   }
   if (supervisor_.state() != State::resynchronising) {
     for (Channel& channel : channels_) channel.resynchronise = false;
   }
-  if (orders.begin != nullptr) player_.start(*orders.begin, time_s, output_.channels, events);
-  if (orders.release && supervisor_.state() == State::running) release(time_s);
+  if (outputs.begin != nullptr) player_.start(*outputs.begin, time_s, output_.channels, events);
+  if (outputs.release && supervisor_.state() == State::running) release(time_s);
 }
 
 void RigController::release(double time_s) noexcept {

@@ -1,6 +1,6 @@
 #pragma once
-// Computes the commands of one tick from its readings. It is the interface between control and the loop. The
-// same class runs in softgripd, in `softgrip run`, in virtual time, in tests and in benchmarks.
+// Computes the commands of one tick from its readings. It is the interface between control and the loop. This
+// class runs in softgripd, in `softgrip run`, in virtual time, in tests and in benchmarks.
 
 #include <cstddef>
 #include <cstdint>
@@ -45,17 +45,18 @@ class RigController {
     RestWatch rest;
     LimitWatch limits;
     Nanoseconds longest_age;  ///< of a reading
-    bool sighted;             ///< it uses its displacement
+    bool displacement_used;   ///< it uses its displacement
     bool valid_before = true;
     bool unsteady_before = false;
     bool resynchronise = false;
-    RestLack lack = RestLack::none;  ///< what the finger lacked when rest was last looked for
+    /// The reason that was found when rest was last looked for.
+    UnsettledReason unsettled = UnsettledReason::none;
   };
 
-  [[nodiscard]] Facts facts(const TickInput& input, double time_s) noexcept;
+  [[nodiscard]] SupervisorInputs supervisor_inputs(const TickInput& input, double time_s) noexcept;
   Rest look_for_rest(const PreparedSequence& sequence, double time_s) noexcept;
-  void carry_out(const Orders& orders, double time_s) noexcept;
-  void tell_lacks(std::uint32_t channels) noexcept;
+  void carry_out(const SupervisorOutputs& outputs, double time_s) noexcept;
+  void report_unsettled(std::uint32_t channels) noexcept;
   void play(const TickInput& input, double time_s) noexcept;
   void release(double time_s) noexcept;
   void conclude_sequence(const SequencePlayer::Outcome& outcome, Phase phase) noexcept;

@@ -49,7 +49,7 @@ SequencePlayer::Outcome SequencePlayer::tick(double time_s, std::span<const Chan
       if (holds) lose(i, events);
     }
   });
-  if (to_grip) return leave_for(now().grip_step, time_s, seen, events);
+  if (to_grip) return go_to_step(now().grip_step, time_s, seen, events);
   // A lost part is acted on at once; every other answer waits for the other fingers.
   if (done_ != now().channels && !(holds && refused_ != 0)) {
     return {};
@@ -75,9 +75,9 @@ SequencePlayer::Outcome SequencePlayer::next_step(std::size_t index, double time
 }
 
 /// Ends the present step as it is: who takes no part in the one that follows stays where it is.
-SequencePlayer::Outcome SequencePlayer::leave_for(std::size_t index, double time_s,
-                                                  std::span<const ChannelOutput> seen,
-                                                  EventList& events) noexcept {
+SequencePlayer::Outcome SequencePlayer::go_to_step(std::size_t index, double time_s,
+                                                   std::span<const ChannelOutput> seen,
+                                                   EventList& events) noexcept {
   const std::uint32_t going = index < sequence_->steps.size() ? sequence_->steps[index].channels : 0;
   for_each_of_step([&](std::size_t i) {
     if ((going & channel_bit(i)) == 0) channels_[i].freeze();
@@ -99,7 +99,7 @@ SequencePlayer::Outcome SequencePlayer::release(double time_s, std::span<const C
   if (plays(StepKind::release)) return {};
   if (!plays(StepKind::hold) && end_ == SequenceEnd::done) end_ = SequenceEnd::stopped;
   const std::size_t to = now().release_step;
-  if (to < sequence_->steps.size()) return leave_for(to, time_s, seen, events);
+  if (to < sequence_->steps.size()) return go_to_step(to, time_s, seen, events);
   return finished(OnFail::vent, events);
 }
 
@@ -153,7 +153,7 @@ void SequencePlayer::answer(std::size_t channel, GripResult result, GripEvidence
 void SequencePlayer::tell(std::size_t channel, EventList& events) const noexcept {
   const ChannelPlayer& player = channels_[channel];
   events.add(Event{Event::Kind::grip_result, static_cast<std::uint8_t>(channel),
-                   static_cast<std::uint16_t>(player.result()), 0, player.deficit_mm(), player.evidence()});
+                   static_cast<std::uint16_t>(player.result()), 0, player.shortfall_mm(), player.evidence()});
 }
 
 void SequencePlayer::lose(std::size_t channel, EventList& events) noexcept {

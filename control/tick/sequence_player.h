@@ -34,8 +34,8 @@ class SequencePlayer {
   /// and must be vented. If the request comes before a hold, the sequence is stopped, not done.
   Outcome release(double time_s, std::span<const ChannelOutput> seen, EventList& events) noexcept;
 
-  /// The sequence ends from outside. Channels without an answer get ERROR. So do those that were HOLDING,
-  /// when nobody can vouch for it any more: after a fault, or half released and not `venting`.
+  /// Ends the sequence from outside. Channels without a result get ERROR. So do channels that were HOLDING,
+  /// if this is no longer certain: after a fault, or if they are half released and not `venting`.
   void interrupt(SequenceEnd end, std::uint32_t venting, EventList& events) noexcept;
   /// No sequence runs: re-verifies what is still held.
   void idle_tick(double time_s, std::span<const ChannelOutput> seen, EventList& events) noexcept;
@@ -69,8 +69,8 @@ class SequencePlayer {
                   EventList& events) noexcept;
   Outcome next_step(std::size_t index, double time_s, std::span<const ChannelOutput> seen,
                     EventList& events) noexcept;
-  Outcome leave_for(std::size_t index, double time_s, std::span<const ChannelOutput> seen,
-                    EventList& events) noexcept;
+  Outcome go_to_step(std::size_t index, double time_s, std::span<const ChannelOutput> seen,
+                     EventList& events) noexcept;
   bool take_contact(std::size_t channel, const ChannelOutput& seen, EventList& events) noexcept;
   Outcome failed(double time_s, std::span<const ChannelOutput> seen, EventList& events) noexcept;
   void answer_passed(std::size_t channel, double time_s, EventList& events) noexcept;

@@ -47,7 +47,7 @@ struct DetectionSettings {
 struct SafetySettings {
   /// Action of a stop, a fault or a shutdown, by the phase in which it occurs.
   std::array<SafeAction, phase_count> safe_action{};
-  /// What an emergency stop does. `hold` only where its circuit does not vent by itself: a held command
+  /// Action of an emergency stop. Use `hold` only if its circuit does not vent by itself: a held command
   /// would fill the fingers again when the circuit is reset.
   SafeAction on_emergency_stop = SafeAction::vent;
   /// The board sets its outputs to the rest pressure if communication stops. Then bus faults vent in every
@@ -78,7 +78,7 @@ struct RigSettings {
   std::vector<ChannelSettings> channels;  ///< 1 to max_channels, names unique
   SafetySettings safety;
   double rest_band_mm = 0.2;   ///< a finger is at rest when its readings stay within this band ...
-  double rest_time_s = 0.3;    ///< ... for so long; a sequence starts from there
+  double rest_time_s = 0.3;    ///< ... for this time; a sequence starts from there
   double rest_timeout_s = 10;  ///< a start that finds no rest by then ends with ERROR
   DetectionSettings detection;
   FaultSettings faults;

@@ -15,20 +15,22 @@ void Supervisor::go(State state, std::uint32_t request, EventList& events) noexc
   events.add(Event::Kind::state_changed, state, request);
 }
 
-Orders Supervisor::tick(const TickInput& input, const Facts& facts, EventList& events) noexcept {
-  Orders orders;
-  if (facts.fault.code != FaultCode::none) latch(facts, orders, events);
-  answer(input, facts, orders, events);
+SupervisorOutputs Supervisor::tick(const TickInput& input, const SupervisorInputs& inputs,
+                                   EventList& events) noexcept {
+  SupervisorOutputs outputs;
+  if (inputs.fault.code != FaultCode::none) latch(inputs, outputs, events);
+  answer(input, inputs, outputs, events);
   if (input.interlock_open && playing() && sequence_->interlock == Interlock::always) {
-    stop(facts, 0, orders, events);
+    stop(inputs, 0, outputs, events);
   }
-  move_on(facts, orders, events);
-  return orders;
+  move_on(inputs, outputs, events);
+  return outputs;
 }
 
 /// Latches the first fault. Later faults are reported once each and can only turn a hold into a vent.
-void Supervisor::latch(const Facts& facts, Orders& orders, EventList& events) noexcept {
-  const Fault& fault = facts.fault;
+void Supervisor::latch(const SupervisorInputs& inputs, SupervisorOutputs& outputs,
+                       EventList& events) noexcept {
+  const Fault& fault = inputs.fault;
   std::uint32_t place = 1;
   for (const FaultInfo& info : all_faults()) {
     if (info.code == fault.code) break;
@@ -41,11 +43,11 @@ void Supervisor::latch(const Facts& facts, Orders& orders, EventList& events) no
   // Later faults find the rig idle, but what it holds it holds because of the phase in which the first one
   // came.
   const bool first = state_ != State::faulted;
-  if (first) fault_phase_ = facts.phase;
+  if (first) fault_phase_ = inputs.phase;
   if (action_for(fault.code, fault_phase_) == SafeAction::vent) venting_ = all_;
   if (!first) return;
   first_fault_ = fault;
-  orders.interrupt = SequenceEnd::faulted;
+  outputs.interrupt = SequenceEnd::faulted;
   end_sequence(SequenceEnd::faulted, events);
   go(State::faulted, 0, events);
 }
@@ -69,7 +71,7 @@ std::uint32_t Supervisor::venting_on_leaving(Phase phase) const noexcept {
   return !decided && vents ? all_ : venting_;
 }
 
-void Supervisor::answer(const TickInput& input, const Facts& facts, Orders& orders,
+void Supervisor::answer(const TickInput& input, const SupervisorInputs& inputs, SupervisorOutputs& outputs,
                         EventList& events) noexcept {
   const Request& request = input.request;
   const bool halts = request.kind == Request::Kind::stop || request.kind == Request::Kind::vent;
@@ -79,27 +81,28 @@ void Supervisor::answer(const TickInput& input, const Facts& facts, Orders& orde
     case Request::Kind::none:
       break;
     case Request::Kind::start:
-      answer_start(input, facts, orders, events);
+      answer_start(input, inputs, outputs, events);
       break;
     case Request::Kind::check:
-      answer_check(input, facts, events);
+      answer_check(input, inputs, events);
       break;
     case Request::Kind::stop:
-      answer_stop(facts, request, orders, events);
+      answer_stop(inputs, request, outputs, events);
       break;
     case Request::Kind::vent:
-      answer_vent(request, orders, events);
+      answer_vent(request, outputs, events);
       break;
     case Request::Kind::release:
-      answer_release(facts, request, orders, events);
+      answer_release(inputs, request, outputs, events);
       break;
     case Request::Kind::acknowledge:
-      answer_acknowledge(facts, request, orders, events);
+      answer_acknowledge(inputs, request, outputs, events);
       break;
   }
 }
 
-RefusalCode Supervisor::refusal_of_start(const TickInput& input, const Facts& facts) const noexcept {
+RefusalCode Supervisor::refusal_of_start(const TickInput& input,
+                                         const SupervisorInputs& inputs) const noexcept {
   if (input.request.id < halted_by_ || withdrawn(input.request.id)) return RefusalCode::overtaken;
   if (state_ == State::faulted) return RefusalCode::faulted;
   if (input.emergency_stop) return RefusalCode::emergency_stop;
@@ -110,39 +113,41 @@ RefusalCode Supervisor::refusal_of_start(const TickInput& input, const Facts& fa
   if (sequence == nullptr || sequence->rig != rig_ || sequence->steps.empty()) {
     return RefusalCode::sequence_unfit;
   }
-  if (!facts.bus_good || (sequence->channels & ~facts.ready) != 0) {
+  if (!inputs.bus_good || (sequence->channels & ~inputs.ready) != 0) {
     return RefusalCode::no_valid_reading;
   }
   return RefusalCode::none;
 }
 
-bool Supervisor::refuses_start(const TickInput& input, const Facts& facts, EventList& events) const noexcept {
-  const RefusalCode refusal = refusal_of_start(input, facts);
+bool Supervisor::refuses_start(const TickInput& input, const SupervisorInputs& inputs,
+                               EventList& events) const noexcept {
+  const RefusalCode refusal = refusal_of_start(input, inputs);
   if (refusal != RefusalCode::none) events.add(Event::Kind::request_refused, refusal, input.request.id);
   return refusal != RefusalCode::none;
 }
 
-void Supervisor::answer_check(const TickInput& input, const Facts& facts, EventList& events) const noexcept {
-  if (!refuses_start(input, facts, events)) events.add(Event::Kind::start_checked, 0, input.request.id);
+void Supervisor::answer_check(const TickInput& input, const SupervisorInputs& inputs,
+                              EventList& events) const noexcept {
+  if (!refuses_start(input, inputs, events)) events.add(Event::Kind::start_checked, 0, input.request.id);
 }
 
-void Supervisor::answer_start(const TickInput& input, const Facts& facts, Orders& orders,
-                              EventList& events) noexcept {
-  if (refuses_start(input, facts, events)) return;
+void Supervisor::answer_start(const TickInput& input, const SupervisorInputs& inputs,
+                              SupervisorOutputs& outputs, EventList& events) noexcept {
+  if (refuses_start(input, inputs, events)) return;
   const Request& request = input.request;
   sequence_ = request.sequence;
   start_request_ = request.id;
-  orders.seek_rest = true;
+  outputs.seek_rest = true;
   events.add(Event::Kind::sequence_started, 0, request.id);
   go(State::resynchronising, request.id, events);
 }
 
-void Supervisor::answer_stop(const Facts& facts, const Request& request, Orders& orders,
-                             EventList& events) noexcept {
+void Supervisor::answer_stop(const SupervisorInputs& inputs, const Request& request,
+                             SupervisorOutputs& outputs, EventList& events) noexcept {
   if (request.of_start != 0) {
-    answer_stop_of(facts, request, orders, events);
+    answer_stop_of(inputs, request, outputs, events);
   } else if (playing()) {
-    stop(facts, request.id, orders, events);
+    stop(inputs, request.id, outputs, events);
   } else {
     events.add(Event::Kind::request_refused,
                state_ == State::faulted ? RefusalCode::faulted : RefusalCode::nothing_to_stop, request.id);
@@ -150,10 +155,10 @@ void Supervisor::answer_stop(const Facts& facts, const Request& request, Orders&
 }
 
 /// Decided here and not where the client is: only the loop knows which start runs in this tick.
-void Supervisor::answer_stop_of(const Facts& facts, const Request& request, Orders& orders,
-                                EventList& events) noexcept {
+void Supervisor::answer_stop_of(const SupervisorInputs& inputs, const Request& request,
+                                SupervisorOutputs& outputs, EventList& events) noexcept {
   if (playing() && start_request_ == request.of_start) {
-    stop(facts, request.id, orders, events);
+    stop(inputs, request.id, outputs, events);
     return;
   }
   withdraw(request);
@@ -173,14 +178,14 @@ bool Supervisor::withdrawn(std::uint32_t start) const noexcept {
 }
 
 /// Everything to rest. Never refused: it is the way out of a hold, faulted or not.
-void Supervisor::answer_vent(const Request& request, Orders& orders, EventList& events) noexcept {
+void Supervisor::answer_vent(const Request& request, SupervisorOutputs& outputs, EventList& events) noexcept {
   venting_ = all_;
   if (state_ == State::faulted || state_ == State::starting) {
     events.add(Event::Kind::state_changed, state_, request.id);
     return;
   }
   if (playing()) {
-    orders.interrupt = SequenceEnd::stopped;
+    outputs.interrupt = SequenceEnd::stopped;
     end_sequence(SequenceEnd::stopped, events);
   }
   go(State::stopping, request.id, events);
@@ -188,27 +193,27 @@ void Supervisor::answer_vent(const Request& request, Orders& orders, EventList& 
 
 /// The gentle way out of a hold: a sequence releases as it says itself; what stays pressed without one goes
 /// to rest at the slew limit.
-void Supervisor::answer_release(const Facts& facts, const Request& request, Orders& orders,
-                                EventList& events) noexcept {
+void Supervisor::answer_release(const SupervisorInputs& inputs, const Request& request,
+                                SupervisorOutputs& outputs, EventList& events) noexcept {
   const auto refuse = [&](RefusalCode code) { events.add(Event::Kind::request_refused, code, request.id); };
   if (state_ == State::running) {
-    orders.release = true;
+    outputs.release = true;
     events.add(Event::Kind::release_asked, 0, request.id);
   } else if (state_ == State::faulted) {
     refuse(RefusalCode::faulted);
   } else if (state_ == State::starting) {
     refuse(RefusalCode::no_valid_reading);
-  } else if (state_ == State::resynchronising || facts.at_rest != all_) {
-    answer_vent(request, orders, events);
+  } else if (state_ == State::resynchronising || inputs.at_rest != all_) {
+    answer_vent(request, outputs, events);
   } else {
     refuse(RefusalCode::nothing_to_release);
   }
 }
 
-void Supervisor::answer_acknowledge(const Facts& facts, const Request& request, Orders& orders,
-                                    EventList& events) noexcept {
+void Supervisor::answer_acknowledge(const SupervisorInputs& inputs, const Request& request,
+                                    SupervisorOutputs& outputs, EventList& events) noexcept {
   if (state_ == State::faulted) {
-    const Fault& cause = facts.cause;
+    const Fault& cause = inputs.cause;
     if (cause.code != FaultCode::none) {
       events.add_of_channel(cause.channel, Event::Kind::request_refused, RefusalCode::cause_persists,
                             request.id, static_cast<double>(cause.code));
@@ -218,20 +223,21 @@ void Supervisor::answer_acknowledge(const Facts& facts, const Request& request, 
                           request.id);
     first_fault_ = {};
     told_ = 0;
-    orders.acknowledged_by = request.id;
+    outputs.acknowledged_by = request.id;
     go(State::starting, request.id, events);
-  } else if (facts.answers) {
-    orders.acknowledged_by = request.id;
+  } else if (inputs.answers) {
+    outputs.acknowledged_by = request.id;
   } else {
     events.add(Event::Kind::request_refused, RefusalCode::nothing_to_acknowledge, request.id);
   }
 }
 
-void Supervisor::stop(const Facts& facts, std::uint32_t request, Orders& orders, EventList& events) noexcept {
-  if (safety_.safe_action[static_cast<std::size_t>(facts.phase)] == SafeAction::vent) {
+void Supervisor::stop(const SupervisorInputs& inputs, std::uint32_t request, SupervisorOutputs& outputs,
+                      EventList& events) noexcept {
+  if (safety_.safe_action[static_cast<std::size_t>(inputs.phase)] == SafeAction::vent) {
     venting_ |= sequence_->channels;
   }
-  orders.interrupt = SequenceEnd::stopped;
+  outputs.interrupt = SequenceEnd::stopped;
   end_sequence(SequenceEnd::stopped, events);
   go(State::stopping, request, events);
 }
@@ -250,18 +256,19 @@ void Supervisor::end_sequence(SequenceEnd end, EventList& events) noexcept {
   sequence_ = nullptr;
 }
 
-void Supervisor::move_on(const Facts& facts, Orders& orders, EventList& events) noexcept {
-  if (state_ == State::starting && facts.bus_good && facts.ready == all_) {
+void Supervisor::move_on(const SupervisorInputs& inputs, SupervisorOutputs& outputs,
+                         EventList& events) noexcept {
+  if (state_ == State::starting && inputs.bus_good && inputs.ready == all_) {
     go(State::idle, 0, events);
-  } else if (state_ == State::stopping && (venting_ & ~facts.at_rest) == 0) {
-    orders.vented = venting_;
+  } else if (state_ == State::stopping && (venting_ & ~inputs.at_rest) == 0) {
+    outputs.vented = venting_;
     go(State::idle, 0, events);
-  } else if (state_ == State::resynchronising && !orders.seek_rest && facts.rest == Rest::at_rest) {
+  } else if (state_ == State::resynchronising && !outputs.seek_rest && inputs.rest == Rest::at_rest) {
     venting_ = 0;
-    orders.begin = sequence_;
+    outputs.begin = sequence_;
     go(State::running, start_request_, events);
-  } else if (state_ == State::resynchronising && !orders.seek_rest && facts.rest == Rest::timed_out) {
-    orders.no_rest = sequence_->channels;
+  } else if (state_ == State::resynchronising && !outputs.seek_rest && inputs.rest == Rest::timed_out) {
+    outputs.no_rest = sequence_->channels;
     end_sequence(SequenceEnd::failed, events);
     go(State::idle, 0, events);
   }

@@ -22,7 +22,7 @@ namespace softgrip::control {
 enum class Rest : std::uint8_t { pending, at_rest, timed_out };
 
 /// Inputs of the supervisor in addition to the tick input. Masks: bit i is channel i.
-struct Facts {
+struct SupervisorInputs {
   Fault fault;  ///< due now
   Fault cause;  ///< what is there and is a fault or grows to one
   bool bus_good = false;
@@ -34,7 +34,7 @@ struct Facts {
 };
 
 /// Outputs of the supervisor for this tick.
-struct Orders {
+struct SupervisorOutputs {
   std::optional<SequenceEnd> interrupt;          ///< the player stops, for this reason
   std::optional<std::uint32_t> acknowledged_by;  ///< answers are cleared, because of this request
   bool release = false;                          ///< the sequence that runs goes on with its release
@@ -48,7 +48,7 @@ class Supervisor {
  public:
   explicit Supervisor(const RigSettings& settings);
 
-  Orders tick(const TickInput& input, const Facts& facts, EventList& events) noexcept;
+  SupervisorOutputs tick(const TickInput& input, const SupervisorInputs& inputs, EventList& events) noexcept;
   /// The player came to the end of the sequence.
   void sequence_ended(SequenceEnd end, OnFail action, Phase phase, EventList& events) noexcept;
 
@@ -62,26 +62,33 @@ class Supervisor {
 
  private:
   void go(State state, std::uint32_t request, EventList& events) noexcept;
-  void latch(const Facts& facts, Orders& orders, EventList& events) noexcept;
+  void latch(const SupervisorInputs& inputs, SupervisorOutputs& outputs, EventList& events) noexcept;
   [[nodiscard]] SafeAction action_for(FaultCode code, Phase phase) const noexcept;
-  void answer(const TickInput& input, const Facts& facts, Orders& orders, EventList& events) noexcept;
-  void answer_start(const TickInput& input, const Facts& facts, Orders& orders, EventList& events) noexcept;
-  [[nodiscard]] RefusalCode refusal_of_start(const TickInput& input, const Facts& facts) const noexcept;
+  void answer(const TickInput& input, const SupervisorInputs& inputs, SupervisorOutputs& outputs,
+              EventList& events) noexcept;
+  void answer_start(const TickInput& input, const SupervisorInputs& inputs, SupervisorOutputs& outputs,
+                    EventList& events) noexcept;
+  [[nodiscard]] RefusalCode refusal_of_start(const TickInput& input,
+                                             const SupervisorInputs& inputs) const noexcept;
   /// Reports a refusal.
-  [[nodiscard]] bool refuses_start(const TickInput& input, const Facts& facts,
+  [[nodiscard]] bool refuses_start(const TickInput& input, const SupervisorInputs& inputs,
                                    EventList& events) const noexcept;
-  void answer_check(const TickInput& input, const Facts& facts, EventList& events) const noexcept;
-  void answer_stop(const Facts& facts, const Request& request, Orders& orders, EventList& events) noexcept;
-  void answer_stop_of(const Facts& facts, const Request& request, Orders& orders, EventList& events) noexcept;
-  void answer_vent(const Request& request, Orders& orders, EventList& events) noexcept;
-  void answer_release(const Facts& facts, const Request& request, Orders& orders, EventList& events) noexcept;
-  void answer_acknowledge(const Facts& facts, const Request& request, Orders& orders,
+  void answer_check(const TickInput& input, const SupervisorInputs& inputs, EventList& events) const noexcept;
+  void answer_stop(const SupervisorInputs& inputs, const Request& request, SupervisorOutputs& outputs,
+                   EventList& events) noexcept;
+  void answer_stop_of(const SupervisorInputs& inputs, const Request& request, SupervisorOutputs& outputs,
+                      EventList& events) noexcept;
+  void answer_vent(const Request& request, SupervisorOutputs& outputs, EventList& events) noexcept;
+  void answer_release(const SupervisorInputs& inputs, const Request& request, SupervisorOutputs& outputs,
+                      EventList& events) noexcept;
+  void answer_acknowledge(const SupervisorInputs& inputs, const Request& request, SupervisorOutputs& outputs,
                           EventList& events) noexcept;
   [[nodiscard]] bool withdrawn(std::uint32_t start) const noexcept;
   void withdraw(const Request& stop) noexcept;
-  void stop(const Facts& facts, std::uint32_t request, Orders& orders, EventList& events) noexcept;
+  void stop(const SupervisorInputs& inputs, std::uint32_t request, SupervisorOutputs& outputs,
+            EventList& events) noexcept;
   void end_sequence(SequenceEnd end, EventList& events) noexcept;
-  void move_on(const Facts& facts, Orders& orders, EventList& events) noexcept;
+  void move_on(const SupervisorInputs& inputs, SupervisorOutputs& outputs, EventList& events) noexcept;
   [[nodiscard]] bool playing() const noexcept { return sequence_ != nullptr; }
 
   SafetySettings safety_;

@@ -39,8 +39,8 @@ enum class State : std::uint8_t {
   return state == State::resynchronising || state == State::running;
 }
 
-/// Why a finger is not at rest where a start needs it: it moves, or rests elsewhere than its model.
-enum class RestLack : std::uint8_t { none, moves, off_model };
+/// Reason why a finger has not settled although a start needs it at rest: it moves, or it is off its model.
+enum class UnsettledReason : std::uint8_t { none, moves, off_model };
 
 /// How a sequence ended.
 enum class SequenceEnd : std::uint8_t { done, failed, stopped, faulted };
@@ -100,7 +100,7 @@ struct ChannelOutput {
   double feedback_kpa = 0;     ///< 0 while nothing is tracked
   double residual_mm = 0;      ///< reading minus (model + offset), both at the time the reading was sampled;
                                ///< NaN while there is no valid reading
-  double deficit_mm = 0;       ///< how much less than its free-motion envelope the finger moved; NaN without
+  double shortfall_mm = 0;     ///< how much less than its free-motion envelope the finger moved; NaN without
                                ///< sight and until the second valid reading in a row
   double free_kpa = 0;  ///< the command that the free finger needs to rest at this displacement; of the
                         ///< last valid reading
@@ -159,12 +159,12 @@ struct Event {
     reading_unsteady,  ///< the reading jumps there and back, again and again
     reading_steady,    ///< it has been calm for a while
     start_checked,     ///< a start would be accepted now
-    not_at_rest,  ///< why a start found no rest: detail: RestLack; value: how far off its model it is [mm]
+    not_at_rest,  ///< why a start found no rest. detail: UnsettledReason; value: model offset at rest [mm]
   };
   Kind kind = Kind::state_changed;
   std::uint8_t channel = whole_rig;
   /// State, FaultCode, GripResult, step, RefusalCode, HealthState, Validity, SequenceEnd, OnContact,
-  /// BindingLimit or RestLack, by kind.
+  /// BindingLimit or UnsettledReason, by kind.
   std::uint16_t detail = 0;
   std::uint32_t request = 0;  ///< the id of the request it answers, or 0
   /// value that belongs to it (a displacement shortfall, an age, a contact position), or 0

@@ -34,7 +34,7 @@ GainPoint centre_of_best(const Corners& corners) {
   return centre;
 }
 
-/// Of sorted corners.
+/// Moves the worst of the sorted corners.
 void move_worst(Corners& corners, const std::function<double(const GainPoint&)>& cost) {
   const GainPoint centre = centre_of_best(corners);
   const GainPoint worst = corners[3].second;

@@ -1,5 +1,6 @@
 #pragma once
-// PID gains by one and the same search, so that what is compared is what stands beside the PID.
+// Searches PID gains. All controllers are tuned by this search, so that a comparison shows only the effect of
+// their other parts.
 
 #include <array>
 #include <functional>
@@ -8,7 +9,7 @@
 
 namespace softgrip::control {
 
-/// What is searched over: ln kp, ln ki and something for the derivative.
+/// The variables of the search: ln kp, ln ki and a variable for the derivative, which depends on the caller.
 using GainPoint = std::array<double, 3>;
 
 /// Nelder and Mead's simplex (Computer Journal 7, 1965).

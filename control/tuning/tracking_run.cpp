@@ -111,7 +111,7 @@ GainRange gain_range(const model::Model& body, const LimitSettings& limits) {
   return range;
 }
 
-/// What creeps, without what follows at once [mm/kPa].
+/// Returns the compliance of the creep, without the instantaneous part [mm/kPa].
 std::complex<double> creep(const model::Model& body, std::complex<double> s) {
   std::complex<double> sum = 0;
   for (const model::BlockSpec& block : body.blocks) {

@@ -33,7 +33,7 @@ struct TrackingRun {
   double reading_step_mm = 0;   ///< quantisation of the reading; 0: none
   double command_step_kpa = 0;  ///< quantisation of the output; 0: none
   std::uint64_t seed = 1;
-  /// For feedforward `planned`: plan_for() of this run; made anew where there is none.
+  /// For feedforward `planned`: plan_for() of this run; if it is null, the plan is computed for the run.
   const PressurePlan* plan = nullptr;
   TrackingTrace* trace = nullptr;  ///< filled where there is one
 };
@@ -41,7 +41,7 @@ struct TrackingRun {
 /// The plan for a run's reference, by the model that its controller believes in.
 [[nodiscard]] PressurePlan plan_for(const TrackingRun& run);
 
-/// What came out, of the finger itself (not of its noisy reading), over the measured cycles.
+/// The result over the measured cycles, for the finger itself (not for its noisy reading).
 struct TrackingResult {
   double rmse_mm = 0;
   double worst_mm = 0;

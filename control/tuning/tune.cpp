@@ -18,7 +18,7 @@ namespace {
 using Point = GainPoint;
 
 constexpr double filter_share = 0.125;
-/// What a loop costs that lacks margin [mm]; more the more it lacks.
+/// The smallest cost of a loop that lacks margin [mm]. The cost increases with the missing margin.
 constexpr double no_margin_mm = 100;
 constexpr double most_error_mm = 50;
 

@@ -12,7 +12,7 @@
 
 namespace softgrip::control {
 
-/// What to tune for. The finger is drawn around `finger`, the controller believes `channel.model`.
+/// The task of a tuning. The finger is drawn around `finger`, the controller believes `channel.model`.
 struct TuneTask {
   ChannelSettings channel;  ///< model, feedforward and limits; the gains in it are not used
   model::Model finger;
@@ -29,7 +29,7 @@ struct TuneTask {
   int iterations = 40;  ///< of the search, after its grid
 };
 
-/// The optimum and where it stands.
+/// The optimum, its margin and its errors.
 struct Tuned {
   PidSettings pid;
   double sensitivity = 0;   ///< the worst Ms over the fingers

@@ -119,7 +119,7 @@ void CsvRows::append(std::string& text, const Record& record, Nanoseconds begin)
   number(row.feedforward_kpa);
   number(row.feedback_kpa);
   number(row.residual_mm);
-  number(row.deficit_mm);
+  number(row.shortfall_mm);
   number(row.age_s);
   word(control::name_of(record.state), ',');
   to = write_whole(to, row.step);

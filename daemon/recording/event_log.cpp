@@ -211,8 +211,8 @@ void describe_check(const Event&, const Sequence*, EventEntry& entry) {
   entry.text = "A start was checked: it would be accepted now.";
 }
 
-void describe_lack(const Event& event, const Sequence*, EventEntry& entry) {
-  const bool moves = static_cast<control::RestLack>(event.detail) == control::RestLack::moves;
+void describe_not_at_rest(const Event& event, const Sequence*, EventEntry& entry) {
+  const bool moves = static_cast<control::UnsettledReason>(event.detail) == control::UnsettledReason::moves;
   entry.code = moves ? "moves" : "off_model";
   entry.text =
       moves ? std::string("The finger did not come to rest: nothing was started.")
@@ -248,7 +248,7 @@ constexpr std::array<Telling, 19> tellings{{
     {"reading_unsteady", describe_unsteady},
     {"reading_steady", describe_unsteady},
     {"start_checked", describe_check},
-    {"not_at_rest", describe_lack},
+    {"not_at_rest", describe_not_at_rest},
 }};
 static_assert(static_cast<std::size_t>(Kind::not_at_rest) + 1 == tellings.size());
 

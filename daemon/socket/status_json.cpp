@@ -87,7 +87,7 @@ Json json_of_channel(const control::ChannelSettings& settings, const control::Ch
           {"feedforward_kpa", number(channel.feedforward_kpa)},
           {"feedback_kpa", number(channel.feedback_kpa)},
           {"residual_mm", number(channel.residual_mm)},
-          {"deficit_mm", number(channel.deficit_mm)},
+          {"deficit_mm", number(channel.shortfall_mm)},
           {"squeeze_kpa", number(channel.squeeze_kpa)},
           {"free_kpa", number(channel.free_kpa)},
           {"age_s", channel.validity == model::Validity::none_yet ? Json(nullptr) : number(channel.age_s)},

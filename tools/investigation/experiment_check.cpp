@@ -72,22 +72,22 @@ std::optional<std::string> touched(const sysid::Validation& predicted, const sys
     if (log.pressure_command_kpa[i] <= known_kpa) highest_mm = std::max(highest_mm, free_mm[i]);
   }
   PairSums lower, upper;
-  double stopped_at_mm = 0, deficit_mm = 0;
+  double stopped_at_mm = 0, shortfall_mm = 0;
   for (std::size_t i = 0; i < log.size(); ++i) {
     const double reading_mm = log.displacement_mm[i];
     if (!std::isfinite(reading_mm) || log.pressure_command_kpa[i] > known_kpa) continue;
     if (free_mm[i] > 0.1 * highest_mm && free_mm[i] < 0.5 * highest_mm) lower.add(free_mm[i], reading_mm);
     if (free_mm[i] < 0.75 * highest_mm) continue;
     upper.add(free_mm[i], reading_mm);
-    deficit_mm = std::max(deficit_mm, free_mm[i] - reading_mm);
+    shortfall_mm = std::max(shortfall_mm, free_mm[i] - reading_mm);
     stopped_at_mm = std::max(stopped_at_mm, reading_mm);
   }
   if (!is_known(lower) || !is_known(upper)) return std::nullopt;
   // Half as steep, and a tenth of the stroke short: no error of a model that fitted the campaign so far.
-  const bool stopped = upper.slope() < 0.5 * lower.slope() && deficit_mm > 0.1 * highest_mm;
+  const bool stopped = upper.slope() < 0.5 * lower.slope() && shortfall_mm > 0.1 * highest_mm;
   if (!stopped) return std::nullopt;
   return "the finger touched something: it stopped at " + significant(stopped_at_mm, 3) + " mm, " +
-         significant(deficit_mm, 2) + " mm short of its free motion; clear its way and start again";
+         significant(shortfall_mm, 2) + " mm short of its free motion; clear its way and start again";
 }
 
 }  // namespace softgrip::tools

@@ -9,7 +9,7 @@
 namespace softgrip::control::channel_player_test {
 namespace {
 
-constexpr ChannelTraits traits{.margin_mm = 1, .rest_kpa = 0, .preview_s = 0.1, .sighted = true};
+constexpr ChannelTraits traits{.margin_mm = 1, .rest_kpa = 0, .preview_s = 0.1, .displacement_used = true};
 
 Step step_of(StepKind kind) {
   Step step;
@@ -23,11 +23,11 @@ Step step_of(StepKind kind) {
 }
 
 /// A finger so much short of its free motion.
-ChannelOutput short_by(double deficit_mm) {
+ChannelOutput short_by(double shortfall_mm) {
   ChannelOutput seen;
   seen.validity = model::Validity::valid;
   seen.displacement_mm = 8;
-  seen.residual_mm = -deficit_mm;
+  seen.residual_mm = -shortfall_mm;
   return seen;
 }
 

@@ -30,7 +30,7 @@ TEST_F(GripCycle, AStoneIsHeldAndReleased) {
   for (std::size_t i = 0; i < 2; ++i) {
     EXPECT_EQ(rig.result(i), GripResult::holding);
     EXPECT_EQ(rig.output().channels[i].evidence, GripEvidence::displacement);
-    EXPECT_GT(rig.output().channels[i].deficit_mm, settings.detection.margin_mm);
+    EXPECT_GT(rig.output().channels[i].shortfall_mm, settings.detection.margin_mm);
   }
   ASSERT_TRUE(rig.run_until(State::idle, 30));
   EXPECT_EQ(rig.result(0), GripResult::released);

@@ -263,7 +263,7 @@ TEST_F(Requests, AFingerThatDoesNotComeToRestIsNotStarted) {
   const auto why = std::ranges::find(rig.events, Event::Kind::not_at_rest, &Event::kind);
   ASSERT_NE(why, rig.events.end());
   EXPECT_EQ(why->channel, 0);
-  EXPECT_EQ(why->detail, static_cast<std::uint16_t>(RestLack::moves));
+  EXPECT_EQ(why->detail, static_cast<std::uint16_t>(UnsettledReason::moves));
 }
 
 TEST_F(Requests, AHeldFingerMustBeAtRestToo) {
@@ -295,7 +295,7 @@ TEST_F(Requests, AGripThatNeedsTheModelIsNotStartedWhereTheModelIsFarOff) {
   const auto why = std::ranges::find(rig.events, Event::Kind::not_at_rest, &Event::kind);
   ASSERT_NE(why, rig.events.end());
   EXPECT_EQ(why->channel, 0);
-  EXPECT_EQ(why->detail, static_cast<std::uint16_t>(RestLack::off_model));
+  EXPECT_EQ(why->detail, static_cast<std::uint16_t>(UnsettledReason::off_model));
   EXPECT_NEAR(why->value, 1.5 * settings.detection.margin_mm, 0.1);
   const PreparedSequence track = example_sequence("track_sine", settings);
   rig.request(Request::Kind::start, &track);

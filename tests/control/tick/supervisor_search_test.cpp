@@ -82,17 +82,17 @@ class SupervisorSearch : public testing::Test {
     input.request = {tick.request, id, names_one ? &sequence_ : nullptr, tick.of_start};
     input.interlock_open = tick.interlock_open;
     input.emergency_stop = tick.fault == FaultCode::emergency_stop;
-    Facts facts;
-    facts.fault = {tick.fault, whole_rig, 0};
-    if (tick.cause_present) facts.cause.code = FaultCode::sensor_error;
-    facts.bus_good = tick.bus_good;
-    facts.ready = tick.all_ready ? all : 1;
-    facts.at_rest = tick.all_at_rest ? all : 0;
-    facts.phase = tick.phase;
-    facts.rest = tick.rest;
+    SupervisorInputs inputs;
+    inputs.fault = {tick.fault, whole_rig, 0};
+    if (tick.cause_present) inputs.cause.code = FaultCode::sensor_error;
+    inputs.bus_good = tick.bus_good;
+    inputs.ready = tick.all_ready ? all : 1;
+    inputs.at_rest = tick.all_at_rest ? all : 0;
+    inputs.phase = tick.phase;
+    inputs.rest = tick.rest;
     EventList events;
-    const Orders orders = supervisor.tick(input, facts, events);
-    std::string broken = judge(before, supervisor, tick, orders, events);
+    const SupervisorOutputs outputs = supervisor.tick(input, inputs, events);
+    std::string broken = judge(before, supervisor, tick, outputs, events);
     if (tick.sequence_ends && supervisor.state() == State::running) {
       supervisor.sequence_ended(SequenceEnd::done, OnFail::release, tick.phase, events);
       if (may_rise(supervisor.state())) broken = "a sequence that has ended runs on";
@@ -100,8 +100,8 @@ class SupervisorSearch : public testing::Test {
     return broken;
   }
 
-  static std::string judge(State before, const Supervisor& supervisor, const Tick& tick, const Orders& orders,
-                           const EventList& events) {
+  static std::string judge(State before, const Supervisor& supervisor, const Tick& tick,
+                           const SupervisorOutputs& outputs, const EventList& events) {
     const State after = supervisor.state();
     std::size_t answers = 0;
     bool started = false;
@@ -120,21 +120,21 @@ class SupervisorSearch : public testing::Test {
     if (halts && may_rise(after)) return "motion goes on after a stop or a vent";
     if (tick.request == Kind::vent && supervisor.venting() != all && after != State::idle)
       return "a vent is refused";
-    if (orders.release && after == State::running && supervisor.sequence() == nullptr)
+    if (outputs.release && after == State::running && supervisor.sequence() == nullptr)
       return "a release of nothing";
     if (tick.request == Kind::release && before == State::resynchronising && may_rise(after))
       return "motion goes on after a release";
     if (after == State::resynchronising && before != after && !started) return "motion that nobody asked for";
     if (after == State::running && before != after && before != State::resynchronising)
       return "motion without looking for rest";
-    if (orders.begin != nullptr && after != State::running) return "a sequence is played that does not run";
+    if (outputs.begin != nullptr && after != State::running) return "a sequence is played that does not run";
     if (started && (tick.interlock_open || !tick.bus_good || !tick.all_ready) && tick.request == Kind::start)
       return "a start that should have been refused";
     if (before == State::faulted && after != State::faulted && !acknowledged) return "a fault goes by itself";
     if (acknowledged && tick.cause_present) return "a fault is acknowledged whose cause is there";
     if (may_rise(after) && supervisor.sequence() == nullptr) return "motion without a sequence";
     if (!may_rise(after) && supervisor.sequence() != nullptr) return "a sequence without motion";
-    if (tick.request != Kind::none && answers == 0 && !orders.acknowledged_by)
+    if (tick.request != Kind::none && answers == 0 && !outputs.acknowledged_by)
       return "a request without an answer";
     if (after == State::faulted && (tick.fault == FaultCode::board_watchdog_tripped) &&
         supervisor.venting() != all)

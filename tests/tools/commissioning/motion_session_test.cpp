@@ -367,10 +367,10 @@ TEST_F(MotionSessionTest, WhatIsRequiredAndLostOnTheWayEndsTheMotionWithinItsCyc
     VentingBoard board(clock);
     const Nanoseconds lost_at = clock.now() + 1500 * ms;
     double stood_kpa = 0;  // after the last exchange with both sensors
-    bool sighted = true;
+    bool first_status = true;
     board.on_exchange = [&] {
       if (clock.now() < lost_at) return;
-      if (std::exchange(sighted, false)) stood_kpa = board.outputs_kpa[0];
+      if (std::exchange(first_status, false)) stood_kpa = board.outputs_kpa[0];
       if (displacement) board.validity = model::Validity::out_of_range;
       board.monitored = displacement;
     };
