@@ -13,7 +13,7 @@ namespace {
 /// have started earlier.
 constexpr double on_its_way_share = 0.6;
 
-/// Beyond which a standard normal value lies, on either side, once in so many.
+/// Returns the limit that a standard normal value exceeds, on either side, once in `once_in` values.
 double two_sided_limit(double once_in) {
   double lower = 0, upper = 40;
   for (int i = 0; i < 80; ++i) {
@@ -65,7 +65,7 @@ std::optional<double> ControlChart::add(const ChartValues& values) {
   }
   if (!alarm_) {
     waiting_.push_back(values);
-    if (std::max(up_, down_) <= limits_.doubt) {
+    if (std::max(up_, down_) <= limits_.pause_learning) {
       for (const ChartValues& learnt : waiting_) learn(learnt);
       waiting_.clear();
     }
@@ -105,10 +105,10 @@ void ControlChart::judge(double z, double count, double persistence) {
   const std::size_t now = history_.size() - 1;
   if (up_ == 0) up_since_ = now;
   if (down_ == 0) down_since_ = now;
-  const bool in_doubt = std::max(up_, down_) > limits_.doubt;
-  const double allowance = limits_.allowance + (in_doubt ? 1 / std::sqrt(count) : 0);
+  const bool learning_paused = std::max(up_, down_) > limits_.pause_learning;
+  const double allowance = limits_.allowance + (learning_paused ? 1 / std::sqrt(count) : 0);
   const double slow = z * std::sqrt((1 - persistence) / (1 + persistence));
-  const bool on_its_way = (z > 0 ? up_ : down_) > on_its_way_share * limits_.doubt;
+  const bool on_its_way = (z > 0 ? up_ : down_) > on_its_way_share * limits_.pause_learning;
   up_ = std::max(0.0, up_ + slow - allowance);
   down_ = std::max(0.0, down_ - slow - allowance);
   std::optional<std::size_t> since;

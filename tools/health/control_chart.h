@@ -1,33 +1,33 @@
 #pragma once
-// A self-starting control chart: says when the values of a healthy finger are no longer what they were,
-// without being told what they are.
+// A self-starting control chart: detects a change of the values of a healthy finger without a given
+// reference.
 //
-// Every value is compared with those before it (running_reference.h), in units of their own spread, and what
-// Student's t makes of that is turned into a standard normal value: of healthy values that are independent
-// and normal these are independent and standard normal from the third on, whatever their mean and spread
-// (Hawkins, The Statistician 36, 1987; Quesenberry, Journal of Quality Technology 23, 1991). Where the values
-// come with a temperature that they surely follow, they are compared with their line over it (control charts
-// of regression-adjusted variables: Hawkins, Technometrics 33, 1991). Two judges look at them: a two-sided
-// CUSUM (Page, Biometrika 41, 1954) for shifts that stay, a plain limit for what is large at once (Lucas,
-// Journal of Quality Technology 14, 1982). Each is given half of the false alarms that are asked for.
+// Every value is compared with those before it (running_reference.h), in units of their own spread. The
+// resulting Student's t value is turned into a standard normal value. For independent normal values, the
+// results are independent and standard normal from the third value on, for any mean and spread
+// (Hawkins, The Statistician 36, 1987; Quesenberry, Journal of Quality Technology 23, 1991). If the values
+// significantly follow a recorded temperature, they are compared with their line over it (control charts of
+// regression-adjusted variables: Hawkins, Technometrics 33, 1991). Two tests use the results: a two-sided
+// CUSUM (Page, Biometrika 41, 1954) for lasting shifts, and a limit for single large values (Lucas, Journal
+// of Quality Technology 14, 1982). Each test receives half of the specified false alarm rate.
 //
-// While a CUSUM is far up nothing is learnt: a change that comes soon after the start would become what is
-// usual before it is noticed. Values that are judged against the same few share what is wrong with those; the
-// allowance grows by it, one spread over the root of their number. After an alarm what was learnt since the
-// change is forgotten.
+// While a CUSUM is far up, the chart learns nothing. Otherwise a change soon after the start would become the
+// reference before it is detected. Values that are judged against the same few reference values share the
+// error of these. The allowance therefore grows by one spread over the root of their number. After an alarm,
+// the chart forgets the values since the change.
 //
-// Weather stays for days: values that take after the one before wander farther than independent ones would.
-// How much they do is estimated (lag-one correlation, less half its standard error), and the CUSUM takes its
-// values in units of the spread that a mean over many such values has, after Johnson and Bagshaw
-// (Technometrics 16, 1974). Of 4000 simulated charts 90 healthy values long so many alarmed with that, and
-// without it: correlated by 0.5 4.4 and 24 %, by 0.7 15 and 65 %. The stated rate is that of independent
+// Weather lasts for days: correlated values drift farther than independent ones. The chart estimates the
+// correlation (lag one, less half its standard error). The CUSUM takes its values in units of the spread of a
+// mean over many such values, after Johnson and Bagshaw (Technometrics 16, 1974). 4000 charts with 90 healthy
+// values each were simulated. With a correlation of 0.5, 4.4 % of the charts alarmed (24 % without this
+// correction); with 0.7, 15 % (65 %). The stated rate applies to independent values.
+//
+// In 200,000 simulated charts of independent values with 32850 values between two false alarms, 1.2 times as
+// many charts as stated alarmed within the first 90 values. These charts did not estimate the correlation,
+// which reduces the number. Detection of a shift within 30 values: a shift by 3 spreads after 8 healthy
+// values in 59 of 100 charts, and after 20 healthy values in 95 of 100, with a mean delay of 10 values. A
+// shift by 6 spreads after 8 values, or by 5 spreads after 20, was detected in all charts, after 9 and 4
 // values.
-//
-// Of 200,000 simulated charts with 32850 independent values stated between two false alarms 1.2 times as many
-// alarmed within their first 90 as the stated rate would have it, without the estimate of correlation, which
-// makes them fewer. A shift by three spreads is found within thirty values in 59 of 100 charts where it comes
-// after eight healthy ones, in 95 after twenty, then after ten on the mean; by six after eight, by five after
-// twenty in all, after nine and after four.
 
 #include <cstddef>
 #include <map>
@@ -41,10 +41,10 @@ namespace softgrip::tools::health {
 
 /// Limits of a chart.
 struct ChartLimits {
-  double allowance = 0.5;  ///< half the shift to be found, in spreads
-  double cusum = 0;        ///< threshold
-  double single = 0;       ///< limit of one standard normal value
-  double doubt = 5;        ///< a CUSUM beyond it: nothing is learnt until it is back
+  double allowance = 0.5;     ///< half the shift to be found, in spreads
+  double cusum = 0;           ///< threshold
+  double single = 0;          ///< limit of one standard normal value
+  double pause_learning = 5;  ///< a CUSUM beyond it pauses learning until it is back
 
   /// @param run_length  mean number of healthy values between false alarms of one chart, at least 20.
   [[nodiscard]] static ChartLimits for_run_length(double run_length);

@@ -34,7 +34,7 @@ struct HealthPoint {
   std::size_t epoch = 0;                                              ///< number of earlier repairs
   std::array<ChartValues, sysid::health_numbers> values;              ///< medians by recipe
   std::array<std::optional<double>, sysid::health_numbers> judged{};  ///< standard normal
-  /// How much more than its rig-mates on the same runs, beyond what is usual; absent without mates.
+  /// Change relative to the peer fingers on the same runs, compared with the reference; absent without peers.
   std::array<std::optional<double>, sysid::health_numbers> beside{};
   std::optional<double> temperature_c;  ///< median of its runs
 };

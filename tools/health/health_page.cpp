@@ -152,7 +152,7 @@ std::string slope_text(const FingerHealth& health, std::size_t number) {
 }
 
 /// Since the last note.
-bool has_mates(const FingerHealth& health) {
+bool has_peers(const FingerHealth& health) {
   return std::any_of(health.points.begin(), health.points.end(), [&](const HealthPoint& point) {
     return point.epoch == health.epoch() && std::any_of(point.beside.begin(), point.beside.end(),
                                                         [](const auto& by) { return by.has_value(); });
@@ -171,7 +171,7 @@ void add_allowances(sysid::Page& page, const FingerHealth& health, const std::ve
   else if (lines.empty())
     lines.emplace_back("The temperature is recorded; no number is known to follow it.");
   lines.emplace_back(
-      has_mates(health)
+      has_peers(health)
           ? "What the other fingers on the same runs do alike is no change of this one."
           : "There is no healthy finger on the same runs to compare it with: weather that is not "
             "recorded may pass for a change.");
@@ -194,7 +194,7 @@ void add_suspicion(sysid::Page& page, const Suspicion& suspicion, const std::str
 }
 
 void add_alarms(sysid::Page& page, const FingerHealth& health) {
-  sysid::Table table{"All alarms, those too that ended with what was mended",
+  sysid::Table table{"All alarms, including those closed by a repair",
                      {"number", "change", "since", "noticed", "grips until then", "stands"},
                      {false, true, false, false, true, false},
                      {}};

@@ -1,9 +1,9 @@
 #pragma once
-// What was mended, and when: notes.yaml.
+// The maintenance records: notes.yaml.
 //
 //   notes:
 //     - {date: 2026-11-03, finger: left, mended: finger replaced}
-//     - {date: 2026-11-20T14:30:00Z, mended: "sensors clamped anew"}
+//     - {date: 2026-11-20T14:30:00Z, mended: "sensors clamped again"}
 
 #include <optional>
 #include <string>

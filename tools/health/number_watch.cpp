@@ -108,21 +108,22 @@ void NumberWatch::add_own(std::size_t finger, std::size_t moment) {
   }
 }
 
-NumberWatch::Mates NumberWatch::mates_of(std::size_t finger) const {
-  Mates mates;
+NumberWatch::PeerFingers NumberWatch::peers_of(std::size_t finger) const {
+  PeerFingers peers;
   for (const std::size_t j : have_runs_in_common_[finger]) {
-    if (!watched_[j].alarm) mates.emplace_back(j, watched_[j].epoch);
+    if (!watched_[j].alarm) peers.emplace_back(j, watched_[j].epoch);
   }
-  return mates;
+  return peers;
 }
 
-std::vector<std::string> NumberWatch::names_of(const Mates& mates) const {
+std::vector<std::string> NumberWatch::names_of(const PeerFingers& peers) const {
   std::vector<std::string> names;
-  for (const auto& [mate, epoch] : mates) names.push_back(tracks_[mate].health.finger);
+  for (const auto& [peer, epoch] : peers) names.push_back(tracks_[peer].health.finger);
   return names;
 }
 
-ChartValues NumberWatch::difference_at(std::size_t finger, std::size_t point, const Mates& mates) const {
+ChartValues NumberWatch::difference_at(std::size_t finger, std::size_t point,
+                                       const PeerFingers& peers) const {
   struct Found {
     std::vector<double> differences, temperatures_c;
   };
@@ -130,13 +131,13 @@ ChartValues NumberWatch::difference_at(std::size_t finger, std::size_t point, co
   for (const ScoredRun* run : tracks_[finger].groups[point].runs) {
     std::string key = run->recipe + " beside";
     std::vector<double> theirs;
-    for (const auto& [mate, epoch] : mates) {
-      const auto same = tracks_[mate].by_run.find(run->run);
-      if (same == tracks_[mate].by_run.end() || same->second.epoch != epoch) continue;
+    for (const auto& [peer, epoch] : peers) {
+      const auto same = tracks_[peer].by_run.find(run->run);
+      if (same == tracks_[peer].by_run.end() || same->second.epoch != epoch) continue;
       const double value = same->second.run->score.values[number_];
       if (!std::isfinite(value)) continue;
       theirs.push_back(value);
-      key += " " + tracks_[mate].health.finger;
+      key += " " + tracks_[peer].health.finger;
     }
     const double own = run->score.values[number_];
     if (theirs.empty() || !std::isfinite(own)) continue;
@@ -155,14 +156,14 @@ ChartValues NumberWatch::difference_at(std::size_t finger, std::size_t point, co
 
 /// Compares the finger's points since its last maintenance record again, as if the peer fingers had always
 /// been these.
-void NumberWatch::compare_anew(std::size_t finger, Mates mates) {
+void NumberWatch::compare_again(std::size_t finger, PeerFingers peers) {
   note_differences(finger);
   Watched& watched = watched_[finger];
-  watched.mates = std::move(mates);
+  watched.peers = std::move(peers);
   watched.beside = new_chart(finger);
   watched.beside_at.clear();
   for (const std::size_t point : points_of(finger)) {
-    const ChartValues values = difference_at(finger, point, watched.mates);
+    const ChartValues values = difference_at(finger, point, watched.peers);
     if (values.empty()) continue;
     watched.beside_at.push_back(point);
     (void)watched.beside.add(values);
@@ -171,16 +172,16 @@ void NumberWatch::compare_anew(std::size_t finger, Mates mates) {
 
 void NumberWatch::add_beside(std::size_t finger, std::size_t moment) {
   Watched& watched = watched_[finger];
-  Mates mates = mates_of(finger);
-  if (mates != watched.mates) {
+  PeerFingers peers = peers_of(finger);
+  if (peers != watched.peers) {
     // The data of an alarm do not change afterwards.
-    if (!watched.alarm) compare_anew(finger, std::move(mates));
+    if (!watched.alarm) compare_again(finger, std::move(peers));
     return;
   }
   if (watched.own_at.empty() || moment_of(finger, watched.own_at.back()) != moment) return;
   const std::size_t point = watched.own_at.back();
   if (!watched.beside_at.empty() && watched.beside_at.back() == point) return;
-  const ChartValues values = difference_at(finger, point, watched.mates);
+  const ChartValues values = difference_at(finger, point, watched.peers);
   if (values.empty()) return;
   watched.beside_at.push_back(point);
   (void)watched.beside.add(values);
@@ -224,10 +225,10 @@ std::optional<double> NumberWatch::moved(std::size_t finger, std::size_t from_mo
   return mean_of(all);
 }
 
-std::optional<double> NumberWatch::mates_moved(std::size_t finger, std::size_t from_moment) const {
+std::optional<double> NumberWatch::peers_moved(std::size_t finger, std::size_t from_moment) const {
   std::vector<double> all;
-  for (const auto& [mate, epoch] : mates_of(finger)) {
-    if (const auto by = moved(mate, from_moment)) all.push_back(*by);
+  for (const auto& [peer, epoch] : peers_of(finger)) {
+    if (const auto by = moved(peer, from_moment)) all.push_back(*by);
   }
   if (all.empty()) return std::nullopt;
   return mean_of(all);
@@ -246,17 +247,17 @@ double NumberWatch::usual_variance(std::size_t finger) const {
   return spread * spread * averaged;
 }
 
-std::optional<std::size_t> NumberWatch::culprit() const {
+std::optional<std::size_t> NumberWatch::changed_finger() const {
   std::optional<std::size_t> found;
   double most = sure;
   for (std::size_t i = 0; i < watched_.size(); ++i) {
     const Watched& watched = watched_[i];
     if (watched.alarm || !watched.beside.alarm()) continue;
     const std::size_t from = moment_of(i, watched.beside_at[watched.beside.alarm()->since]);
-    const auto own = moved(i, from), theirs = mates_moved(i, from);
+    const auto own = moved(i, from), theirs = peers_moved(i, from);
     if (!own || !theirs) continue;
     double variance = usual_variance(i);
-    for (const auto& [mate, epoch] : watched.mates) variance = std::max(variance, usual_variance(mate));
+    for (const auto& [peer, epoch] : watched.peers) variance = std::max(variance, usual_variance(peer));
     const double odds = (*own * *own - *theirs * *theirs) / (2 * variance);
     if (odds < most) continue;
     most = odds;
@@ -268,12 +269,12 @@ std::optional<std::size_t> NumberWatch::culprit() const {
 bool NumberWatch::is_shared(std::size_t finger) const {
   const Watched& watched = watched_[finger];
   const std::size_t from = moment_of(finger, watched.own_at[watched.own.alarm()->since]);
-  const auto theirs = mates_moved(finger, from);
+  const auto theirs = peers_moved(finger, from);
   return theirs && *theirs / watched.own.alarm()->change >= alike;
 }
 
 void NumberWatch::decide(std::size_t moment) {
-  while (const auto finger = culprit()) {
+  while (const auto finger = changed_finger()) {
     raise(*finger, true);
     for (std::size_t i = 0; i < watched_.size(); ++i) add_beside(i, moment);
   }
@@ -300,7 +301,7 @@ HealthAlarm NumberWatch::alarm_of(std::size_t finger, bool beside) const {
                     0,
                     {},
                     at.back()};
-  if (beside) alarm.beside = names_of(watched.mates);
+  if (beside) alarm.beside = names_of(watched.peers);
   if (watched.beside.alarm()) alarm.warned = watched.beside_at[watched.beside.alarm()->noticed];
   for (std::size_t p = alarm.since; p <= alarm.noticed; ++p)
     alarm.grips += tracks_[finger].health.points[p].grips;

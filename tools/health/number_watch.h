@@ -23,12 +23,12 @@ class NumberWatch {
 
  private:
   /// The peer fingers of a finger: index and number of repairs.
-  using Mates = std::vector<std::pair<std::size_t, std::size_t>>;
+  using PeerFingers = std::vector<std::pair<std::size_t, std::size_t>>;
 
   struct Watched {
     ControlChart own, beside;
     std::vector<std::size_t> own_at{}, beside_at{};  ///< the finger's point of each of the chart's
-    Mates mates{};
+    PeerFingers peers{};
     std::size_t epoch = 0;
     std::size_t next = 0;  ///< point
     std::optional<HealthAlarm> alarm{};
@@ -42,7 +42,7 @@ class NumberWatch {
   void add_beside(std::size_t finger, std::size_t moment);
   void decide(std::size_t moment);
   /// The finger whose difference is most surely its own change, where it is sure enough.
-  [[nodiscard]] std::optional<std::size_t> culprit() const;
+  [[nodiscard]] std::optional<std::size_t> changed_finger() const;
   [[nodiscard]] bool is_shared(std::size_t finger) const;
   void raise(std::size_t finger, bool beside);
   void share(std::size_t finger);
@@ -50,16 +50,17 @@ class NumberWatch {
   void close(std::size_t finger);
   [[nodiscard]] HealthAlarm alarm_of(std::size_t finger, bool beside) const;
 
-  [[nodiscard]] Mates mates_of(std::size_t finger) const;
-  [[nodiscard]] std::vector<std::string> names_of(const Mates& mates) const;
-  [[nodiscard]] ChartValues difference_at(std::size_t finger, std::size_t point, const Mates& mates) const;
+  [[nodiscard]] PeerFingers peers_of(std::size_t finger) const;
+  [[nodiscard]] std::vector<std::string> names_of(const PeerFingers& peers) const;
+  [[nodiscard]] ChartValues difference_at(std::size_t finger, std::size_t point,
+                                          const PeerFingers& peers) const;
   /// Into the points, as the chart of differences sees them.
   void note_differences(std::size_t finger);
-  void compare_anew(std::size_t finger, Mates mates);
+  void compare_again(std::size_t finger, PeerFingers peers);
 
   /// By how much the finger's own values moved: the last of them since `from` against those before.
   [[nodiscard]] std::optional<double> moved(std::size_t finger, std::size_t from_moment) const;
-  [[nodiscard]] std::optional<double> mates_moved(std::size_t finger, std::size_t from_moment) const;
+  [[nodiscard]] std::optional<double> peers_moved(std::size_t finger, std::size_t from_moment) const;
   /// Returns the variance of moved() in control.
   [[nodiscard]] double usual_variance(std::size_t finger) const;
   [[nodiscard]] std::size_t moment_of(std::size_t finger, std::size_t point) const;

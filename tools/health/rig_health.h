@@ -1,20 +1,21 @@
 #pragma once
-// How the fingers of a rig have been, each beside the others.
+// The health of the fingers of a rig, each compared with the others.
 //
-// What stays for days and is nobody's doing, the weather above all, moves all fingers of a rig alike. So
-// every number has two charts: of the finger's own values, and of their difference from its rig-mates on the
-// same runs, as for the streams of a process that has several (Mortell and Runger, Journal of Quality
-// Technology 27, 1995). They tell three things:
+// Influences that last for days, above all the weather, move all fingers of a rig alike. Every number
+// therefore has two charts: of the finger's own values, and of their difference from the peer fingers on the
+// same runs, as for a process with several streams (Mortell and Runger, Journal of Quality Technology 27,
+// 1995). The charts distinguish three cases:
 //
-// - The difference has changed. Whose change it is, the fingers' own numbers say: how much each moved about
-//   the time of the change, against how much such numbers wander together anyway (likelihood of the one
-//   against the other, 20 to 1). Until they do, it is told as unclear, without an alarm. With two fingers
-//   the two differences are one, and a false alarm of it is a false alarm of one of them.
-// - The own number has changed, and its mates' with it, in the same direction by half as much or more: a
-//   change that the rig shares. It is told as such, and becomes what is usual of the finger's own number.
-// - The own number has changed, and its mates' have not: an alarm, as it is of a finger without mates.
+// - The difference has changed. The fingers' own numbers attribute the change to a finger: the movement of
+//   each about the time of the change is compared with their usual common drift (likelihood ratio 20 to 1).
+//   Until the attribution is sure, the change is reported as unclear, without an alarm. With two fingers, the
+//   two differences are one, and a false alarm of it is a false alarm of one of them.
+// - The own number has changed, and the peers' numbers with it, in the same direction by half as much or
+// more:
+//   a change that the rig shares. It is reported as such, and becomes the reference of the own number.
+// - The own number has changed, and the peers' numbers have not: an alarm, as for a finger without peers.
 //
-// A finger in alarm is no measure for others, and what was mended begins the differences from it anew.
+// A finger in alarm is no reference for others. A repair of a finger restarts the differences from it.
 
 #include <string>
 #include <vector>
@@ -27,7 +28,7 @@ namespace softgrip::tools::health {
 struct FingerRuns {
   std::string finger;
   std::vector<ScoredRun> runs;
-  ScoreBase base;  ///< gives the differences that matter to nobody
+  ScoreBase base;  ///< gives the differences that are negligible
 };
 
 /// A change that several fingers share.

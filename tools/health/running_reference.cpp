@@ -11,12 +11,12 @@ constexpr double least_for_persistence = 15;
 /// The estimate is reduced by this number of standard errors.
 constexpr double surely = 0.5;
 constexpr double most_persistence = 0.95;
-/// Fewer values, or values at nearly one temperature, tell no slope.
+/// Fewer values, or values at nearly one temperature, determine no slope.
 constexpr double least_for_slope = 6;
 constexpr double least_temperature_spread_c = 0.3;
 constexpr double slope_significance = 3;
 /// Share of what the line adds beyond the temperatures seen that may be wrong, as a standard deviation.
-constexpr double doubt_beyond = 0.5;
+constexpr double extrapolation_uncertainty = 0.5;
 
 double persistence_of(const SerialSums& sums, double slope) {
   if (sums.count() < least_for_persistence) return 0;
@@ -130,8 +130,9 @@ std::optional<double> RunningReference::judge(double value, double least_spread,
     const double beyond_c = std::max({0.0, temperature_c - highest_c_, lowest_c_ - temperature_c});
     const double known = 1 + 1 / n + from_mean_c * from_mean_c / warm_.squares_x();
     const double spread = std::max(this->spread(), least_spread);
-    return normal_of_t(off / std::hypot(spread * std::sqrt(known), doubt_beyond * slope_->per_c * beyond_c),
-                       n - 2);
+    return normal_of_t(
+        off / std::hypot(spread * std::sqrt(known), extrapolation_uncertainty * slope_->per_c * beyond_c),
+        n - 2);
   }
   const double n = all_.count();
   if (n < 2) return std::nullopt;

@@ -1,13 +1,14 @@
 #pragma once
-// What is usual of a number: its mean and spread, or, where its recordings hold a temperature and the number
-// follows it, a line over the temperature and the spread about that.
+// The reference of a number: its mean and spread. If its recordings hold a temperature and the number follows
+// it, the reference is a line over the temperature and the spread about this line.
 //
-// A value is judged by what the line of all values before it leaves of it, in units of what that would vary
-// by: recursive residuals (Brown, Durbin and Evans, Journal of the Royal Statistical Society B 37, 1975),
-// which are independent and Student's t for healthy values, as those of a mean alone are. What is not known
-// of the slope yet is in the units, and makes a temperature far from all that were seen weigh little: on a
-// line that holds there. Nobody saw that it does, so beyond the temperatures seen half of what the line adds
-// is doubted. A slope that may be chance is none: it must lie three standard errors from zero.
+// A value is judged by its residual from the line of all values before it, in units of the standard deviation
+// of this residual: recursive residuals (Brown, Durbin and Evans, Journal of the Royal Statistical Society
+// B 37, 1975). For healthy values they are independent and follow Student's t, as those of a mean alone do.
+// The unit includes the uncertainty of the slope, so a value at a temperature far from all earlier ones
+// weighs little, if the line holds there. No value confirms this, so outside the earlier temperatures half of
+// the contribution of the line counts as uncertain. A slope must lie 3 standard errors from zero; a smaller
+// one may be chance and is not used.
 
 #include <cstddef>
 #include <limits>

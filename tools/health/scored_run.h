@@ -1,6 +1,6 @@
 #pragma once
 // One finger's numbers of one recorded run, and where they are kept: a line each in a file that only grows,
-// so that the numbers outlive the recordings and nobody reads a recording twice.
+// so that the numbers outlive the recordings and no recording is read twice.
 
 #include <limits>
 #include <string>
@@ -26,7 +26,7 @@ struct ScoredRun {
 /// The file's name in the folder for results.
 inline constexpr const char* scores_file = "health-scores.jsonl";
 
-/// The lines of such a file. What is none (a line that a power failure cut off) is passed over.
+/// Returns the lines of such a file. An incomplete line, for example after a power failure, is skipped.
 [[nodiscard]] std::vector<ScoredRun> read_scores(std::string_view text);
 /// One line, with its end.
 [[nodiscard]] std::string line_of(const ScoredRun& run);

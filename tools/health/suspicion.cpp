@@ -15,11 +15,11 @@ using sysid::HealthNumber;
 using sysid::HealthSign;
 using sysid::Moves;
 
-/// A sign that would be seen and is not, and an alarm that the cause does not explain, count so much against
-/// it, in signs.
+/// The weight against a cause of a sign that is missing, and of an alarm that the cause does not explain, in
+/// signs.
 constexpr double missing_sign = 0.25;
-constexpr double foreign_alarm = 0.75;
-/// As does that a recording of grips lacks the column without which nothing can be told of the cause.
+constexpr double unexplained_alarm = 0.75;
+/// The weight against a cause if the recordings of grips lack the column that is needed to judge it.
 constexpr double lacks_column = 0.05;
 /// Causes that are so near explain as much.
 constexpr double as_much = 0.1;
@@ -30,7 +30,8 @@ bool agrees(Moves moves, double change) {
   return moves == (change > 0 ? Moves::up : Moves::down);
 }
 
-/// Alarms by number. Of the time to the grip only where nothing else alarms: whatever changes, changes it.
+/// Returns the alarms by number. The time to the grip is used only if no other number alarms, because every
+/// change affects it.
 std::map<HealthNumber, double> changes_of(const FingerHealth& health,
                                           const std::vector<SharedChange>& shared) {
   std::map<HealthNumber, double> changes;
@@ -59,11 +60,11 @@ double explained(const sysid::HealthSigns& signs, const std::map<HealthNumber, d
     hits += seen ? 1 : 0;
     worth += seen ? 1 : judged ? -missing_sign : 0;
   }
-  const auto foreign = static_cast<double>(changes.size() - hits);
-  return hits == 0 ? 0 : worth - foreign_alarm * foreign;
+  const auto unexplained = static_cast<double>(changes.size() - hits);
+  return hits == 0 ? 0 : worth - unexplained_alarm * unexplained;
 }
 
-/// What alarms is compared at the temperature of the day.
+/// Returns true if a number in alarm is compared at the temperature of the day.
 bool allows_for_temperature(const FingerHealth& health) {
   const std::vector<HealthAlarm> alarms = health.standing();
   return std::any_of(alarms.begin(), alarms.end(), [&](const HealthAlarm& alarm) {
@@ -81,8 +82,8 @@ Suspicion suspicion_of(const FingerHealth& health, const std::vector<SharedChang
     const double worth = explained(sysid::signs_of(id), changes, health);
     const auto cause = sysid::find_cause(id);
     if (cause && cause->needs == sysid::Column::temperature_c && allows_for_temperature(health)) continue;
-    const bool untold = cause && cause->needs != sysid::Column::none;
-    if (worth > 0) found.emplace_back(untold ? worth - lacks_column : worth, id);
+    const bool not_recorded = cause && cause->needs != sysid::Column::none;
+    if (worth > 0) found.emplace_back(not_recorded ? worth - lacks_column : worth, id);
   }
   std::stable_sort(found.begin(), found.end(),
                    [](const auto& a, const auto& b) { return a.first > b.first; });

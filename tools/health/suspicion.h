@@ -1,6 +1,6 @@
 #pragma once
-// What may be behind an alarm: the cause whose signs it shows best, by what the causes' own files say of
-// themselves, and what would settle it.
+// Candidate causes of an alarm: the causes whose signs, as their own files state them, match it best, and the
+// steps that would confirm one of them.
 
 #include <string>
 #include <string_view>
@@ -19,11 +19,12 @@ struct Suspect {
 
 struct Suspicion {
   std::vector<Suspect> suspects;    ///< the first explains most; others explain as much
-  std::vector<std::string> advice;  ///< what tells them apart
+  std::vector<std::string> advice;  ///< how to distinguish them
 };
 
-/// Of the alarms that stand; empty where there are none, or where no cause shows such signs.
-/// @param shared  what the rig shares: where it came before an alarm or with it, it is a sign, too.
+/// Returns the candidate causes of the open alarms. The list is empty if there are none, or if no cause has
+/// these signs.
+/// @param shared  changes that the rig shares. One that came before an alarm or with it is a sign, too.
 [[nodiscard]] Suspicion suspicion_of(const FingerHealth& health,
                                      const std::vector<SharedChange>& shared = {});
 

@@ -194,7 +194,7 @@ TEST(RigHealth, AFingerWithoutMatesAlarmsByItself) {
   EXPECT_TRUE(judged.shared.empty());
 }
 
-TEST(RigHealth, AFingerInAlarmIsNoMeasureForItsMates) {
+TEST(RigHealth, AFingerInAlarmIsNoReferenceForItsPeers) {
   Rig rig;
   rig.weather_mm = 0;
   rig.becomes = [](const std::string& finger, HealthNumber number, int day) {
