@@ -122,7 +122,7 @@ class Collector {
     effect.title = cause.title;
     effect.station = cause.station;
     effect.form = form;
-    effect.twin = cause.twin;
+    effect.twin = cause.indistinguishable;
     effect.is_ideal = cause.is_ideal;
     effect.appears = cause.appears;
     return effect;

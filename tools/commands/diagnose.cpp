@@ -88,8 +88,8 @@ void print_cause(const sysid::NamedCause& named) {
   }
   if (passed_over > 0)
     std::printf("      %zu numbers that these logs do not determine are in diagnosis.json\n", passed_over);
-  for (const sysid::Cause& rival : named.rivals) {
-    std::printf("      %s explains as much\n", std::string(rival.id).c_str());
+  for (const sysid::Cause& alternative : named.alternatives) {
+    std::printf("      %s explains as much\n", std::string(alternative.id).c_str());
   }
 }
 
@@ -104,7 +104,7 @@ void print_summary(const sysid::Diagnosis& d, const std::string& out) {
   print("recalibrated, held out", d.recalibrated_rmse_mm, 4);
   print("extended, held out", d.extended_rmse_mm, 4);
   std::printf("  %-34s %s %%\n\n", "structure left", fixed(d.unexplained_percent, 1).c_str());
-  if (d.evidence && d.structure_recalibrated.present)
+  if (d.evidence && d.unexplained_recalibrated.present)
     std::printf("%s\n", sysid::dependence_sentence(d.evidence->recalibrated).c_str());
   for (const sysid::NamedCause& named : d.causes) print_cause(named);
   if (d.in_valve && !d.in_valve->named.empty()) {

@@ -30,7 +30,8 @@ InvestigationStep step_of(const sysid::Diagnosis& diagnosis, const std::string& 
   for (const sysid::NamedCause& named : diagnosis.causes) {
     step.causes.emplace_back(named.cause.id);
     step.alternatives.emplace_back();
-    for (const sysid::Cause& rival : named.rivals) step.alternatives.back().emplace_back(rival.id);
+    for (const sysid::Cause& alternative : named.alternatives)
+      step.alternatives.back().emplace_back(alternative.id);
   }
   return step;
 }
@@ -139,7 +140,8 @@ class Investigator {
       const auto is_contact = [](const sysid::Cause& cause) {
         return cause.id == sysid::causes::Contact::id;
       };
-      if (is_contact(named.cause) || std::any_of(named.rivals.begin(), named.rivals.end(), is_contact))
+      if (is_contact(named.cause) ||
+          std::any_of(named.alternatives.begin(), named.alternatives.end(), is_contact))
         return std::nullopt;
     }
     return touched(*result_.steps.back().answer, log, sysid::campaign_size(result_.last.records).largest_kpa);

@@ -30,7 +30,7 @@ std::string causes_of(const InvestigationStep& step) {
   std::string text;
   for (std::size_t i = 0; i < step.causes.size(); ++i) {
     text += (i == 0 ? "" : "; ") + step.causes[i];
-    for (const std::string& rival : step.alternatives[i]) text += " or " + rival;
+    for (const std::string& alternative : step.alternatives[i]) text += " or " + alternative;
   }
   return text.empty() ? "-" : text;
 }

@@ -7,7 +7,7 @@
 namespace softgrip::sysid::causes {
 
 struct Backlash : FormOf<model::Backlash> {
-  static constexpr bool parts_twins = true;
+  static constexpr bool makes_distinguishable = true;
   static constexpr WhenChanged when_changed{
       "there is play between finger and sensor",
       {"Move the sensor's target by hand and feel for play.",

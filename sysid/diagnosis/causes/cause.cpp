@@ -116,11 +116,12 @@ constexpr Cause cause() {
   if constexpr (requires { C::found_by_fitting; }) cause.found_by_fitting = C::found_by_fitting;
   if constexpr (requires { C::needs; }) cause.needs = C::needs;
   if constexpr (requires { C::advice; }) cause.advice = C::advice;
-  if constexpr (requires { C::twin; }) cause.twin = C::twin;
+  if constexpr (requires { C::indistinguishable; }) cause.indistinguishable = C::indistinguishable;
   if constexpr (requires { C::counterparts; }) cause.counterparts = C::counterparts;
   if constexpr (requires { C::confounded_with; }) cause.confounded_with = C::confounded_with;
   if constexpr (requires { C::is_stop; }) cause.is_stop = C::is_stop;
-  if constexpr (requires { C::parts_twins; }) cause.parts_twins = C::parts_twins;
+  if constexpr (requires { C::makes_distinguishable; })
+    cause.makes_distinguishable = C::makes_distinguishable;
   if constexpr (requires { C::is_ideal; }) cause.is_ideal = C::is_ideal;
   if constexpr (requires { C::appears; }) cause.appears = C::appears;
   if constexpr (requires { C::sensor_shape; }) cause.sensor_shape = C::sensor_shape;
@@ -176,9 +177,11 @@ static_assert(std::all_of(table.begin(), table.end(), [](const Cause& c) { retur
               "two causes have one id");
 static_assert(std::all_of(table.begin(), table.end(),
                           [](const Cause& c) {
-                            return c.twin.empty() || (find(c.twin) != nullptr && find(c.twin)->twin == c.id);
+                            return c.indistinguishable.empty() ||
+                                   (find(c.indistinguishable) != nullptr &&
+                                    find(c.indistinguishable)->indistinguishable == c.id);
                           }),
-              "the twin of a cause has it for its own");
+              "causes are indistinguishable from each other in both directions");
 static_assert(std::all_of(table.begin(), table.end(),
                           [](const Cause& c) {
                             const auto known = [](std::string_view id) { return find(id) != nullptr; };

@@ -48,11 +48,11 @@ struct Cause {
   bool found_by_fitting = true;
   Column needs = Column::none;
   std::span<const Advice> advice;
-  std::string_view twin;  ///< id; empty: none
+  std::string_view indistinguishable;  ///< id; empty: none
   std::span<const std::string_view> counterparts;
   std::span<const std::string_view> confounded_with;
   bool is_stop = false;
-  bool parts_twins = false;
+  bool makes_distinguishable = false;
   bool is_ideal = false;
   Appears appears = Appears::anywhere;
   std::string_view sensor_shape;  ///< empty: no sensor without memory

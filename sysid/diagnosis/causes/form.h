@@ -26,13 +26,14 @@
 // A cause may say, besides:
 //   static constexpr Column needs = ...;                   the column that its test requires
 //   static constexpr std::array advice{Advice::...};       actions that separate it if no waveform does
-//   static constexpr std::string_view twin = "...";        a cause with equal readings for every command
+//   static constexpr std::string_view indistinguishable = "...";
+//       a cause with equal readings for every command
 //   static constexpr std::array<std::string_view, N> counterparts{...};
 //       sensor causes that may replace an actuator or load cause, or the reverse, in the order of testing
 //   static constexpr std::array<std::string_view, N> confounded_with{...};
 //       causes that increase the uncertainty of its parameters beyond that of its fit, if they are present
 //   static constexpr bool is_stop = true;                  holds the readings back at a place
-//   static constexpr bool parts_twins = true;
+//   static constexpr bool makes_distinguishable = true;
 //       has memory, between actuator and sensor: equal causes before and behind it give different readings
 //   static constexpr bool is_ideal = true;
 //       no mechanism is quite like it: among causes that tie and have as many numbers, the other one is named

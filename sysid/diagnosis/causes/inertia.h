@@ -7,7 +7,7 @@
 namespace softgrip::sysid::causes {
 
 struct Inertia : FormOf<model::Inertia> {
-  static constexpr bool parts_twins = true;
+  static constexpr bool makes_distinguishable = true;
   static constexpr WhenChanged when_changed{
       "the finger rings",
       {"Tap the finger and look whether its mounting or an added mass swings.",

@@ -10,7 +10,7 @@ namespace softgrip::sysid::causes {
 /// leak is a smaller gain.
 struct Leak : FormOf<model::Leak> {
   static constexpr bool found_by_fitting = false;
-  /// What it does to a finger that was healthy is told by its own search (changes/causes_without_block.h).
+  /// A search of its own finds its effect on a healthy finger (changes/causes_without_block.h).
   static constexpr WhenChanged when_changed{};
 };
 

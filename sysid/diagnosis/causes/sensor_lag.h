@@ -8,7 +8,7 @@ namespace softgrip::sysid::causes {
 
 struct SensorLag : FormOf<model::SensorLag> {
   static constexpr std::array<std::string_view, 1> confounded_with{"transport_delay"};
-  static constexpr bool parts_twins = true;
+  static constexpr bool makes_distinguishable = true;
   static constexpr Appears appears = Appears::moving;
   static constexpr WhenChanged when_changed{
       "the reading follows more slowly",

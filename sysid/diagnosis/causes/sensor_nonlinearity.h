@@ -8,7 +8,7 @@ namespace softgrip::sysid::causes {
 
 struct SensorNonlinearity : FormOf<model::SensorNonlinearity> {
   static constexpr std::array advice{Advice::change_load};
-  static constexpr std::string_view twin = "stiffening";
+  static constexpr std::string_view indistinguishable = "stiffening";
   static constexpr std::array<std::string_view, 1> counterparts{"stiffening"};
   static constexpr std::string_view sensor_shape = "a bent scale";
   static constexpr WhenChanged when_changed{

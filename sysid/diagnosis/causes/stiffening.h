@@ -8,7 +8,7 @@ namespace softgrip::sysid::causes {
 
 struct Stiffening : FormOf<model::Stiffening> {
   static constexpr std::array advice{Advice::change_load};
-  static constexpr std::string_view twin = "sensor_nonlinearity";
+  static constexpr std::string_view indistinguishable = "sensor_nonlinearity";
   static constexpr std::array<std::string_view, 1> counterparts{"sensor_nonlinearity"};
   static constexpr WhenChanged when_changed{
       "the finger gives way less the farther it is bent",

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "base/parallel.h"
-#include "sysid/diagnosis/causes/twins.h"
+#include "sysid/diagnosis/causes/indistinguishable.h"
 #include "sysid/diagnosis/experiments/experiment_advice.h"
 #include "sysid/diagnosis/experiments/separation.h"
 #include "sysid/diagnosis/gauge/gauge_verdict.h"
@@ -19,7 +19,7 @@ namespace {
 /// Beyond this a separation is as good as certain, and more of it is worth nothing.
 constexpr double certain_sigma = 40;
 /// Number of alternatives that are tested for each cause.
-constexpr std::size_t most_rivals = 4;
+constexpr std::size_t most_alternatives = 4;
 /// Number of waveforms whose separation is confirmed by nonlinear fits.
 constexpr std::size_t confirmed = 2;
 constexpr double usual_slew_kpa_per_s = 300;
@@ -36,7 +36,7 @@ struct Pair {
   std::size_t contest = 0;
   std::size_t one = 0;
   std::size_t other = 0;
-  bool twins = false;
+  bool indistinguishable = false;
 };
 
 std::vector<Cause> next_best(const NamedCause& named) {
@@ -53,9 +53,9 @@ std::vector<Cause> next_best(const NamedCause& named) {
 std::string without_pairs(const Diagnosis& d) {
   std::string open;
   for (const NamedCause& named : d.causes) {
-    if (named.rivals.empty()) continue;
+    if (named.alternatives.empty()) continue;
     open += (open.empty() ? "" : ", ") + std::string(named.cause.id);
-    for (const Cause& rival : named.rivals) open += " or " + std::string(rival.id);
+    for (const Cause& alternative : named.alternatives) open += " or " + std::string(alternative.id);
   }
   if (open.empty()) return "there are no two explanations to tell apart";
   return "no experiment is designed for " + open +
@@ -95,45 +95,47 @@ class Designer {
     for (std::size_t c = 0; c < contests_.size(); ++c) {
       const std::size_t count = contests_[c].ids.size();
       for (std::size_t i = 0; i < count; ++i) {
-        for (std::size_t j = i + 1; j < count; ++j) pairs_.push_back({c, i, j, are_twins(c, i, j)});
+        for (std::size_t j = i + 1; j < count; ++j)
+          pairs_.push_back({c, i, j, are_indistinguishable(c, i, j)});
       }
     }
   }
 
-  [[nodiscard]] bool are_twins(std::size_t contest, std::size_t i, std::size_t j) const {
+  [[nodiscard]] bool are_indistinguishable(std::size_t contest, std::size_t i, std::size_t j) const {
     const auto one = find_cause(contests_[contest].ids[i]);
     const auto other = find_cause(contests_[contest].ids[j]);
-    return one && other && sysid::are_twins(*one, *other, d_.extended.point.model);
+    return one && other && sysid::are_indistinguishable(*one, *other, d_.extended.point.model);
   }
 
   void add_contest(const NamedCause& named) {
-    std::vector<Cause> rivals = named.rivals;
-    if (rivals.empty() && options_.always) rivals = next_best(named);
-    if (rivals.size() > most_rivals) rivals.resize(most_rivals);
+    std::vector<Cause> alternatives = named.alternatives;
+    if (alternatives.empty() && options_.always) alternatives = next_best(named);
+    if (alternatives.size() > most_alternatives) alternatives.resize(most_alternatives);
     const std::vector<Cause>& standing = d_.extended.causes;
     const bool stands = std::find(standing.begin(), standing.end(), named.cause) != standing.end();
-    if (rivals.empty() || !stands) return;
+    if (alternatives.empty() || !stands) return;
     const StructureFit rest = d_.extended.causes.size() > 1
                                   ? fit_without_cause(data_.records, d_.extended, named.cause)
                                   : d_.recalibrated;
-    add_contest(rest, rivals, std::string(named.cause.id), d_.extended);
+    add_contest(rest, alternatives, std::string(named.cause.id), d_.extended);
   }
 
   /// Nothing was named: the model as it is, against the best of what was not worth naming.
   void add_contest_of_rejected() {
-    std::vector<Cause> rivals;
+    std::vector<Cause> alternatives;
     for (const CandidateScore& score : d_.rejected) {
-      if (std::isfinite(score.heldout_rmse_mm) && rivals.size() < 2) rivals.push_back(score.cause);
+      if (std::isfinite(score.heldout_rmse_mm) && alternatives.size() < 2)
+        alternatives.push_back(score.cause);
     }
-    if (!rivals.empty()) add_contest(d_.recalibrated, rivals, "none", d_.recalibrated);
+    if (!alternatives.empty()) add_contest(d_.recalibrated, alternatives, "none", d_.recalibrated);
   }
 
-  void add_contest(const StructureFit& rest, const std::vector<Cause>& rivals, const std::string& first_id,
-                   const StructureFit& first) {
+  void add_contest(const StructureFit& rest, const std::vector<Cause>& alternatives,
+                   const std::string& first_id, const StructureFit& first) {
     Contest contest;
     contest.ids.push_back(first_id);
     contest.hypotheses.emplace_back(d_.records, first, noise_);
-    for (Candidate& candidate : fit_candidates(data_, rest, {.only = rivals})) {
+    for (Candidate& candidate : fit_candidates(data_, rest, {.only = alternatives})) {
       if (!candidate.fit) continue;
       contest.ids.emplace_back(candidate.cause.id);
       contest.hypotheses.emplace_back(d_.records, std::move(*candidate.fit), noise_);
@@ -170,14 +172,15 @@ class Designer {
 
   [[nodiscard]] double distance(const Record& record, const Pair& pair, Way way) const {
     const Contest& contest = contests_[pair.contest];
-    if (pair.twins) return 0;  // what parts them is the form that each happens to have in the catalogue
-    const auto from = [&](std::size_t truth, std::size_t rival) {
+    if (pair.indistinguishable)
+      return 0;  // what parts them is the form that each happens to have in the catalogue
+    const auto from = [&](std::size_t truth, std::size_t alternative) {
       const std::vector<double> truth_mm = contest.hypotheses[truth].prediction(record);
       const bool finite =
           std::all_of(truth_mm.begin(), truth_mm.end(), [](double y) { return std::isfinite(y); });
       if (!finite) return 0.0;
-      return way == Way::linear ? contest.hypotheses[rival].linear_distance(record, truth_mm)
-                                : contest.hypotheses[rival].refitted_distance(record, truth_mm);
+      return way == Way::linear ? contest.hypotheses[alternative].linear_distance(record, truth_mm)
+                                : contest.hypotheses[alternative].refitted_distance(record, truth_mm);
     };
     return std::min(from(pair.one, pair.other), from(pair.other, pair.one));
   }

@@ -8,8 +8,8 @@
 
 #include "base/numbers.h"
 #include "model/catalogue.h"
-#include "sysid/diagnosis/causes/twins.h"
-#include "sysid/diagnosis/residual/leftover.h"
+#include "sysid/diagnosis/causes/indistinguishable.h"
+#include "sysid/diagnosis/residual/unexplained_limit.h"
 
 namespace softgrip::sysid {
 namespace {
@@ -75,8 +75,8 @@ class Weighing {
   void add_place(std::size_t place) {
     const ChosenCause& chosen = selection_.chosen[place];
     std::vector<Standing> standing{{chosen.cause, selection_.extended, false}};
-    std::vector<Cause> others = chosen.rivals;
-    const std::size_t rivals = others.size();
+    std::vector<Cause> others = chosen.alternatives;
+    const std::size_t alternatives = others.size();
     for (const Cause& cause : sensor_counterparts(chosen.cause)) {
       if (std::find(others.begin(), others.end(), cause) == others.end()) others.push_back(cause);
     }
@@ -90,7 +90,7 @@ class Weighing {
       for (Candidate& candidate : fit_candidates(data_, without(place), {.only = others})) {
         if (!candidate.fit) continue;
         const auto at = std::find(others.begin(), others.end(), candidate.cause);
-        const bool implied = static_cast<std::size_t>(at - others.begin()) >= rivals;
+        const bool implied = static_cast<std::size_t>(at - others.begin()) >= alternatives;
         standing.push_back({candidate.cause, std::move(*candidate.fit), implied});
       }
     }
@@ -184,25 +184,25 @@ class Weighing {
   void keep(std::size_t place, const std::vector<std::size_t>& left, bool brought_in) {
     ChosenCause& chosen = selection_.chosen[place];
     const std::vector<Standing>& standing = places_[place];
-    std::vector<Cause> rivals;
-    for (const Cause& rival : chosen.rivals) {
-      const auto fitted =
-          std::find_if(standing.begin(), standing.end(), [&](const Standing& s) { return s.cause == rival; });
+    std::vector<Cause> alternatives;
+    for (const Cause& alternative : chosen.alternatives) {
+      const auto fitted = std::find_if(standing.begin(), standing.end(),
+                                       [&](const Standing& s) { return s.cause == alternative; });
       // One that has no fit could not be weighed.
       const bool stays = fitted == standing.end() ||
                          std::find(left.begin() + 1, left.end(),
                                    static_cast<std::size_t>(fitted - standing.begin())) != left.end();
-      if (stays) rivals.push_back(rival);
+      if (stays) alternatives.push_back(alternative);
     }
     if (brought_in) {
-      rivals.push_back(chosen.cause);
+      alternatives.push_back(chosen.cause);
       warnings_.push_back("the logs name " + std::string(chosen.cause.id) +
                           " and the gauge contradicts it: by the gauge it is " +
                           std::string(standing[left.front()].cause.id) +
                           ", which explains these logs less well; check that nothing was changed between "
                           "the logs and the gauge");
     }
-    chosen.rivals = std::move(rivals);
+    chosen.alternatives = std::move(alternatives);
   }
 
   void replace(const std::vector<std::size_t>& now) {
@@ -212,7 +212,7 @@ class Weighing {
     }
     if (changed.empty()) return;
     const bool left_too_much =
-        leaves_too_much(selection_.left, selection_.base_structure, question_.noise_mm);
+        leaves_too_much(selection_.left, selection_.base_unexplained, question_.noise_mm);
     if (changed.size() == 1) {
       selection_.extended = places_[changed.front()][now[changed.front()]].fit;
     } else {
@@ -220,14 +220,14 @@ class Weighing {
     }
     for (const std::size_t place : changed) selection_.chosen[place].cause = places_[place][now[place]].cause;
     selection_.extended_losses = held_out_losses(data_.records, division_, selection_.extended);
-    selection_.left = structure_of(selection_.extended.residual_mm, question_.noise_mm);
+    selection_.left = unexplained_error_of(selection_.extended.residual_mm, question_.noise_mm);
     for (std::size_t place = 0; place < now.size(); ++place) {
       const StructureFit rest = without(place);
       selection_.chosen[place].gain_percent = gain_percent(held_out_losses(data_.records, division_, rest),
                                                            selection_.extended_losses, question_.seed);
     }
     evidence_.replaced = true;
-    if (!left_too_much && leaves_too_much(selection_.left, selection_.base_structure, question_.noise_mm)) {
+    if (!left_too_much && leaves_too_much(selection_.left, selection_.base_unexplained, question_.noise_mm)) {
       warnings_.push_back("where the bend is, the gauge has told; the catalogue's form of it leaves " +
                           mm(selection_.left.excess_mm) + " of structure");
     }
@@ -321,7 +321,7 @@ class Weighing {
       evidence_.sentence = bent ? "The gauge shows the sensor " + bend_in_words() + "."
                                 : "The gauge shows a straight sensor " + covered() + ".";
     }
-    if (!settled && bent) doubt();
+    if (!settled && bent) add_sensor_alternatives();
     if (bent && check.fits[check.best].shape.blocks.empty()) tell_of_bend();
     if (asked_ && !settled && check.outcome == GaugeOutcome::unexplained) {
       warnings_.push_back("the gauge readings fit no explanation of these logs (" +
@@ -330,12 +330,12 @@ class Weighing {
     }
   }
 
-  /// A sensor that is bent, and nothing that is named says so: what names a bend elsewhere does not stand
-  /// alone.
-  void doubt() {
+  /// The sensor is nonlinear, but no named cause states this. A cause that names a nonlinearity elsewhere
+  /// therefore gets the sensor causes as alternatives.
+  void add_sensor_alternatives() {
     for (ChosenCause& chosen : selection_.chosen) {
-      if (!chosen.rivals.empty() || chosen.cause.is_static_sensor()) continue;
-      chosen.rivals = sensor_counterparts(chosen.cause);
+      if (!chosen.alternatives.empty() || chosen.cause.is_static_sensor()) continue;
+      chosen.alternatives = sensor_counterparts(chosen.cause);
     }
   }
 

@@ -40,7 +40,7 @@ Json cause_json(const NamedCause& named, const Budget& budget) {
   return json;
 }
 
-/// What stands between the command and the measured pressure.
+/// Returns the dynamics between the command and the measured pressure.
 Json valve_json(const ValveFindings& in_valve) {
   const ValveStage& stage = in_valve.stage;
   return {{"delay_s", stage.delay_s},
@@ -50,7 +50,7 @@ Json valve_json(const ValveFindings& in_valve) {
           {"noise_kpa", in_valve.noise_kpa}};
 }
 
-/// Where the misfit goes, in mean squares of held-out readings.
+/// Returns the error budget, in mean squares of held-out readings.
 Json budget_json(const Diagnosis& d, const Budget& budget) {
   Json causes = Json::object();
   for (const NamedCause& named : d.causes) causes[std::string(named.cause.id)] = spread(named.gain_mm2);
@@ -193,13 +193,13 @@ Json json_of(const Diagnosis& d) {
   json["alternatives"] = Json::array();
   for (const NamedCause& named : d.causes) {
     json["causes"].push_back(cause_json(named, budget));
-    json["alternatives"].push_back(ids_of(named.rivals));
+    json["alternatives"].push_back(ids_of(named.alternatives));
   }
   json["valve"] = d.in_valve ? valve_json(*d.in_valve) : Json(nullptr);
   if (d.in_valve) {
     for (const NamedCause& named : d.in_valve->named) {
       json["causes"].push_back(cause_json(named, budget));
-      json["alternatives"].push_back(ids_of(named.rivals));
+      json["alternatives"].push_back(ids_of(named.alternatives));
     }
   }
   json["noise_mm"] = d.noise_mm;
@@ -231,18 +231,18 @@ Json json_of(const Diagnosis& d) {
                                 {"p_value", nulls->p_value}};
   }
   json["staircase"] = nullptr;
-  if (const auto& staircase = d.staircase) {
-    json["staircase"] = {{"jumps", staircase->jumps},
-                         {"scatter_percent", 100 * staircase->scatter},
-                         {"heldout_rmse_mm", staircase->heldout_rmse_mm},
-                         {"gain_percent", spread(staircase->gain_percent)}};
+  if (const auto& stick_slip = d.stick_slip) {
+    json["staircase"] = {{"jumps", stick_slip->jumps},
+                         {"scatter_percent", 100 * stick_slip->scatter},
+                         {"heldout_rmse_mm", stick_slip->heldout_rmse_mm},
+                         {"gain_percent", spread(stick_slip->gain_percent)}};
   }
   json["gauge"] = d.gauge ? gauge_json(*d.gauge) : Json(nullptr);
   json["not_tested"] = d.not_tested;
   json["partial_causes"] = Json::array();
   for (const NamedCause& named : d.partial) json["partial_causes"].push_back(cause_json(named, budget));
-  json["structure_mm"] = {{"recalibrated", d.structure_recalibrated.excess_mm},
-                          {"left", d.structure_left.excess_mm}};
+  json["structure_mm"] = {{"recalibrated", d.unexplained_recalibrated.excess_mm},
+                          {"left", d.unexplained_error.excess_mm}};
   Json candidates = Json::object();
   for (const auto* list : {&d.causes, &d.partial}) {
     for (const NamedCause& named : *list) {

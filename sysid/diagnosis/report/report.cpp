@@ -32,10 +32,10 @@ Tone tone_of(Verdict verdict) {
   return Tone::bad;
 }
 
-/// Of a cause, in the first part.
+/// Number of parameters of a cause that the first part shows.
 constexpr std::size_t parameters_shown = 6;
 
-/// What was looked at, in a line; the hashes stand in the appendix.
+/// Returns the data of the diagnosis in one line; the appendix contains the hashes.
 Terms looked_at(const DiagnosisReport& report) {
   const Diagnosis& d = report.result;
   std::size_t samples = 0;

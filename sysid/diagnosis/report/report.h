@@ -22,7 +22,7 @@ struct ProposedExperiment {
   std::string waveform;  ///< in words
 };
 
-/// The same reference tracked in simulation with each model in the feedforward.
+/// A reference, tracked in simulation with each model in the feedforward.
 struct ClosedLoopCurves {
   struct Scheme {
     std::string name;  ///< "PID alone", "recalibrated model", "extended model": it says how it is drawn
@@ -37,14 +37,14 @@ struct ClosedLoopCurves {
   model::OutputUnit output_unit = model::OutputUnit::mm;
 };
 
-/// What goes onto the page.
+/// The content of the page.
 struct DiagnosisReport {
   const Diagnosis& result;
   const std::vector<Log>& logs;
   const model::Model& given;
   std::uint64_t seed = 1;
   std::optional<ProposedExperiment> next_experiment;
-  std::vector<std::string> advice;  ///< what would tell more besides; sentences
+  std::vector<std::string> advice;  ///< further measurements that would help; sentences
   std::optional<ClosedLoopCurves> closed_loop;
 };
 

@@ -31,8 +31,8 @@ std::string amount(double mm2, double whole_mm2, model::OutputUnit unit) {
   return square_text(mm2, unit) + ", " + fixed(100 * mm2 / whole_mm2, 1) + " %";
 }
 
-/// The given model's misfit, and the part of it that the bar below shows enlarged. Returns where that bar
-/// begins; above it there is room for its title, within the lines that lead to it.
+/// Draws the given model's error, and the part of it that the bar below shows enlarged. Returns where that
+/// bar begins; above it there is room for its title, within the lines that lead to it.
 double given_bar(Canvas& canvas, const Budget& budget, model::OutputUnit unit, double top) {
   const double kept = std::clamp(budget.recalibrated / budget.as_given, 0.0, 1.0);
   const double split = right - kept * (right - left);

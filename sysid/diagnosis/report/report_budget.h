@@ -1,5 +1,5 @@
 #pragma once
-// Where the misfit goes, as a picture: from the given model to the noise.
+// The error budget as a picture: from the given model to the noise.
 
 #include <string>
 #include <vector>

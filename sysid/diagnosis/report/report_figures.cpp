@@ -117,7 +117,7 @@ std::pair<double, double> reach_of(const Chart& chart) {
   return {lowest - margin, highest + margin};
 }
 
-/// What of a curve lies in the window; the pen is lifted elsewhere.
+/// Returns the part of a curve in the window; the pen is lifted elsewhere.
 Series within(Series series, const Window& window) {
   for (std::size_t i = 0; i < series.x.size(); ++i) {
     if (!window.holds(series.x[i], series.y[i])) series.y[i] = none;
@@ -338,7 +338,7 @@ Figure closed_loop_figure(const ClosedLoopCurves& curves) {
   values.series.push_back(curve("reference", Colour::measured, 2.4, curves.time_s, curves.reference_mm));
   std::string numbers;
   for (const ClosedLoopCurves::Scheme& scheme : curves.schemes) {
-    // A model looks as it does in the other figures, whichever of them are there.
+    // A model looks as it does in the other figures, also if some of them are missing.
     const bool extended = scheme.name.starts_with("extended");
     const bool recalibrated = scheme.name.starts_with("recalibrated");
     const Colour colour = extended ? Colour::good : recalibrated ? Colour::model : Colour::other;

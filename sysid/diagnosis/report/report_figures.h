@@ -14,7 +14,7 @@ namespace softgrip::sysid {
 
 /// The logs' indices: those first of which extending (or recalibrating, where nothing was added) takes most.
 [[nodiscard]] std::vector<std::size_t> logs_by_gain(const Diagnosis& diagnosis);
-/// Whether the pressure is on its way for a tenth of the time: from stair to stair there are no loops to see.
+/// Returns true if the pressure moves for 10 % of the time: a pressure that only steps shows no loops.
 [[nodiscard]] bool has_loops(const Record& record);
 /// The first of logs_by_gain that has loops.
 [[nodiscard]] std::optional<std::size_t> first_with_loops(const Diagnosis& diagnosis);

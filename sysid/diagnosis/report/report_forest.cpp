@@ -25,14 +25,15 @@ constexpr double top_px = 34;
 /// A line of the plot.
 struct Row {
   std::string name;
-  bool rival = false;
-  const Spread* gain = nullptr;  ///< none: no command tells it from the cause above
+  bool alternative = false;
+  const Spread* gain = nullptr;  ///< none: no command separates it from the cause above
   double inclusion = 0;
 };
 
-const Spread* gain_of(const NamedCause& named, const Cause& rival) {
+const Spread* gain_of(const NamedCause& named, const Cause& alternative) {
   for (const CandidateScore& c : named.candidates) {
-    if (c.cause == rival && std::isfinite(c.heldout_rmse_mm) && c.gain_percent.upper > c.gain_percent.lower)
+    if (c.cause == alternative && std::isfinite(c.heldout_rmse_mm) &&
+        c.gain_percent.upper > c.gain_percent.lower)
       return &c.gain_percent;
   }
   return nullptr;
@@ -42,19 +43,19 @@ std::vector<Row> rows_of(const Diagnosis& d) {
   std::vector<Row> rows;
   for (const NamedCause* named : shown_causes(d)) {
     rows.push_back({std::string(named->cause.title), false, &named->heldout_gain_percent, named->inclusion});
-    for (const Cause& rival : named->rivals)
-      rows.push_back({"or " + rival_title(rival, d.causes), true, gain_of(*named, rival)});
+    for (const Cause& alternative : named->alternatives)
+      rows.push_back({"or " + alternative_title(alternative, d.causes), true, gain_of(*named, alternative)});
   }
   return rows;
 }
 
 void draw_interval(Canvas& canvas, const Row& row, const Scale& x, double y) {
   const Spread& gain = *row.gain;
-  const Colour colour = row.rival ? Colour::muted : Colour::model;
+  const Colour colour = row.alternative ? Colour::muted : Colour::model;
   canvas.line({x.px(gain.lower), y}, {x.px(gain.upper), y}, colour, " stroke-width=\"2\"");
   for (const double end : {gain.lower, gain.upper})
     canvas.line({x.px(end), y - 4}, {x.px(end), y + 4}, colour, " stroke-width=\"1.4\"");
-  canvas.framed_box(x.px(gain.value) - 4, y - 4, 8, 8, row.rival ? Colour::paper : colour, colour,
+  canvas.framed_box(x.px(gain.value) - 4, y - 4, 8, 8, row.alternative ? Colour::paper : colour, colour,
                     " stroke-width=\"1.4\"");
 }
 
@@ -88,18 +89,18 @@ Figure forest_figure(const Diagnosis& d) {
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const Row& row = rows[i];
     const double y = top_px + row_px * (static_cast<double>(i) + 0.5);
-    canvas.words({label_px + (row.rival ? 14 : 0), y + 4}, Anchor::start, row.name,
-                 row.rival ? Colour::muted : Colour::text);
+    canvas.words({label_px + (row.alternative ? 14 : 0), y + 4}, Anchor::start, row.name,
+                 row.alternative ? Colour::muted : Colour::text);
     if (row.gain != nullptr) {
       draw_interval(canvas, row, x, y);
       canvas.words({number_px, y + 4}, Anchor::start, percent_range(*row.gain),
-                   row.rival ? Colour::muted : Colour::text);
+                   row.alternative ? Colour::muted : Colour::text);
     } else {
       canvas.words({number_px, y + 4}, Anchor::start, "the same to every command", Colour::muted);
     }
-    if (!row.rival) canvas.words({inclusion_px, y + 4}, Anchor::end, fixed(row.inclusion, 2));
+    if (!row.alternative) canvas.words({inclusion_px, y + 4}, Anchor::end, fixed(row.inclusion, 2));
     std::vector<std::string> cells{
-        row.name, row.rival ? "yes" : "no", "", "", "", row.rival ? "" : fixed(row.inclusion, 4)};
+        row.name, row.alternative ? "yes" : "no", "", "", "", row.alternative ? "" : fixed(row.inclusion, 4)};
     if (row.gain != nullptr) {
       cells[2] = shortest(row.gain->value);
       cells[3] = shortest(row.gain->lower);
@@ -109,13 +110,15 @@ Figure forest_figure(const Diagnosis& d) {
   }
   drawing.markup = canvas.markup();
   drawing.height = static_cast<int>(bottom) + 40;
-  const bool rivals = std::any_of(rows.begin(), rows.end(), [](const Row& row) { return row.rival; });
-  return {"causes and their gains",
-          std::string("How much the held-out error falls with each cause, against the model without it. ") +
-              "Inclusion: how often, over resampled blocks of the logs, the structures that contain it win." +
-              (rivals ? " Hollow: what these logs cannot tell from the cause above it, in its place." : ""),
-          {},
-          std::move(drawing)};
+  const bool alternatives =
+      std::any_of(rows.begin(), rows.end(), [](const Row& row) { return row.alternative; });
+  return {
+      "causes and their gains",
+      std::string("How much the held-out error falls with each cause, against the model without it. ") +
+          "Inclusion: how often, over resampled blocks of the logs, the structures that contain it win." +
+          (alternatives ? " Hollow: what these logs cannot tell from the cause above it, in its place." : ""),
+      {},
+      std::move(drawing)};
 }
 
 }  // namespace softgrip::sysid

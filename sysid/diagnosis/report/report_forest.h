@@ -1,5 +1,5 @@
 #pragma once
-// Every cause with its gain, its rivals with theirs, as a forest plot.
+// Every cause and its alternatives with their error reductions, as a forest plot.
 
 #include "sysid/diagnosis/verdict/diagnosis.h"
 #include "sysid/pages/figure.h"

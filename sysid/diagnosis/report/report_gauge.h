@@ -1,5 +1,5 @@
 #pragma once
-// What the report shows of a gauge check.
+// The section of the report about a gauge check.
 
 #include "sysid/diagnosis/gauge/gauge_verdict.h"
 #include "sysid/pages/chart.h"

@@ -5,7 +5,7 @@
 
 #include "base/numbers.h"
 #include "model/catalogue.h"
-#include "sysid/diagnosis/causes/twins.h"
+#include "sysid/diagnosis/causes/indistinguishable.h"
 #include "sysid/diagnosis/evidence/clear.h"
 #include "sysid/diagnosis/report/report_figures.h"
 #include "sysid/diagnosis/report/report_gauge.h"
@@ -19,23 +19,23 @@ std::string range(const Spread& s, int decimals) {
          ")";
 }
 
-/// Why the rivals of a cause stand beside it.
-std::string rivalry(const NamedCause& named, const model::Model& extended) {
-  std::string alike, twin;
-  for (const Cause& rival : named.rivals) {
-    if (are_twins(named.cause, rival, extended)) {
-      twin = rival.id;
+/// Returns the reason why the alternatives of a cause are listed with it.
+std::string alternatives_text(const NamedCause& named, const model::Model& extended) {
+  std::string alike, indistinguishable;
+  for (const Cause& alternative : named.alternatives) {
+    if (are_indistinguishable(named.cause, alternative, extended)) {
+      indistinguishable = alternative.id;
     } else {
-      alike += (alike.empty() ? "" : ", ") + std::string(rival.id);
+      alike += (alike.empty() ? "" : ", ") + std::string(alternative.id);
     }
   }
   std::string text;
   if (!alike.empty())
     text = "These logs cannot tell it from " + alike +
            ": each explains as much in its place, within one standard error. ";
-  if (!twin.empty())
+  if (!indistinguishable.empty())
     text +=
-        "No command can tell it from " + twin +
+        "No command can tell it from " + indistinguishable +
         ": both bend the readings over the displacement, the one before the load and the other behind it, "
         "and how well the form of each meets these logs says nothing about where the bend is.";
   return text;
@@ -96,13 +96,13 @@ void add_named(Page& page, const Diagnosis& d) {
       std::string meaning(model::catalogue()[named.block_type].info.meaning);
       if (!meaning.empty() && meaning.back() != '.') meaning += '.';
       page.paragraph(std::string(named.cause.title) + " (" + std::string(named.cause.id) + "): " + meaning +
-                     " " + rivalry(named, d.extended.point.model));
+                     " " + alternatives_text(named, d.extended.point.model));
     }
   }
   if (d.null_calibration) add_null_calibration(page, *d.null_calibration);
   if (d.causes.empty() && d.partial.empty() && d.rejected.empty())
     page.paragraph("The recalibrated model leaves no structure, so no cause was looked for.");
-  if (d.structure_left.present)
+  if (d.unexplained_error.present)
     page.paragraph(
         "Share of the structure that stays unexplained: " + fixed(d.unexplained_percent, 1) + " %." +
         (d.evidence && is_extended(d) ? " After the extension: " + dependence_sentence(d.evidence->extended)

@@ -1,6 +1,6 @@
 #pragma once
-// How a diagnosis was reached: the errors of the models, on what they depend, why what was named was named,
-// and what the data cannot tell.
+// Method and evidence of a diagnosis: the errors of the models, the conditions on which they depend, the
+// reasons for the named causes, and the limitations of the data.
 
 #include "sysid/diagnosis/report/report.h"
 #include "sysid/pages/page.h"

@@ -27,7 +27,8 @@ std::string outcome_of(const CandidateScore& c, const NamedCause* chosen, double
                        model::OutputUnit unit) {
   if (chosen != nullptr) {
     if (c.cause == chosen->cause) return "named";
-    if (std::find(chosen->rivals.begin(), chosen->rivals.end(), c.cause) != chosen->rivals.end())
+    if (std::find(chosen->alternatives.begin(), chosen->alternatives.end(), c.cause) !=
+        chosen->alternatives.end())
       return "explains as much, or is the same to every command";
   }
   if (!c.why_not.empty()) return c.why_not;

@@ -20,8 +20,8 @@ namespace softgrip::sysid {
 [[nodiscard]] std::vector<Table> candidate_tables(const Diagnosis& diagnosis);
 /// Errors of every run that was left out of the fit.
 [[nodiscard]] Table run_table(const Diagnosis& diagnosis);
-/// What the first part shows: the causes that are named, and those that explain a part where their gain's
-/// interval excludes zero.
+/// Returns the causes of the first part: the named ones, and those that explain a part if the interval of
+/// their error reduction excludes zero.
 [[nodiscard]] std::vector<const NamedCause*> shown_causes(const Diagnosis& diagnosis);
 /// The numbers of these causes with their intervals; of a cause with more than `most`, the first ones
 /// of those that have an interval.

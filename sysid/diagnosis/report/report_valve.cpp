@@ -18,7 +18,8 @@ Table parts_table(const ValveFindings& in_valve) {
   for (const NamedCause& named : in_valve.named) {
     const Spread& gain = named.heldout_gain_percent;
     std::string title(named.cause.title);
-    for (const Cause& rival : named.rivals) title += " or " + rival_title(rival, in_valve.named);
+    for (const Cause& alternative : named.alternatives)
+      title += " or " + alternative_title(alternative, in_valve.named);
     for (const CauseParameter& p : named.parameters) {
       table.rows.push_back(
           {title, p.name, significant(p.value, 4),

@@ -1,5 +1,5 @@
 #pragma once
-// What the report shows of the valve where the pressure was measured.
+// The section of the report about the valve, if the pressure was measured.
 
 #include "sysid/diagnosis/verdict/valve_findings.h"
 #include "sysid/pages/page.h"

@@ -51,7 +51,7 @@ double measured_noise_mm(const std::vector<Record>& records) {
   return count == 0 ? 0 : std::sqrt(sum / (inflation * static_cast<double>(count)));
 }
 
-Structure structure_of(const std::vector<std::vector<double>>& residual_mm, double noise_mm) {
+UnexplainedError unexplained_error_of(const std::vector<std::vector<double>>& residual_mm, double noise_mm) {
   double square = 0;
   std::size_t count = 0;
   std::vector<double> product(lags + 1, 0.0);
@@ -68,7 +68,7 @@ Structure structure_of(const std::vector<std::vector<double>>& residual_mm, doub
       }
     }
   }
-  Structure structure;
+  UnexplainedError structure;
   if (count == 0) return structure;
   const double mean_square = square / static_cast<double>(count);
   structure.excess_mm = std::sqrt(std::max(0.0, mean_square - noise_mm * noise_mm));

@@ -12,13 +12,14 @@ namespace softgrip::sysid {
 [[nodiscard]] double measured_noise_mm(const std::vector<Record>& records);
 
 /// The unexplained error: the part of a residual beyond the noise.
-struct Structure {
+struct UnexplainedError {
   double excess_mm = 0;         ///< root of mean square minus noise squared, 0 where that is negative
   double slow_correlation = 0;  ///< mean autocorrelation over the first lags (about a quarter of a second)
   bool present = false;         ///< the residual is not just noise
 };
 
 /// @param residual_mm  by record; NaN where there is no reading.
-[[nodiscard]] Structure structure_of(const std::vector<std::vector<double>>& residual_mm, double noise_mm);
+[[nodiscard]] UnexplainedError unexplained_error_of(const std::vector<std::vector<double>>& residual_mm,
+                                                    double noise_mm);
 
 }  // namespace softgrip::sysid

@@ -82,8 +82,8 @@ double rmse_apart_mm(const std::vector<Record>& records, const StructureFit& fit
 
 }  // namespace
 
-std::optional<std::string> strangers_among(const std::vector<Record>& records,
-                                           const StructureFit& recalibrated, double together_mm2) {
+std::optional<std::string> inconsistent_among(const std::vector<Record>& records,
+                                              const StructureFit& recalibrated, double together_mm2) {
   if (records.size() < 2) return std::nullopt;
   const double apart_mm = rmse_apart_mm(records, recalibrated);
   if (!(apart_mm * apart_mm < apart_share * together_mm2)) return std::nullopt;
@@ -97,7 +97,8 @@ std::optional<std::string> why_not_about(const std::vector<Record>& records,
                                          const StructureFit& recalibrated) {
   const double share = explained_share(records, recalibrated);
   if (share >= least_explained_share) return std::nullopt;
-  if (auto strangers = strangers_among(records, recalibrated, recalibrated.mean_square_mm2)) return strangers;
+  if (auto inconsistent = inconsistent_among(records, recalibrated, recalibrated.mean_square_mm2))
+    return inconsistent;
   return "the readings do not follow the command: fitted to them, the model explains " +
          fixed(100 * std::max(0.0, share), 0) + " % of their variance (sensor, its sign, channel, units?)";
 }

@@ -18,8 +18,8 @@ namespace softgrip::sysid {
 /// Separate parameters for each log must then leave at most 10 % of the common mean square.
 /// @param together_mm2  mean square of the common fit with the causes that were found. A drift makes logs
 /// inconsistent too, but a cause explains it.
-[[nodiscard]] std::optional<std::string> strangers_among(const std::vector<Record>& records,
-                                                         const StructureFit& recalibrated,
-                                                         double together_mm2);
+[[nodiscard]] std::optional<std::string> inconsistent_among(const std::vector<Record>& records,
+                                                            const StructureFit& recalibrated,
+                                                            double together_mm2);
 
 }  // namespace softgrip::sysid

@@ -16,7 +16,7 @@ namespace softgrip::sysid {
 namespace {
 
 constexpr std::size_t most_tracks = 40;
-constexpr std::size_t most_landings = 24;
+constexpr std::size_t most_jump_targets = 24;
 /// Of all path hypotheses closer together than this [resolutions], only one is followed. Thus the limited
 /// number covers different paths.
 constexpr double same_place = 1;
@@ -102,12 +102,12 @@ class JumpTracker {
     tracks_.take(first);
   }
 
-  ValveCourse run() {
+  ValvePath run() {
     for (std::size_t i = 1; i + seen_later_ < record_.size(); ++i) {
       step(i);
       if (is_beaten_) return {{}, {}, std::numeric_limits<double>::infinity()};
     }
-    return course();
+    return path();
   }
 
  private:
@@ -118,9 +118,9 @@ class JumpTracker {
     next_.clear();
     bool any_jump = false;
     for (Track& track : tracks_.span()) {
-      const std::vector<double>& landings = landings_of(track.held_kpa, from, to);
-      any_jump |= !landings.empty();
-      for (const double held : landings) {
+      const std::vector<double>& jump_targets = jump_targets_of(track.held_kpa, from, to);
+      any_jump |= !jump_targets.empty();
+      for (const double held : jump_targets) {
         Track& child = next_.add_copy(track);
         child.last = jumps_.size();
         jumps_.push_back({i, held, std::abs(held - track.held_kpa),
@@ -128,7 +128,7 @@ class JumpTracker {
                           track.last});
         advance(child, i, held);
       }
-      if (std::abs(to - track.held_kpa) <= breaks_loose_by * band_kpa_ || landings.empty()) {
+      if (std::abs(to - track.held_kpa) <= breaks_loose_by * band_kpa_ || jump_targets.empty()) {
         advance(track, i, track.held_kpa);
         next_.take(track);
       }
@@ -150,24 +150,24 @@ class JumpTracker {
 
   /// Returns the possible positions of a valve at `held` after a jump while the command went from `from` to
   /// `to`.
-  const std::vector<double>& landings_of(double held, double from, double to) {
-    landings_.clear();
+  const std::vector<double>& jump_targets_of(double held, double from, double to) {
+    jump_targets_.clear();
     if (from == to) {
-      if (std::abs(to - held) > breaks_loose_from * band_kpa_) landings_.push_back(to);
-      return landings_;
+      if (std::abs(to - held) > breaks_loose_from * band_kpa_) jump_targets_.push_back(to);
+      return jump_targets_;
     }
     const double way = to > from ? 1 : -1;
     const double loose = std::max(way * from, way * held + breaks_loose_from * band_kpa_);
     const double first = std::max(loose, way * to - breaks_loose_by * band_kpa_);
     const double length = way * to - first;
-    if (length < 0) return landings_;
+    if (length < 0) return jump_targets_;
     const auto parts = std::clamp<std::size_t>(static_cast<std::size_t>(std::ceil(length / resolution_kpa_)),
-                                               1, most_landings);
+                                               1, most_jump_targets);
     for (std::size_t k = 0; k < parts; ++k) {
       const double share = (static_cast<double>(k) + 0.5) / static_cast<double>(parts);
-      landings_.push_back(way * (first + share * length));
+      jump_targets_.push_back(way * (first + share * length));
     }
-    return landings_;
+    return jump_targets_;
   }
 
   /// Keeps the best paths, and only one path per position.
@@ -183,15 +183,15 @@ class JumpTracker {
     for (const std::size_t at : order_) {
       Track& track = next_[at];
       if (tracks_.size() >= most_tracks || track.cost_mm2 > most_mm2) break;
-      const bool twin = std::ranges::any_of(tracks_.span(), [&](const Track& kept) {
+      const bool duplicate = std::ranges::any_of(tracks_.span(), [&](const Track& kept) {
         return std::abs(kept.held_kpa - track.held_kpa) < same_place * resolution_kpa_;
       });
-      if (!twin) tracks_.take(track);
+      if (!duplicate) tracks_.take(track);
     }
   }
 
-  [[nodiscard]] ValveCourse course() {
-    ValveCourse found;
+  [[nodiscard]] ValvePath path() {
+    ValvePath found;
     found.held_kpa.assign(record_.size(), record_.drive_kpa.front());
     found.sum_of_squares_mm2 = tracks_[0].cost_mm2;
     std::size_t end = record_.size();
@@ -215,21 +215,21 @@ class JumpTracker {
   model::Surroundings around_;
   Tracks tracks_, next_;
   std::vector<Jump> jumps_;
-  std::vector<double> landings_;
+  std::vector<double> jump_targets_;
   std::vector<std::size_t> order_;
 };
 
 }  // namespace
 
-ValveCourse track_jumps(const Record& record, std::size_t index, const FitPoint& point, double band_kpa,
-                        double resolution_kpa, double worth_mm2) {
+ValvePath track_jumps(const Record& record, std::size_t index, const FitPoint& point, double band_kpa,
+                      double resolution_kpa, double worth_mm2) {
   return JumpTracker(record, point, point.starts[index], band_kpa, resolution_kpa, worth_mm2).run();
 }
 
-Record driven_by(const Record& record, const ValveCourse& course) {
+Record driven_by(const Record& record, const ValvePath& path) {
   Record driven = record;
   for (std::size_t i = 1; i < record.size(); ++i) {
-    driven.drive_kpa[record.held ? i - 1 : i] = course.held_kpa[i];
+    driven.drive_kpa[record.held ? i - 1 : i] = path.held_kpa[i];
   }
   return driven;
 }

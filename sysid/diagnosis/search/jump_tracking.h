@@ -23,7 +23,7 @@ inline constexpr double breaks_loose_from = 0.7;
 inline constexpr double breaks_loose_by = 1.4;
 
 /// A path hypothesis of the valve through one record.
-struct ValveCourse {
+struct ValvePath {
   std::vector<double> held_kpa;  ///< at the end of every sample's step
   /// Distances between the command and the valve position at the jumps [kPa]. Only jumps are listed whose
   /// time the readings resolve well: the command moved little during their sample.
@@ -38,11 +38,11 @@ struct ValveCourse {
 /// @param resolution_kpa  > 0: pressure differences that the readings cannot resolve.
 /// @param worth_mm2  the search stops for a path that exceeds this sum of squares. It then returns only an
 /// infinite sum of squares.
-[[nodiscard]] ValveCourse track_jumps(const Record& record, std::size_t index, const FitPoint& point,
-                                      double band_kpa, double resolution_kpa,
-                                      double worth_mm2 = std::numeric_limits<double>::infinity());
+[[nodiscard]] ValvePath track_jumps(const Record& record, std::size_t index, const FitPoint& point,
+                                    double band_kpa, double resolution_kpa,
+                                    double worth_mm2 = std::numeric_limits<double>::infinity());
 
 /// Returns the record with the valve position as its drive.
-[[nodiscard]] Record driven_by(const Record& record, const ValveCourse& course);
+[[nodiscard]] Record driven_by(const Record& record, const ValvePath& path);
 
 }  // namespace softgrip::sysid

@@ -224,7 +224,7 @@ class SelectorUpon {
     });
     std::vector<ScoredCandidate> scored;
     for (ScoredCandidate& one : followed) put_if_better(std::move(one), scored);
-    if (auto slack = slack_as_backlash()) put_if_better(std::move(*slack), scored);
+    if (auto with_backlash = play_as_backlash()) put_if_better(std::move(*with_backlash), scored);
     std::stable_sort(scored.begin(), scored.end(), [](const ScoredCandidate& a, const ScoredCandidate& b) {
       return rmse_mm(a.losses) < rmse_mm(b.losses);
     });
@@ -232,7 +232,7 @@ class SelectorUpon {
   }
 
   /// A base whose operators compensate for a backlash is far from its optimum with a backlash.
-  [[nodiscard]] std::optional<ScoredCandidate> slack_as_backlash() const {
+  [[nodiscard]] std::optional<ScoredCandidate> play_as_backlash() const {
     const FitPoint& point = result_.extended.point;
     if (elastic_share(point.model) > little_elastic) return std::nullopt;
     const auto model = with_slack_as_backlash(point.model);
@@ -294,7 +294,7 @@ class SelectorUpon {
     if (!stands(chosen, scored)) return false;
     result_.extended = *best.candidate.fit;
     result_.extended_losses = best.losses;
-    result_.left = structure_of(result_.extended.residual_mm, noise_mm_);
+    result_.left = unexplained_error_of(result_.extended.residual_mm, noise_mm_);
     result_.chosen.push_back(std::move(chosen));
     return true;
   }
@@ -335,7 +335,7 @@ class SelectorUpon {
     in_first_place_.insert(in_first_place_.begin(), std::move(one));
     result_.extended = result_.base;
     result_.extended_losses = result_.base_losses;
-    result_.left = result_.base_structure;
+    result_.left = result_.base_unexplained;
     result_.chosen.clear();
     take(in_first_place_);
   }
@@ -345,7 +345,7 @@ class SelectorUpon {
     return result_.chosen.empty() ? 0 : further_share_mm2(result_.extended_losses);
   }
   [[nodiscard]] double further_share_mm2(const BlockLosses& before) const {
-    return std::max(one_more_share * std::pow(result_.base_structure.excess_mm, 2),
+    return std::max(one_more_share * std::pow(result_.base_unexplained.excess_mm, 2),
                     most_of_the_rest * beyond_noise_mm2(before));
   }
 
@@ -373,8 +373,9 @@ class SelectorUpon {
       const Cause& cause = other.candidate.cause;
       if (cause == chosen.cause || is_free_form(other) || beats(other.losses)) continue;
       ++undecided;
-      if (std::find(chosen.rivals.begin(), chosen.rivals.end(), cause) == chosen.rivals.end())
-        chosen.rivals.push_back(cause);
+      if (std::find(chosen.alternatives.begin(), chosen.alternatives.end(), cause) ==
+          chosen.alternatives.end())
+        chosen.alternatives.push_back(cause);
     }
     return undecided <= most_undecided;
   }

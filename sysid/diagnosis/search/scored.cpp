@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "base/statistics.h"
-#include "sysid/diagnosis/causes/twins.h"
+#include "sysid/diagnosis/causes/indistinguishable.h"
 #include "sysid/evidence/limits.h"
 
 namespace softgrip::sysid {
@@ -13,7 +13,7 @@ namespace {
 
 /// A candidate is no alternative if its excess mean square over the best exceeds this share of the reduction
 /// by the best. This holds regardless of the blocks.
-constexpr double rival_share = 0.05;
+constexpr double alternative_share = 0.05;
 
 }  // namespace
 
@@ -37,11 +37,11 @@ ChosenCause weigh(const Cause& cause, const ChosenBetween& between,
   const double gained = square(rmse_mm(between.without_losses)) - square(rmse_mm(between.with_losses));
   chosen.gain_mm2 = mean_difference(between.without_losses, between.with_losses, between.seed);
   chosen.inclusion = winning_share(between.with_losses, between.without_losses, between.seed);
-  const auto twin = twin_of(cause, between.with.point.model);
-  if (twin) chosen.rivals.push_back(*twin);
+  const auto indistinguishable = indistinguishable_from(cause, between.with.point.model);
+  if (indistinguishable) chosen.alternatives.push_back(*indistinguishable);
   for (const ScoredCandidate& s : scored) {
     if (s.losses.empty() || s.candidate.cause == cause || !s.candidate.why_not.empty()) continue;
-    if (twin && s.candidate.cause == *twin) continue;
+    if (indistinguishable && s.candidate.cause == *indistinguishable) continue;
     if (is_free_form(s)) continue;
     chosen.inclusion = std::min(chosen.inclusion, winning_share(between.with_losses, s.losses, between.seed));
     const Spread behind = mean_difference(s.losses, between.with_losses, between.seed);
@@ -50,11 +50,11 @@ ChosenCause weigh(const Cause& cause, const ChosenBetween& between,
     const bool stops = s.candidate.cause.is_stop && cause.is_stop;
     const double negligible = (stops ? 0.02 : 0.002) * between.noise_mm * between.noise_mm;
     if (behind.value <= std::max(behind.standard_error, negligible) &&
-        behind.value <= std::max(rival_share * gained, negligible)) {
-      chosen.rivals.push_back(s.candidate.cause);
+        behind.value <= std::max(alternative_share * gained, negligible)) {
+      chosen.alternatives.push_back(s.candidate.cause);
     }
   }
-  if (twin) chosen.inclusion /= 2;
+  if (indistinguishable) chosen.inclusion /= 2;
   chosen.candidates = describe(scored, between.without_losses, between.seed);
   return chosen;
 }

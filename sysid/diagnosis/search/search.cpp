@@ -21,7 +21,7 @@ constexpr double look_interval_s = 0.02;
 /// Which of the causes may be the best shows on fewer samples.
 constexpr double glance_interval_s = 0.04;
 /// Coarse fits of every start, then medium fits of those that may become the best or an alternative.
-constexpr FitEffort glance{.most_iterations = 8, .tolerance = 1e-5};
+constexpr FitEffort coarse_fit{.most_iterations = 8, .tolerance = 1e-5};
 constexpr FitEffort look{.most_iterations = 12, .tolerance = 1e-5};
 /// Number of causes that get a medium fit. All causes whose coarse fit leaves less than this multiple of the
 /// best one also get it.
@@ -57,13 +57,13 @@ std::vector<Scan> places(const SearchData& data, const StructureFit& current) {
 }
 
 /// Returns the best coarse fits of one candidate, on thinned records, best first.
-std::vector<StructureFit> glances(const SearchData& data, const StructureFit& current,
-                                  std::span<const Scan> scans, const Cause& cause) {
+std::vector<StructureFit> coarse_fits(const SearchData& data, const StructureFit& current,
+                                      std::span<const Scan> scans, const Cause& cause) {
   std::vector<Cause> causes = current.causes;
   causes.push_back(cause);
   std::vector<StructureFit> fits;
   for (const FitPoint& start : best_starts(scans, cause, data.scales, fewest_looks)) {
-    fits.push_back(fit_structure(data.glimpsed, causes, start, glance));
+    fits.push_back(fit_structure(data.glimpsed, causes, start, coarse_fit));
   }
   sort_and_keep(fits, fits.size());
   return fits;
@@ -136,7 +136,7 @@ class CandidateFitter {
     parallel_for(candidates_.size(), data_.threads, [&](std::size_t i) {
       Candidate& candidate = candidates_[i];
       if (candidate.why_not.empty()) {
-        fits_[i] = glances(data_, current_, scans, candidate.cause);
+        fits_[i] = coarse_fits(data_, current_, scans, candidate.cause);
         if (fits_[i].empty()) candidate.why_not = "no start led to a fit";
       }
       if (search_.progress) search_.progress(++tried, candidates_.size());

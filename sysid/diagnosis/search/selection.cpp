@@ -112,14 +112,14 @@ class Selector {
     if (!without.causes.empty()) {
       const double was = mean_square_excess(without), left = mean_square_excess(with);
       const double share = left > left_by_a_small_one * was ? one_more_share : small_share;
-      worth = std::max(worth, share * square(result_.base_structure.excess_mm));
+      worth = std::max(worth, share * square(result_.base_unexplained.excess_mm));
     }
     return difference.lower > 0 && difference.value > worth &&
            difference.value > 0.02 * rmse_mm(before) * rmse_mm(before) * 0.5;
   }
 
   [[nodiscard]] double mean_square_excess(const StructureFit& fit) const {
-    return square(structure_of(fit.residual_mm, noise_).excess_mm);
+    return square(unexplained_error_of(fit.residual_mm, noise_).excess_mm);
   }
 
   [[nodiscard]] BlockLosses left_out(const StructureFit& fit) const {
@@ -152,7 +152,7 @@ class Selector {
   void stand(StructureFit fit, BlockLosses losses) {
     result_.extended = std::move(fit);
     result_.extended_losses = std::move(losses);
-    result_.left = structure_of(result_.extended.residual_mm, noise_);
+    result_.left = unexplained_error_of(result_.extended.residual_mm, noise_);
     fresh_.clear();
     without_.clear();
   }
@@ -255,7 +255,7 @@ class Selector {
 
 Selection selection_from(StructureFit base, BlockLosses losses, double noise_mm) {
   Selection selection;
-  selection.base_structure = selection.left = structure_of(base.residual_mm, noise_mm);
+  selection.base_unexplained = selection.left = unexplained_error_of(base.residual_mm, noise_mm);
   selection.extended_losses = selection.base_losses = std::move(losses);
   selection.extended = selection.base = std::move(base);
   return selection;

@@ -26,8 +26,9 @@ struct CandidateScore {
 /// One cause of the selected set.
 struct ChosenCause {
   Cause cause;
-  std::vector<Cause> rivals;  ///< each explains the data equally well, or is indistinguishable from the cause
-  Spread gain_percent;        ///< held-out error reduction of the whole set relative to the set without it
+  std::vector<Cause>
+      alternatives;     ///< each explains the data equally well, or is indistinguishable from the cause
+  Spread gain_percent;  ///< held-out error reduction of the whole set relative to the set without it
   std::vector<CandidateScore> candidates;  ///< those tried in its place, best first
   Spread gain_mm2;                         ///< decrease of the held-out mean square with the cause
   /// Bootstrap inclusion frequency: share of block resamples in which a structure with the cause has a lower
@@ -43,8 +44,8 @@ struct Selection {
   std::vector<CandidateScore> last_candidates;  ///< of the search that found nothing more
   BlockLosses base_losses;
   BlockLosses extended_losses;
-  Structure base_structure;
-  Structure left;  ///< in the extended structure's residual
+  UnexplainedError base_unexplained;
+  UnexplainedError left;  ///< in the extended structure's residual
   /// fitted next to the extended structure, without a significant reduction
   std::vector<Confounded> undecided;
 };

@@ -39,17 +39,17 @@ double elastic_share(const model::Model& model) {
 
 std::optional<model::Model> with_slack_as_backlash(const model::Model& model) {
   if (model::position_of<model::Backlash>(model)) return std::nullopt;
-  double slack_kpa = 0, gap_mm = 0;
+  double play_kpa = 0, gap_mm = 0;
   std::vector<Operator> sooner{{0, 0}};
   for (const Operator& each : operators_of(model)) {
-    if (each.threshold_kpa > 0 && slack_kpa == 0) {
-      slack_kpa = each.threshold_kpa;
-      gap_mm = 2 * slack_kpa * each.weight_mm_per_kpa;
+    if (each.threshold_kpa > 0 && play_kpa == 0) {
+      play_kpa = each.threshold_kpa;
+      gap_mm = 2 * play_kpa * each.weight_mm_per_kpa;
     }
-    if (each.threshold_kpa <= slack_kpa) {
+    if (each.threshold_kpa <= play_kpa) {
       sooner.front().weight_mm_per_kpa += each.weight_mm_per_kpa;
     } else {
-      sooner.push_back({each.threshold_kpa - slack_kpa, each.weight_mm_per_kpa});
+      sooner.push_back({each.threshold_kpa - play_kpa, each.weight_mm_per_kpa});
     }
   }
   if (!(gap_mm > 0)) return std::nullopt;

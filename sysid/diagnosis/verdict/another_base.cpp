@@ -7,8 +7,8 @@
 #include "base/statistics.h"
 #include "sysid/diagnosis/causes/asymmetric_hysteresis.h"
 #include "sysid/diagnosis/causes/hysteresis_shape.h"
-#include "sysid/diagnosis/residual/leftover.h"
 #include "sysid/diagnosis/residual/noise.h"
+#include "sysid/diagnosis/residual/unexplained_limit.h"
 #include "sysid/diagnosis/search/coherence.h"
 #include "sysid/diagnosis/verdict/naming.h"
 
@@ -32,7 +32,7 @@ bool may_lack_a_base(const Selection& one_cause, double noise_mm) {
   const double left_mm = one_cause.left.excess_mm;
   if (!one_cause.left.present || left_mm < worth_a_look * noise_mm) return false;
   return left_mm > noise_mm ||
-         square(left_mm) > left_by_its_own_cause * square(one_cause.base_structure.excess_mm);
+         square(left_mm) > left_by_its_own_cause * square(one_cause.base_unexplained.excess_mm);
 }
 
 bool another_shape_will_do(const BaseFindings& base, const BlockLosses& selected) {
@@ -44,8 +44,9 @@ bool another_shape_will_do(const BaseFindings& base, const BlockLosses& selected
 void add_another_shape(std::vector<NamedCause>& named) {
   const Cause shape = *find_cause(causes::HysteresisShape::id);
   for (NamedCause& one : named) {
-    const bool is_there = std::find(one.rivals.begin(), one.rivals.end(), shape) != one.rivals.end();
-    if (one.cause.id == causes::AsymmetricHysteresis::id && !is_there) one.rivals.push_back(shape);
+    const bool is_there =
+        std::find(one.alternatives.begin(), one.alternatives.end(), shape) != one.alternatives.end();
+    if (one.cause.id == causes::AsymmetricHysteresis::id && !is_there) one.alternatives.push_back(shape);
   }
 }
 
@@ -55,8 +56,8 @@ AnotherBase::AnotherBase(const SearchData& data, BaseQuestion question)
 std::optional<std::string> AnotherBase::ask(const Selection& selection, const StructureFit& recalibrated) {
   if (asked_) return std::nullopt;
   asked_ = true;
-  if (auto strangers = strangers_among(data_.records, recalibrated, selection.extended.mean_square_mm2))
-    return strangers;
+  if (auto inconsistent = inconsistent_among(data_.records, recalibrated, selection.extended.mean_square_mm2))
+    return inconsistent;
   if (question_.progress) question_.progress("looks for another base");
   found_ = find_base({data_, selection, question_});
   return std::nullopt;
@@ -65,20 +66,21 @@ std::optional<std::string> AnotherBase::ask(const Selection& selection, const St
 void AnotherBase::go_on(const Selection& selection) {
   if (!found_) return;
   const BaseSearch search{data_, selection, question_};
-  const Structure left = structure_of(found_->fit.residual_mm, question_.noise_mm);
-  if (leaves_too_much(left, selection.base_structure, question_.noise_mm)) {
+  const UnexplainedError left = unexplained_error_of(found_->fit.residual_mm, question_.noise_mm);
+  if (leaves_too_much(left, selection.base_unexplained, question_.noise_mm)) {
     find_causes_upon(*found_, search, upon_much_left);
   } else if (left.present && left.excess_mm > worth_asking * question_.noise_mm) {
     const bool measured = question_.drive == Drive::measured;
     find_causes_upon(*found_, search, measured ? upon_little_left_measured : upon_little_left);
   }
-  const bool plain_explains = !leaves_too_much(selection.left, selection.base_structure, question_.noise_mm);
-  if (outdoes(*found_, selection, question_.noise_mm, plain_explains)) return;
+  const bool plain_explains =
+      !leaves_too_much(selection.left, selection.base_unexplained, question_.noise_mm);
+  if (has_lower_loss(*found_, selection, question_.noise_mm, plain_explains)) return;
   another_shape_will_do_ = another_shape_will_do(*found_, selection.extended_losses);
   found_.reset();
 }
 
-void AnotherBase::add_rivals(std::vector<NamedCause>& named) const {
+void AnotherBase::add_alternatives(std::vector<NamedCause>& named) const {
   if (another_shape_will_do_) add_another_shape(named);
 }
 
@@ -88,8 +90,8 @@ double AnotherBase::mean_square_mm2() const {
 
 bool AnotherBase::settles(const Selection& selection) const {
   if (!found_) return false;
-  const Structure left = structure_of(found_->fit.residual_mm, question_.noise_mm);
-  return !leaves_too_much(left, selection.base_structure, question_.noise_mm) &&
+  const UnexplainedError left = unexplained_error_of(found_->fit.residual_mm, question_.noise_mm);
+  return !leaves_too_much(left, selection.base_unexplained, question_.noise_mm) &&
          square(left.excess_mm) < left_by_what_was_missing * square(selection.left.excess_mm);
 }
 

@@ -40,7 +40,7 @@ class AnotherBase {
   void go_on(const Selection& selection);
   void drop() { found_.reset(); }
   /// Adds the alternatives that the rejected base supports to the named causes; see another_shape_will_do().
-  void add_rivals(std::vector<NamedCause>& named) const;
+  void add_alternatives(std::vector<NamedCause>& named) const;
 
   [[nodiscard]] bool is_found() const { return found_.has_value(); }
   /// Requires is_found().

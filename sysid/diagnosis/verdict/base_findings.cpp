@@ -153,10 +153,11 @@ void free_the_base(BaseFindings& found, const StructureTrial& as_beside_causes, 
 }
 
 /// Removes a cause from the alternatives of a component if it is now named itself.
-void take_back_rivals(BaseFindings& found) {
+void take_back_alternatives(BaseFindings& found) {
   for (NamedCause& finding : found.named) {
-    std::erase_if(finding.rivals, [&](const Cause& rival) {
-      return std::find(found.fit.causes.begin(), found.fit.causes.end(), rival) != found.fit.causes.end();
+    std::erase_if(finding.alternatives, [&](const Cause& alternative) {
+      return std::find(found.fit.causes.begin(), found.fit.causes.end(), alternative) !=
+             found.fit.causes.end();
     });
   }
 }
@@ -242,7 +243,7 @@ std::optional<BaseFindings> find_base(const BaseSearch& search) {
   return found;
 }
 
-bool outdoes(const BaseFindings& found, const Selection& plain, double noise_mm, bool plain_explains) {
+bool has_lower_loss(const BaseFindings& found, const Selection& plain, double noise_mm, bool plain_explains) {
   // Nothing is named of causes that leave too much: what leaves no more and has names says more.
   const bool says_more = !plain_explains && !plain.extended.causes.empty() && !found.named.empty();
   const bool needs_fewer = plain.left.excess_mm > noise_mm && has_some_of(found, plain);
@@ -273,7 +274,7 @@ void find_causes_upon(BaseFindings& found, const BaseSearch& search, const Cause
       fit_structure(data.records, selection.extended.causes, selection.extended.point, finishing_effort);
   BlockLosses losses = linear_held_out_losses(data.records, question.division, with);
   drop_what_is_not_missed(with, losses, selection.chosen, data, question);
-  const double before = selection.base_structure.excess_mm, after = selection.left.excess_mm;
+  const double before = selection.base_unexplained.excess_mm, after = selection.left.excess_mm;
   const bool clear = after * after < (1 - allowed.least_share) * before * before;
   if (!clear && !allowed.parts) return;
   for (NamedCause& cause : name_chosen(data.records, with, selection.chosen)) {
@@ -285,7 +286,7 @@ void find_causes_upon(BaseFindings& found, const BaseSearch& search, const Cause
   found.fit = std::move(with);
   found.losses = std::move(losses);
   take_back_confounded(found, data, question);
-  take_back_rivals(found);
+  take_back_alternatives(found);
   renumber(found, data);
 }
 

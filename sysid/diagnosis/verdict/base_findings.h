@@ -66,7 +66,7 @@ void find_causes_upon(BaseFindings& found, const BaseSearch& search, const Cause
 /// on the given base. An equal loss is sufficient if the selection is unphysical. A slightly higher loss is
 /// sufficient with a subset of the same causes, if the selection leaves more than the noise.
 /// @param plain_explains  true if the selection on the given base leaves little enough to be named.
-[[nodiscard]] bool outdoes(const BaseFindings& found, const Selection& plain, double noise_mm,
-                           bool plain_explains);
+[[nodiscard]] bool has_lower_loss(const BaseFindings& found, const Selection& plain, double noise_mm,
+                                  bool plain_explains);
 
 }  // namespace softgrip::sysid

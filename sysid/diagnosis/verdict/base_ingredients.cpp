@@ -47,7 +47,7 @@ constexpr double stands_still_below = 0.07;
 struct FindingName {
   Ingredient ingredient;
   std::string_view id;
-  std::string_view rival;  ///< a cause with the same readings for every command; empty: none
+  std::string_view alternative;  ///< a cause with the same readings for every command; empty: none
   std::size_t (*block)(const BaseStructure& structure, Drive drive);
 };
 constexpr std::array names{
@@ -76,7 +76,7 @@ constexpr std::array names{
 double left_by_the_given_mm2(const BaseSearch& search) {
   const double noise_mm = search.question.noise_mm;
   const double held_out_mm2 = std::pow(rmse_mm(search.plain.base_losses), 2) - noise_mm * noise_mm;
-  const double most_mm2 = std::pow(ran_off_above * search.plain.base_structure.excess_mm, 2);
+  const double most_mm2 = std::pow(ran_off_above * search.plain.base_unexplained.excess_mm, 2);
   return std::max(std::min(held_out_mm2, most_mm2), 1e-300);
 }
 
@@ -86,11 +86,11 @@ const StructureTrial* trial_without(const std::vector<WithoutIngredient>& ablati
   return found == ablation.end() ? nullptr : &found->trial;
 }
 
-class Namer {
+class Labeller {
  public:
   /// @param point  the chosen structure fitted to all readings.
-  Namer(const SearchData& data, const StructureTrial& chosen, const FitPoint& point,
-        const BaseQuestion& question)
+  Labeller(const SearchData& data, const StructureTrial& chosen, const FitPoint& point,
+           const BaseQuestion& question)
       : chosen_(chosen),
         question_(question),
         stands_still_(elastic_share(chosen.point.model) < stands_still_below),
@@ -101,14 +101,15 @@ class Namer {
     NamedCause named;
     named.cause = *find_cause(finding.id);
     named.block_type = finding.block(chosen_.structure, question_.drive);
-    if (!finding.rival.empty()) named.rivals.push_back(*find_cause(finding.rival));
+    if (!finding.alternative.empty()) named.alternatives.push_back(*find_cause(finding.alternative));
     if (finding.ingredient == Ingredient::play_operators && stands_still_)
-      named.rivals.push_back(*find_cause(causes::Backlash::id));
+      named.alternatives.push_back(*find_cause(causes::Backlash::id));
     // Behind the command or the measured pressure, before or behind the finger.
-    if (finding.ingredient == Ingredient::lag) named.rivals.push_back(*find_cause(causes::SensorLag::id));
+    if (finding.ingredient == Ingredient::lag)
+      named.alternatives.push_back(*find_cause(causes::SensorLag::id));
     // Behind a lag a second one looks like a delay.
     if (finding.ingredient == Ingredient::delay && chosen_.structure.lag)
-      named.rivals.push_back(*find_cause(causes::ValveLag::id));
+      named.alternatives.push_back(*find_cause(causes::ValveLag::id));
     named.heldout_gain_percent =
         gain_percent(without.block_losses_mm2, chosen_.block_losses_mm2, question_.seed);
     named.gain_mm2 = mean_difference(without.block_losses_mm2, chosen_.block_losses_mm2, question_.seed);
@@ -128,7 +129,7 @@ class Namer {
 /// A delay and a lag compensate for most of each other, so the data may require neither although the finger
 /// responds late. The one with the larger loss represents both. Returns an empty value if one of them is
 /// already named.
-std::optional<NamedCause> latency_of(const std::vector<WithoutIngredient>& ablation, const Namer& namer,
+std::optional<NamedCause> latency_of(const std::vector<WithoutIngredient>& ablation, const Labeller& labeller,
                                      const BaseFindings& found) {
   const StructureTrial* const neither = trial_without(ablation, Ingredient::latency);
   if (neither == nullptr) return std::nullopt;
@@ -137,7 +138,7 @@ std::optional<NamedCause> latency_of(const std::vector<WithoutIngredient>& ablat
   std::vector<Cause> late{*find_cause(causes::SensorLag::id)};
   for (const FindingName& finding : names) {
     if (finding.ingredient != Ingredient::delay && finding.ingredient != Ingredient::lag) continue;
-    const NamedCause one = namer.name(finding, *trial_without(ablation, finding.ingredient));
+    const NamedCause one = labeller.name(finding, *trial_without(ablation, finding.ingredient));
     if (is_among(found.named, one.cause)) return std::nullopt;
     late.push_back(one.cause);
     if (missed_more == nullptr || one.gain_mm2.value > missed_mm2) {
@@ -145,9 +146,9 @@ std::optional<NamedCause> latency_of(const std::vector<WithoutIngredient>& ablat
       missed_mm2 = one.gain_mm2.value;
     }
   }
-  NamedCause latency = namer.name(*missed_more, *neither);
+  NamedCause latency = labeller.name(*missed_more, *neither);
   std::erase(late, latency.cause);
-  latency.rivals = std::move(late);
+  latency.alternatives = std::move(late);
   return latency;
 }
 
@@ -162,20 +163,21 @@ std::vector<Ingredient> named_ingredients() {
 void name_ingredients(BaseFindings& found, const std::vector<WithoutIngredient>& ablation,
                       const BaseSearch& search) {
   const double least_mm2 = least_share * left_by_the_given_mm2(search);
-  const Namer namer(search.data, found.chosen, found.fit.point, search.question);
+  const Labeller labeller(search.data, found.chosen, found.fit.point, search.question);
   for (const FindingName& finding : names) {
     const StructureTrial* const without = trial_without(ablation, finding.ingredient);
     if (without == nullptr) continue;
-    NamedCause named = namer.name(finding, *without);
+    NamedCause named = labeller.name(finding, *without);
     if (named.gain_mm2.value < least_mm2) continue;
     if (is_among(found.named, named.cause) || is_among(found.possible, named.cause)) continue;
     (named.inclusion >= full_inclusion ? found.named : found.possible).push_back(std::move(named));
   }
-  auto latency = latency_of(ablation, namer, found);
+  auto latency = latency_of(ablation, labeller, found);
   if (!latency || latency->gain_mm2.value < least_mm2 || latency->inclusion < full_inclusion) return;
   std::erase_if(found.possible, [&](const NamedCause& one) {
     return one.cause == latency->cause ||
-           std::find(latency->rivals.begin(), latency->rivals.end(), one.cause) != latency->rivals.end();
+           std::find(latency->alternatives.begin(), latency->alternatives.end(), one.cause) !=
+               latency->alternatives.end();
   });
   found.named.push_back(std::move(*latency));
 }

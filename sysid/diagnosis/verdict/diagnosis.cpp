@@ -8,12 +8,12 @@
 #include "base/statistics.h"
 #include "base/thread_budget.h"
 #include "sysid/diagnosis/causes/valve_deadband.h"
-#include "sysid/diagnosis/residual/leftover.h"
 #include "sysid/diagnosis/residual/noise.h"
 #include "sysid/diagnosis/residual/spectrum_peaks.h"
+#include "sysid/diagnosis/residual/unexplained_limit.h"
 #include "sysid/diagnosis/search/coherence.h"
 #include "sysid/diagnosis/search/linear_holdout.h"
-#include "sysid/diagnosis/search/staircase_selection.h"
+#include "sysid/diagnosis/search/stick_slip_selection.h"
 #include "sysid/diagnosis/verdict/another_base.h"
 #include "sysid/diagnosis/verdict/base_ingredients.h"
 #include "sysid/diagnosis/verdict/data_warnings.h"
@@ -123,7 +123,7 @@ class Diagnostician {
     if (leaves_too_much(selection) || (another.is_found() && selection.left.present)) {
       if (may_ask_at_once()) look_for_base(another, selection);
       clock.ended("base");
-      if (!another.settles(selection) && look_for_staircase(selection, division)) {
+      if (!another.settles(selection) && look_for_stick_slip(selection, division)) {
         another.drop();
         clock.ended("staircase");
       }
@@ -137,7 +137,7 @@ class Diagnostician {
       return {};
     }
     if (options_.gauge) {
-      const GaugeQuestion question{*options_.gauge, d_.noise_mm, options_.seed, !d_.staircase};
+      const GaugeQuestion question{*options_.gauge, d_.noise_mm, options_.seed, !d_.stick_slip};
       d_.gauge = weigh_gauge(question, data_, division, selection, d_.warnings);
       if (d_.gauge->replaced) selection.undecided = fit_confounded(data_, selection.extended, division);
       clock.ended("gauge");
@@ -146,7 +146,7 @@ class Diagnostician {
     if (options_.null_campaigns > 0 && !selection.chosen.empty()) calibrate(division);
     if (d_.null_calibration) clock.ended("nulls");
     name(selection);
-    another.add_rivals(causes_);
+    another.add_alternatives(causes_);
     conclude(selection);
     clock.ended("held-out logs and intervals");
     if (options_.gauge && options_.null_campaigns == 0 && d_.verdict == Verdict::unexplained) {
@@ -224,7 +224,7 @@ class Diagnostician {
                    0.01 * square(d_.noise_mm), options_.seed))
       return false;
     // Creep that never settles follows any difference between logs of two rigs.
-    if (strangers_among(data_.records, selection.base, fit.mean_square_mm2)) return false;
+    if (inconsistent_among(data_.records, selection.base, fit.mean_square_mm2)) return false;
     use(std::move(open));
     d_.recalibrated = std::move(fit);
     d_.warnings.emplace_back(
@@ -240,26 +240,26 @@ class Diagnostician {
     if (selection.extended.causes.empty()) {
       return !left_by_outliers(selection.left) && selection.left.excess_mm > worth_a_look * d_.noise_mm;
     }
-    return sysid::leaves_too_much(selection.left, selection.base_structure, d_.noise_mm);
+    return sysid::leaves_too_much(selection.left, selection.base_unexplained, d_.noise_mm);
   }
 
   /// No simulation from the command alone can predict the remainder of a valve with stick-slip. Returns true
   /// if stick-slip was the missing effect. The selection is then the one behind the valve.
-  bool look_for_staircase(Selection& selection, const Division& division) {
+  bool look_for_stick_slip(Selection& selection, const Division& division) {
     if (options_.record.drive != Drive::command) return false;
     if (options_.progress) options_.progress("looks for a staircase");
     SelectionOptions one_more;
     one_more.most_causes = 1;
     one_more.seed = options_.seed;
     one_more.progress = options_.progress;
-    auto found = select_behind_staircase(data_, selection, d_.noise_mm, division, one_more);
+    auto found = select_behind_stick_slip(data_, selection, d_.noise_mm, division, one_more);
     if (!found || leaves_too_much(found->selection)) return false;
     // A path of many small steps can fit any residual. Therefore stick-slip must explain most of the
     // remaining error.
     if (square(found->selection.left.excess_mm) > left_by_what_was_missing * square(selection.left.excess_mm))
       return false;
     selection = std::move(found->selection);
-    d_.staircase = found->evidence;
+    d_.stick_slip = found->evidence;
     return true;
   }
 
@@ -272,7 +272,7 @@ class Diagnostician {
   }
 
   void ask_for_base(AnotherBase& another, const Selection& selection) {
-    if (auto strangers = another.ask(selection, d_.recalibrated)) d_.warnings.push_back(*strangers);
+    if (auto inconsistent = another.ask(selection, d_.recalibrated)) d_.warnings.push_back(*inconsistent);
   }
 
   Selection search(StructureFit recalibrated, const Division& division, AnotherBase& another) {
@@ -281,7 +281,8 @@ class Diagnostician {
     options.seed = options_.seed;
     options.progress = options_.progress;
     std::optional<Selection> one_is_not_enough;
-    if (left_by_outliers(structure_of(recalibrated.residual_mm, d_.noise_mm))) options.most_causes = 0;
+    if (left_by_outliers(unexplained_error_of(recalibrated.residual_mm, d_.noise_mm)))
+      options.most_causes = 0;
     if (may_ask_at_once()) {
       options.one_cause_stands = [&](const Selection& one_cause) {
         if (may_lack_a_base(one_cause, d_.noise_mm)) one_is_not_enough = one_cause;
@@ -307,24 +308,24 @@ class Diagnostician {
                          left_out_losses(data_.records, by_unit, selection.base),
                          linear_held_out_losses(data_.records, by_unit, d_.extended));
     d_.gain = gain_percent(selection.base_losses, base.losses, options_.seed);
-    d_.structure_left = structure_of(d_.extended.residual_mm, d_.noise_mm);
+    d_.unexplained_error = unexplained_error_of(d_.extended.residual_mm, d_.noise_mm);
     d_.unexplained_percent =
-        std::min(100.0, 100 * square(d_.structure_left.excess_mm / selection.base_structure.excess_mm));
+        std::min(100.0, 100 * square(d_.unexplained_error.excess_mm / selection.base_unexplained.excess_mm));
     d_.extended_model = named_model(d_.extended.point.model, "extended");
     d_.causes = std::move(base.named);
     if (d_.outliers.present)
       d_.causes.insert(d_.causes.begin(),
                        outlier_cause(d_.outliers, d_.noise_mm, d_.records.front().output_unit));
     d_.partial = std::move(base.possible);
-    const bool whole = !sysid::leaves_too_much(d_.structure_left, selection.base_structure, d_.noise_mm);
-    d_.verdict = d_.causes.empty()       ? Verdict::unexplained
-                 : !whole                ? Verdict::partly_explained
-                 : any_rivals(d_.causes) ? Verdict::ambiguous
-                                         : Verdict::cause_found;
+    const bool whole = !sysid::leaves_too_much(d_.unexplained_error, selection.base_unexplained, d_.noise_mm);
+    d_.verdict = d_.causes.empty()             ? Verdict::unexplained
+                 : !whole                      ? Verdict::partly_explained
+                 : any_alternatives(d_.causes) ? Verdict::ambiguous
+                                               : Verdict::cause_found;
   }
 
   void measure_recalibrated(const Selection& selection) {
-    d_.structure_recalibrated = selection.base_structure;
+    d_.unexplained_recalibrated = selection.base_unexplained;
     d_.recalibrated_rmse_mm = rmse_mm(selection.base_losses);
     d_.rejected = selection.last_candidates;
     d_.recalibrated_model = named_model(selection.base.point.model, "recalibrated");
@@ -334,17 +335,17 @@ class Diagnostician {
   void measure(const Selection& selection, const Division& division) {
     measure_recalibrated(selection);
     d_.extended = selection.extended;
-    d_.structure_left = selection.left;
+    d_.unexplained_error = selection.left;
     d_.extended_rmse_mm = rmse_mm(selection.extended_losses);
     d_.gain = gain_percent(selection.base_losses, selection.extended_losses, options_.seed);
     // New numbers are compared with the old ones, and both have their starts fitted.
     const StructureFit given = fit_starts(data_.records, {}, data_.given);
     recalibration_gain_ = mean_difference(losses_of(given, division), selection.base_losses, options_.seed);
     d_.unexplained_percent =
-        selection.base_structure.excess_mm > 0
-            ? std::min(100.0, 100 * square(selection.left.excess_mm / selection.base_structure.excess_mm))
+        selection.base_unexplained.excess_mm > 0
+            ? std::min(100.0, 100 * square(selection.left.excess_mm / selection.base_unexplained.excess_mm))
             : 0;
-    if (!selection.left.present && !selection.base_structure.present) d_.unexplained_percent = 0;
+    if (!selection.left.present && !selection.base_unexplained.present) d_.unexplained_percent = 0;
     const Division by_unit = divide_by_unit(data_.records);
     const BlockLosses recalibrated = left_out_losses(data_.records, by_unit, selection.base);
     const BlockLosses extended =
@@ -386,21 +387,22 @@ class Diagnostician {
     if (d_.outliers.present)
       causes_.push_back(outlier_cause(d_.outliers, d_.noise_mm, d_.records.front().output_unit));
     std::vector<NamedCause> chosen = name_chosen(data_.records, selection.extended, selection.chosen);
-    if (!d_.staircase) {
+    if (!d_.stick_slip) {
       for (std::string& sentence : mix_intervals(chosen, data_.records, selection, options_.seed))
         d_.warnings.push_back(std::move(sentence));
     }
     for (NamedCause& named : chosen) {
-      if (d_.staircase && named.cause.id == causes::ValveDeadband::id) {
+      if (d_.stick_slip && named.cause.id == causes::ValveDeadband::id) {
         // The values of the stick-slip motion; the extended model may have those of its mean.
-        named.parameters.front() = {"band_kpa", "kPa", d_.staircase->band_kpa, d_.staircase->band_ci95, true};
+        named.parameters.front() = {"band_kpa", "kPa", d_.stick_slip->band_kpa, d_.stick_slip->band_ci95,
+                                    true};
       }
       causes_.push_back(std::move(named));
     }
   }
 
   /// Undetected wrong samples are isolated, but the effect of a cause is correlated from sample to sample.
-  [[nodiscard]] bool left_by_outliers(const Structure& structure) const {
+  [[nodiscard]] bool left_by_outliers(const UnexplainedError& structure) const {
     return d_.outliers.present && structure.slow_correlation <= clearly_correlated &&
            structure.excess_mm < d_.noise_mm;
   }
@@ -430,7 +432,7 @@ class Diagnostician {
           selection.left.present ? 100 * left / (left + square(d_.outliers.excess_mm)) : 0;
     }
     if (!d_.causes.empty()) {
-      d_.verdict = any_rivals(d_.causes) ? Verdict::ambiguous : Verdict::cause_found;
+      d_.verdict = any_alternatives(d_.causes) ? Verdict::ambiguous : Verdict::cause_found;
       return;
     }
     const bool better =

@@ -18,7 +18,7 @@
 #include "sysid/diagnosis/residual/outliers.h"
 #include "sysid/diagnosis/search/null_calibration.h"
 #include "sysid/diagnosis/search/selection.h"
-#include "sysid/diagnosis/search/staircase_selection.h"
+#include "sysid/diagnosis/search/stick_slip_selection.h"
 #include "sysid/diagnosis/verdict/named_cause.h"
 #include "sysid/diagnosis/verdict/valve_findings.h"
 #include "sysid/identification/identify.h"
@@ -65,13 +65,13 @@ struct Diagnosis {
   double unexplained_percent = 0;
   std::optional<NullCalibration> null_calibration;  ///< if requested and a cause was to be named
   OutlierEvidence outliers;
-  std::optional<StaircaseEvidence> staircase;  ///< if the named dead band shows stick-slip
-  std::optional<GaugeEvidence> gauge;          ///< where gauge readings were given
-  std::optional<ValveFindings> in_valve;       ///< where the pressure was measured; none of `causes` again
+  std::optional<StickSlipEvidence> stick_slip;  ///< if the named dead band shows stick-slip
+  std::optional<GaugeEvidence> gauge;           ///< where gauge readings were given
+  std::optional<ValveFindings> in_valve;        ///< where the pressure was measured; none of `causes` again
   /// components of a richer base, if the given base is insufficient; empty: it is sufficient
   std::string base;
-  Structure structure_recalibrated;
-  Structure structure_left;
+  UnexplainedError unexplained_recalibrated;
+  UnexplainedError unexplained_error;
   StructureFit as_given;
   StructureFit recalibrated;
   StructureFit extended;

@@ -35,7 +35,7 @@ struct NamedCause {
   /// [kPa^2].
   std::optional<Spread> gain_kpa2;
   double inclusion = 1;  ///< the weight of the structures in the confidence set that contain it
-  std::vector<Cause> rivals;
+  std::vector<Cause> alternatives;
   std::vector<CandidateScore> candidates;
 };
 

@@ -68,7 +68,7 @@ std::vector<NamedCause> name_chosen(const std::vector<Record>& records, const St
     named.heldout_gain_percent = each.gain_percent;
     named.gain_mm2 = each.gain_mm2;
     named.inclusion = each.inclusion;
-    named.rivals = each.rivals;
+    named.alternatives = each.alternatives;
     named.candidates = each.candidates;
     list.push_back(std::move(named));
   }
@@ -98,16 +98,17 @@ std::string title_within(const Cause& cause) {
   return text;
 }
 
-std::string rival_title(const Cause& rival, const std::vector<NamedCause>& named) {
-  return (is_among(named, rival) ? "a further " : "") + title_within(rival);
+std::string alternative_title(const Cause& alternative, const std::vector<NamedCause>& named) {
+  return (is_among(named, alternative) ? "a further " : "") + title_within(alternative);
 }
 
 bool is_among(const std::vector<NamedCause>& named, const Cause& cause) {
   return std::any_of(named.begin(), named.end(), [&](const NamedCause& one) { return one.cause == cause; });
 }
 
-bool any_rivals(const std::vector<NamedCause>& causes) {
-  return std::any_of(causes.begin(), causes.end(), [](const NamedCause& c) { return !c.rivals.empty(); });
+bool any_alternatives(const std::vector<NamedCause>& causes) {
+  return std::any_of(causes.begin(), causes.end(),
+                     [](const NamedCause& c) { return !c.alternatives.empty(); });
 }
 
 }  // namespace softgrip::sysid

@@ -38,12 +38,12 @@ struct UncertainPoint {
 [[nodiscard]] std::string title_within(const Cause& cause);
 /// Returns the title of an alternative next to the named causes: "a further valve lag" if a valve lag is
 /// already named.
-[[nodiscard]] std::string rival_title(const Cause& rival, const std::vector<NamedCause>& named);
+[[nodiscard]] std::string alternative_title(const Cause& alternative, const std::vector<NamedCause>& named);
 
 /// Returns true if the cause is named.
 [[nodiscard]] bool is_among(const std::vector<NamedCause>& named, const Cause& cause);
 
 /// Returns true if any of the causes has an alternative.
-[[nodiscard]] bool any_rivals(const std::vector<NamedCause>& causes);
+[[nodiscard]] bool any_alternatives(const std::vector<NamedCause>& causes);
 
 }  // namespace softgrip::sysid

@@ -198,7 +198,7 @@ class Search {
       if (position_of(question_.given, named.cause)) continue;
       named.parameters = parameters_of(name, found.stage, kept);
       if (name.part == ValvePart::delay && may_be_second_lag())
-        named.rivals.push_back(*find_cause(causes::ValveLag::id));
+        named.alternatives.push_back(*find_cause(causes::ValveLag::id));
       found.named.push_back(std::move(named));
     }
     add_lost_pressure(found, kept);
@@ -238,7 +238,7 @@ class Search {
     found.stage = lost->stage;
     found.heldout_rmse_kpa = rmse_mm(lost->losses_kpa2);
     named.parameters = parameters_of(name, found.stage, lost->parts);
-    named.rivals = {*find_cause(causes::PressureScale::id)};
+    named.alternatives = {*find_cause(causes::PressureScale::id)};
     found.named.push_back(std::move(named));
     found.advice = "at " + significant(lost->highest_kpa, 3) + " kPa " + significant(lost->missing_kpa, 2) +
                    " kPa of the command are missing, whether it rises or falls: hold full pressure and close "

@@ -17,7 +17,8 @@ std::string reading(const Diagnosis& d, double value) {
 std::string listed(const std::vector<NamedCause>& causes) {
   return enumerated(causes, " and ", [&causes](const NamedCause& named) {
     std::string text = title_within(named.cause);
-    for (const Cause& rival : named.rivals) text += " or " + rival_title(rival, causes);
+    for (const Cause& alternative : named.alternatives)
+      text += " or " + alternative_title(alternative, causes);
     return text;
   });
 }
@@ -31,13 +32,13 @@ std::string outlier_sentence(const Diagnosis& d) {
 
 /// Returns the sentence on stick-slip. The readings determine the position of the valve; the command does
 /// not.
-std::string staircase_sentence(const Diagnosis& d, const std::string& before, const std::string& after) {
+std::string stick_slip_sentence(const Diagnosis& d, const std::string& before, const std::string& after) {
   return "The model lacks " + listed(d.causes) +
          ": the valve sticks and jumps. When it jumps the command alone does not tell, and with it the "
          "held-out error "
          "falls from " +
          before + " to " + after + " only; with the moment of every jump taken from the readings, to " +
-         reading(d, d.staircase->heldout_rmse_mm) + ".";
+         reading(d, d.stick_slip->heldout_rmse_mm) + ".";
 }
 
 /// ": with them the held-out error falls from 2 mm to 1 mm". Where it does not fall, a model that moves as no
@@ -63,8 +64,8 @@ std::string unexplained_sentence(const Diagnosis& d, const std::string& before, 
   }
   return "Something is wrong that no known cause explains in full: with " + listed(d.partial) +
          " the held-out error falls from " + before + " to " + after + ", and " +
-         reading(d, d.structure_left.excess_mm) + " of structure stays, " +
-         significant(d.structure_left.excess_mm / d.noise_mm, 2) + " times the noise.";
+         reading(d, d.unexplained_error.excess_mm) + " of structure stays, " +
+         significant(d.unexplained_error.excess_mm / d.noise_mm, 2) + " times the noise.";
 }
 
 bool valve_lacks(const Diagnosis& d) {
@@ -97,15 +98,15 @@ std::string sentence_of_logs(const Diagnosis& d) {
              significant(d.as_given_rmse_mm, 2) + " to " + before + ".";
     case Verdict::cause_found:
       if (!is_extended(d)) return outlier_sentence(d);
-      if (d.staircase) return staircase_sentence(d, before, after);
+      if (d.stick_slip) return stick_slip_sentence(d, before, after);
       return "The model lacks " + listed(d.causes) + with_them(d, before, after) + ".";
     case Verdict::ambiguous:
       return "The model lacks something that these logs cannot tell apart (" + listed(d.causes) + ")" +
              with_them(d, before, after) + ".";
     case Verdict::partly_explained:
       return "The model lacks " + listed(d.causes) + with_them(d, before, after) + "; " +
-             reading(d, d.structure_left.excess_mm) + " of structure stays, " +
-             significant(d.structure_left.excess_mm / d.noise_mm, 2) + " times the noise.";
+             reading(d, d.unexplained_error.excess_mm) + " of structure stays, " +
+             significant(d.unexplained_error.excess_mm / d.noise_mm, 2) + " times the noise.";
     case Verdict::unexplained:
       return unexplained_sentence(d, before, after);
   }
@@ -136,8 +137,8 @@ Verdict whole_verdict(const Diagnosis& d) {
   if (!d.in_valve || d.in_valve->named.empty()) return d.verdict;
   if (d.verdict == Verdict::unexplained) return Verdict::partly_explained;
   if (d.verdict == Verdict::partly_explained) return d.verdict;
-  return d.verdict == Verdict::ambiguous || any_rivals(d.in_valve->named) ? Verdict::ambiguous
-                                                                          : Verdict::cause_found;
+  return d.verdict == Verdict::ambiguous || any_alternatives(d.in_valve->named) ? Verdict::ambiguous
+                                                                                : Verdict::cause_found;
 }
 
 std::string verdict_sentence(const Diagnosis& d) {

@@ -9,8 +9,8 @@
 #include <set>
 
 #include "model/catalogue.h"
+#include "sysid/diagnosis/causes/indistinguishable.h"
 #include "sysid/diagnosis/causes/registry.h"
-#include "sysid/diagnosis/causes/twins.h"
 #include "tests/model/presets.h"
 #include "tests/sysid/diagnosis/campaign.h"
 
@@ -132,13 +132,13 @@ TEST_P(Causes, SayWhichColumnTheyNeed) {
 }
 
 // A twin, and what a gauge can tell, stand one at the sensor and one before it.
-TEST_P(Causes, HaveTwinsAndCounterpartsAtTheOtherEnd) {
+TEST_P(Causes, HaveCounterpartsAtTheOtherEnd) {
   const auto at_sensor = [](const Cause& c) { return c.station == model::Station::sensor; };
   for (const Cause& other : sensor_counterparts(cause))
     EXPECT_NE(at_sensor(cause), at_sensor(other)) << other.id;
-  if (cause.twin.empty()) return;
-  EXPECT_EQ(find_cause(cause.twin)->twin, cause.id);
-  EXPECT_NE(std::find(cause.counterparts.begin(), cause.counterparts.end(), cause.twin),
+  if (cause.indistinguishable.empty()) return;
+  EXPECT_EQ(find_cause(cause.indistinguishable)->indistinguishable, cause.id);
+  EXPECT_NE(std::find(cause.counterparts.begin(), cause.counterparts.end(), cause.indistinguishable),
             cause.counterparts.end());
 }
 

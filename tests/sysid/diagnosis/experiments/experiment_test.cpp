@@ -60,7 +60,7 @@ model::Model softened() {
 }
 
 /// A diagnosis that names softening, fitted to what a softening finger did, with the given rivals.
-Diagnosis ambiguous(const std::vector<std::string>& rivals) {
+Diagnosis ambiguous(const std::vector<std::string>& alternatives) {
   const model::Model base = loaded("bench_twin");
   Record record = record_of("poor", poor_command(), 0);
   fill(record, softened(), 11);
@@ -75,7 +75,7 @@ Diagnosis ambiguous(const std::vector<std::string>& rivals) {
   NamedCause named;
   named.cause = *find_cause("stress_softening");
   d.extended = fit_candidates(data, d.recalibrated, {.only = {named.cause}}).front().fit.value();
-  for (const std::string& rival : rivals) named.rivals.push_back(*find_cause(rival));
+  for (const std::string& alternative : alternatives) named.alternatives.push_back(*find_cause(alternative));
   d.causes = {named};
   return d;
 }
@@ -138,7 +138,7 @@ TEST(ExperimentMenu, EveryEntryIsASequenceThatTheDaemonReadsAsItWasMeant) {
   }
 }
 
-TEST(Experiment, NothingIsProposedWithoutRivals) {
+TEST(Experiment, NothingIsProposedWithoutAlternatives) {
   Diagnosis d;
   d.verdict = Verdict::cause_found;
   EXPECT_FALSE(design_experiment(d, {}).best);
@@ -206,20 +206,20 @@ TEST(Experiment, WhatWasRunAlreadyIsNotProposedAgain) {
   EXPECT_TRUE(next.menu.empty());
 }
 
-TEST(Experiment, RefittingTheRivalCanOnlyBringItNearer) {
+TEST(Experiment, RefittingTheAlternativeCanOnlyBringItNearer) {
   const Diagnosis d = ambiguous({});
   NoiseModel noise;
   noise.innovation_mm = noise_mm;
-  const Hypothesis rival(d.records, d.recalibrated, noise);
+  const Hypothesis alternative(d.records, d.recalibrated, noise);
   const Hypothesis truth(d.records, d.extended, noise);
   Record record = record_of("new", sampled_kpa(experiment_menu({58, 300})[0], interval_s), 20);
   record.largest_before_kpa = 55;
   const std::vector<double> truth_mm = truth.prediction(record);
-  const std::vector<double> own = rival.prediction(record);
+  const std::vector<double> own = alternative.prediction(record);
   double before = 0;
   for (std::size_t i = 0; i < own.size(); ++i) before += std::pow((own[i] - truth_mm[i]) / noise_mm, 2);
-  EXPECT_LT(rival.linear_distance(record, truth_mm), std::sqrt(before));
-  EXPECT_LT(rival.refitted_distance(record, truth_mm), std::sqrt(before));
+  EXPECT_LT(alternative.linear_distance(record, truth_mm), std::sqrt(before));
+  EXPECT_LT(alternative.refitted_distance(record, truth_mm), std::sqrt(before));
   EXPECT_NEAR(truth.linear_distance(record, truth_mm), 0, 1e-6);
 }
 

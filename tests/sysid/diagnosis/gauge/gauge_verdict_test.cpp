@@ -58,7 +58,7 @@ void expect_found(const Diagnosis& d, const std::string& id) {
   EXPECT_EQ(d.verdict, Verdict::cause_found) << verdict_sentence(d);
   ASSERT_EQ(d.causes.size(), 1U);
   EXPECT_EQ(d.causes[0].cause.id, id);
-  EXPECT_TRUE(d.causes[0].rivals.empty());
+  EXPECT_TRUE(d.causes[0].alternatives.empty());
   // Everything that is said of the cause is the named one's: extension, parameters, held-out figures.
   EXPECT_TRUE(model::position_of(d.extended_model, id));
   ASSERT_EQ(d.extended.causes.size(), 1U);
@@ -151,7 +151,7 @@ TEST(GaugeVerdict, TheNamedCauseGivesItsPlaceToTheOneThatIsLeft) {
     EXPECT_NEAR(after.extended_rmse_mm, tried.heldout_rmse_mm, 0.01 * tried.heldout_rmse_mm);
     EXPECT_GT(after.extended_rmse_mm, 1.05 * before.extended_rmse_mm);
   }
-  EXPECT_TRUE(warned_of(after, "form of it leaves")) << after.structure_left.excess_mm;
+  EXPECT_TRUE(warned_of(after, "form of it leaves")) << after.unexplained_error.excess_mm;
 }
 
 /// A finger that stiffens and a sensor that is bent a little: the one is named, the other is told.
@@ -216,8 +216,9 @@ TEST(GaugeVerdict, AFingerThatWasNamedAloneDoesNotStandAgainstTheGauge) {
   const model::Model given = model::with_block(loaded("bench_twin"), play);
   const model::Model truth = model::with_block(stiff_finger, play);
   const auto stands = [](const Diagnosis& d) {
-    return std::any_of(d.causes.begin(), d.causes.end(),
-                       [](const NamedCause& c) { return c.cause.id == "stiffening" && c.rivals.empty(); });
+    return std::any_of(d.causes.begin(), d.causes.end(), [](const NamedCause& c) {
+      return c.cause.id == "stiffening" && c.alternatives.empty();
+    });
   };
   const Diagnosis alone = diagnosed(truth, std::nullopt, given);
   ASSERT_TRUE(stands(alone)) << verdict_sentence(alone);

@@ -57,12 +57,12 @@ Diagnosis a_diagnosis(const model::Model& given) {
   d.extended_model.name = "zhang2025_extended";
   d.extended = fit_of(d.extended_model, d.records);
   d.causes = {named("valve_lag", 0.05)};
-  d.causes.front().rivals = {*find_cause("sensor_lag")};
-  CandidateScore rival;
-  rival.cause = *find_cause("sensor_lag");
-  rival.heldout_rmse_mm = 0.21;
-  rival.gain_percent = {38, 5, 28, 48};
-  d.causes.front().candidates = {rival};
+  d.causes.front().alternatives = {*find_cause("sensor_lag")};
+  CandidateScore alternative;
+  alternative.cause = *find_cause("sensor_lag");
+  alternative.heldout_rmse_mm = 0.21;
+  alternative.gain_percent = {38, 5, 28, 48};
+  d.causes.front().candidates = {alternative};
   d.extended.causes = {d.causes.front().cause};
   d.as_given_rmse_mm = 0.5;
   d.recalibrated_rmse_mm = 0.3;
@@ -149,7 +149,7 @@ TEST_F(ReportTest, NoLineOfADrawingGoesThroughItsWords) {
             std::vector<std::string>{});
 }
 
-TEST_F(ReportTest, TheForestHasARowForEachCauseAndEachRival) {
+TEST_F(ReportTest, TheForestHasARowForEachCauseAndEachAlternative) {
   const Figure forest = forest_figure(diagnosis);
   ASSERT_TRUE(forest.drawing);
   ASSERT_EQ(forest.drawing->rows.size(), 2U);

@@ -75,7 +75,7 @@ TEST(DiagnosisJson, ALeakThatMayBeAScaleIsAmbiguousWithTheScaleForItsAlternative
   Diagnosis d;
   d.verdict = Verdict::recalibrate;
   d.in_valve = dead_band_found();
-  d.in_valve->named.front().rivals = {*find_cause("pressure_scale")};
+  d.in_valve->named.front().alternatives = {*find_cause("pressure_scale")};
   const auto json = json_of(d);
   EXPECT_EQ(json["verdict"], "ambiguous");
   ASSERT_EQ(json["alternatives"][0].size(), 1U);

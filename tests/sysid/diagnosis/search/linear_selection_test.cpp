@@ -100,8 +100,8 @@ TEST(LinearSelection, ARestOfTheLoopsFormIsNoCause) {
     const Campaign c = campaign_of(model::with_block(
         finger(), model::block_of<model::AsymmetricBoucWen>({{"beta_share", clear ? 0.08 : 0.02}})));
     const Selection found = select_causes_upon(c.data, c.base, 0.03, c.division, {});
-    ASSERT_TRUE(found.base_structure.present);
-    EXPECT_EQ(found.base_structure.excess_mm > 0.03, clear) << found.base_structure.excess_mm;
+    ASSERT_TRUE(found.base_unexplained.present);
+    EXPECT_EQ(found.base_unexplained.excess_mm > 0.03, clear) << found.base_unexplained.excess_mm;
     EXPECT_EQ(found.last_candidates.empty(), !clear) << "no cause can take what is not left";
     EXPECT_EQ(found.chosen.size(), clear ? 1U : 0U);
     for (const ChosenCause& one : found.chosen) EXPECT_EQ(one.cause.id, "asymmetric_hysteresis");
@@ -115,7 +115,7 @@ TEST(Weigh, IsTheGainOverTheStructureWithoutTheCause) {
   StructureFit fit = c.base;
   fit.point.model = softening();
   const ChosenCause alone = weigh(cause, {fit, with, without, 0.03, 1}, {});
-  EXPECT_TRUE(alone.rivals.empty());
+  EXPECT_TRUE(alone.alternatives.empty());
   EXPECT_EQ(alone.inclusion, 1);
   EXPECT_NEAR(alone.gain_mm2.value, 1, 1e-12);
 }

@@ -65,7 +65,7 @@ TEST(Selection, ASmallEffectThatExplainsTheRestIsNamed) {
   });
   EXPECT_EQ(names(selection), (std::vector<std::string>{"ageing", "periodic_disturbance"}));
   // It takes less of the misfit than the form of a large one may leave.
-  const double excess = selection.base_structure.excess_mm;
+  const double excess = selection.base_unexplained.excess_mm;
   EXPECT_LT(0.09 * 0.09 / 2, 0.05 * excess * excess);
 }
 

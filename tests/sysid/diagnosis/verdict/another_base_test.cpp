@@ -13,7 +13,7 @@ constexpr double noise_mm = 0.04;
 Selection left_of(double left_mm, double before_mm) {
   Selection selection;
   selection.left = {.excess_mm = left_mm, .present = true};
-  selection.base_structure = {.excess_mm = before_mm, .present = true};
+  selection.base_unexplained = {.excess_mm = before_mm, .present = true};
   return selection;
 }
 
@@ -56,13 +56,13 @@ TEST(AnotherShape, WillDoWhereItsBaseLeavesAboutAsLittleWithoutAnAsymmetricLoop)
   EXPECT_FALSE(another_shape_will_do(base, selected)) << "its loops are the given one's";
 }
 
-TEST(AnotherShape, IsARivalOfTheAsymmetricLoopAloneAndOnce) {
+TEST(AnotherShape, IsAnAlternativeOfTheAsymmetricLoopAloneAndOnce) {
   std::vector<NamedCause> names{named("asymmetric_hysteresis"), named("contact")};
   add_another_shape(names);
   add_another_shape(names);
-  ASSERT_EQ(names[0].rivals.size(), 1U);
-  EXPECT_EQ(names[0].rivals[0].id, "hysteresis_shape");
-  EXPECT_TRUE(names[1].rivals.empty());
+  ASSERT_EQ(names[0].alternatives.size(), 1U);
+  EXPECT_EQ(names[0].alternatives[0].id, "hysteresis_shape");
+  EXPECT_TRUE(names[1].alternatives.empty());
 }
 
 TEST(AnotherBase, ThatIsNotFoundSettlesNothing) {

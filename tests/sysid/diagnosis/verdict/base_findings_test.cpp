@@ -77,7 +77,7 @@ TEST(BaseFindings, LoopsOfAnotherFormAreNamed) {
   EXPECT_GE(shape->inclusion, 0.95);
   EXPECT_GT(shape->gain_mm2.lower, 0);
   EXPECT_LT(rmse_mm(found.base->losses), 0.5 * rmse_mm(found.plain.base_losses));
-  EXPECT_TRUE(outdoes(*found.base, found.plain, noise_mm, true));
+  EXPECT_TRUE(has_lower_loss(*found.base, found.plain, noise_mm, true));
 }
 
 /// Operators without an elastic one stand still after a reversal, as a backlash does; others do not.
@@ -86,8 +86,8 @@ TEST(BaseIngredients, ABacklashMayBeWhatOperatorsWithoutAnElasticOneMakeUpFor) {
     const auto shape = std::find_if(found.base->named.begin(), found.base->named.end(),
                                     [](const NamedCause& n) { return n.cause.id == "hysteresis_shape"; });
     return shape != found.base->named.end() &&
-           std::any_of(shape->rivals.begin(), shape->rivals.end(),
-                       [](const Cause& rival) { return rival.id == causes::Backlash::id; });
+           std::any_of(shape->alternatives.begin(), shape->alternatives.end(),
+                       [](const Cause& alternative) { return alternative.id == causes::Backlash::id; });
   };
   const Found elastic = found_in(plays());
   ASSERT_TRUE(elastic.base);
@@ -106,10 +106,10 @@ TEST(BaseFindings, WhatSaysNothingIsOutdoneByWhatLeavesALittleLess) {
   plain.extended_losses = found.base->losses;
   for (double& loss : plain.extended_losses) loss *= 1.05;
   plain.extended.causes = {*find_cause("contact")};
-  EXPECT_FALSE(outdoes(*found.base, plain, noise_mm, true));
-  EXPECT_TRUE(outdoes(*found.base, plain, noise_mm, false));
+  EXPECT_FALSE(has_lower_loss(*found.base, plain, noise_mm, true));
+  EXPECT_TRUE(has_lower_loss(*found.base, plain, noise_mm, false));
   found.base->named.clear();
-  EXPECT_FALSE(outdoes(*found.base, plain, noise_mm, false));
+  EXPECT_FALSE(has_lower_loss(*found.base, plain, noise_mm, false));
 }
 
 /// Of two causes upon the given base one is there upon the other, too, and the other makes up for its loops.
@@ -121,14 +121,14 @@ TEST(BaseFindings, TheOtherBaseThatNeedsFewerOfTheSameCausesMayLeaveALittleMore)
   for (double& loss : plain.extended_losses) loss /= 1.2;
   plain.extended.causes = {*find_cause("contact"), *find_cause("sensor_lag")};
   plain.left.excess_mm = 1.5 * noise_mm;
-  EXPECT_FALSE(outdoes(*found.base, plain, noise_mm, true)) << "it has none of them";
+  EXPECT_FALSE(has_lower_loss(*found.base, plain, noise_mm, true)) << "it has none of them";
   found.base->fit.causes = {*find_cause("contact")};
-  EXPECT_TRUE(outdoes(*found.base, plain, noise_mm, true));
+  EXPECT_TRUE(has_lower_loss(*found.base, plain, noise_mm, true));
   plain.left.excess_mm = 0.5 * noise_mm;
-  EXPECT_FALSE(outdoes(*found.base, plain, noise_mm, true)) << "the two leave nothing";
+  EXPECT_FALSE(has_lower_loss(*found.base, plain, noise_mm, true)) << "the two leave nothing";
   plain.left.excess_mm = 1.5 * noise_mm;
   for (double& loss : plain.extended_losses) loss /= 1.6;
-  EXPECT_FALSE(outdoes(*found.base, plain, noise_mm, true)) << "it leaves much more";
+  EXPECT_FALSE(has_lower_loss(*found.base, plain, noise_mm, true)) << "it leaves much more";
 }
 
 /// At slow commands a delay does what a lag does: without either the other serves as well, and without both
@@ -146,9 +146,9 @@ TEST(BaseFindings, ALatencyIsNamedThoughNobodyCanSayOfWhichKind) {
   const std::string_view other =
       latency->cause.id == causes::ValveLag::id ? causes::TransportDelay::id : causes::ValveLag::id;
   for (const std::string_view id : {other, causes::SensorLag::id}) {
-    EXPECT_TRUE(std::any_of(latency->rivals.begin(), latency->rivals.end(), [&](const Cause& rival) {
-      return rival.id == id;
-    })) << id;
+    EXPECT_TRUE(std::any_of(latency->alternatives.begin(), latency->alternatives.end(),
+                            [&](const Cause& alternative) { return alternative.id == id; }))
+        << id;
   }
   EXPECT_GE(latency->inclusion, 0.95);
 }

@@ -49,8 +49,8 @@ TEST(Diagnosis, LittleLeftByTheFirstCauseIsNoQuestionForAnotherBase) {
   };
   const auto diagnosis = diagnose(logs, given, options);
   ASSERT_TRUE(diagnosis) << diagnosis.error();
-  ASSERT_TRUE(diagnosis->structure_left.present);
-  EXPECT_GT(diagnosis->structure_left.excess_mm, 0.2 * noise_mm);
+  ASSERT_TRUE(diagnosis->unexplained_error.present);
+  EXPECT_GT(diagnosis->unexplained_error.excess_mm, 0.2 * noise_mm);
   ASSERT_EQ(diagnosis->causes.size(), 1U);
   EXPECT_EQ(diagnosis->causes.front().cause.id, "transport_delay");
   for (const std::string& text : said) {
@@ -134,7 +134,7 @@ TEST(Diagnosis, AStartBeforeTheFingerHasSettledIsNoCause) {
   const auto diagnosis = diagnose(logs, truth, {});
   ASSERT_TRUE(diagnosis) << diagnosis.error();
   EXPECT_TRUE(diagnosis->causes.empty()) << diagnosis->causes.front().cause.id;
-  EXPECT_FALSE(diagnosis->structure_recalibrated.present) << diagnosis->structure_recalibrated.excess_mm;
+  EXPECT_FALSE(diagnosis->unexplained_recalibrated.present) << diagnosis->unexplained_recalibrated.excess_mm;
 }
 
 }  // namespace

@@ -54,13 +54,13 @@ TEST(BlockNumbers, HaveNoIntervalsBelowWhatANumberMayBe) {
   EXPECT_EQ(numbers[0].ci95.lower, 0);
 }
 
-TEST(RivalTitle, TellsARivalThatIsNamedItselfFromOneThatIsNot) {
+TEST(AlternativeTitle, DistinguishesAnAlternativeThatIsNamedItselfFromOneThatIsNot) {
   const Cause delay = *find_cause(causes::TransportDelay::id), lag = *find_cause(causes::ValveLag::id);
   NamedCause first, second;
   first.cause = delay;
   second.cause = lag;
-  EXPECT_EQ(rival_title(lag, {first}), "valve lag");
-  EXPECT_EQ(rival_title(lag, {first, second}), "a further valve lag");
+  EXPECT_EQ(alternative_title(lag, {first}), "valve lag");
+  EXPECT_EQ(alternative_title(lag, {first, second}), "a further valve lag");
 }
 
 TEST(VerdictSentence, SaysThatAnErrorFallsWhereItFallsAlone) {

@@ -162,17 +162,18 @@ TEST(FindInValve, NamesADeadBandASupplyThatSagsAndALimit) {
 }
 
 TEST(FindInValve, ADeadTimeThatASecondLagExplainsAsWellHasItForItsAlternative) {
-  const auto rivals_of_delay = [](const OwnValve& valve) -> std::optional<std::vector<std::string>> {
+  const auto alternatives_of_delay = [](const OwnValve& valve) -> std::optional<std::vector<std::string>> {
     for (const NamedCause& named : found_in(own_logs(valve, 111), without_a_valve()).named) {
       if (named.cause.id != "transport_delay") continue;
       std::vector<std::string> ids;
-      for (const Cause& rival : named.rivals) ids.emplace_back(rival.id);
+      for (const Cause& alternative : named.alternatives) ids.emplace_back(alternative.id);
       return ids;
     }
     return std::nullopt;
   };
-  EXPECT_EQ(rivals_of_delay({.delay_s = 0.005, .second_s = 0.1}), std::vector<std::string>{"valve_lag"});
-  EXPECT_EQ(rivals_of_delay({}), std::vector<std::string>{});
+  EXPECT_EQ(alternatives_of_delay({.delay_s = 0.005, .second_s = 0.1}),
+            std::vector<std::string>{"valve_lag"});
+  EXPECT_EQ(alternatives_of_delay({}), std::vector<std::string>{});
 }
 
 bool names(const ValveFindings& found, std::string_view cause) {
@@ -188,9 +189,9 @@ TEST(FindInValve, NamesALeakAndThatAScaleMayPassForOne) {
   EXPECT_NEAR(share->value, 0.04, 0.008);
   EXPECT_NEAR(found.heldout_rmse_kpa, noise_kpa, 0.5 * noise_kpa);
   for (const NamedCause& named : found.named) {
-    EXPECT_EQ(named.rivals.size(), named.cause.id == "leak" ? 1U : 0U) << named.cause.id;
+    EXPECT_EQ(named.alternatives.size(), named.cause.id == "leak" ? 1U : 0U) << named.cause.id;
     if (named.cause.id == "leak") {
-      EXPECT_EQ(named.rivals.front().id, "pressure_scale");
+      EXPECT_EQ(named.alternatives.front().id, "pressure_scale");
       EXPECT_GT(named.gain_kpa2->lower, 0);
     }
   }

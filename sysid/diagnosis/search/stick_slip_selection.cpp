@@ -1,14 +1,14 @@
-#include "sysid/diagnosis/search/staircase_selection.h"
+#include "sysid/diagnosis/search/stick_slip_selection.h"
 
 #include <algorithm>
 #include <utility>
 
 #include "model/named.h"
 #include "sysid/diagnosis/causes/valve_deadband.h"
-#include "sysid/diagnosis/residual/leftover.h"
 #include "sysid/diagnosis/residual/spectrum_peaks.h"
+#include "sysid/diagnosis/residual/unexplained_limit.h"
 #include "sysid/diagnosis/search/scored.h"
-#include "sysid/diagnosis/search/staircase.h"
+#include "sysid/diagnosis/search/stick_slip.h"
 
 namespace softgrip::sysid {
 namespace {
@@ -27,7 +27,7 @@ Cause dragged_along(Cause dead_band) {
 
 /// Returns a structure with the dead band in its smooth form. A model without one has absorbed the mean lag
 /// of the valve.
-std::optional<StructureFit> with_mean_of_staircases(const SearchData& data, const StructureFit& selected,
+std::optional<StructureFit> with_mean_of_stick_slip(const SearchData& data, const StructureFit& selected,
                                                     const Cause& dead_band) {
   if (position_of(selected.point.model, dead_band)) return selected;
   std::vector<Candidate> fits = fit_candidates(data, selected, {.only = {dragged_along(dead_band)}});
@@ -47,59 +47,60 @@ std::optional<StructureFit> with_second_effect(const SearchData& data, const Str
 
 /// Removes a substitute for the stick-slip motion. If two causes were selected without it, one of them may be
 /// unnecessary: the fit without it leaves no more error.
-Staircase without_stand_in(const SearchData& data, Staircase found, double noise_mm) {
+StickSlip without_stand_in(const SearchData& data, StickSlip found, double noise_mm) {
   if (found.fit.causes.size() < 2) return found;
   const std::vector<Cause> causes = found.fit.causes;
   for (const Cause& cause : causes) {
-    auto rest = staircase_without(data.records, found, cause, noise_mm, data.threads);
+    auto rest = stick_slip_without(data.records, found, cause, noise_mm, data.threads);
     if (rest && rest->fit.mean_square_mm2 <= found.fit.mean_square_mm2) return std::move(*rest);
   }
   return found;
 }
 
 /// Keeps the stick-slip motion with the smallest remaining error among those in front of several structures.
-class BestStaircase {
+class BestStickSlip {
  public:
-  BestStaircase(const SearchData& data, const Cause& dead_band, double noise_mm)
+  BestStickSlip(const SearchData& data, const Cause& dead_band, double noise_mm)
       : data_(data), dead_band_(dead_band), noise_mm_(noise_mm) {}
 
   /// @param beside  a structure with the mean of the stick-slip motions in front.
   void look(const std::optional<StructureFit>& beside) {
     if (!beside) return;
-    auto found = find_staircase(data_.records, without_cause(*beside, dead_band_), noise_mm_, data_.threads);
+    auto found = find_stick_slip(data_.records, without_cause(*beside, dead_band_), noise_mm_, data_.threads);
     if (found) found = without_stand_in(data_, std::move(*found), noise_mm_);
     if (!found || (best_ && found->fit.mean_square_mm2 > best_->fit.mean_square_mm2)) return;
     best_ = std::move(found);
   }
   /// Returns true if at most a few jumps are wrong.
   [[nodiscard]] bool meets_all() const {
-    return best_ && structure_of(best_->fit.residual_mm, noise_mm_).excess_mm < a_jump_off * noise_mm_;
+    return best_ &&
+           unexplained_error_of(best_->fit.residual_mm, noise_mm_).excess_mm < a_jump_off * noise_mm_;
   }
-  [[nodiscard]] const std::optional<Staircase>& best() const { return best_; }
+  [[nodiscard]] const std::optional<StickSlip>& best() const { return best_; }
 
  private:
   const SearchData& data_;
   const Cause& dead_band_;
   double noise_mm_;
-  std::optional<Staircase> best_;
+  std::optional<StickSlip> best_;
 };
 
 /// Returns the stick-slip motion in front of the base or of the whole selection, with the smaller remaining
 /// error. A cause that was selected without it may be a second effect or a substitute for the motion. If
 /// neither is found, a third attempt combines the base with a second effect.
-std::optional<Staircase> staircase_before(const SearchData& data, const Selection& plain,
-                                          const Cause& dead_band, double noise_mm) {
-  BestStaircase staircase(data, dead_band, noise_mm);
-  const auto beside_base = with_mean_of_staircases(data, plain.base, dead_band);
-  staircase.look(beside_base);
-  if (!staircase.meets_all() && !plain.chosen.empty())
-    staircase.look(with_mean_of_staircases(data, plain.extended, dead_band));
-  if (!staircase.best() && beside_base) staircase.look(with_second_effect(data, *beside_base));
-  return staircase.best();
+std::optional<StickSlip> stick_slip_before(const SearchData& data, const Selection& plain,
+                                           const Cause& dead_band, double noise_mm) {
+  BestStickSlip stick_slip(data, dead_band, noise_mm);
+  const auto beside_base = with_mean_of_stick_slip(data, plain.base, dead_band);
+  stick_slip.look(beside_base);
+  if (!stick_slip.meets_all() && !plain.chosen.empty())
+    stick_slip.look(with_mean_of_stick_slip(data, plain.extended, dead_band));
+  if (!stick_slip.best() && beside_base) stick_slip.look(with_second_effect(data, *beside_base));
+  return stick_slip.best();
 }
 
 /// Returns the base alone, fitted to records whose drive is the valve position.
-StructureFit base_behind(const Staircase& found) {
+StructureFit base_behind(const StickSlip& found) {
   StructureFit base = found.fit;
   for (const Cause& cause : found.fit.causes) base = without_cause(base, cause);
   return found.fit.causes.empty() ? base : fit_structure(found.records, {}, base.point);
@@ -119,26 +120,26 @@ void extend(Selection& selection, const SearchData& data, const StructureFit& be
             double band_kpa, const Division& division) {
   std::vector<Cause> causes{dead_band};
   causes.insert(causes.end(), behind.causes.begin(), behind.causes.end());
-  StructureFit staircase =
+  StructureFit stick_slip =
       evaluate_structure(data.records, causes, with_valve<model::ValveStiction>(behind.point, band_kpa));
   StructureFit mean =
       fit_structure(data.records, causes, with_valve<model::ValveDeadband>(behind.point, band_kpa));
-  staircase.free_parameters = mean.free_parameters;
-  BlockLosses staircase_losses = held_out_losses(data.records, division, staircase);
+  stick_slip.free_parameters = mean.free_parameters;
+  BlockLosses stick_slip_losses = held_out_losses(data.records, division, stick_slip);
   BlockLosses mean_losses = held_out_losses(data.records, division, mean);
-  const bool in_step = rmse_mm(staircase_losses) < rmse_mm(mean_losses);
-  selection.extended = in_step ? std::move(staircase) : std::move(mean);
-  selection.extended_losses = in_step ? std::move(staircase_losses) : std::move(mean_losses);
+  const bool in_step = rmse_mm(stick_slip_losses) < rmse_mm(mean_losses);
+  selection.extended = in_step ? std::move(stick_slip) : std::move(mean);
+  selection.extended_losses = in_step ? std::move(stick_slip_losses) : std::move(mean_losses);
 }
 
 }  // namespace
 
-std::optional<StaircaseSelection> select_behind_staircase(const SearchData& data, const Selection& plain,
-                                                          double noise_mm, const Division& division,
-                                                          const SelectionOptions& options) {
+std::optional<StickSlipSelection> select_behind_stick_slip(const SearchData& data, const Selection& plain,
+                                                           double noise_mm, const Division& division,
+                                                           const SelectionOptions& options) {
   const Cause dead_band = *find_cause(causes::ValveDeadband::id);
   if (position_of(data.given.model, dead_band)) return std::nullopt;
-  const auto found = staircase_before(data, plain, dead_band, noise_mm);
+  const auto found = stick_slip_before(data, plain, dead_band, noise_mm);
   if (!found) return std::nullopt;
 
   SearchData driven = make_search_data(found->records, data.given.model);
@@ -147,11 +148,11 @@ std::optional<StaircaseSelection> select_behind_staircase(const SearchData& data
   driven.scales.residual_lines = spectrum_peaks(driven.records, base.residual_mm);
   // The remainder of a path with a few wrong jumps is no second cause.
   SelectionOptions behind = options;
-  if (!leaves_too_much(structure_of(base.residual_mm, noise_mm), plain.base_structure, noise_mm))
+  if (!leaves_too_much(unexplained_error_of(base.residual_mm, noise_mm), plain.base_unexplained, noise_mm))
     behind.most_causes = 0;
   Selection beyond = select_causes(driven, std::move(base), noise_mm, division, behind);
 
-  StaircaseSelection result;
+  StickSlipSelection result;
   result.evidence = {found->band_kpa,
                      found->band_ci95,
                      found->jumps,

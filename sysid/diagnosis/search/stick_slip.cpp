@@ -1,4 +1,4 @@
-#include "sysid/diagnosis/search/staircase.h"
+#include "sysid/diagnosis/search/stick_slip.h"
 
 #include <algorithm>
 #include <atomic>
@@ -29,19 +29,19 @@ constexpr int rounds_of_chance = 6;
 /// A sum that is larger by more than rounding can make it.
 constexpr double clearly_more = 1 + 1e-9;
 
-struct Courses {
-  std::vector<ValveCourse> by_record;
+struct ValvePaths {
+  std::vector<ValvePath> by_record;
   double sum_of_squares_mm2 = 0;
 };
 
-Courses track_all(const std::vector<Record>& records, const FitPoint& point, double band_kpa,
-                  double resolution_kpa, unsigned threads) {
-  Courses all;
+ValvePaths track_all(const std::vector<Record>& records, const FitPoint& point, double band_kpa,
+                     double resolution_kpa, unsigned threads) {
+  ValvePaths all;
   all.by_record.resize(records.size());
   parallel_for(records.size(), threads, [&](std::size_t k) {
     all.by_record[k] = track_jumps(records[k], k, point, band_kpa, resolution_kpa);
   });
-  for (const ValveCourse& course : all.by_record) all.sum_of_squares_mm2 += course.sum_of_squares_mm2;
+  for (const ValvePath& path : all.by_record) all.sum_of_squares_mm2 += path.sum_of_squares_mm2;
   return all;
 }
 
@@ -75,10 +75,10 @@ std::vector<double> bands_of(const Scales& scales, double resolution_kpa) {
 }
 
 /// Distances over which the valve jumped, sorted.
-std::vector<double> distances_of(const Courses& courses) {
+std::vector<double> distances_of(const ValvePaths& paths) {
   std::vector<double> distances;
-  for (const ValveCourse& course : courses.by_record)
-    distances.insert(distances.end(), course.distances_kpa.begin(), course.distances_kpa.end());
+  for (const ValvePath& path : paths.by_record)
+    distances.insert(distances.end(), path.distances_kpa.begin(), path.distances_kpa.end());
   std::sort(distances.begin(), distances.end());
   return distances;
 }
@@ -89,7 +89,7 @@ double mean(std::span<const double> values) {
 
 /// Mean and spread of the distances without the tenth that lies outermost: a jump that was seen a sample late
 /// makes a wrong one of its own.
-void measure_band(std::span<const double> distances, Staircase& found) {
+void measure_band(std::span<const double> distances, StickSlip& found) {
   found.jumps = distances.size();
   if (distances.size() < fewest_jumps) return;
   const std::size_t cut = distances.size() / 20;
@@ -100,28 +100,28 @@ void measure_band(std::span<const double> distances, Staircase& found) {
   found.scatter = std::sqrt(variance) / found.band_kpa;
 }
 
-std::vector<Record> driven(const std::vector<Record>& records, const Courses& courses) {
+std::vector<Record> driven(const std::vector<Record>& records, const ValvePaths& paths) {
   std::vector<Record> all;
-  for (std::size_t k = 0; k < records.size(); ++k) all.push_back(driven_by(records[k], courses.by_record[k]));
+  for (std::size_t k = 0; k < records.size(); ++k) all.push_back(driven_by(records[k], paths.by_record[k]));
   return all;
 }
 
 /// Iterates from a start band to a stick-slip motion. Returns an empty value if there are too few jumps or
 /// their distances are random.
-std::optional<Staircase> staircase_from(const std::vector<Record>& records, const StructureFit& behind,
-                                        double band_kpa, double resolution_kpa, unsigned threads) {
-  Staircase found;
+std::optional<StickSlip> stick_slip_from(const std::vector<Record>& records, const StructureFit& behind,
+                                         double band_kpa, double resolution_kpa, unsigned threads) {
+  StickSlip found;
   found.band_kpa = band_kpa;
   found.fit = behind;
   std::vector<double> distances;
   for (int round = 0; round < most_rounds; ++round) {
     const double before_kpa = found.band_kpa, before_mm2 = found.fit.mean_square_mm2;
-    const Courses courses = track_all(records, found.fit.point, found.band_kpa, resolution_kpa, threads);
-    distances = distances_of(courses);
+    const ValvePaths paths = track_all(records, found.fit.point, found.band_kpa, resolution_kpa, threads);
+    distances = distances_of(paths);
     measure_band(distances, found);
     if (found.jumps < fewest_jumps || (round >= rounds_of_chance && found.scatter > scatter_of_chance))
       return std::nullopt;
-    found.records = driven(records, courses);
+    found.records = driven(records, paths);
     found.fit = fit_structure(found.records, behind.causes, found.fit.point);
     if (std::abs(found.band_kpa - before_kpa) < band_stays * before_kpa &&
         found.fit.mean_square_mm2 > (1 - rest_stays) * before_mm2)
@@ -138,7 +138,7 @@ double resolution_of(const Scales& scales, double noise_mm) {
   return 0.5 * noise_mm * scales.largest_kpa / scales.span_mm;
 }
 
-bool is_a_band(const Staircase& found, double resolution_kpa) {
+bool is_a_band(const StickSlip& found, double resolution_kpa) {
   return found.scatter <=
          std::min(std::hypot(most_scatter, resolution_kpa / found.band_kpa), most_scatter_in_all);
 }
@@ -157,8 +157,8 @@ Band band_of_jumps(std::span<const double> distances_kpa) {
   return {band_kpa, {band_kpa - half, band_kpa + half}};
 }
 
-std::optional<Staircase> find_staircase(const std::vector<Record>& records, const StructureFit& behind,
-                                        double noise_mm, unsigned threads) {
+std::optional<StickSlip> find_stick_slip(const std::vector<Record>& records, const StructureFit& behind,
+                                         double noise_mm, unsigned threads) {
   const Scales scales = scales_of(records);
   if (scales.largest_kpa <= 0 || scales.span_mm <= 0) return std::nullopt;
   const double resolution_kpa = resolution_of(scales, noise_mm);
@@ -168,18 +168,18 @@ std::optional<Staircase> find_staircase(const std::vector<Record>& records, cons
   // With jumps over half the band, a path can reach nearly every position. It then leaves less error than the
   // right one until the chain behind the valve is known well.
   for (const double start_kpa : {band_kpa, 2 * band_kpa}) {
-    auto found = staircase_from(records, behind, start_kpa, resolution_kpa, threads);
+    auto found = stick_slip_from(records, behind, start_kpa, resolution_kpa, threads);
     if (found && is_a_band(*found, resolution_kpa) && found->fit.mean_square_mm2 < behind.mean_square_mm2)
       return found;
   }
   return std::nullopt;
 }
 
-std::optional<Staircase> staircase_without(const std::vector<Record>& records, const Staircase& found,
-                                           const Cause& cause, double noise_mm, unsigned threads) {
+std::optional<StickSlip> stick_slip_without(const std::vector<Record>& records, const StickSlip& found,
+                                            const Cause& cause, double noise_mm, unsigned threads) {
   const double resolution_kpa = resolution_of(scales_of(records), noise_mm);
   const StructureFit rest = fit_without_cause(found.records, found.fit, cause);
-  auto again = staircase_from(records, rest, found.band_kpa, resolution_kpa, threads);
+  auto again = stick_slip_from(records, rest, found.band_kpa, resolution_kpa, threads);
   if (!again || !is_a_band(*again, resolution_kpa)) return std::nullopt;
   return again;
 }

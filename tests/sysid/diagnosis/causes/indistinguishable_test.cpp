@@ -1,6 +1,6 @@
 // What no command can tell apart is listed together, whichever form meets the data better.
 
-#include "sysid/diagnosis/causes/twins.h"
+#include "sysid/diagnosis/causes/indistinguishable.h"
 
 #include <algorithm>
 #include <numeric>
@@ -14,7 +14,7 @@
 #include "tests/sysid/diagnosis/campaign.h"
 #include "tests/sysid/simulated.h"
 
-namespace softgrip::sysid::twins_test {
+namespace softgrip::sysid::indistinguishable_test {
 namespace {
 
 Cause cause(std::string_view id) {
@@ -25,21 +25,21 @@ model::Model with(const model::Model& model, std::string_view id) {
   return model::with_block(model, model::neutral_block(cause(id).forms.front().type));
 }
 
-TEST(Twins, AreBentBeforeAndBehindTheLoad) {
+TEST(Indistinguishable, AreBentBeforeAndBehindTheLoad) {
   const model::Model model = loaded("bench_twin");
-  EXPECT_TRUE(are_twins(cause("stiffening"), cause("sensor_nonlinearity"), model));
-  EXPECT_TRUE(are_twins(cause("sensor_nonlinearity"), cause("stiffening"), model));
+  EXPECT_TRUE(are_indistinguishable(cause("stiffening"), cause("sensor_nonlinearity"), model));
+  EXPECT_TRUE(are_indistinguishable(cause("sensor_nonlinearity"), cause("stiffening"), model));
   for (const Cause& other : all_causes()) {
     if (other.id == "stiffening" || other.id == "sensor_nonlinearity") continue;
-    EXPECT_FALSE(twin_of(other, model)) << other.id;
+    EXPECT_FALSE(indistinguishable_from(other, model)) << other.id;
   }
 }
 
-TEST(Twins, AreNoneWhereMemoryStandsBetweenThem) {
+TEST(Indistinguishable, AreNoneWhereMemoryStandsBetweenThem) {
   for (const char* id : {"inertia", "backlash", "sensor_lag"})
-    EXPECT_FALSE(twin_of(cause("stiffening"), with(loaded("bench_twin"), id))) << id;
+    EXPECT_FALSE(indistinguishable_from(cause("stiffening"), with(loaded("bench_twin"), id))) << id;
   for (const char* id : {"transport_delay", "valve_lag", "ageing", "contact", "sensor_drift"})
-    EXPECT_TRUE(twin_of(cause("stiffening"), with(loaded("bench_twin"), id))) << id;
+    EXPECT_TRUE(indistinguishable_from(cause("stiffening"), with(loaded("bench_twin"), id))) << id;
 }
 
 /// A rig whose finger stiffens more sharply than the catalogue's form: a bent scale meets it better.
@@ -75,14 +75,15 @@ TEST_F(BentRig, IsNotGivenOneNameOfTheTwo) {
   const Selection& selection = selected();
   ASSERT_FALSE(selection.chosen.empty());
   const ChosenCause& chosen = selection.chosen.front();
-  ASSERT_TRUE(twin_of(chosen.cause, selection.extended.point.model)) << chosen.cause.id;
-  const auto twin = *twin_of(chosen.cause, selection.extended.point.model);
-  const auto listed = std::count_if(chosen.rivals.begin(), chosen.rivals.end(),
-                                    [&](const Cause& rival) { return rival == twin; });
+  ASSERT_TRUE(indistinguishable_from(chosen.cause, selection.extended.point.model)) << chosen.cause.id;
+  const auto indistinguishable = *indistinguishable_from(chosen.cause, selection.extended.point.model);
+  const auto listed =
+      std::count_if(chosen.alternatives.begin(), chosen.alternatives.end(),
+                    [&](const Cause& alternative) { return alternative == indistinguishable; });
   EXPECT_EQ(listed, 1);
   // The form of one of them alone would have stood: that is what the rule is for.
   const auto score = std::find_if(chosen.candidates.begin(), chosen.candidates.end(),
-                                  [&](const CandidateScore& s) { return s.cause == twin; });
+                                  [&](const CandidateScore& s) { return s.cause == indistinguishable; });
   ASSERT_NE(score, chosen.candidates.end());
   EXPECT_GT(score->rmse_mm, 1.02 * std::sqrt(selection.extended.mean_square_mm2));
 }
@@ -99,7 +100,7 @@ TEST_F(BentRig, HasNoWaveformThatTellsThemApart) {
   d.extended = selection.extended;
   NamedCause named;
   named.cause = selection.chosen.front().cause;
-  named.rivals = {*twin_of(named.cause, selection.extended.point.model)};
+  named.alternatives = {*indistinguishable_from(named.cause, selection.extended.point.model)};
   d.causes = {named};
   const NextExperiment next = design_experiment(d, {});
   EXPECT_FALSE(next.best);
@@ -108,4 +109,4 @@ TEST_F(BentRig, HasNoWaveformThatTellsThemApart) {
 }
 
 }  // namespace
-}  // namespace softgrip::sysid::twins_test
+}  // namespace softgrip::sysid::indistinguishable_test

@@ -1,4 +1,4 @@
-#include "sysid/diagnosis/search/staircase.h"
+#include "sysid/diagnosis/search/stick_slip.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,7 +13,7 @@
 #include "sysid/fitting/fit_space.h"
 #include "tests/sysid/diagnosis/campaign.h"
 
-namespace softgrip::sysid::staircase_test {
+namespace softgrip::sysid::stick_slip_test {
 namespace {
 
 constexpr double noise_mm = 0.03;
@@ -59,12 +59,12 @@ double sticking(double band_kpa, double pressure, double command) {
   return std::abs(command - pressure) > band_kpa ? command : pressure;
 }
 
-TEST(Staircase, FindsTheBandOfAValveThatSticksAndJumps) {
+TEST(StickSlip, FindsTheBandOfAValveThatSticksAndJumps) {
   for (const double band_kpa : {1.3, 3.1}) {
     SCOPED_TRACE(band_kpa);
     const auto records = answered(
         known_campaign(2), [&](double p, double u, double) { return sticking(band_kpa, p, u); }, 11);
-    const auto found = find_staircase(records, behind(records), noise_mm, 2);
+    const auto found = find_stick_slip(records, behind(records), noise_mm, 2);
     ASSERT_TRUE(found);
     EXPECT_NEAR(found->band_kpa, band_kpa, 0.02 * band_kpa);
     EXPECT_LT(found->band_ci95.lower, found->band_kpa);
@@ -76,7 +76,7 @@ TEST(Staircase, FindsTheBandOfAValveThatSticksAndJumps) {
 }
 
 // A course that jumps is told from one that does not when the delay is over: 17.5 samples later.
-TEST(Staircase, IsFoundBehindALongDelay) {
+TEST(StickSlip, IsFoundBehindALongDelay) {
   constexpr double band_kpa = 3.1, delay_s = 0.35;
   std::vector<Record> early = known_campaign(2);
   for (Record& r : early) {  // the valve's command, as it arrives
@@ -96,30 +96,30 @@ TEST(Staircase, IsFoundBehindALongDelay) {
 
   const model::Model model =
       model::with_block(plain_model(), model::block_of<model::TransportDelay>({{"delay_s", delay_s}}));
-  const auto found = find_staircase(
+  const auto found = find_stick_slip(
       records, evaluate_structure(records, {}, {model, rest_starts(model, records)}), noise_mm, 2);
   ASSERT_TRUE(found);
   EXPECT_NEAR(found->band_kpa, band_kpa, 0.02 * band_kpa);
   EXPECT_LT(std::sqrt(found->fit.mean_square_mm2), 1.5 * noise_mm);
 }
 
-TEST(Staircase, FollowsACourseAsFarAsItIsWorth) {
+TEST(StickSlip, FollowsAPathAsFarAsItIsWorth) {
   const auto records = answered(
       known_campaign(2), [](double p, double u, double) { return sticking(3.1, p, u); }, 11);
   const StructureFit model = behind(records);
   const auto followed = [&](double band_kpa, double worth_mm2) {
     return track_jumps(records[0], 0, model.point, band_kpa, 0.05, worth_mm2);
   };
-  const ValveCourse right = track_jumps(records[0], 0, model.point, 3.1, 0.05);
+  const ValvePath right = track_jumps(records[0], 0, model.point, 3.1, 0.05);
   EXPECT_EQ(followed(3.1, right.sum_of_squares_mm2).held_kpa, right.held_kpa);
-  const ValveCourse wrong = track_jumps(records[0], 0, model.point, 8.0, 0.05);
+  const ValvePath wrong = track_jumps(records[0], 0, model.point, 8.0, 0.05);
   ASSERT_GT(wrong.sum_of_squares_mm2, 2 * right.sum_of_squares_mm2);
-  const ValveCourse given_up = followed(8.0, right.sum_of_squares_mm2);
+  const ValvePath given_up = followed(8.0, right.sum_of_squares_mm2);
   EXPECT_EQ(given_up.sum_of_squares_mm2, std::numeric_limits<double>::infinity());
   EXPECT_TRUE(given_up.held_kpa.empty());
 }
 
-TEST(Staircase, SeesThatJumpsComeOverAnyDistance) {
+TEST(StickSlip, SeesThatJumpsComeOverAnyDistance) {
   std::mt19937_64 random(5);
   std::uniform_real_distribution<double> any(0.5, 4.0);
   double band_kpa = any(random);
@@ -131,7 +131,7 @@ TEST(Staircase, SeesThatJumpsComeOverAnyDistance) {
         return next;
       },
       12);
-  EXPECT_FALSE(find_staircase(records, behind(records), noise_mm, 2));
+  EXPECT_FALSE(find_stick_slip(records, behind(records), noise_mm, 2));
 }
 
 // Of 80 jumps over a band of 1 kPa, read within 1 %, every fifth was taken for one that is too short.
@@ -145,7 +145,7 @@ std::vector<double> partly_short(std::uint64_t seed) {
   return distances_kpa;
 }
 
-TEST(Staircase, JumpsThatWereTakenForShortOnesDoNotMoveTheBand) {
+TEST(StickSlip, JumpsThatWereTakenForShortOnesDoNotMoveTheBand) {
   double sum_kpa = 0;
   constexpr int seeds = 200;
   for (std::uint64_t seed = 1; seed <= seeds; ++seed) sum_kpa += band_of_jumps(partly_short(seed)).value_kpa;
@@ -153,7 +153,7 @@ TEST(Staircase, JumpsThatWereTakenForShortOnesDoNotMoveTheBand) {
   EXPECT_NEAR(sum_kpa / seeds, 1.0, 0.006);
 }
 
-TEST(Staircase, TheIntervalOfTheBandHoldsItAsOftenAsItSays) {
+TEST(StickSlip, TheIntervalOfTheBandHoldsItAsOftenAsItSays) {
   int held = 0;
   constexpr int seeds = 1000;
   for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
@@ -168,16 +168,16 @@ TEST(Staircase, TheIntervalOfTheBandHoldsItAsOftenAsItSays) {
   EXPECT_NEAR(held, 0.95 * seeds, 0.02 * seeds);
 }
 
-TEST(Staircase, TakesNeitherAPlayNorALagNorAFaithfulValveForOne) {
+TEST(StickSlip, TakesNeitherAPlayNorALagNorAFaithfulValveForOne) {
   const auto play = [](double p, double u, double) { return std::clamp(p, u - 1.0, u + 1.0); };
   const auto lag = [](double p, double u, double dt) { return p + (u - p) * dt / 0.15; };
   const auto faithful = [](double, double u, double) { return u; };
   for (const auto& records : {answered(known_campaign(2), play, 13), answered(known_campaign(2), lag, 14),
                               answered(known_campaign(2), faithful, 15)}) {
-    const auto found = find_staircase(records, behind(records), noise_mm, 2);
+    const auto found = find_stick_slip(records, behind(records), noise_mm, 2);
     if (found) ADD_FAILURE() << "band " << found->band_kpa << " scatter " << found->scatter;
   }
 }
 
 }  // namespace
-}  // namespace softgrip::sysid::staircase_test
+}  // namespace softgrip::sysid::stick_slip_test

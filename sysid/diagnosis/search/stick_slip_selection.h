@@ -11,7 +11,7 @@
 namespace softgrip::sysid {
 
 /// Numbers that describe a stick-slip motion.
-struct StaircaseEvidence {
+struct StickSlipEvidence {
   double band_kpa = 0;
   Interval band_ci95;
   std::size_t jumps = 0;       ///< that the band was estimated from
@@ -20,21 +20,21 @@ struct StaircaseEvidence {
   Spread gain_percent;         ///< held-out error reduction relative to the refitted model
 };
 
-struct StaircaseSelection {
+struct StickSlipSelection {
   /// The dead band first, then the causes behind it. `extended` and its losses are simulated from the command
   /// alone. `left` and the reductions of the causes use the jump times from the readings.
   Selection selection;
-  StaircaseEvidence evidence;
+  StickSlipEvidence evidence;
 };
 
 /// Searches for stick-slip in front of the selected structure, then for one more cause behind it. Returns an
 /// empty value if there is no stick-slip, or if the model already has a dead band.
 /// @param plain  the selection without stick-slip.
 /// @param options  of the search behind the valve.
-[[nodiscard]] std::optional<StaircaseSelection> select_behind_staircase(const SearchData& data,
-                                                                        const Selection& plain,
-                                                                        double noise_mm,
-                                                                        const Division& division,
-                                                                        const SelectionOptions& options);
+[[nodiscard]] std::optional<StickSlipSelection> select_behind_stick_slip(const SearchData& data,
+                                                                         const Selection& plain,
+                                                                         double noise_mm,
+                                                                         const Division& division,
+                                                                         const SelectionOptions& options);
 
 }  // namespace softgrip::sysid

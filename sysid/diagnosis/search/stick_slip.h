@@ -18,7 +18,7 @@
 namespace softgrip::sysid {
 
 /// A detected stick-slip motion.
-struct Staircase {
+struct StickSlip {
   double band_kpa = 0;
   Interval band_ci95;
   std::size_t jumps = 0;        ///< whose distance the readings resolve
@@ -48,13 +48,13 @@ struct Band {
 
 /// Searches for a stick-slip motion in front of a fitted structure. Returns an empty value if there is none,
 /// or if the structure already has a dead band.
-[[nodiscard]] std::optional<Staircase> find_staircase(const std::vector<Record>& records,
-                                                      const StructureFit& behind, double noise_mm,
-                                                      unsigned threads);
+[[nodiscard]] std::optional<StickSlip> find_stick_slip(const std::vector<Record>& records,
+                                                       const StructureFit& behind, double noise_mm,
+                                                       unsigned threads);
 
 /// Searches again without one of the causes behind the valve, from the current fit.
-[[nodiscard]] std::optional<Staircase> staircase_without(const std::vector<Record>& records,
-                                                         const Staircase& found, const Cause& cause,
-                                                         double noise_mm, unsigned threads);
+[[nodiscard]] std::optional<StickSlip> stick_slip_without(const std::vector<Record>& records,
+                                                          const StickSlip& found, const Cause& cause,
+                                                          double noise_mm, unsigned threads);
 
 }  // namespace softgrip::sysid
