@@ -10,7 +10,7 @@
 #include "sysid/fitting/start_estimate.h"
 #include "sysid/identification/log_figures.h"
 #include "sysid/identification/score_json.h"
-#include "sysid/logs/doubts.h"
+#include "sysid/logs/plausibility_warnings.h"
 #include "sysid/pages/provenance.h"
 
 namespace softgrip::sysid {
@@ -58,13 +58,13 @@ Validation validate_logs(const model::Model& model, const std::vector<Log>& logs
   for (std::size_t i = 0; i < v.records.size(); ++i) {
     v.scores.push_back(score_of(part, v.records[i], starts[i], v.records[i].reading_mm));
   }
-  v.warnings = doubts_among(logs);
+  v.warnings = plausibility_warnings_among(logs);
   for (std::string& sentence : divergences_of(v.scores)) v.warnings.push_back(std::move(sentence));
   for (std::size_t i = 0; i < v.scores.size(); ++i) {
-    if (std::string doubt = doubt_about_scale(logs[i].name, v.scores[i].prediction_mm,
-                                              v.records[i].reading_mm, logs[i].output_unit);
-        !doubt.empty())
-      v.warnings.push_back(std::move(doubt));
+    if (std::string implausible = scale_warning(logs[i].name, v.scores[i].prediction_mm,
+                                                v.records[i].reading_mm, logs[i].output_unit);
+        !implausible.empty())
+      v.warnings.push_back(std::move(implausible));
   }
   v.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
   return v;

@@ -12,9 +12,9 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Of the command's range: a regulator's error and the pressure sensor's are below it.
+/// Share of the command's range. The errors of a regulator and of a pressure sensor are below it.
 constexpr double far = 0.1;
-/// Of the way to the command; a regulator's own lag comes farther within any hold.
+/// Share of the way to the command. A regulator's own lag covers more within any hold.
 constexpr double on_its_way = 0.5;
 
 /// Samples from the first on at which the command is still what it was.

@@ -14,12 +14,12 @@ namespace softgrip::sysid {
 /// to the measured pressure: the log does not show the response to any other.
 ///
 /// Without a measured pressure the displacement shows it: it moves by a fifth of its range and more while the
-/// first command stands. The pressure then was at the lowest command if the displacement rises, otherwise at
-/// the highest. Nothing if the first command is that one itself, or lasts for less than 20 samples.
+/// first command is held. The pressure then was at the lowest command if the displacement rises, otherwise at
+/// the highest. Returns nullopt if the first command is that one itself, or lasts for less than 20 samples.
 [[nodiscard]] std::optional<double> pressure_before_kpa(const Log& log);
 
 /// The log with one sample more before its first, without readings, at the command `before_kpa`. Times still
-/// begin at 0, so all others move by the median interval. A note tells it.
+/// begin at 0, so all others move by the median interval. A note states this.
 [[nodiscard]] Log with_command_before(const Log& log, double before_kpa);
 
 }  // namespace softgrip::sysid

@@ -2,8 +2,8 @@
 // How the readings of records are divided into blocks that are held out: the only place that divides records
 // and hides readings.
 //
-// What is held out between fitted readings (blocks) is easier to predict than what comes after them
-// (continuation) or than a record of its own. Each way has its own function.
+// Blocks that are held out between fitted readings are easier to predict than readings after them
+// (continuation) or than a whole record. Each way has its own function.
 
 #include <cstddef>
 #include <vector>
@@ -33,7 +33,7 @@ struct Division {
 
 /// Blocks of about `block_s`, at least eight of them; the gap is a tenth of a block.
 [[nodiscard]] Division divide(const std::vector<Record>& records, double block_s);
-/// The same stretches of time among the samples that are left of `records`.
+/// Returns the blocks of the division, at the same times, for the thinned samples of `records`.
 [[nodiscard]] Division thinned_like(Division division, const std::vector<Record>& records,
                                     const std::vector<Record>& thinned);
 /// Ten blocks in all, at least two of each record (five of a single one), in five folds; a tenth of a block

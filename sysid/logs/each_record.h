@@ -1,5 +1,5 @@
 #pragma once
-// The same work for every record, side by side where it pays.
+// Runs a function for every record, in parallel if the records are long enough.
 
 #include <cstddef>
 #include <vector>
@@ -12,7 +12,7 @@ namespace softgrip::sysid {
 /// A record with fewer samples is walked through a chain before a thread for it would have begun.
 inline constexpr std::size_t samples_worth_a_thread = 1000;
 
-/// Whether the records have so many samples, on the average.
+/// Returns true if the records have at least `least_samples` samples on average.
 [[nodiscard]] inline bool are_worth_threads(const std::vector<Record>& records,
                                             std::size_t least_samples = samples_worth_a_thread) {
   std::size_t samples = 0;

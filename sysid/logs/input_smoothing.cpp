@@ -10,7 +10,7 @@
 namespace softgrip::sysid {
 namespace {
 
-/// What turns back by less, in units of the noise, has not turned: so far no smoothed noise comes.
+/// A smaller reversal, in units of the noise, is ignored: smoothed noise does not reach this value.
 constexpr double least_turn = 5;
 /// Below this share of a column's range its noise changes no answer.
 constexpr double negligible_share = 1e-4;
@@ -26,20 +26,20 @@ double range_of(std::span<const double> values) {
   return high - low;
 }
 
-/// Degrees of freedom of the slope's wandering: it mostly keeps still, and then it jumps. Were it normal, the
-/// jump of one fast vent would have the whole log follow its noise.
+/// Degrees of freedom of the slope's drift: the slope is mostly constant, and then it jumps. With a normal
+/// distribution, the jump of one fast vent would make the whole log follow its noise.
 constexpr double heavy_tail = 1;
-/// How often the shares of the wandering are found anew.
+/// Number of times that the shares of the drift are estimated again.
 constexpr int rounds = 12;
 
-/// Level and slope before a measurement, their covariance, and how far the measurement stood off.
+/// Level and slope before a measurement, their covariance, and the deviation of the measurement.
 struct Estimate {
   double level = 0, slope = 0;
   double ll = 0, ls = 0, ss = 0;
   double innovation = 0, variance = 0;  ///< variance 0: no measurement
 };
 
-/// Signal whose slope is a Wiener process of `wandering` times the step's own share.
+/// Signal whose slope is a Wiener process of `drift_rate` times the step's own share.
 struct Path {
   std::span<const double> time_s, values;
   double noise = 0;
@@ -49,15 +49,15 @@ struct Path {
 };
 
 /// Level and slope a step later.
-void advance(Estimate& e, double dt, double wandering) {
+void advance(Estimate& e, double dt, double drift_rate) {
   e.level += dt * e.slope;
-  e.ll += 2 * dt * e.ls + dt * dt * e.ss + wandering * dt * dt * dt / 3;
-  e.ls += dt * e.ss + wandering * dt * dt / 2;
-  e.ss += wandering * dt;
+  e.ll += 2 * dt * e.ls + dt * dt * e.ss + drift_rate * dt * dt * dt / 3;
+  e.ls += dt * e.ss + drift_rate * dt * dt / 2;
+  e.ss += drift_rate * dt;
 }
 
 /// One pass forwards. Returns minus twice the log-likelihood of the innovations.
-double filter(const Path& path, double wandering, std::vector<Estimate>* before) {
+double filter(const Path& path, double drift_rate, std::vector<Estimate>* before) {
   const auto& values = path.values;
   const auto first = std::find_if(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
   const double range = std::max(range_of(values), path.noise);
@@ -65,7 +65,7 @@ double filter(const Path& path, double wandering, std::vector<Estimate>* before)
   e.ss = std::pow(range / std::max(path.step_s(1), 1e-9), 2);
   double cost = 0;
   for (std::size_t i = 0; i < values.size(); ++i) {
-    if (i > 0) advance(e, path.step_s(i), wandering * path.shares[i]);
+    if (i > 0) advance(e, path.step_s(i), drift_rate * path.shares[i]);
     const bool measured = std::isfinite(values[i]);
     e.variance = measured ? e.ll + path.noise * path.noise : 0;
     e.innovation = measured ? values[i] - e.level : 0;
@@ -82,11 +82,12 @@ double filter(const Path& path, double wandering, std::vector<Estimate>* before)
   return cost;
 }
 
-/// The wandering of the slope, per second, of greatest likelihood: golden section over its logarithm.
-double likeliest_wandering(const Path& path) {
+/// Returns the drift rate of the slope, per second, of greatest likelihood: golden section over its
+/// logarithm.
+double likeliest_drift_rate(const Path& path) {
   const auto& time_s = path.time_s;
   const double dt = (time_s.back() - time_s.front()) / static_cast<double>(time_s.size() - 1);
-  // Where a sample's wandering is as large as the noise.
+  // At this rate, the drift in a sample is as large as the noise.
   const double unit = path.noise * path.noise / (dt * dt * dt);
   double low = std::log(unit) - 20, high = std::log(unit) + 12;
   const double golden = (std::sqrt(5.0) - 1) / 2;
@@ -111,17 +112,17 @@ double likeliest_wandering(const Path& path) {
   return std::exp((low + high) / 2);
 }
 
-/// The signal and, of every step, how much the slope has wandered on it: the mean of w' Q^-1 w, Q for a
-/// wandering of 1.
+/// The signal and, for every step, the drift of the slope on it: the mean of w' Q^-1 w, Q for a drift rate
+/// of 1.
 struct Smooth {
-  std::vector<double> level, wandered;
+  std::vector<double> level, drift;
 };
 
 /// One pass backwards over the innovations and their weights (Koopman, Biometrika 80, 1993).
-Smooth disturbances(const Path& path, double wandering) {
+Smooth disturbances(const Path& path, double drift_rate) {
   const std::size_t n = path.values.size();
   std::vector<Estimate> before(n);
-  filter(path, wandering, &before);
+  filter(path, drift_rate, &before);
   Smooth smooth{std::vector<double>(n), std::vector<double>(n, 0.0)};
   double r0 = 0, r1 = 0, n00 = 0, n01 = 0, n11 = 0;
   for (std::size_t i = n; i-- > 0;) {
@@ -140,10 +141,10 @@ Smooth disturbances(const Path& path, double wandering) {
     }
     smooth.level[i] = e.level + e.ll * r0 + e.ls * r1;
     if (i == 0) break;
-    const double dt = path.step_s(i), q = wandering * path.shares[i];
+    const double dt = path.step_s(i), q = drift_rate * path.shares[i];
     const double square =
         dt * dt * dt / 3 * (r0 * r0 - n00) + dt * dt * (r0 * r1 - n01) + dt * (r1 * r1 - n11);
-    smooth.wandered[i] = std::max(0.0, 2 * q + q * q * square);
+    smooth.drift[i] = std::max(0.0, 2 * q + q * q * square);
   }
   return smooth;
 }
@@ -165,13 +166,13 @@ double white_noise_of(std::span<const double> time_s, std::span<const double> va
 std::vector<double> smoothed(std::span<const double> time_s, std::span<const double> values, double noise) {
   if (noise <= 0 || values.size() < 3) return {values.begin(), values.end()};
   Path path{time_s, values, noise, std::vector<double>(values.size(), 1.0)};
-  double wandering = likeliest_wandering(path);
-  Smooth smooth = disturbances(path, wandering);
+  double drift_rate = likeliest_drift_rate(path);
+  Smooth smooth = disturbances(path, drift_rate);
   for (int round = 0; round < rounds; ++round) {
     for (std::size_t i = 1; i < values.size(); ++i)
-      path.shares[i] = (heavy_tail + smooth.wandered[i] / wandering) / (heavy_tail + 2);
-    wandering = likeliest_wandering(path);
-    smooth = disturbances(path, wandering);
+      path.shares[i] = (heavy_tail + smooth.drift[i] / drift_rate) / (heavy_tail + 2);
+    drift_rate = likeliest_drift_rate(path);
+    smooth = disturbances(path, drift_rate);
   }
   return smooth.level;
 }

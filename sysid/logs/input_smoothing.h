@@ -7,15 +7,15 @@
 
 namespace softgrip::sysid {
 
-/// Standard deviation of white noise on a smooth signal, from how far values stand off the straight line
+/// Standard deviation of white noise on a smooth signal, from the deviations of values from the straight line
 /// between their neighbours (robust, any sampling); 0 for fewer than three values.
 [[nodiscard]] double white_noise_of(std::span<const double> time_s, std::span<const double> values);
 
 /// The signal without its noise: a Kalman filter forwards and Koopman's smoother backwards (Biometrika 80,
-/// 1993) over a signal whose slope wanders, the noise as given, the wandering by greatest likelihood of the
-/// innovations. Its increments are of Student's t (a scale of every step's own, by expectation
-/// maximisation): a signal that jumps now and then is smooth between its jumps all the same. Any sampling.
-/// Not finite: no measurement there.
+/// 1993) over a signal whose slope drifts. The noise is given; the drift rate has the greatest likelihood of
+/// the innovations. The increments of the slope follow Student's t (with a scale for every step, by
+/// expectation maximisation), so a signal with occasional jumps is smooth between them. Any sampling. Not
+/// finite: no measurement there.
 /// @param time_s  increasing, as long as `values`. @param noise  standard deviation; 0 returns the values.
 [[nodiscard]] std::vector<double> smoothed(std::span<const double> time_s, std::span<const double> values,
                                            double noise);

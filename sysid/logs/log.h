@@ -65,7 +65,7 @@ struct Log {
   [[nodiscard]] std::size_t size() const noexcept { return time_s.size(); }
 };
 
-/// What a reader accepts.
+/// The logs that a reader accepts.
 struct LogOptions {
   std::string channel;  ///< which one of a log with several; "" if there is one
   std::size_t bytes = std::size_t{512} * 1024 * 1024;
@@ -92,7 +92,7 @@ struct Campaign {
 [[nodiscard]] Campaign read_campaign(const std::vector<std::string>& paths, document::Problems& problems,
                                      const LogOptions& options = {});
 
-/// The same for a text that is already there. `file` names it in messages.
+/// Reads a log from a text. `file` is its name in messages.
 [[nodiscard]] std::optional<Log> parse_log(const std::string& file, std::string_view text,
                                            document::Problems& problems, const LogOptions& options = {});
 

@@ -1,5 +1,5 @@
 #pragma once
-// What can be wrong with a log whose cells are all readable: time, excitation, sensor, units.
+// Checks of a log whose cells are all readable: time, excitation, sensor, units.
 
 #include <string>
 #include <string_view>
@@ -10,7 +10,7 @@
 
 namespace softgrip::sysid {
 
-/// Where the samples of a log stand in its text.
+/// The places of the samples of a log in its text.
 struct LogSource {
   std::string file;
   std::vector<int> line;                    ///< of each sample

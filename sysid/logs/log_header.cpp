@@ -9,7 +9,7 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Says which column of the contract a foreign name was probably meant to be.
+/// Reports the known column that an unknown name was probably meant to be.
 void report_near_miss(const Cell& cell, std::string_view name, std::string_view line, LogReporter& report) {
   for (const KnownColumn& known : known_columns) {
     const std::string_view unit = known.name.substr(known.quantity.size() + 1);

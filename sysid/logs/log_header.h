@@ -12,7 +12,7 @@
 
 namespace softgrip::sysid {
 
-/// Where the columns of a log stand in its rows.
+/// The places of the columns of a log in its rows.
 struct LogHeader {
   std::vector<std::string> names;
   std::array<int, known_columns.size()> index{};  ///< -1: absent
@@ -21,7 +21,7 @@ struct LogHeader {
   ReadingColumn reading = reading_columns.front();  ///< which of them holds the readings
 };
 
-/// What is wrong with it is reported; then the header is not to be used.
+/// Reads the header. Reports its errors; after an error, the header must not be used.
 [[nodiscard]] LogHeader read_header(std::string_view line, const LogOptions& options, LogReporter& report);
 
 }  // namespace softgrip::sysid

@@ -135,7 +135,7 @@ void check_channel(const RowReader& rows, const LogHeader& header, const LogOpti
   if (header.channel < 0) {
     if (!options.channel.empty()) {
       report.add("channel", at, header_line,
-                 "channel '" + options.channel + "' was asked for, and the log has no channel column");
+                 "channel '" + options.channel + "' was requested, and the log has no channel column");
     }
     return;
   }

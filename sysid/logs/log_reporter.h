@@ -1,5 +1,5 @@
 #pragma once
-// Problems of a log: a file with a million bad rows is told in a few lines.
+// Problems of a log: a file with a million bad rows is reported in a few lines.
 
 #include <map>
 #include <string>

@@ -20,9 +20,9 @@ enum class Drive {
 /// "command" or "measured pressure", as scores say it.
 [[nodiscard]] std::string name_of(Drive drive);
 
-/// What is known about the state in which a log begins.
+/// The known initial state of a log.
 enum class Start {
-  automatic,  ///< a fit: rest if the first pressure is next to nothing, otherwise unknown; a prediction: see
+  automatic,  ///< a fit: rest if the first pressure is nearly 0, otherwise unknown; a prediction: see
               ///< sysid/fitting/start_estimate.h
   rest,       ///< at rest at the first pressure: risen to it once from 0 and settled
   unknown,    ///< hysteresis, creep and offset are estimated
@@ -66,8 +66,8 @@ struct Record {
   std::vector<double> temperature_c;
   std::vector<double> supply_kpa;
   double sample_time_s = 0;  ///< 0 when irregular
-  /// Between readings that are told apart: the log's own mean interval even where only some samples are left;
-  /// where a sample stands for those around it, the interval of what is left.
+  /// Interval between distinguishable readings: the log's own mean interval even if only some samples are
+  /// left. If a sample is the mean of those around it, it is the interval of the samples that are left.
   double finest_interval_s = 0;
   double campaign_time_s = 0;     ///< when it began, counted from the first log's start
   double span_mm = 0;             ///< of the readings

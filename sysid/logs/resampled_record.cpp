@@ -8,7 +8,7 @@
 namespace softgrip::sysid {
 namespace {
 
-/// From so much of the largest command on a command that leaves the straight line between two samples jumps.
+/// A command jumps if it leaves the straight line between two samples by this share of the largest command.
 constexpr double least_jump = 0.01;
 
 /// The command at sample `at`, weighted by a hat over the samples that are dropped on either side.
@@ -20,7 +20,7 @@ double hat_mean_kpa(const std::vector<double>& drive_kpa, std::size_t at, std::s
   return sum_kpa / width;
 }
 
-/// Whether the command jumps between sample `at` and the next one that is kept.
+/// Returns true if the command jumps between sample `at` and the next one that is kept.
 bool jumps_after(const Record& record, std::size_t at, std::size_t stride) {
   const double from_kpa = record.drive_kpa[at], to_kpa = record.drive_kpa[at + stride];
   for (std::size_t j = 1; j < stride; ++j) {
@@ -84,7 +84,7 @@ std::vector<std::size_t> nearest_to_centres(const Record& record, double interva
   return kept;
 }
 
-/// What stands between a value and the next one, `share` of the way there.
+/// Returns the series with `parts` steps for each of its steps. `between` gives the values in between.
 template <class Between>
 std::vector<double> finer(const std::vector<double>& series, std::size_t parts, Between&& between) {
   std::vector<double> out;

@@ -20,7 +20,7 @@ namespace softgrip::sysid {
 /// the jump would come up to a whole interval early or late; corners without a jump stay as sharp as they
 /// are.
 [[nodiscard]] Record thinned_record(const Record& record, std::size_t stride);
-/// Thinned so that samples stand at most `interval_s` apart, where they are not farther apart already.
+/// Thinned so that samples are at most `interval_s` apart, unless they are farther apart already.
 [[nodiscard]] Record thinned_to(const Record& record, double interval_s);
 /// Thinned likewise, and each reading the mean of those that are nearer to it than to any other that is left:
 /// their noise falls with the root of their number. A motion is not blurred as long as it bends little within
@@ -30,8 +30,8 @@ namespace softgrip::sysid {
 /// its middle: what is reckoned there stands for the interval's mean, but for how much it bends in it. A
 /// record that is coarser already stays as it is.
 [[nodiscard]] Record thinned_to_centres(const Record& record, double interval_s);
-/// Every step in so many equal parts. Between samples drive and surroundings go straight, a held drive stays
-/// where it was; readings are known at the samples alone.
+/// Divides every step into `parts` equal parts. Between samples drive and surroundings go straight, a held
+/// drive stays where it was; readings are known at the samples alone.
 /// @param parts  1 and more: sample i of the record is sample i parts of the finer one.
 [[nodiscard]] Record finer_record(const Record& record, std::size_t parts);
 /// All samples, and of the readings every k-th of each record, so that at most about `most` are left in all.

@@ -1,5 +1,5 @@
 #pragma once
-// What was measured in a log and what models say of it, sample by sample, for figures of one's own.
+// The readings of a log and the predictions of models, sample by sample, for the user's own figures.
 //
 //   time_s,drive_kpa,measured_mm,predicted_MODEL_mm,residual_MODEL_mm[,...],held_out
 //

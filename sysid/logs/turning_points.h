@@ -7,7 +7,7 @@
 namespace softgrip::sysid {
 
 /// The first sample, every sample from which the signal then goes back by more than `least`, the last one;
-/// ascending. Of equal highest (lowest) ones the first. At least one value, all finite.
+/// ascending. Among equal highest (lowest) values, the first counts. At least one value, all finite.
 [[nodiscard]] std::vector<std::size_t> turning_points(const std::vector<double>& values, double least);
 
 /// The nearest signal, in the sense of least squares, that rises or falls steadily from one turning point to

@@ -19,7 +19,7 @@
 #include "sysid/identification/identify.h"
 #include "sysid/identification/identify_report.h"
 #include "sysid/identification/validate.h"
-#include "sysid/logs/doubts.h"
+#include "sysid/logs/plausibility_warnings.h"
 #include "sysid/pages/page.h"
 #include "sysid/structure/identify_structure.h"
 #include "sysid/structure/structure.h"
@@ -92,7 +92,7 @@ void append(std::vector<std::string>& list, std::vector<std::string> more) {
 /// The error of a fit with the plausibility warnings of its logs: a unit explains a number out of its range.
 std::string refusal_of(const std::string& error, const std::vector<sysid::Log>& logs) {
   std::string text = error;
-  for (const std::string& doubt : sysid::doubts_among(logs)) text += "; " + doubt;
+  for (const std::string& implausible : sysid::plausibility_warnings_among(logs)) text += "; " + implausible;
   return text;
 }
 
@@ -106,7 +106,7 @@ std::vector<std::string> warnings_of_data(const sysid::Identification& result,
                                           std::vector<std::string> wrong_readings) {
   std::vector<std::string> warnings = std::move(wrong_readings);
   append(warnings, sysid::excitation_limits(logs, result.parameters));
-  append(warnings, sysid::doubts_among(logs));
+  append(warnings, sysid::plausibility_warnings_among(logs));
   append(warnings, sysid::divergences_of(result.scores));
   append(warnings, sysid::divergences_of(result.held_out));
   return warnings;

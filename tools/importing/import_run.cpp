@@ -19,8 +19,8 @@
 #include "sysid/import/foreign_file.h"
 #include "sysid/import/mapping_file.h"
 #include "sysid/import/proposal.h"
-#include "sysid/logs/doubts.h"
 #include "sysid/logs/log.h"
+#include "sysid/logs/plausibility_warnings.h"
 #include "sysid/logs/sensor_codes.h"
 #include "tools/command_line/command.h"
 #include "tools/command_line/output.h"
@@ -43,7 +43,7 @@ struct Job {
   bool is_log = false;  ///< already, to the letter
   sysid::ImportedLog result;
   std::vector<std::string> warnings;
-  std::vector<std::string> doubts;
+  std::vector<std::string> plausibility;
 };
 
 /// A log of our own stays as it is, columns that the contract does not name included.
@@ -169,7 +169,7 @@ bool finish(Job& job, document::Problems& problems) {
     job.result = std::move(*result);
     job.warnings.insert(job.warnings.end(), job.result.warnings.begin(), job.result.warnings.end());
   }
-  job.doubts = sysid::doubts_about(job.result.log, pressure_column(job.mapping));
+  job.plausibility = sysid::plausibility_warnings(job.result.log, pressure_column(job.mapping));
   return true;
 }
 
@@ -190,7 +190,7 @@ tl::expected<void, std::string> write(const Job& job) {
   std::vector<std::string> remarks = notes_of(job);
   remarks.push_back(job.result.account.sentence());
   for (const std::string& warning : job.warnings) remarks.push_back("warning: " + warning);
-  for (const std::string& doubt : job.doubts) remarks.push_back("doubt: " + doubt);
+  for (const std::string& implausible : job.plausibility) remarks.push_back("doubt: " + implausible);
   return write_file(mapping_path(job.out),
                     sysid::mapping_yaml(job.mapping, {job.file, job.table.sha256, job.table.format},
                                         "softgrip " + std::string(software_version()), remarks));
@@ -226,7 +226,7 @@ ordered_json json_of(const Job& job) {
           {"rows", account_json(job.result.account)},
           {"warnings", job.warnings},
           {"notes", notes_of(job)},
-          {"doubts", job.doubts}};
+          {"doubts", job.plausibility}};
 }
 
 void report(const std::vector<Job>& jobs, const ImportOptions& options) {
@@ -235,8 +235,8 @@ void report(const std::vector<Job>& jobs, const ImportOptions& options) {
   for (const Job& job : jobs) {
     for (const std::string& warning : job.warnings)
       std::fprintf(stderr, "%s: warning: %s\n", job.file.c_str(), on_screen(warning).c_str());
-    for (const std::string& doubt : job.doubts)
-      std::fprintf(stderr, "%s: doubt: %s\n", job.file.c_str(), doubt.c_str());
+    for (const std::string& implausible : job.plausibility)
+      std::fprintf(stderr, "%s: doubt: %s\n", job.file.c_str(), implausible.c_str());
     logs.push_back(json_of(job));
     if (options.json) continue;
     for (const std::string& note : notes_of(job))

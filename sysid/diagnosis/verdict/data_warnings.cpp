@@ -6,8 +6,8 @@
 
 #include "sysid/diagnosis/causes/cause.h"
 #include "sysid/identification/combinations.h"
-#include "sysid/logs/doubts.h"
 #include "sysid/logs/excitation.h"
+#include "sysid/logs/plausibility_warnings.h"
 
 namespace softgrip::sysid {
 namespace {
@@ -34,7 +34,8 @@ void warn_unphysical(const model::Model& model, std::vector<std::string>& warnin
 }
 
 void warn_of_data(const std::vector<Log>& logs, const Scales& scales, std::vector<std::string>& warnings) {
-  for (std::string& doubt : doubts_among(logs)) warnings.push_back(std::move(doubt));
+  for (std::string& implausible : plausibility_warnings_among(logs))
+    warnings.push_back(std::move(implausible));
   warn_of_columns(scales, warnings);
   const bool measured =
       std::any_of(logs.begin(), logs.end(), [](const Log& log) { return !log.pressure_kpa.empty(); });
@@ -51,10 +52,10 @@ void warn_of_scale(const std::vector<Record>& records, const std::vector<std::ve
   for (std::size_t k = 0; k < records.size(); ++k) {
     std::vector<double> predicted_mm = records[k].reading_mm;
     for (std::size_t i = 0; i < predicted_mm.size(); ++i) predicted_mm[i] -= residual_mm[k][i];
-    if (std::string doubt =
-            doubt_about_scale(records[k].name, predicted_mm, records[k].reading_mm, records[k].output_unit);
-        !doubt.empty())
-      warnings.push_back(std::move(doubt));
+    if (std::string implausible =
+            scale_warning(records[k].name, predicted_mm, records[k].reading_mm, records[k].output_unit);
+        !implausible.empty())
+      warnings.push_back(std::move(implausible));
   }
 }
 

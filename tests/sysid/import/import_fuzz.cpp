@@ -16,7 +16,7 @@
 #include "sysid/import/tdms_table.h"
 #include "sysid/import/text_table.h"
 #include "sysid/import/xlsx_table.h"
-#include "sysid/logs/doubts.h"
+#include "sysid/logs/plausibility_warnings.h"
 
 namespace {
 
@@ -49,6 +49,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   (void)problems.format();
   if (!result) return 0;
   require(result->log.size() == result->log.displacement_mm.size() && result->log.time_s.front() == 0);
-  (void)sysid::doubts_about(result->log);
+  (void)sysid::plausibility_warnings(result->log);
   return 0;
 }

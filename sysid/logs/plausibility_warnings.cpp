@@ -1,4 +1,4 @@
-#include "sysid/logs/doubts.h"
+#include "sysid/logs/plausibility_warnings.h"
 
 #include <algorithm>
 #include <array>
@@ -63,23 +63,23 @@ int best_lag(const std::vector<double>& earlier, const std::vector<double>& late
   return best > clear_correlation ? lag : 0;
 }
 
-void doubt_measured_pressure(const Log& log, std::vector<std::string>& doubts) {
+void check_measured_pressure(const Log& log, std::vector<std::string>& warnings) {
   if (log.pressure_kpa.empty() || log.pressure_kpa == log.pressure_command_kpa) return;
   const PairSums sums = sums_of(log.pressure_command_kpa, log.pressure_kpa);
   if (sums.correlation() < -clear_correlation) {
-    doubts.push_back("the measured pressure falls when the command rises (correlation " +
-                     significant(sums.correlation(), 3) +
-                     "): `softgrip import --scale pressure=-X` turns it");
+    warnings.push_back("the measured pressure falls when the command rises (correlation " +
+                       significant(sums.correlation(), 3) +
+                       "): `softgrip import --scale pressure=-X` turns it");
     return;
   }
   if (sums.correlation() < clear_correlation) return;
   const double slope = sums.slope();
   if (const std::string units = pressure_units_apart(slope); !units.empty())
-    doubts.push_back("the measured pressure is " + significant(slope, 3) + " times the command, as " + units +
-                     " are: is the unit of one of them another? `softgrip import --unit` says it");
+    warnings.push_back("the measured pressure is " + significant(slope, 3) + " times the command, as " +
+                       units + " are: is the unit of one of them another? `softgrip import --unit` says it");
   constexpr int clearly_before = -2;
   if (best_lag(log.pressure_command_kpa, log.pressure_kpa) <= clearly_before)
-    doubts.emplace_back("the measured pressure moves before its command: are the two columns swapped?");
+    warnings.emplace_back("the measured pressure moves before its command: are the two columns swapped?");
 }
 
 const std::vector<double>& drive_of(const Log& log) {
@@ -87,7 +87,7 @@ const std::vector<double>& drive_of(const Log& log) {
 }
 
 /// Mean area of the loops that the readings draw over the pressure, as a share of the square around them:
-/// above 0 where the readings follow the pressure, as they do in whatever dissipates or is late.
+/// above 0 if the readings follow the pressure, as they do in every system that dissipates or lags.
 double loop_share(const std::vector<double>& pressure, const std::vector<double>& reading) {
   const auto p = extent_of(pressure), y = extent_of(reading);
   if (!p || !y || p->width() <= 0 || y->width() <= 0) return 0;
@@ -105,11 +105,11 @@ double loop_share(const std::vector<double>& pressure, const std::vector<double>
   return area / (p->width() * y->width() * loops);
 }
 
-void doubt_response(const Log& log, std::vector<std::string>& doubts) {
+void check_response(const Log& log, std::vector<std::string>& warnings) {
   const std::vector<double>& drive = drive_of(log);
   const double correlation = sums_of(drive, log.displacement_mm).correlation();
   if (correlation < -clear_correlation) {
-    doubts.push_back(
+    warnings.push_back(
         "the reading falls when the pressure rises (correlation " + significant(correlation, 3) +
         "): a sensor mounted the other way round? `softgrip import --scale displacement=-X` with "
         "a negative factor" +
@@ -119,21 +119,22 @@ void doubt_response(const Log& log, std::vector<std::string>& doubts) {
   }
   const double share = loop_share(drive, log.displacement_mm);
   if (correlation > clear_correlation && share < clear_loop_backwards)
-    doubts.push_back("the reading moves before the pressure (its loops run backwards and enclose " +
-                     significant(-100 * share, 2) +
-                     " % of the square around them): are the columns of pressure and displacement swapped?");
+    warnings.push_back(
+        "the reading moves before the pressure (its loops run backwards and enclose " +
+        significant(-100 * share, 2) +
+        " % of the square around them): are the columns of pressure and displacement swapped?");
 }
 
-void doubt_free_motion(const Log& log, std::vector<std::string>& doubts) {
+void check_free_motion(const Log& log, std::vector<std::string>& warnings) {
   const auto result = std::find_if(log.others.begin(), log.others.end(),
                                    [](const OtherColumn& column) { return column.name == "result"; });
   if (result == log.others.end()) return;
   const auto holding = std::count(result->cells.begin(), result->cells.end(), "holding");
   if (holding == 0) return;
-  doubts.push_back("the finger holds a part in " +
-                   significant(100 * static_cast<double>(holding) / static_cast<double>(log.size()), 2) +
-                   " % of the rows (column result): a model of free motion cannot be fitted to them or "
-                   "judged by them; record a run that touches nothing");
+  warnings.push_back("the finger holds a part in " +
+                     significant(100 * static_cast<double>(holding) / static_cast<double>(log.size()), 2) +
+                     " % of the rows (column result): a model of free motion cannot be fitted to them or "
+                     "judged by them; record a run that touches nothing");
 }
 
 /// The column, its largest value, and how to state the unit that it probably has.
@@ -170,45 +171,45 @@ void judge_unit_of_pressure(const Log& log, const PressureColumn& column,
   }
 }
 
-void doubt_spans(const Log& log, std::vector<std::string>& doubts) {
+void check_spans(const Log& log, std::vector<std::string>& warnings) {
   using model::OutputUnit;
   const OutputUnit unit = log.output_unit;
   if (const auto p = extent_of(log.pressure_command_kpa); p && p->width() > 0) {
     if (p->lowest > 0.9 * atmosphere_kpa && p->lowest < 1.1 * atmosphere_kpa)
-      doubts.push_back("the pressure never falls below " + significant(p->lowest) +
-                       " kPa, about an atmosphere: absolute? `softgrip import --zero` subtracts it");
+      warnings.push_back("the pressure never falls below " + significant(p->lowest) +
+                         " kPa, about an atmosphere: absolute? `softgrip import --zero` subtracts it");
   }
   if (const auto y = extent_of(log.displacement_mm); y && y->width() > 0) {
     if (y->width() < small_reading(unit))
-      doubts.push_back(model::in_unit("the displacement spans ", unit) + significant(y->width()) +
-                       (unit == OutputUnit::deg ? " deg: radians or V in a column taken for deg?"
-                                                : " mm: metres or V in a column taken for mm?"));
+      warnings.push_back(model::in_unit("the displacement spans ", unit) + significant(y->width()) +
+                         (unit == OutputUnit::deg ? " deg: radians or V in a column taken for deg?"
+                                                  : " mm: metres or V in a column taken for mm?"));
     if (y->width() > large_displacement_mm)
-      doubts.push_back(model::in_unit("the displacement spans ", unit) + significant(y->width()) +
-                       (unit == OutputUnit::deg ? " deg: counts or degrees in a column taken for radians?"
-                                                : " mm: micrometres in a column taken for mm?"));
+      warnings.push_back(model::in_unit("the displacement spans ", unit) + significant(y->width()) +
+                         (unit == OutputUnit::deg ? " deg: counts or degrees in a column taken for radians?"
+                                                  : " mm: micrometres in a column taken for mm?"));
   }
   if (const auto t = extent_of(log.temperature_c); t && t->lowest > 200)
-    doubts.emplace_back("the temperature is above 200 C: kelvin?");
+    warnings.emplace_back("the temperature is above 200 C: kelvin?");
 }
 
 }  // namespace
 
-std::vector<std::string> doubts_about(const Log& log, const PressureColumn& column) {
-  std::vector<std::string> doubts;
-  doubt_response(log, doubts);
-  doubt_free_motion(log, doubts);
-  doubt_measured_pressure(log, doubts);
-  judge_unit_of_pressure(log, column, doubts);
-  doubt_spans(log, doubts);
+std::vector<std::string> plausibility_warnings(const Log& log, const PressureColumn& column) {
+  std::vector<std::string> warnings;
+  check_response(log, warnings);
+  check_free_motion(log, warnings);
+  check_measured_pressure(log, warnings);
+  judge_unit_of_pressure(log, column, warnings);
+  check_spans(log, warnings);
   if (log.size() > 1) {
     const double interval = sampling_of(log).median_interval_s;
     if (interval > slow_sampling_s)
-      doubts.push_back("samples are " + significant(interval) + " s apart: ms in a column taken for s?");
+      warnings.push_back("samples are " + significant(interval) + " s apart: ms in a column taken for s?");
     if (interval < 1e-5)
-      doubts.push_back("samples are " + significant(interval) + " s apart: is the unit of the time right?");
+      warnings.push_back("samples are " + significant(interval) + " s apart: is the unit of the time right?");
   }
-  return doubts;
+  return warnings;
 }
 
 namespace {
@@ -221,12 +222,12 @@ bool same_samples(const Log& a, const Log& b) {
 
 }  // namespace
 
-std::vector<std::string> doubts_among(const std::vector<Log>& logs) {
-  std::vector<std::string> doubts;
+std::vector<std::string> plausibility_warnings_among(const std::vector<Log>& logs) {
+  std::vector<std::string> warnings;
   std::vector<double> gains;
   for (const Log& log : logs) {
-    for (const std::string& doubt : doubts_about(log))
-      doubts.push_back(logs.size() > 1 ? log.name + ": " + doubt : doubt);
+    for (const std::string& warning : plausibility_warnings(log))
+      warnings.push_back(logs.size() > 1 ? log.name + ": " + warning : warning);
     const PairSums sums = sums_of(drive_of(log), log.displacement_mm);
     gains.push_back(sums.correlation() > clear_correlation ? sums.slope() : 0);
   }
@@ -234,24 +235,24 @@ std::vector<std::string> doubts_among(const std::vector<Log>& logs) {
     const auto first = std::find_if(logs.begin(), logs.begin() + static_cast<std::ptrdiff_t>(i),
                                     [&](const Log& log) { return same_samples(log, logs[i]); });
     if (first != logs.begin() + static_cast<std::ptrdiff_t>(i))
-      doubts.push_back(logs[i].name + ": the same samples as " + first->name +
-                       "; given twice they make intervals narrower than they are");
+      warnings.push_back(logs[i].name + ": the same samples as " + first->name +
+                         "; given twice they make intervals narrower than they are");
   }
   std::vector<double> clear = gains;
   std::erase(clear, 0);
-  if (clear.size() < 2) return doubts;
+  if (clear.size() < 2) return warnings;
   const double usual = median_of(std::span(clear));
   for (std::size_t i = 0; i < logs.size(); ++i) {
     if (gains[i] <= 0) continue;
     if (const std::string mistake = mistaken_unit(gains[i] / usual, logs[i].output_unit); !mistake.empty())
-      doubts.push_back(logs[i].name + ": the finger moves " + significant(gains[i] / usual, 3) +
-                       " times as far per kPa as in the other logs: " + mistake + "?");
+      warnings.push_back(logs[i].name + ": the finger moves " + significant(gains[i] / usual, 3) +
+                         " times as far per kPa as in the other logs: " + mistake + "?");
   }
-  return doubts;
+  return warnings;
 }
 
-std::string doubt_about_scale(const std::string& log_name, const std::vector<double>& prediction_mm,
-                              const std::vector<double>& reading_mm, model::OutputUnit unit) {
+std::string scale_warning(const std::string& log_name, const std::vector<double>& prediction_mm,
+                          const std::vector<double>& reading_mm, model::OutputUnit unit) {
   const PairSums sums = sums_of(prediction_mm, reading_mm);
   if (sums.correlation() < clear_correlation) return {};
   const double factor = sums.slope();

@@ -1,0 +1,153 @@
+#include "sysid/logs/plausibility_warnings.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "tests/sysid/simulated.h"
+
+namespace softgrip::sysid::plausibility_warnings_test {
+namespace {
+
+std::string all_of(const std::vector<std::string>& warnings) {
+  std::string text;
+  for (const std::string& warning : warnings) text += warning + "\n";
+  return text;
+}
+
+TEST(PlausibilityWarnings, SignScaleAndOrder) {
+  Log log;
+  for (int i = 0; i < 400; ++i) {
+    const double p = 30 - std::abs(i % 100 - 50) * 0.6;
+    log.time_s.push_back(0.01 * i);
+    log.pressure_command_kpa.push_back(p);
+    log.pressure_kpa.push_back(p + 0.01 * (i % 3));
+    log.displacement_mm.push_back(0.2 * p);
+  }
+  EXPECT_TRUE(plausibility_warnings(log).empty());
+  const auto first_warning = [&](auto change) {
+    Log other = log;
+    for (std::size_t i = 0; i < other.size(); ++i) change(other, i);
+    const auto warnings = plausibility_warnings(other);
+    return warnings.empty() ? std::string() : warnings.front();
+  };
+  EXPECT_NE(
+      first_warning([](Log& l, std::size_t i) { l.displacement_mm[i] *= -1; }).find("the reading falls"),
+      std::string::npos);
+  EXPECT_NE(first_warning([](Log& l, std::size_t i) { l.pressure_kpa[i] /= 6.894757; }).find("psi and kPa"),
+            std::string::npos);
+  EXPECT_NE(first_warning([](Log& l, std::size_t i) { l.displacement_mm[i] /= 1000; }).find("metres"),
+            std::string::npos);
+  EXPECT_NE(first_warning([](Log& l, std::size_t i) {
+              l.pressure_command_kpa[i] += 101;
+              l.pressure_kpa[i] += 101;
+            }).find("absolute"),
+            std::string::npos);
+  EXPECT_NE(first_warning([&](Log& l, std::size_t i) {
+              l.pressure_kpa[i] = log.pressure_kpa[std::min<std::size_t>(i + 5, 399)];
+            }).find("swapped"),
+            std::string::npos);
+}
+
+/// Of a pressure and of a vacuum, in each unit that is far from kPa.
+TEST(PlausibilityWarnings, AUnitThatIsFarFromKpaIsNamed) {
+  const auto warnings = [](double peak, double mm) {
+    Log log;
+    for (int i = 0; i < 400; ++i) {
+      const double share = 1 - std::abs(i % 100 - 50) / 50.0;
+      log.time_s.push_back(0.01 * i);
+      log.pressure_command_kpa.push_back(peak * share);
+      log.displacement_mm.push_back(mm * share);
+    }
+    return all_of(plausibility_warnings(log));
+  };
+  for (const double sign : {1.0, -1.0}) {
+    EXPECT_EQ(warnings(sign * 60, sign * 20), "") << sign;
+    EXPECT_NE(warnings(sign * 0.06, sign * 20).find("MPa, bar or V"), std::string::npos) << sign;
+    EXPECT_NE(warnings(sign * 0.6, sign * 20).find("kPa: bar or V"), std::string::npos) << sign;
+    EXPECT_NE(warnings(sign * 60e3, sign * 20).find("Pa or mbar"), std::string::npos) << sign;
+    EXPECT_NE(warnings(sign * 8.7, sign * 20).find("moves by 2.3 mm per kPa: psi in a column"),
+              std::string::npos)
+        << warnings(sign * 8.7, sign * 20);
+    EXPECT_EQ(warnings(sign * 8.7, sign * 4), "") << "a part of the range, by a finger as usual";
+    EXPECT_NE(warnings(sign * 60, sign * 0.02).find("metres"), std::string::npos) << sign;
+    EXPECT_NE(warnings(sign * 60, sign * 20e3).find("micrometres"), std::string::npos) << sign;
+  }
+}
+
+/// With the largest value of its column and what states the unit.
+TEST(PlausibilityWarnings, AUnitIsNamedWithItsColumn) {
+  Log log = simulated(loaded("bench_twin"), model::SignalName::tp1, 50, 0.05, 7);
+  const std::vector<double> kpa = log.pressure_command_kpa;
+  for (const auto& [unit, factor] :
+       {std::pair{"psi", 6.894757}, {"bar", 100.0}, {"MPa", 1e3}, {"Pa", 1e-3}}) {
+    for (std::size_t i = 0; i < kpa.size(); ++i) log.pressure_command_kpa[i] = kpa[i] / factor;
+    const std::string warnings = all_of(plausibility_warnings(log, {"P set", "pressure"}));
+    EXPECT_NE(warnings.find("The largest value of `P set` is "), std::string::npos) << unit << warnings;
+    EXPECT_NE(warnings.find("--unit pressure=" + std::string(unit) + "`"), std::string::npos) << warnings;
+  }
+}
+
+TEST(PlausibilityWarnings, NoneAboutAFingerAsItIs) {
+  for (const char* name : {"bench_twin", "zhang2025"}) {
+    std::vector<Log> logs;
+    for (const auto signal :
+         {model::SignalName::tp1, model::SignalName::sp2, model::SignalName::steps, model::SignalName::hold})
+      logs.push_back(simulated(loaded(name), signal, 20, 0.05, 7));
+    EXPECT_EQ(all_of(plausibility_warnings_among(logs)), "") << name;
+  }
+}
+
+TEST(PlausibilityWarnings, ColumnsThatAreSwappedRunTheirLoopsBackwards) {
+  for (const auto signal : {model::SignalName::tp1, model::SignalName::steps, model::SignalName::hold}) {
+    Log log = simulated(loaded("bench_twin"), signal, 50, 0.05, 7);
+    std::swap(log.pressure_command_kpa, log.displacement_mm);
+    EXPECT_NE(all_of(plausibility_warnings(log)).find("swapped"), std::string::npos) << log.name;
+  }
+}
+
+TEST(PlausibilityWarnings, AGripIsNoFreeMotion) {
+  Log log = simulated(loaded("bench_twin"), model::SignalName::tp1, 50, 0.05, 7);
+  log.others.push_back({"result", std::vector<std::string>(log.size(), "none")});
+  EXPECT_TRUE(plausibility_warnings(log).empty());
+  std::fill_n(log.others[0].cells.begin() + 100, log.size() / 4, "holding");
+  EXPECT_NE(all_of(plausibility_warnings(log)).find("holds a part in 25 % of the rows"), std::string::npos)
+      << all_of(plausibility_warnings(log));
+}
+
+TEST(PlausibilityWarnings, OneLogInAnotherUnitStandsOutAmongTheOthers) {
+  std::vector<Log> logs(3, simulated(loaded("bench_twin"), model::SignalName::tp1, 50, 0.05, 7));
+  logs[0].name = "a", logs[1].name = "b", logs[2].name = "c";
+  for (double& y : logs[1].displacement_mm) y /= 25.4;
+  const std::string warnings = all_of(plausibility_warnings_among(logs));
+  EXPECT_NE(warnings.find("b: the finger moves 0.0394 times as far per kPa as in the other logs: inch"),
+            std::string::npos)
+      << warnings;
+  EXPECT_EQ(warnings.find("a: "), std::string::npos);
+}
+
+TEST(PlausibilityWarnings, ALogThatIsGivenTwice) {
+  std::vector<Log> logs(2, simulated(loaded("bench_twin"), model::SignalName::tp1, 50, 0.05, 7));
+  logs[0].name = "a", logs[1].name = "b";
+  logs[0].displacement_mm[3] = logs[1].displacement_mm[3] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(all_of(plausibility_warnings_among(logs)),
+            "b: the same samples as a; given twice they make intervals narrower than they are\n");
+  logs[1].displacement_mm[4] += 0.001;
+  EXPECT_EQ(all_of(plausibility_warnings_among(logs)), "");
+}
+
+TEST(PlausibilityWarnings, ReadingsInAnotherUnitThanTheModels) {
+  const Log log = simulated(loaded("bench_twin"), model::SignalName::tp1, 50, 0.05, 7);
+  std::vector<double> predicted = log.displacement_mm;
+  EXPECT_EQ(scale_warning("x", predicted, log.displacement_mm, log.output_unit), "");
+  for (double& y : predicted) y /= 6.5;
+  EXPECT_NE(scale_warning("x", predicted, log.displacement_mm, log.output_unit)
+                .find("x: the readings are 6.5 times"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace softgrip::sysid::plausibility_warnings_test
