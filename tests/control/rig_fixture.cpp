@@ -112,7 +112,7 @@ void SimulatedRig::check_commands(const TickOutput& before) {
     EXPECT_LE(command, limits.pressure_max_kpa);
     const double rest = resting_kpa(limits);
     const double from = first_ ? rest : before.channels[i].command_kpa;
-    // What is not there any more need not be let down.
+    // A pressure that is gone need not be vented.
     const bool toward_rest = no_further(rest, command, from) == command;
     if (!inhibits(bus_fault) || !toward_rest) {
       EXPECT_LE(command - from, limits.slew_up_kpa_per_s / settings_.rate_hz + rounding) << "at " << time_s();

@@ -55,9 +55,9 @@ class SimulatedRig {
 
   /// For the next tick only.
   void request(Request::Kind kind, const PreparedSequence* sequence = nullptr);
-  /// The same with a number of its own.
+  /// Sends a request with the number that it states.
   void request(const Request& request) { request_ = request; }
-  /// The whole process stands still for so long.
+  /// The whole process pauses for this duration.
   void pause(double seconds) { now_ += static_cast<Nanoseconds>(std::llround(seconds * 1e9)); }
   /// One period; all invariants of the commands are checked.
   const TickOutput& tick();

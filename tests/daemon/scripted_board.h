@@ -1,5 +1,5 @@
 #pragma once
-// A board that answers as it is told and remembers what was written.
+// A board that gives scripted responses and stores the values that were written.
 
 #include <algorithm>
 #include <functional>

@@ -17,10 +17,10 @@
 
 namespace softgrip::daemon::testing {
 
-/// What stands at the terminals; outlives the lines, which the panel owns. Thread-safe.
+/// The levels at the terminals; outlives the lines, which the panel owns. Thread-safe.
 class Terminals {
  public:
-  /// The logical level of an input; an edge is told if it changes.
+  /// The logical level of an input; an edge is reported if it changes.
   void set(drivers::GpioRole role, bool active, bool with_edge = true) {
     const std::scoped_lock lock(mutex_);
     bool& level = levels_[index(role)];

@@ -1,4 +1,4 @@
-// A tick of one channel allocates nothing, whatever it does.
+// A tick of one channel allocates nothing, in all its states.
 
 #include <gtest/gtest.h>
 

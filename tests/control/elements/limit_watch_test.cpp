@@ -10,7 +10,7 @@ namespace {
 
 constexpr double tick_s = 0.005;
 
-/// What is told while `binds(time)` says what keeps the command down.
+/// Returns the reports while `binds(time)` states the limit that is active.
 template <class Binds>
 std::vector<std::string> told(double seconds, Binds&& binds) {
   LimitWatch watch;

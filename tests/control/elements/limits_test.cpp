@@ -109,7 +109,7 @@ TEST(Limits, ACeilingDoesNotEvacuate) {
   EXPECT_FALSE(limit(vacuum, 0, -30, 1, -20).capped);
 }
 
-// Neither range nor slew is ever exceeded, whatever is asked for.
+// No request makes the command exceed its range or its slew.
 TEST(Limits, NeverExceededUnderRandomRequests) {
   const unsigned seed = 4711;
   SCOPED_TRACE(testing::Message() << "seed " << seed);

@@ -21,7 +21,7 @@ struct Finger {
 };
 
 // Seconds until the finger stays within 0.3 mm of a reference in reach, after `saturated_s` with one that is
-// out of reach; with a feedforward that asks for its share of either.
+// out of reach; with a feedforward that commands its share of either.
 double recovery_s(AntiWindup anti_windup, double feedforward_share, double saturated_s,
                   const LimitSettings& limits) {
   PidSettings settings = typical;

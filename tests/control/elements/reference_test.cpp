@@ -176,7 +176,7 @@ TEST(Reference, OneThatIsAlreadyGoingBrakesAndThenGoes) {
   EXPECT_NEAR(reference.at(reference.end_s()).rate, 0, 1e-9);
 }
 
-// Whatever is appended and cut in whatever order, the reference never steps.
+// The reference never steps, for all appended and cut parts in all orders.
 TEST(Reference, NeverStepsUnderRandomUse) {
   const unsigned seed = 20250117;
   SCOPED_TRACE(testing::Message() << "seed " << seed);

@@ -98,7 +98,7 @@ TEST(FullModelFeedforward, LooksAheadByAllDeadTime) {
 
 TEST(FullModelFeedforward, WithoutALagTheHoldsHalfSampleIsCompensated) {
   const model::Model fast = model::without_block(model_named("bench_twin"), *model::find_block("valve_lag"));
-  // What is left is the staircase of the held command itself: half a step of the steepest stretch.
+  // The remaining error is the staircase of the held command itself: half a step of the steepest stretch.
   const Outcome run = run_alone(fast, {FeedforwardKind::full_model, 0}, sine_reference(0.1));
   EXPECT_LT(run.worst_mm, 0.02);
 }
@@ -114,7 +114,7 @@ TEST(FullModelFeedforward, TracksThroughLagsThatDifferByDirection) {
   EXPECT_EQ(run.out_of_reach, 0);
 }
 
-// What the command alone shows of an electro-pneumatic regulator, and a dead band as wide as a worn
+// The effects of an electro-pneumatic regulator on the command alone, and a dead band as wide as a worn
 // linkage's.
 model::Model regulated_twin() {
   model::Model model = model::without_block(model_named("bench_twin"), *model::find_block("valve_lag"));
@@ -162,7 +162,7 @@ TEST(FullModelFeedforward, TakesOverARegulatorAndADeadBandAsTheyStand) {
   EXPECT_LT(worst_mm, 0.05);
 }
 
-// What is lost on the way is asked for on top.
+// The command includes the pressure that is lost on the way.
 TEST(FullModelFeedforward, TracksThroughALineThatLeaks) {
   const model::Model twin = model_named("bench_twin");
   const Reference sine = sine_reference(0.1);
@@ -357,7 +357,7 @@ TEST(FullModelFeedforward, AJumpInMotionDoesNotKick) {
   Follower follower(model_named("bench_twin"), reference);
   double before = 0, last = 0, worst = 0;
   while (follower.time_s() < 1.8) {
-    // In the middle of the ramp the finger turns out to stand elsewhere than the model says.
+    // In the middle of the ramp the finger turns out to be elsewhere than the model predicts.
     if (follower.time_s() > 1.1) follower.offset_mm = 2;
     const double command = follower.tick();
     if (follower.time_s() > 0.7) worst = std::max(worst, std::abs(command - 2 * last + before));

@@ -140,7 +140,7 @@ TEST(Invertibility, WhatIsMissingIsNamed) {
   EXPECT_FALSE(check(valve_only, FeedforwardKind::full_model));
 }
 
-// Whatever blocks there are or will be: those in the way of the pressure either have an inverse that the
+// For all present and future blocks: those in the way of the pressure either have an inverse that the
 // feedforward knows, or the refusal names them.
 TEST(Invertibility, EveryBlockIsUndoneOrNamed) {
   const model::Model twin = model_named("bench_twin");
@@ -162,7 +162,7 @@ TEST(Invertibility, EveryBlockIsUndoneOrNamed) {
   }
 }
 
-// Of blocks that nobody has written yet.
+// Blocks that do not exist yet.
 TEST(Invertibility, WhatFullModelCannotUndoIsNamedWhereverItStands) {
   using enum model::Inverse;
   const auto block = [](std::string_view id, model::Station station, model::Inverse inverse) {

@@ -18,8 +18,8 @@ constexpr LimitSettings limits{0, 60, 400, 400, 0, 25, 1};
 constexpr FeedforwardSettings planned{FeedforwardKind::planned, 0};
 constexpr double fade_s = 3;
 
-/// A plan that is no good plan and easy to tell: the pressure rises by `kpa_per_s` from `from_kpa`, the
-/// reference stands at `reference_mm`, and the model is said to be there.
+/// A plan that is poor but easy to recognise: the pressure rises by `kpa_per_s` from `from_kpa`, the
+/// reference stays at `reference_mm`, and the model is stated to be there.
 PressurePlan plan_of(double from_kpa, double kpa_per_s, double reference_mm) {
   PressurePlan plan;
   plan.step_s = 0.1;
@@ -47,7 +47,7 @@ class PlannedFeedforwardTest : public testing::Test {
     for (int i = 0; i + 1 < std::lround(duration_s / tick_s); ++i) (void)step();
     return step();
   }
-  /// What the plan says now, all dead time and half a tick ahead.
+  /// The planned command now, all dead time and half a tick ahead.
   [[nodiscard]] double on_plan(const PressurePlan& plan) const {
     return plan.at(query_.time_s - query_.plan_origin_s + plan_ahead_s(model_, planned, tick_s));
   }

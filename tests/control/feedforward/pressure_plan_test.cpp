@@ -36,7 +36,7 @@ TEST(SettledLine, IsTheSlopeBetweenTheLimitsWhereverTheyBegin) {
   EXPECT_NEAR(line.pressure_kpa(at_highest_mm), 60, 1e-9);
 }
 
-// What a plan is made for is where the finger is, not what a late or noisy sensor shows of it.
+// A plan is made for the position of the finger, not for the reading of a late or noisy sensor.
 TEST(SettledLine, KnowsNeitherDeadTimeNorSensorNorNoise) {
   const model::Model twin = sim::model_named("bench_twin");
   model::Model shown = twin;

@@ -25,8 +25,8 @@ double slewed_kpa(int tick) {
   return 30 - 12 * std::sin(1.3 * (t - 1.5));
 }
 
-// The chain with its delay line, against the one that runs ahead and looks back. What they differ by is the
-// pressure being straight within a tick here and exponential there, which is a shift of T^2/(12 tau) = 47 us
+// The chain with its delay line, against the one that runs ahead and looks back. They differ because the
+// pressure is straight within a tick here and exponential there, which is a shift of T^2/(12 tau) = 47 us
 // (0.4 um of creep at 20 kPa/s), and the look-up between ticks.
 void expect_same_as_the_chain(const model::Model& model, double (*command_kpa)(int), double tolerance_mm) {
   RunningModel running(model, tick_s, 0, 0.1);

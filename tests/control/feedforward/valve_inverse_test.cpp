@@ -79,7 +79,7 @@ TEST(ValveInverse, BringsThePressureWhereItIsWanted) {
   }
 }
 
-// What is behind a lag is met by neither half a band of the command nor any other number.
+// A dead band behind a lag is compensated by neither half a band of the command nor any other number.
 TEST(ValveInverse, ADeadBandBehindALagIsLeftAlone) {
   const double now_kpa = 10, next_kpa = 10.2;
   EXPECT_EQ(ValveInverse(valve_with({lag, band}), tick_s).command_for(now_kpa, next_kpa),

@@ -138,7 +138,8 @@ TEST(Planner, StaysWithinPressureAndSlew) {
   }
 }
 
-// What is out of reach for a while must not spoil what comes after, and is prepared for before.
+// A reference that is out of reach for a while must not spoil the plan after it; the plan prepares for it
+// before.
 TEST(Planner, UsesItsForesightWhereTheSlewIsShort) {
   LimitSettings slow = limits;
   slow.slew_up_kpa_per_s = 30;
@@ -183,7 +184,7 @@ double bend_of(const std::vector<double>& pressure_kpa) {
   return sum;
 }
 
-// Below its threshold the finger rests whatever the pressure is, and no command misses less than another.
+// Below its threshold the finger rests at every pressure, and no command misses less than another.
 TEST(Planner, WhereNothingMovesTheFingerItTakesTheCalmerCommand) {
   const model::Model dead = model::with_block(
       model_named("bench_twin"), model::block_of<model::ActuatorThreshold>({{"threshold_kpa", 20}}));

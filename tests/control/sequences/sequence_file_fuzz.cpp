@@ -1,4 +1,4 @@
-// Whatever the bytes: reading a sequence and fitting it to a rig ends, and what is accepted is within bounds.
+// For all bytes: reading a sequence and fitting it to a rig ends, and what is accepted is within bounds.
 // Seeds: config/sequences/, dictionary: tests/document/yaml.dict.
 
 #include <cmath>

@@ -115,7 +115,7 @@ steps:
   EXPECT_EQ(sequence->steps[5].profile.cycles, 2U);
 }
 
-/// A pressure step of so many points, a second apart.
+/// A pressure step of `count` points, 1 s apart.
 std::string with_points(int count) {
   std::string points;
   for (int i = 0; i < count; ++i) {

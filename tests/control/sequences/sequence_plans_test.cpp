@@ -21,7 +21,7 @@ namespace {
 /// Gains of `softgrip tune --model config/models/zhang2025.yaml --feedforward planned` and `... none`.
 constexpr PidSettings for_planned{3.067, 12.68, 0, 0.01, 1, AntiWindup::back_calculation, 0.5};
 constexpr PidSettings for_pid_alone{4.402, 13.79, 0, 0.01, 1, AntiWindup::back_calculation, 0.5};
-/// The same for bench_twin.
+/// PID gains for bench_twin.
 constexpr PidSettings twin_gains{2.7, 13, 0, 0.02, 1, AntiWindup::back_calculation, 0.5};
 
 RigSettings rig_with(const char* model, FeedforwardKind kind, const PidSettings& pid) {
@@ -39,7 +39,7 @@ RigSettings planned_rig(const char* model) {
   return rig_with(model, FeedforwardKind::planned, model[0] == 'z' ? for_planned : twin_gains);
 }
 
-/// Of the finger itself against the reference, while a step runs [mm].
+/// Error of the finger itself against the reference, while a step runs [mm].
 double tracking_rmse_mm(const RigSettings& settings, const char* truth, const char* sequence,
                         std::uint16_t step) {
   const PreparedSequence prepared = example_sequence(sequence, settings);
@@ -357,7 +357,7 @@ TEST(SequencePlans, BackingOffIsBumpless) {
   }
 }
 
-// What a model says in one tick cannot reach the loop as a value that is not a number.
+// A prediction of a model in one tick cannot reach the loop as a value that is not a number.
 TEST(PlannedFeedforward, WithoutAPlanItFollowsAtTheSettledGainFromWhereItIs) {
   const model::Model twin = sim::model_named("bench_twin");
   const LimitSettings limits{0, 60, 400, 400, 0, 30, 1};

@@ -249,7 +249,7 @@ TEST(ChannelController, AGapInTheReadingsHoldsTheFeedbackAndGoesOn) {
 }
 
 TEST(ChannelController, ResynchronisingFollowsAFingerThatIsNotWhereTheModelIs) {
-  // The controller starts anew under a finger that still creeps, with a zero that is off.
+  // The controller starts again under a finger that still creeps, with a zero that is off.
   ChannelSettings settings = twin_settings();
   Rig rig(settings, 0.02);
   rig.press(30);
@@ -328,7 +328,7 @@ TEST(ChannelController, AnUnusedDisplacementIsNeverActedOn) {
   EXPECT_TRUE(rig.tick().synchronised);
 }
 
-// Whatever is demanded and read, the command is a number inside the range and the slew limits.
+// For all demands and readings, the command is a number inside the range and the slew limits.
 TEST(ChannelController, LimitsAreNeverExceededUnderRandomDemands) {
   for (const FeedforwardKind kind :
        {FeedforwardKind::none, FeedforwardKind::bouc_wen, FeedforwardKind::full_model}) {

@@ -1,4 +1,4 @@
-// What one channel demands in the tick in which a step begins, before it has played any of it.
+// The demand of one channel in the tick in which a step begins, before it has played any of it.
 
 #include "control/tick/channel_player.h"
 
@@ -22,7 +22,7 @@ Step step_of(StepKind kind) {
   return step;
 }
 
-/// A finger so much short of its free motion.
+/// A finger that is `shortfall_mm` short of its free motion.
 ChannelOutput short_by(double shortfall_mm) {
   ChannelOutput seen;
   seen.validity = model::Validity::valid;

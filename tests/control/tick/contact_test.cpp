@@ -16,7 +16,7 @@
 namespace softgrip::control::contact_test {
 namespace {
 
-/// What noise and the last bit of a filter may add to a bound [kPa].
+/// Largest addition of noise and of the last bit of a filter to a bound [kPa].
 constexpr double tolerance_kpa = 0.4;
 
 class ContactTest : public testing::Test {
@@ -147,7 +147,7 @@ TEST_F(ContactTest, AMoveMayPressOnAndIsBoundedByItsPressure) {
   EXPECT_GE(rig.count(Event::Kind::limit_binds), 1U) << "it binds for longer than a moment";
 }
 
-// One line per limit of the rig file and of a step: which of them is told when it lasts.
+// One line per limit of the rig file and of a step: which of them is reported when it lasts.
 TEST_F(ContactTest, EveryLimitThatLastsIsAnEvent) {
   const auto told = [](const SimulatedRig& rig) {
     std::set<std::string> names;

@@ -170,7 +170,7 @@ TEST_P(FaultReaction, LatchesActsAndStaysUntilAcknowledged) {
   EXPECT_EQ(rig.output().channels[0].command_kpa, rest_kpa) << "acknowledging moves nothing";
   EXPECT_EQ(rig.result(0), GripResult::none);
 
-  if (rest_kpa != 0) {  // a held finger: what it holds is unknown, so it is vented before it grips anew
+  if (rest_kpa != 0) {  // a held finger: what it holds is unknown, so it is vented before it grips again
     rig.request(Request::Kind::vent);
     ASSERT_TRUE(rig.run_until(State::idle, 2));
   }
@@ -226,7 +226,7 @@ TEST_F(SingleFault, CyclesAreCountedOneByOne) {
       << "what is read after a tick is seen in the next";
 }
 
-// What is off now and then starts to be counted anew.
+// The count of a deviation that disappears now and then starts from 0 again.
 TEST_F(SingleFault, AReadbackThatIsRightInBetweenIsNoFault) {
   SimulatedRig rig(settings);
   ASSERT_TRUE(rig.run_until(State::idle, 1));

@@ -26,7 +26,7 @@ class HealthInFreeMotionTest : public testing::Test {
     }
     return false;
   }
-  /// A twin whose creep springs are so many times as stiff.
+  /// A finger whose creep springs are stiffer by this factor.
   static model::Model stiffer(double times) {
     model::Model model = twin();
     auto values = model::flat_values(model);

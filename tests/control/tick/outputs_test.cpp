@@ -1,4 +1,4 @@
-// What stands at the outputs is not always what was commanded, and what was seen before a gap is not what is.
+// The outputs are not always those that were commanded, and readings from before a gap are out of date.
 
 #include <gtest/gtest.h>
 

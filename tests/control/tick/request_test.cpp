@@ -253,7 +253,7 @@ TEST_F(Requests, AFingerThatDoesNotComeToRestIsNotStarted) {
   rig.request(Request::Kind::start, &pick);
   const double began = rig.time_s();
   for (bool up = false; rig.time_s() - began < settings.rest_timeout_s + 1; up = !up) {
-    rig.fault[0].offset_mm = up ? 0.5 : -0.5;  // somebody shakes it
+    rig.fault[0].offset_mm = up ? 0.5 : -0.5;  // a person shakes it
     rig.run(0.1);
     ASSERT_NE(rig.output().state, State::running);
   }

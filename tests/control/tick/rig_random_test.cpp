@@ -1,4 +1,4 @@
-// Random requests and faults: whatever happens, the promises hold. The seed of a failure is printed and can
+// The promises hold under random requests and faults. The seed of a failure is printed and can
 // be given back in SOFTGRIP_SEED.
 
 #include <gtest/gtest.h>
@@ -56,7 +56,7 @@ class Chaos {
     return settings;
   }
 
-  /// Mostly mends, so that sequences get far.
+  /// Mostly removes faults, so that sequences get far.
   void change_the_world() {
     rig_.wire_cut = chance(0.05);
     rig_.emergency_stop = chance(0.05);

@@ -1,4 +1,4 @@
-// What a sequence does when its steps fail, pass at different times, or are many and short.
+// The behaviour of a sequence if its steps fail, pass at different times, or are many and short.
 
 #include "control/tick/sequence_player.h"
 

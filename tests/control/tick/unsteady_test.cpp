@@ -1,5 +1,5 @@
-// A sensor that jumps there and back is told, and is a fault where the rig file says so; a part that slips is
-// not.
+// A sensor that jumps there and back is reported, and is a fault if the rig file requests it; a part that
+// slides is not.
 
 #include <gtest/gtest.h>
 

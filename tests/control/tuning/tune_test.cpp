@@ -65,7 +65,7 @@ TEST(Tune, LessSensitivityCostsError) {
   EXPECT_GT(careful.rmse_mm, bold.rmse_mm);
 }
 
-// What bounds the gains, and what most of the error is, follow from the numbers that stand beside the words.
+// The bound of the gains and the largest part of the error follow from the numbers next to the words.
 TEST(Tune, SaysWhatLimitsItAndWhatTheErrorIs) {
   struct Case {
     const char* name;

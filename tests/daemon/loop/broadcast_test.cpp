@@ -62,7 +62,7 @@ TEST(Broadcast, WhoLagsLosesTheOldestAndNobodyElseDoes) {
   EXPECT_EQ(eager.lost(), 0U);
 }
 
-/// What another thread could do at the worst moment: once, in the middle of the next copy.
+/// An action of another thread at the worst moment: once, in the middle of the next copy.
 struct AtTheWorstMoment {
   static inline std::function<void()> action;
   static void halfway() noexcept {
@@ -92,7 +92,7 @@ TEST(Broadcast, AnItemIsThereOnlyWhenAllOfItIsThere) {
   events.push(item(1));
   EXPECT_FALSE(taken);
   for (std::uint64_t n = 2; n <= 4; ++n) events.push(item(n));
-  // The fifth takes the place of the first, which nobody has taken yet.
+  // The fifth takes the place of the first, which no reader has taken yet.
   AtTheWorstMoment::action = [&] { taken = reader.pop(seen); };
   events.push(item(5));
   EXPECT_TRUE(taken);

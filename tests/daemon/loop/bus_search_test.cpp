@@ -1,5 +1,5 @@
-// The hand-over between loop, bus and the board's watchdog: every order of what can happen, so many steps
-// deep.
+// The hand-over between loop, bus and the board's watchdog: every order of the possible steps, up to a
+// given depth.
 
 #include <gtest/gtest.h>
 
@@ -115,7 +115,7 @@ enum class Step {
   count
 };
 
-/// What the path of steps breaks, or nothing.
+/// Returns the property that the path of steps violates, or an empty text.
 std::string follow(std::span<const Step> path) {
   VirtualClock clock;
   OneOutput board(clock);
@@ -177,7 +177,7 @@ std::string follow(std::span<const Step> path) {
 
 TEST(BusSearch, NoOrderOfEventsMakesAnOutputRise) {
 #if defined(__SANITIZE_THREAD__) || defined(__SANITIZE_ADDRESS__)
-  constexpr std::size_t depth = 4;  // a hundred times slower, and one thread all the same
+  constexpr std::size_t depth = 4;  // 100 times slower, with one thread as well
 #else
   constexpr std::size_t depth = 6;
 #endif

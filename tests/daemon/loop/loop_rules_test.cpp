@@ -1,4 +1,4 @@
-// What the loop's thread may not do: allocate, page-fault, call the system for anything but the clock and the
+// The loop's thread must not allocate, page-fault or make other system calls than those for the clock and the
 // sleep.
 
 #include <gtest/gtest.h>
@@ -170,7 +170,7 @@ TEST(LoopRules, NoTickAllocates) {
   EXPECT_EQ(allocations.load(), 0U);
 }
 
-/// What is called around the loop.
+/// The calls around the loop.
 struct Around {
   std::function<void()> before = [] {};  ///< in the loop's thread, when all is prepared
   std::function<void()> after = [] {};   ///< there, when the loop has ended

@@ -16,7 +16,7 @@ namespace {
 
 using testing::TornValue;
 
-/// What looks right and is not: the place is announced before the item stands in it.
+/// A plausible but wrong ring: it announces the place before the item is in it.
 class AnnouncedTooEarly {
  public:
   explicit AnnouncedTooEarly(std::size_t capacity) : items_(capacity) {}

@@ -13,7 +13,7 @@ namespace {
 
 using testing::TornValue;
 
-/// What looks right and is not: two slots, the reader reads the one that the writer is not filling now. A
+/// A plausible but wrong buffer: two slots, the reader reads the one that the writer is not filling now. A
 /// writer that publishes twice while the reader copies fills the slot that is being read.
 template <class T>
 class TwoSlots {

@@ -60,7 +60,7 @@ class PanelTest : public ::testing::Test {
     settings_ = settings;
     panel_.emplace(terminals_.lines(), settings_, clock_, shared_, statistics_);
   }
-  /// Steps for so long, with a loop that ticks.
+  /// Steps for this duration, with a loop that ticks.
   void run(double duration_s, bool loop_ticks = true) {
     const Nanoseconds end = clock_.now() + nanoseconds(duration_s);
     while (clock_.now() < end) {
@@ -68,7 +68,7 @@ class PanelTest : public ::testing::Test {
       panel_->step();
     }
   }
-  /// As after the start: the loop has latched, the stop is released, somebody acknowledged.
+  /// As after the start: the loop has latched, the stop is released, an operator acknowledged.
   void make_ready() {
     shared_.state.store(control::State::faulted);
     run(0.03);

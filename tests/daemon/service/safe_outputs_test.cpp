@@ -10,7 +10,7 @@ namespace {
 using drivers::BusStatus;
 using testing::ScriptedBoard;
 
-/// Refuses so many calls of connect() and exchange() each, then works.
+/// Refuses a number of calls of connect() and of exchange(), then works.
 class RecoveringBoard final : public drivers::Board {
  public:
   RecoveringBoard(ScriptedBoard& inner, int refused_connects, int refused_exchanges)

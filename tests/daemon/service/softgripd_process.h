@@ -19,7 +19,7 @@ namespace softgrip::daemon::testing {
 /// A connection to the socket API.
 class ApiClient {
  public:
-  /// Tries for five seconds. Not open() if nobody answered.
+  /// Tries for five seconds. Not open() if the daemon did not answer.
   explicit ApiClient(const std::string& socket_path);
 
   [[nodiscard]] bool open() const noexcept { return static_cast<bool>(socket_); }
@@ -56,7 +56,7 @@ class SoftgripdProcess {
   void signal(int number) const;
   /// Its exit code, 128 + the signal that ended it, or nothing if it still runs after `timeout_s`.
   std::optional<int> wait(double timeout_s = 20);
-  /// What it printed so far.
+  /// Returns the text that it has printed so far.
   [[nodiscard]] std::string output() const;
 
  private:
@@ -64,7 +64,7 @@ class SoftgripdProcess {
   std::string output_path_;
 };
 
-/// config/rig.yaml for a test: its socket and recordings in `folder`, no processor asked for; each pair of
+/// config/rig.yaml for a test: its socket and recordings in `folder`, no processor requested; each pair of
 /// `changes` replaces a text that must be there. Returns the path of the file.
 std::string make_rig(const std::string& folder,
                      const std::vector<std::pair<std::string, std::string>>& changes = {});

@@ -72,7 +72,7 @@ class SocketServerTest : public ::testing::Test {
     ASSERT_EQ(::send(socket.get(), text.data(), text.size(), MSG_NOSIGNAL),
               static_cast<ssize_t>(text.size()));
   }
-  /// What has arrived; nothing when the peer closed.
+  /// Returns the data that have arrived; empty if the peer closed.
   static std::optional<std::string> received(const Descriptor& socket) {
     std::string text(1 << 20, '\0');
     const ssize_t count = ::recv(socket.get(), text.data(), text.size(), 0);
