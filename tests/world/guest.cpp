@@ -30,6 +30,7 @@ std::unique_ptr<Guest> make_guest(Tool tool, Host& host) {
 
 RigShape shape_for(Tool tool, const rig::RigFile& example, std::uint64_t seed) {
   RigShape shape = draw_shape(example, seed);
+  if (tool == Tool::none) draw_habits(shape);
   // A way that is not free ends an experiment at once.
   if (tool == Tool::baseline || tool == Tool::experiment) {
     for (auto& channel : std::get<simulation::SimulatedBoardSettings>(shape.rig.board).channels)

@@ -75,13 +75,15 @@ void Hardware::read(std::size_t channel, Nanoseconds now, model::Reading& readin
   reading.sampled_at = now;
 }
 
-WorldBoard::WorldBoard(Hardware& hardware, Line& line, Scheduler& scheduler, OnWrite on_write,
-                       std::function<void()> on_exchange)
+WorldBoard::WorldBoard(Hardware& hardware, Habits habits, Line& line, Scheduler& scheduler, OnWrite on_write,
+                       std::function<void()> on_exchange, std::function<void()> on_hindered)
     : hardware_(hardware),
+      habits_(habits),
       line_(line),
       scheduler_(scheduler),
       on_write_(std::move(on_write)),
       on_exchange_(std::move(on_exchange)),
+      on_hindered_(std::move(on_hindered)),
       carrier_(scheduler.add("line", [this] { carry(); })) {}
 
 void WorldBoard::carry() {
@@ -90,7 +92,13 @@ void WorldBoard::carry() {
     if (request_ && !request_->there && now >= request_->arrives) {
       Request& request = *request_;
       hardware_.move_to(now);
-      const bool looks_first = ++exchanges_ % looks_first_every == 0 && !left_.empty();
+      request.ignored = now < opened_at_ + habits_.deaf;
+      if (request.ignored) {
+        request.there = true;
+        continue;
+      }
+      const bool begins = request.first == 0 && !request.again;
+      const bool looks_first = begins && ++exchanges_ % looks_first_every == 0 && !left_.empty();
       request.overwritten =
           looks_first && !std::equal(left_.begin(), left_.end(), hardware_.outputs_kpa().begin());
       if (request.overwritten) {
@@ -98,7 +106,10 @@ void WorldBoard::carry() {
         continue;
       }
       if (!hardware_.ignores_writes()) on_write_(request.began, request.sent);
-      request.taken = hardware_.write(now, request.sent);
+      std::vector<double> outputs(hardware_.outputs_kpa().begin(), hardware_.outputs_kpa().end());
+      for (std::size_t i = request.first; i < request.first + request.count; ++i)
+        outputs[i] = request.sent[i];
+      request.taken = hardware_.write(now, outputs);
       for (std::size_t i = 0; i < request.read.size(); ++i)
         hardware_.read(i, scheduler_.shown(), request.read[i]);
       request.there = true;
@@ -108,13 +119,28 @@ void WorldBoard::carry() {
   }
 }
 
-/// Sends it and waits for the reply.
-bool WorldBoard::ask(const Request& request) {
-  request_ = request;
-  scheduler_.wake(carrier_);
-  pass(line_.latency);
-  while (request_ && !request_->there) pass(line_.latency / 4);
-  return request_ && request_->taken;
+/// Sends it, and sends it again, and waits for the reply. False if none has come; until `end` it may come.
+bool WorldBoard::ask(Request request, Nanoseconds end, bool lost) {
+  for (;; request.again = true) {
+    const Nanoseconds sent = scheduler_.now();
+    request.arrives = sent + line_.latency / 2;
+    request_ = request;
+    scheduler_.wake(carrier_);
+    pass(line_.latency);
+    while (request_ && !request_->there) pass(line_.latency / 4);
+    if (!request_) return false;
+    if (!request_->ignored && !lost && !lost_by_habit()) return true;
+    const Nanoseconds again = sent + habits_.repeat_after;
+    if (habits_.repeat_after == 0 || again >= end) return false;
+    scheduler_.sleep_until(again);
+    if (scheduler_.now() >= end) return false;
+  }
+}
+
+BusStatus WorldBoard::hindered(BusStatus status) {
+  left_.clear();
+  on_hindered_();
+  return status;
 }
 
 BusStatus WorldBoard::connect(std::chrono::nanoseconds deadline) noexcept {
@@ -123,8 +149,11 @@ BusStatus WorldBoard::connect(std::chrono::nanoseconds deadline) noexcept {
     pass(line_.status == BusStatus::timed_out ? deadline.count() : 0);
     return line_.status;
   }
-  hardware_.greet(scheduler_.now());
   left_.clear();
+  opened_at_ = scheduler_.now();
+  closes_ = habits_.closes_every > 0 && ++connections_ % habits_.closes_every == 0;
+  if (!closes_) hardware_.greet(opened_at_);
+  if (habits_.settle > 0) pass(habits_.settle);
   return BusStatus::ok;
 }
 
@@ -138,21 +167,36 @@ BusStatus WorldBoard::exchange(std::span<const double> commands_kpa, std::span<m
     hardware_.move_to(scheduler_.now());
     return status;
   }
+  if (closes_) {
+    pass(line_.latency / 2);
+    return hindered(BusStatus::closed_at_once);
+  }
   const bool lost = status == BusStatus::timed_out;
+  const Nanoseconds end = began + deadline.count();
+  const std::size_t channels = commands_kpa.size();
+  const std::size_t at_once = habits_.channels_at_once > 0 ? habits_.channels_at_once : channels;
   bool taken = true;
-  if (!lost || line_.reply_lost) {
+  bool answered = true;
+  bool arrives = !lost || line_.reply_lost;
+  for (std::size_t first = 0; first < channels && arrives; first += at_once) {
     Request request;
     request.began = began;
-    request.arrives = began + line_.latency / 2;
     request.sent.assign(commands_kpa.begin(), commands_kpa.end());
+    request.first = first;
+    request.count = std::min(at_once, channels - first);
     request.read.assign(readings.begin(), readings.end());
-    taken = ask(request);
+    answered = (first == 0 || scheduler_.now() < end) && ask(std::move(request), end, lost);
+    taken = answered && request_->taken;
+    arrives = taken;
   }
-  if (lost) scheduler_.sleep_until(began + deadline.count());
+  if (lost || !answered) scheduler_.sleep_until(end);
+  if (status == BusStatus::ok && !answered) return hindered(BusStatus::timed_out);
   if (status != BusStatus::ok) {
     left_.clear();
     return status;
   }
+  if (habits_.spoils_every > 0 && ++answers_ % habits_.spoils_every == 0)
+    return hindered(BusStatus::bad_reply);
   if (request_ && request_->overwritten) {
     left_.clear();
     return BusStatus::overwritten;

@@ -56,6 +56,17 @@ class Hardware {
   bool tripped_ = false;
 };
 
+/// Habits of a board, and the keys of the rig file and the board map for them. A number of 0 disables one.
+struct Habits {
+  Nanoseconds deaf = 0;              ///< the time after a connection in which it ignores requests
+  Nanoseconds settle = 0;            ///< `settle_s`: the wait after a connection
+  Nanoseconds repeat_after = 0;      ///< `repeat_after_s`: a request without a response is sent again
+  std::size_t channels_at_once = 0;  ///< `max_registers`: the channels that one request writes
+  unsigned closes_every = 0;         ///< every Nth connection is closed at once
+  unsigned loses_every = 0;          ///< every Nth response is lost
+  unsigned spoils_every = 0;         ///< every Nth exchange has more stray bytes than are discarded
+};
+
 /// What is between daemon and board.
 struct Line {
   drivers::BusStatus status = drivers::BusStatus::ok;
@@ -71,8 +82,9 @@ class WorldBoard final : public drivers::Board {
   using OnWrite = std::function<void(Nanoseconds began, std::span<const double> commands_kpa)>;
 
   /// `on_exchange`: told when an exchange begins.
-  WorldBoard(Hardware& hardware, Line& line, Scheduler& scheduler, OnWrite on_write,
-             std::function<void()> on_exchange);
+  /// `on_hindered` is called when a habit has made an exchange fail.
+  WorldBoard(Hardware& hardware, Habits habits, Line& line, Scheduler& scheduler, OnWrite on_write,
+             std::function<void()> on_exchange, std::function<void()> on_hindered);
 
   /// Who spoke is gone: what is on its way is lost.
   void hang_up() noexcept { request_.reset(); }
@@ -95,24 +107,36 @@ class WorldBoard final : public drivers::Board {
     Nanoseconds began = 0;
     Nanoseconds arrives = 0;
     std::vector<double> sent;
+    std::size_t first = 0, count = 0;  ///< the channels that it writes
+    bool again = false;                ///< it is sent a second time
     bool there = false;
+    bool ignored = false;
     bool taken = false;
     bool overwritten = false;  ///< it read before it wrote, and found what nobody here had written
     std::vector<model::Reading> read;
   };
   void pass(Nanoseconds duration) { scheduler_.sleep_until(scheduler_.now() + duration); }
-  [[nodiscard]] bool ask(const Request& request);
+  [[nodiscard]] bool ask(Request request, Nanoseconds end, bool lost);
+  [[nodiscard]] bool lost_by_habit() noexcept {
+    return habits_.loses_every > 0 && ++responses_ % habits_.loses_every == 0;
+  }
+  [[nodiscard]] drivers::BusStatus hindered(drivers::BusStatus status);
   void carry();
 
   Hardware& hardware_;
+  Habits habits_;
   Line& line_;
   Scheduler& scheduler_;
   OnWrite on_write_;
   std::function<void()> on_exchange_;
+  std::function<void()> on_hindered_;
   ActorId carrier_;
   std::optional<Request> request_;
   std::vector<double> left_;  // what the last good exchange of this session left at the outputs
   unsigned exchanges_ = 0;
+  unsigned connections_ = 0, responses_ = 0, answers_ = 0;
+  bool closes_ = false;  // the present connection
+  Nanoseconds opened_at_ = 0;
 };
 
 }  // namespace softgrip::world

@@ -52,6 +52,9 @@ class Monitor {
   /// Another master has written these.
   void foreign_wrote(std::span<const double> outputs_kpa) noexcept;
   void foreign_ended() noexcept { foreign_unseen_.reset(); }
+  /// Exchanges that may write over the outputs of another master. If an exchange has several requests, the
+  /// first one reports that a write was rejected, and the second one writes the last commands again.
+  unsigned exchanges_excused = 1;
   /// The board's watchdog has vented. `has_spoken`: the daemon has had a good exchange, so it can know.
   void tripped(bool has_spoken);
   void asked(control::Request::Kind kind);
@@ -94,8 +97,12 @@ class Monitor {
   std::optional<Violation> violation_;
   bool armed_ = false;  // a start was accepted, and nothing since forbids to leave rest
   bool armed_at_entry_ = false;
+  [[nodiscard]] bool is_excused() const noexcept { return foreign_ || excused_; }
   bool foreign_ = false;        // another master has written since our last write
+  bool excused_ = false;        // or shortly before the present exchange
+  unsigned excused_left_ = 0;   // exchanges
   Nanoseconds last_began_ = 0;  // an exchange
+  double elapsed_s_ = 0;        // at its first write, since the one before it
   Nanoseconds exchange_ = 0;    // when the newest one began, whether it writes or not, ...
   Nanoseconds before_ = 0;      // and the one before it
   Nanoseconds woke_ = 0;

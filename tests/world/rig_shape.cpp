@@ -57,4 +57,30 @@ RigShape draw_shape(const rig::RigFile& example, std::uint64_t seed) {
   return shape;
 }
 
+void draw_habits(RigShape& shape) {
+  constexpr std::uint64_t one_in = 5;
+  if (shape.seed % one_in != 0) return;
+  std::uint64_t drawn = 0;
+  const auto one_of = [&](auto... values) {
+    const std::array all{values...};
+    return all[static_cast<std::size_t>(uniform_at(derived_seed(shape.seed, 11), ++drawn) *
+                                        static_cast<double>(all.size()))];
+  };
+  Habits& habits = shape.habits;
+  const double deaf_s = one_of(0.0, 0.05, 0.15, 0.4);
+  habits.deaf = nanoseconds(deaf_s);
+  // A rig file without `settle_s` is one in four.
+  habits.settle = nanoseconds(one_of(1.0, 1.0, 1.0, 0.0) * (deaf_s + 0.02));
+  habits.repeat_after = nanoseconds(one_of(0.0, 0.2, 0.4) * shape.rig.loop.exchange_deadline_s);
+  habits.channels_at_once = static_cast<std::size_t>(one_of(0, 1));
+  habits.closes_every = static_cast<unsigned>(one_of(0, 2, 5));
+  habits.loses_every = static_cast<unsigned>(one_of(0, 7, 50, 400));
+  habits.spoils_every = static_cast<unsigned>(one_of(0, 60, 500));
+  shape.text += fmt::format(
+      ", deaf {} s, settle_s {:.2f}, repeat_after_s {:.3f}, {} channels a request, closes every {}. session, "
+      "loses every {}. response, spoils every {}.",
+      deaf_s, seconds(habits.settle), seconds(habits.repeat_after), habits.channels_at_once,
+      habits.closes_every, habits.loses_every, habits.spoils_every);
+}
+
 }  // namespace softgrip::world

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "rig/rig_file.h"
+#include "tests/world/hardware.h"
 
 namespace softgrip::world {
 
@@ -13,9 +14,12 @@ struct RigShape {
   std::uint64_t seed = 0;
   Nanoseconds watchdog = 0;
   bool trip_latches = true;
+  Habits habits;
   std::string text;
 };
 
 [[nodiscard]] RigShape draw_shape(const rig::RigFile& example, std::uint64_t seed);
+/// One seed in five has a board with habits.
+void draw_habits(RigShape& shape);
 
 }  // namespace softgrip::world

@@ -41,11 +41,13 @@ Surroundings::Surroundings(RigShape rig_shape, bool tracing_)
       begin(scheduler.now()),
       hardware(hardware_settings()),
       board(
-          hardware, line, scheduler,
+          hardware, shape.habits, line, scheduler,
           [this](Nanoseconds began, std::span<const double> commands) { on_write(began, commands); },
-          [this] { on_exchange(); }),
+          [this] { on_exchange(); }, [this] { nobody_spoke(); }),
       monitor(shape.rig.settings, shape.watchdog,
-              rig::watchdog_margin(shape.rig.loop, std::chrono::nanoseconds(shape.watchdog)).count()) {}
+              rig::watchdog_margin(shape.rig.loop, std::chrono::nanoseconds(shape.watchdog)).count()) {
+  if (shape.habits.channels_at_once > 0) monitor.exchanges_excused = 2;
+}
 
 HardwareSettings Surroundings::hardware_settings() {
   HardwareSettings settings;

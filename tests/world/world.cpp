@@ -64,6 +64,12 @@ void fill_disk(bool full) {
   setrlimit(RLIMIT_FSIZE, &limit);
 }
 
+/// After a settle time, the next look of the bus at the clock is behind its last commands. If it pauses
+/// there, it writes them late, which is not promised.
+bool may_pause_late(const RigShape& shape) {
+  return (shape.trip_latches || shape.watchdog == 0) && shape.habits.settle == 0;
+}
+
 class World final : public Host {
  public:
   World(const Library& library, std::uint64_t seed, const WorldOptions& options)
@@ -80,8 +86,7 @@ class World final : public Host {
     result_.incidents =
         options.incidents
             ? *options.incidents
-            : draw_incidents({seed, options.length, around_.shape.watchdog,
-                              around_.shape.trip_latches || around_.shape.watchdog == 0,
+            : draw_incidents({seed, options.length, around_.shape.watchdog, may_pause_late(around_.shape),
                               library.sequences.size(), around_.shape.rig.settings.channels.size(),
                               options.tool == Tool::plc, guest_ ? guest_->calm() : 1});
   }
