@@ -14,6 +14,7 @@
 #include "model/blocks/bouc_wen.h"
 #include "model/blocks/chamber_lag.h"
 #include "model/blocks/characteristic.h"
+#include "model/blocks/clock_offset.h"
 #include "model/blocks/contact.h"
 #include "model/blocks/crescent_hysteresis.h"
 #include "model/blocks/duhem_hysteresis.h"
@@ -33,6 +34,7 @@
 #include "model/blocks/rate_dependent_width.h"
 #include "model/blocks/relaxing_friction.h"
 #include "model/blocks/running_in.h"
+#include "model/blocks/sampling.h"
 #include "model/blocks/sensor_drift.h"
 #include "model/blocks/sensor_free_drift.h"
 #include "model/blocks/sensor_lag.h"
@@ -109,6 +111,7 @@ using Blocks = BlockList<TransportDelay,          //
                          Contact,                 //
                          Backlash,                //
                          SensorLag,               //
+                         ClockOffset,             //
                          SensorNonlinearity,      //
                          SensorDrift,             //
                          SensorWarmUp,            //
@@ -118,6 +121,7 @@ using Blocks = BlockList<TransportDelay,          //
                          SensorNoise,             //
                          Outliers,                //
                          SensorSaturation,        //
+                         Sampling,                //
                          Quantisation>;
 
 /// One block of any type. The index of a type is BlockSpec::type and its place in catalogue().

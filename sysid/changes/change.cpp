@@ -16,9 +16,11 @@
 #include "sysid/changes/echo_fit.h"
 #include "sysid/diagnosis/causes/ageing.h"
 #include "sysid/diagnosis/causes/outliers.h"
+#include "sysid/diagnosis/causes/sampling.h"
 #include "sysid/diagnosis/causes/thermal_gain.h"
 #include "sysid/diagnosis/residual/noise.h"
 #include "sysid/diagnosis/residual/outliers.h"
+#include "sysid/diagnosis/residual/sampling.h"
 #include "sysid/evidence/limits.h"
 #include "sysid/evidence/veto.h"
 #include "sysid/fitting/trajectory.h"
@@ -38,10 +40,12 @@ using Failure = tl::unexpected<std::string>;
 struct Prepared {
   std::vector<Record> records;
   OutlierEvidence outliers;
+  SamplingEvidence sampling;
 };
 
 Prepared driven_records(const std::vector<Log>& logs, Drive drive, const ChangeOptions& options) {
-  Prepared p{make_records(logs, {.drive = drive, .held = options.held}), {}};
+  Prepared p{make_records(logs, {.drive = drive, .held = options.held}), {}, {}};
+  p.sampling = hide_repeated(p.records);
   p.outliers = hide_outliers(p.records, measured_noise_mm(p.records));
   return p;
 }
@@ -428,21 +432,35 @@ std::string unused_pressure(const DriveChoice& choice) {
          " mm RMS): pressure_kpa is not used";
 }
 
-/// Isolated wrong samples are counted, not fitted.
-void judge_outliers(const OutlierEvidence& healthy, const OutlierEvidence& later, double noise_mm,
-                    ChangeDiagnosis& diagnosis) {
-  if (!later.present || later.share_low <= healthy.share_high) return;
-  ChangeCause cause;
-  const Cause known = *find_cause(causes::Outliers::id);
-  cause.id = known.id;
-  cause.title = known.title;
-  cause.station = known.station;
-  cause.size = {"wrong samples", 100 * later.share, "%"};
-  cause.intervals.size = Interval{100 * later.share_low, 100 * later.share_high};
-  cause.effect_mm = later.excess_mm;
-  cause.share_percent = 100;
-  cause.gain = noise_mm > 0 ? std::pow(later.excess_mm / noise_mm, 2) : 0;
-  diagnosis.causes.push_back(std::move(cause));
+/// Causes that are found in the readings, without a fit: isolated wrong samples, and readings that repeat.
+void judge_readings(const Prepared& healthy, const Prepared& later, ChangeDiagnosis& diagnosis) {
+  const double noise_mm = measured_noise_mm(later.records);
+  const auto add = [&](std::string_view id, ChangeSize size, std::optional<Interval> interval,
+                       double excess_mm) {
+    ChangeCause cause;
+    const Cause known = *find_cause(id);
+    cause.id = known.id;
+    cause.title = known.title;
+    cause.station = known.station;
+    cause.size = std::move(size);
+    cause.intervals.size = interval;
+    cause.effect_mm = excess_mm;
+    cause.share_percent = 100;
+    cause.gain = noise_mm > 0 ? std::pow(excess_mm / noise_mm, 2) : 0;
+    diagnosis.causes.push_back(std::move(cause));
+  };
+  const OutlierEvidence& outliers = later.outliers;
+  if (outliers.present && outliers.share_low > healthy.outliers.share_high)
+    add(causes::Outliers::id, {"wrong samples", 100 * outliers.share, "%"},
+        Interval{100 * outliers.share_low, 100 * outliers.share_high}, outliers.excess_mm);
+  const SamplingEvidence& sampling = later.sampling;
+  constexpr double slower = 1.5;
+  if (!sampling.present) return;
+  if (sampling.frozen_s > slower * healthy.sampling.frozen_s)
+    add(causes::Sampling::id, {"the reading is frozen for", sampling.frozen_s, "s"}, {}, sampling.excess_mm);
+  else if (sampling.interval_s > slower * healthy.sampling.interval_s)
+    add(causes::Sampling::id, {"from one new reading to the next", sampling.interval_s, "s"}, {},
+        sampling.excess_mm);
 }
 
 /// Each reading knows the intervals of the causes that were found in it, in their order.
@@ -507,7 +525,7 @@ tl::expected<ChangeDiagnosis, std::string> diagnose_change(const std::vector<Log
   }
   const Drive drive = pressure ? Drive::measured : Drive::command;
   const Prepared after = driven_records(later, drive, options);
-  judge_outliers(before.outliers, after.outliers, measured_noise_mm(after.records), diagnosis);
+  judge_readings(before, after, diagnosis);
   if (pressure) {
     Judge valve(fit_base(pressure_records(healthy, options.held), Judged::pressure, Drive::command, base),
                 options, true);

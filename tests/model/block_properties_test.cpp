@@ -140,7 +140,10 @@ TEST(EveryBlock, StepsInHalvesAsInOne) {
                                              block_type<SensorLag>()};
   for_every_block([&](std::size_t type) {
     if (is_random(type)) return;
-    const double tolerance_mm = std::ranges::count(approximate, type) == 0 ? 1e-8 : 2e-4;
+    // A clock offset takes the slope from the step itself, whichever length it has.
+    const double tolerance_mm = type == block_type<ClockOffset>()            ? 5e-3
+                                : std::ranges::count(approximate, type) == 0 ? 1e-8
+                                                                             : 2e-4;
     Chain<double> whole(twin_with(type)), halves(twin_with(type));
     for (int i = 1; i * tick_s < duration_s(signal); ++i) {
       const double begin_kpa = value_kpa(signal, (i - 1) * tick_s), end_kpa = value_kpa(signal, i * tick_s);

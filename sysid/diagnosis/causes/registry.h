@@ -7,6 +7,7 @@
 #include "sysid/diagnosis/causes/ageing.h"
 #include "sysid/diagnosis/causes/asymmetric_hysteresis.h"
 #include "sysid/diagnosis/causes/backlash.h"
+#include "sysid/diagnosis/causes/clock_offset.h"
 #include "sysid/diagnosis/causes/contact.h"
 #include "sysid/diagnosis/causes/hysteresis_shape.h"
 #include "sysid/diagnosis/causes/inertia.h"
@@ -16,6 +17,7 @@
 #include "sysid/diagnosis/causes/pressure_saturation.h"
 #include "sysid/diagnosis/causes/pressure_scale.h"
 #include "sysid/diagnosis/causes/rate_dependent_hysteresis.h"
+#include "sysid/diagnosis/causes/sampling.h"
 #include "sysid/diagnosis/causes/sensor_drift.h"
 #include "sysid/diagnosis/causes/sensor_lag.h"
 #include "sysid/diagnosis/causes/sensor_nonlinearity.h"
@@ -35,6 +37,7 @@ using All = List<ActuatorThreshold,        //
                  Ageing,                   //
                  AsymmetricHysteresis,     //
                  Backlash,                 //
+                 ClockOffset,              //
                  Contact,                  //
                  HysteresisShape,          //
                  Inertia,                  //
@@ -44,6 +47,7 @@ using All = List<ActuatorThreshold,        //
                  PressureSaturation,       //
                  PressureScale,            //
                  RateDependentHysteresis,  //
+                 Sampling,                 //
                  SensorDrift,              //
                  SensorLag,                //
                  SensorNonlinearity,       //

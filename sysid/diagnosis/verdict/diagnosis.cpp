@@ -7,6 +7,7 @@
 #include "base/numbers.h"
 #include "base/statistics.h"
 #include "base/thread_budget.h"
+#include "sysid/diagnosis/causes/clock_offset.h"
 #include "sysid/diagnosis/causes/valve_deadband.h"
 #include "sysid/diagnosis/residual/noise.h"
 #include "sysid/diagnosis/residual/spectrum_peaks.h"
@@ -118,6 +119,10 @@ class Diagnostician {
       asked.emplace(data_, about_base);
       selection = search(d_.recalibrated, division, *asked);
     }
+    if (shift_drive(selection, division)) {
+      asked.emplace(data_, about_base);
+      selection = search(d_.recalibrated, division, *asked);
+    }
     AnotherBase& another = *asked;
     clock.ended("search");
     if (leaves_too_much(selection) || (another.is_found() && selection.left.present)) {
@@ -174,6 +179,7 @@ class Diagnostician {
     // The zero of the first log may be anywhere; that it moves from log to log is a drift, which is a cause.
     const bool zero_free = records.front().offset_free && !records.front().start_unknown;
     for (Record& record : records) record.offset_free = zero_free || record.start_unknown;
+    d_.sampling = hide_repeated(records);
     d_.noise_mm = measured_noise_mm(records);
     if (d_.noise_mm <= 0) return Failure("the readings have no noise at all: this is not measured data");
     d_.outliers = hide_outliers(records, d_.noise_mm);
@@ -230,6 +236,27 @@ class Diagnostician {
     d_.warnings.emplace_back(
         "The logs begin without pressure but not as a settled finger does: the state at their start is "
         "estimated. A slow change at their beginning may be hidden in it");
+    return true;
+  }
+
+  /// A shifted drive is a part of the extension: the errors before it are those of the given drive.
+  void count_shift(const BlockLosses& extended) {
+    if (!d_.lead) return;
+    d_.as_given_rmse_mm = unshifted_.as_given_rmse_mm;
+    d_.recalibrated_rmse_mm = rmse_mm(unshifted_.recalibrated);
+    d_.gain = gain_percent(unshifted_.recalibrated, extended, options_.seed);
+  }
+
+  /// If the readings lead their command, the drive is shifted, and the search begins again.
+  bool shift_drive(const Selection& selection, const Division& division) {
+    std::optional<ReadingLead> lead = fit_lead(data_, selection, d_.noise_mm);
+    if (!lead) return false;
+    const BlockLosses losses = held_out_losses(lead->records, division, lead->fit);
+    if (!is_missed(selection.base_losses, losses, 0.01 * square(d_.noise_mm), options_.seed)) return false;
+    unshifted_ = Unshifted{d_.as_given_rmse_mm, selection.base_losses, losses};
+    use(lead->records);
+    d_.recalibrated = lead->fit;
+    d_.lead = std::move(lead);
     return true;
   }
 
@@ -311,11 +338,12 @@ class Diagnostician {
     d_.unexplained_error = unexplained_error_of(d_.extended.residual_mm, d_.noise_mm);
     d_.unexplained_percent =
         std::min(100.0, 100 * square(d_.unexplained_error.excess_mm / selection.base_unexplained.excess_mm));
+    count_shift(base.losses);
     d_.extended_model = named_model(d_.extended.point.model, "extended");
     d_.causes = std::move(base.named);
-    if (d_.outliers.present)
-      d_.causes.insert(d_.causes.begin(),
-                       outlier_cause(d_.outliers, d_.noise_mm, d_.records.front().output_unit));
+    std::vector<NamedCause> in_readings = found_in_readings();
+    d_.causes.insert(d_.causes.begin(), std::make_move_iterator(in_readings.begin()),
+                     std::make_move_iterator(in_readings.end()));
     d_.partial = std::move(base.possible);
     const bool whole = !sysid::leaves_too_much(d_.unexplained_error, selection.base_unexplained, d_.noise_mm);
     d_.verdict = d_.causes.empty()             ? Verdict::unexplained
@@ -355,6 +383,7 @@ class Diagnostician {
       d_.recalibrated_other_logs_rmse_mm = rmse_mm(recalibrated);
       if (!selection.chosen.empty()) d_.extended_other_logs_rmse_mm = rmse_mm(extended);
     }
+    count_shift(selection.extended_losses);
     d_.extended_model = named_model(selection.extended.point.model,
                                     selection.extended.causes.empty() ? "recalibrated" : "extended");
   }
@@ -383,9 +412,23 @@ class Diagnostician {
     return model;
   }
 
+  [[nodiscard]] std::vector<NamedCause> found_in_readings() const {
+    std::vector<NamedCause> named =
+        causes_in_readings(d_.outliers, d_.sampling, d_.noise_mm, d_.records.front().output_unit);
+    if (d_.lead) {
+      NamedCause lead;
+      lead.cause = *find_cause(causes::ClockOffset::id);
+      lead.block_type = lead.cause.forms.front().type;
+      lead.parameters = {{"lead_s", "s", d_.lead->lead_s, d_.lead->ci95, true}};
+      lead.heldout_gain_percent = gain_percent(unshifted_.recalibrated, unshifted_.shifted, options_.seed);
+      lead.gain_mm2 = mean_difference(unshifted_.recalibrated, unshifted_.shifted, options_.seed);
+      named.push_back(std::move(lead));
+    }
+    return named;
+  }
+
   void name(const Selection& selection) {
-    if (d_.outliers.present)
-      causes_.push_back(outlier_cause(d_.outliers, d_.noise_mm, d_.records.front().output_unit));
+    causes_ = found_in_readings();
     std::vector<NamedCause> chosen = name_chosen(data_.records, selection.extended, selection.chosen);
     if (!d_.stick_slip) {
       for (std::string& sentence : mix_intervals(chosen, data_.records, selection, options_.seed))
@@ -426,10 +469,11 @@ class Diagnostician {
       return;
     }
     d_.causes = std::move(causes_);
-    if (d_.outliers.present && selection.chosen.empty()) {
+    if ((d_.outliers.present || d_.sampling.present) && selection.chosen.empty()) {
       const double left = square(selection.left.excess_mm);
-      d_.unexplained_percent =
-          selection.left.present ? 100 * left / (left + square(d_.outliers.excess_mm)) : 0;
+      const double explained = (d_.outliers.present ? square(d_.outliers.excess_mm) : 0) +
+                               (d_.sampling.present ? square(d_.sampling.excess_mm) : 0);
+      d_.unexplained_percent = selection.left.present ? 100 * left / (left + explained) : 0;
     }
     if (!d_.causes.empty()) {
       d_.verdict = any_alternatives(d_.causes) ? Verdict::ambiguous : Verdict::cause_found;
@@ -444,6 +488,12 @@ class Diagnostician {
   const model::Model& given_;
   const DiagnosisOptions& options_;
   SearchData data_;
+  /// Errors with the given drive, and the held-out losses with the shifted one.
+  struct Unshifted {
+    double as_given_rmse_mm = 0;
+    BlockLosses recalibrated, shifted;
+  };
+  Unshifted unshifted_;
   Spread recalibration_gain_;
   std::vector<NamedCause> causes_;
   Diagnosis d_;

@@ -16,10 +16,12 @@
 #include "sysid/diagnosis/evidence/evidence.h"
 #include "sysid/diagnosis/gauge/gauge_verdict.h"
 #include "sysid/diagnosis/residual/outliers.h"
+#include "sysid/diagnosis/residual/sampling.h"
 #include "sysid/diagnosis/search/null_calibration.h"
 #include "sysid/diagnosis/search/selection.h"
 #include "sysid/diagnosis/search/stick_slip_selection.h"
 #include "sysid/diagnosis/verdict/named_cause.h"
+#include "sysid/diagnosis/verdict/reading_lead.h"
 #include "sysid/diagnosis/verdict/valve_findings.h"
 #include "sysid/identification/identify.h"
 #include "sysid/logs/log.h"
@@ -65,6 +67,8 @@ struct Diagnosis {
   double unexplained_percent = 0;
   std::optional<NullCalibration> null_calibration;  ///< if requested and a cause was to be named
   OutlierEvidence outliers;
+  SamplingEvidence sampling;
+  std::optional<ReadingLead> lead;              ///< the records have the drive ahead by it
   std::optional<StickSlipEvidence> stick_slip;  ///< if the named dead band shows stick-slip
   std::optional<GaugeEvidence> gauge;           ///< where gauge readings were given
   std::optional<ValveFindings> in_valve;        ///< where the pressure was measured; none of `causes` again

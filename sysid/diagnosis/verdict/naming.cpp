@@ -8,6 +8,7 @@
 #include "model/catalogue.h"
 #include "model/named.h"
 #include "sysid/diagnosis/causes/outliers.h"
+#include "sysid/diagnosis/causes/sampling.h"
 #include "sysid/fitting/residuals.h"
 
 namespace softgrip::sysid {
@@ -75,20 +76,45 @@ std::vector<NamedCause> name_chosen(const std::vector<Record>& records, const St
   return list;
 }
 
-NamedCause outlier_cause(const OutlierEvidence& evidence, double noise_mm, model::OutputUnit unit) {
+namespace {
+
+/// @param excess_mm  that the readings of the cause added to the error. @param readings  how many they were.
+NamedCause cause_in_readings(std::string_view id, std::vector<CauseParameter> parameters, double excess_mm,
+                             std::size_t readings, double noise_mm) {
   NamedCause named;
-  named.cause = *find_cause(causes::Outliers::id);
+  named.cause = *find_cause(id);
   named.block_type = named.cause.forms.front().type;
-  named.parameters = {{"probability", "", evidence.share, {evidence.share_low, evidence.share_high}, true},
-                      {"size_mm",
-                       std::string(model::name_of(unit)),
-                       evidence.size_mm,
-                       {evidence.size_low_mm, evidence.size_high_mm},
-                       true}};
-  const double with = std::sqrt(noise_mm * noise_mm + evidence.excess_mm * evidence.excess_mm);
+  named.parameters = std::move(parameters);
+  const double with = std::sqrt(noise_mm * noise_mm + excess_mm * excess_mm);
   const double gain = 100 * (1 - noise_mm / with);
-  const double relative = 1.0 / std::sqrt(static_cast<double>(std::max<std::size_t>(1, evidence.count)));
+  const double relative = 1.0 / std::sqrt(static_cast<double>(std::max<std::size_t>(1, readings)));
   named.heldout_gain_percent = {gain, gain * relative / 2, gain * (1 - relative), gain * (1 + relative)};
+  return named;
+}
+
+}  // namespace
+
+std::vector<NamedCause> causes_in_readings(const OutlierEvidence& outliers, const SamplingEvidence& sampling,
+                                           double noise_mm, model::OutputUnit unit) {
+  std::vector<NamedCause> named;
+  if (outliers.present) {
+    named.push_back(cause_in_readings(
+        causes::Outliers::id,
+        {{"probability", "", outliers.share, {outliers.share_low, outliers.share_high}, true},
+         {"size_mm",
+          std::string(model::name_of(unit)),
+          outliers.size_mm,
+          {outliers.size_low_mm, outliers.size_high_mm},
+          true}},
+        outliers.excess_mm, outliers.count, noise_mm));
+  }
+  if (sampling.present) {
+    std::vector<CauseParameter> parameters;
+    if (sampling.interval_s > 0) parameters.push_back({"interval_s", "s", sampling.interval_s, {}, false});
+    if (sampling.frozen_s > 0) parameters.push_back({"frozen_s", "s", sampling.frozen_s, {}, false});
+    named.push_back(cause_in_readings(causes::Sampling::id, std::move(parameters), sampling.excess_mm,
+                                      sampling.hidden, noise_mm));
+  }
   return named;
 }
 

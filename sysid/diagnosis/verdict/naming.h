@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "sysid/diagnosis/residual/outliers.h"
+#include "sysid/diagnosis/residual/sampling.h"
 #include "sysid/diagnosis/verdict/named_cause.h"
 #include "sysid/identification/uncertainty.h"
 
@@ -31,8 +32,11 @@ struct UncertainPoint {
                                                   const StructureFit& extended,
                                                   const std::vector<ChosenCause>& chosen);
 
-[[nodiscard]] NamedCause outlier_cause(const OutlierEvidence& evidence, double noise_mm,
-                                       model::OutputUnit unit);
+/// Returns the causes that are found in the readings before any fit: outliers and sampling, if they are
+/// present.
+[[nodiscard]] std::vector<NamedCause> causes_in_readings(const OutlierEvidence& outliers,
+                                                         const SamplingEvidence& sampling, double noise_mm,
+                                                         model::OutputUnit unit);
 
 /// Returns the title of a cause for use inside a sentence: "valve lag".
 [[nodiscard]] std::string title_within(const Cause& cause);

@@ -23,11 +23,29 @@ std::string listed(const std::vector<NamedCause>& causes) {
   });
 }
 
-/// Returns the sentence if only wrong samples were found.
-std::string outlier_sentence(const Diagnosis& d) {
-  return "Isolated wrong samples stand among the readings (" + significant(100 * d.outliers.share, 2) +
-         " %, about " + reading(d, d.outliers.size_mm) +
-         " off); on the others the recalibrated model's error is " + reading(d, d.recalibrated_rmse_mm) + ".";
+/// Returns the sentence if only the readings are wrong, and not the model.
+std::string readings_sentence(const Diagnosis& d) {
+  std::string wrong;
+  if (d.outliers.present)
+    wrong = "Isolated wrong samples stand among the readings (" + significant(100 * d.outliers.share, 2) +
+            " %, about " + reading(d, d.outliers.size_mm) + " off)";
+  if (d.sampling.present) {
+    if (!wrong.empty())
+      wrong += ", and some readings repeat";
+    else
+      wrong = "Readings repeat";
+    if (d.sampling.interval_s > 0)
+      wrong += ": a new one comes every " + significant(d.sampling.interval_s, 2) + " s";
+    if (d.sampling.frozen_s > 0)
+      wrong +=
+          ": the sensor is frozen for " + significant(d.sampling.frozen_s, 2) + " s while the command moves";
+  }
+  if (d.lead)
+    wrong += (wrong.empty() ? "" : ". ") + std::string("The readings are ") + significant(d.lead->lead_s, 3) +
+             " s ahead of their command: the clocks differ";
+  const std::string those =
+      d.outliers.present || d.sampling.present ? "on the others " : "without that offset ";
+  return wrong + "; " + those + "the recalibrated model's error is " + reading(d, d.extended_rmse_mm) + ".";
 }
 
 /// Returns the sentence on stick-slip. The readings determine the position of the valve; the command does
@@ -97,7 +115,7 @@ std::string sentence_of_logs(const Diagnosis& d) {
       return "The structure is right and its numbers are not: recalibrated, the error falls from " +
              significant(d.as_given_rmse_mm, 2) + " to " + before + ".";
     case Verdict::cause_found:
-      if (!is_extended(d)) return outlier_sentence(d);
+      if (!is_extended(d)) return readings_sentence(d);
       if (d.stick_slip) return stick_slip_sentence(d, before, after);
       return "The model lacks " + listed(d.causes) + with_them(d, before, after) + ".";
     case Verdict::ambiguous:

@@ -45,6 +45,33 @@ TEST(Change, AnotherGainBesideAnotherZeroMayBeAWeight) {
   EXPECT_FALSE(may_be_a_weight({.gain = 0.2 * 0.95}));
 }
 
+/// What has changed, if each reading of the later logs is that of another sample.
+ChangeDiagnosis read_at(std::size_t (*sample)(std::size_t)) {
+  std::vector<Log> later = logs_of({}, 5);
+  for (Log& log : later) {
+    const std::vector<double> truth_mm = log.displacement_mm;
+    for (std::size_t i = 0; i < log.size(); ++i)
+      log.displacement_mm[i] = truth_mm[std::min(sample(i), log.size() - 1)];
+  }
+  const auto diagnosis = diagnose_change(logs_of({}, 1), later);
+  EXPECT_TRUE(diagnosis) << diagnosis.error();
+  return *diagnosis;
+}
+
+TEST(Change, AReadingThatIsUpdatedTooRarelyIsSampling) {
+  const ChangeDiagnosis d = read_at([](std::size_t i) { return i - i % 10; });
+  ASSERT_EQ(d.causes.size(), 1U) << change_sentence(d);
+  EXPECT_EQ(d.causes[0].id, "sampling");
+  EXPECT_NEAR(d.causes[0].size.value, 0.2, 1e-3);
+}
+
+TEST(Change, AReadingThatLeadsItsCommandIsAClockOffset) {
+  const ChangeDiagnosis d = read_at([](std::size_t i) { return i + 5; });
+  ASSERT_FALSE(d.causes.empty()) << change_sentence(d);
+  EXPECT_EQ(d.causes[0].id, "clock_offset") << change_sentence(d);
+  EXPECT_NEAR(d.causes[0].size.value, 0.1, 0.02);
+}
+
 TEST(Change, AZeroIsFoundInLogsWhoseThinnedRecordsEndABinSooner) {
   std::vector<Log> healthy = logs_of({}, 1), later = logs_of({.zero_mm = 0.4}, 5);
   for (std::vector<Log>* const logs : {&healthy, &later}) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <mutex>
 #include <numbers>
 #include <string>
@@ -102,6 +103,45 @@ TEST(Diagnosis, WrongSamplesKeepTheirNameWhereAnotherBaseHolds) {
   EXPECT_TRUE(names("hysteresis_shape"));
   EXPECT_TRUE(names("outliers"));
   EXPECT_NEAR(static_cast<double>(diagnosis->outliers.count), static_cast<double>(wrong), 2);
+}
+
+/// Two logs whose readings are replaced by those of other samples.
+std::vector<Log> read_at(const model::Model& truth, const std::function<std::size_t(std::size_t)>& sample) {
+  std::vector<Log> logs;
+  for (const model::SignalName signal : {model::SignalName::tp1, model::SignalName::sp2}) {
+    Log log = simulated(truth, signal, 50, noise_mm, 23);
+    const std::vector<double> truth_mm = log.displacement_mm;
+    for (std::size_t i = 0; i < log.size(); ++i)
+      log.displacement_mm[i] = truth_mm[std::min(sample(i), log.size() - 1)];
+    logs.push_back(std::move(log));
+  }
+  return logs;
+}
+
+TEST(Diagnosis, AReadingThatIsSlowerThanTheLogIsSampling) {
+  const model::Model truth = without_valve();
+  const auto diagnosis = diagnose(read_at(truth, [](std::size_t i) { return i - i % 9; }), truth, {});
+  ASSERT_TRUE(diagnosis) << diagnosis.error();
+  EXPECT_EQ(diagnosis->verdict, Verdict::cause_found);
+  ASSERT_EQ(diagnosis->causes.size(), 1U);
+  EXPECT_EQ(diagnosis->causes[0].cause.id, "sampling");
+  EXPECT_NEAR(diagnosis->causes[0].parameters.at(0).value, 9 * 0.02, 1e-3);
+}
+
+TEST(Diagnosis, AReadingThatLeadsItsCommandIsAClockOffset) {
+  const model::Model truth = without_valve();
+  const auto diagnosis = diagnose(read_at(truth, [](std::size_t i) { return i + 7; }), truth, {});
+  ASSERT_TRUE(diagnosis) << diagnosis.error();
+  EXPECT_EQ(diagnosis->verdict, Verdict::cause_found);
+  ASSERT_EQ(diagnosis->causes.size(), 1U);
+  const NamedCause& named = diagnosis->causes[0];
+  EXPECT_EQ(named.cause.id, "clock_offset");
+  EXPECT_NEAR(named.parameters.at(0).value, 7 * 0.02, 0.004);
+  EXPECT_LE(named.parameters[0].ci95.lower, 7 * 0.02);
+  EXPECT_GE(named.parameters[0].ci95.upper, 7 * 0.02);
+  EXPECT_GT(named.heldout_gain_percent.lower, 0);
+  EXPECT_LT(diagnosis->extended_rmse_mm, 1.05 * noise_mm);
+  EXPECT_GT(diagnosis->recalibrated_rmse_mm, 1.2 * diagnosis->extended_rmse_mm);
 }
 
 /// The log of a finger that was pressed before the recording began.

@@ -1,0 +1,38 @@
+#pragma once
+// The clock of the reading is ahead: the reading leads its command.
+
+#include "model/block.h"
+
+namespace softgrip::model {
+
+/// z = y + lead dy/dt, with the slope from the sample before: the reading that a straight motion has after
+/// `lead`. Exact between corners of the motion; a corner is seen `lead` too late.
+template <class T>
+class ClockOffset {
+ public:
+  static constexpr BlockInfo info =
+      block_info("clock_offset", Station::sensor, Kind::reading, Inverse::ignored, "Clock offset",
+                 "The clock of the reading is ahead: the reading leads its command.", "z = y + lead dy/dt");
+  static constexpr std::array parameters{parameter("lead_s", "s", "how far the reading is ahead",
+                                                   Typical{0.05}, Within{0.0, 10.0}, Scale{0.02},
+                                                   Neutral{0.0})};
+
+  ClockOffset(std::span<const T> values, const Preparation&) : lead_s_(values[0]) {}
+
+  void reset(const T& input) { before_mm_ = output_ = input; }
+  [[nodiscard]] T output() const { return output_; }
+
+  T sample(const T& displacement_mm, const T& duration_s, const Surroundings&) {
+    if (is_zero(duration_s)) return output_;
+    output_ = displacement_mm + lead_s_ * (displacement_mm - before_mm_) / duration_s;
+    before_mm_ = displacement_mm;
+    return output_;
+  }
+
+ private:
+  T lead_s_;
+  T before_mm_{0.0};
+  T output_{0.0};
+};
+
+}  // namespace softgrip::model

@@ -1,0 +1,23 @@
+#pragma once
+// The reading leads its command.
+
+#include "model/blocks/clock_offset.h"
+#include "sysid/diagnosis/causes/form.h"
+
+namespace softgrip::sysid::causes {
+
+/// A reading that is late is a dead time: no log separates them.
+struct ClockOffset : FormOf<model::ClockOffset> {
+  static constexpr bool is_ideal = true;
+  static constexpr Appears appears = Appears::moving;
+  static constexpr WhenChanged when_changed{
+      "the reading leads its command",
+      {"Compare the clocks of the devices that record command and reading.",
+       "Record command and reading with one device, and the same log again."},
+      {},
+      {SizedBy::Of::number, "the reading is ahead by", "s", "lead_s"}};
+
+  static Starts starts(const Scales&) { return every({{"lead_s", {0.01, 0.03, 0.1, 0.3}}}); }
+};
+
+}  // namespace softgrip::sysid::causes

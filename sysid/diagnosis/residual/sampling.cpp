@@ -1,0 +1,141 @@
+#include "sysid/diagnosis/residual/sampling.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/statistics.h"
+#include "sysid/diagnosis/residual/noise.h"
+
+namespace softgrip::sysid {
+namespace {
+
+/// Fewer stretches than this do not show how often a sensor is read.
+constexpr std::size_t fewest_stretches = 20;
+/// The smallest changes of a fine sensor are less than this share of the usual ones.
+constexpr double fine_share = 0.25;
+constexpr double frozen_ratio = 5, moved_share = 0.1;
+/// Readings that add less than this share of the noise are not hidden: outliers have the same limit.
+constexpr double worth = 0.25;
+
+/// Equal readings, one after the other: places in `samples`.
+struct Stretch {
+  std::size_t first = 0, length = 0;
+};
+
+struct Readings {
+  std::vector<std::size_t> samples;
+  std::vector<Stretch> stretches;
+};
+
+Readings readings_of(const Record& record) {
+  Readings all;
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    if (!std::isfinite(record.reading_mm[i])) continue;
+    const bool is_new = all.samples.empty() || record.reading_mm[i] != record.reading_mm[all.samples.back()];
+    if (is_new) all.stretches.push_back({all.samples.size(), 0});
+    all.samples.push_back(i);
+    ++all.stretches.back().length;
+  }
+  return all;
+}
+
+double quantile(std::vector<double> values, double share) {
+  std::sort(values.begin(), values.end());
+  return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
+}
+
+/// The first and the last stretch may be cut off.
+std::vector<double> whole_lengths(const Readings& readings) {
+  std::vector<double> lengths;
+  for (std::size_t k = 1; k + 1 < readings.stretches.size(); ++k)
+    lengths.push_back(static_cast<double>(readings.stretches[k].length));
+  return lengths;
+}
+
+bool is_fine(const Record& record, const Readings& readings) {
+  std::vector<double> changes;
+  for (std::size_t k = 1; k < readings.stretches.size(); ++k) {
+    const std::size_t first = readings.stretches[k].first;
+    changes.push_back(std::abs(record.reading_mm[readings.samples[first]] -
+                               record.reading_mm[readings.samples[first - 1]]));
+  }
+  return quantile(changes, 0.05) < fine_share * quantile(changes, 0.5);
+}
+
+/// Samples from one new reading to the next; 1: each is new.
+std::size_t samples_per_reading(const Record& record, const Readings& readings) {
+  const std::vector<double> lengths = whole_lengths(readings);
+  if (lengths.size() < fewest_stretches || quantile(lengths, 0.1) < 2 || !is_fine(record, readings)) return 1;
+  return static_cast<std::size_t>(quantile(lengths, 0.5));
+}
+
+bool is_frozen(const Record& record, const Readings& readings, const Stretch& stretch, double usual_length) {
+  if (static_cast<double>(stretch.length) < frozen_ratio * usual_length) return false;
+  const double value = record.reading_mm[readings.samples[stretch.first]];
+  const auto [low, high] = std::minmax_element(
+      readings.samples.begin(), readings.samples.end(),
+      [&](std::size_t a, std::size_t b) { return record.reading_mm[a] < record.reading_mm[b]; });
+  if (value == record.reading_mm[*low] || value == record.reading_mm[*high]) return false;
+  const auto begin = record.drive_kpa.begin();
+  const auto [least, most] = std::minmax_element(
+      begin + static_cast<std::ptrdiff_t>(readings.samples[stretch.first]),
+      begin + static_cast<std::ptrdiff_t>(readings.samples[stretch.first + stretch.length - 1]) + 1);
+  const auto [lowest, highest] = std::minmax_element(begin, record.drive_kpa.end());
+  return *most - *least > moved_share * (*highest - *lowest);
+}
+
+/// Squared distances of hidden readings to the line between the kept readings around them.
+double squares_beside_lines(const Record& before, const Record& after) {
+  double squares = 0;
+  std::size_t last = after.size();
+  for (std::size_t i = 0; i < after.size(); ++i) {
+    if (!std::isfinite(after.reading_mm[i])) continue;
+    for (std::size_t j = last + 1; last < after.size() && j < i; ++j) {
+      const double part = (after.time_s[j] - after.time_s[last]) / (after.time_s[i] - after.time_s[last]);
+      const double line = std::lerp(after.reading_mm[last], after.reading_mm[i], part);
+      if (std::isfinite(before.reading_mm[j])) squares += square(before.reading_mm[j] - line);
+    }
+    last = i;
+  }
+  return squares;
+}
+
+}  // namespace
+
+SamplingEvidence hide_repeated(std::vector<Record>& records) {
+  std::vector<Record> fresh = records;
+  SamplingEvidence evidence;
+  std::vector<double> intervals_s;
+  double squares = 0;
+  for (std::size_t r = 0; r < records.size(); ++r) {
+    Record& record = fresh[r];
+    const Readings readings = readings_of(records[r]);
+    evidence.readings += readings.samples.size();
+    if (readings.stretches.size() < fewest_stretches) continue;
+    const std::size_t period = samples_per_reading(record, readings);
+    if (period > 1) intervals_s.push_back(static_cast<double>(period) * record.mean_interval_s());
+    const double usual_length = quantile(whole_lengths(readings), 0.95);
+    for (const Stretch& stretch : readings.stretches) {
+      const bool frozen = is_frozen(records[r], readings, stretch, usual_length);
+      const std::size_t kept_each = frozen ? stretch.length : period;
+      const std::size_t last = readings.samples[stretch.first + stretch.length - 1];
+      if (frozen) evidence.frozen_s += record.time_s[last] - record.time_s[readings.samples[stretch.first]];
+      for (std::size_t k = 0; k < stretch.length; ++k) {
+        if (k % kept_each == 0) continue;
+        record.reading_mm[readings.samples[stretch.first + k]] = std::numeric_limits<double>::quiet_NaN();
+        --record.readings;
+        ++evidence.hidden;
+      }
+    }
+    squares += squares_beside_lines(records[r], record);
+  }
+  if (evidence.hidden == 0) return evidence;
+  if (!intervals_s.empty()) evidence.interval_s = quantile(intervals_s, 0.5);
+  evidence.excess_mm = std::sqrt(squares / static_cast<double>(evidence.readings));
+  evidence.present = evidence.excess_mm > worth * measured_noise_mm(fresh);
+  if (evidence.present) records = std::move(fresh);
+  return evidence;
+}
+
+}  // namespace softgrip::sysid

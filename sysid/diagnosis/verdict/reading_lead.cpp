@@ -1,0 +1,104 @@
+#include "sysid/diagnosis/verdict/reading_lead.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "base/statistics.h"
+#include "sysid/diagnosis/causes/clock_offset.h"
+
+namespace softgrip::sysid {
+namespace {
+
+/// Leads that are tried first, in multiples of the block's: it is wrong at corners and may be far off.
+constexpr std::array first_leads{0.5, 1.0, 1.5, 2.0, 3.0};
+constexpr int refinements = 5;
+
+void hide(Record& record, std::size_t i) {
+  if (!std::isfinite(record.reading_mm[i])) return;
+  record.reading_mm[i] = std::numeric_limits<double>::quiet_NaN();
+  --record.readings;
+}
+
+class LeadSearch {
+ public:
+  LeadSearch(const SearchData& data, const Selection& selection) : data_(data), selection_(selection) {}
+
+  [[nodiscard]] ReadingLead at(double lead_s) const {
+    ReadingLead lead{lead_s, {}, {}, with_drive_ahead(data_.records, lead_s)};
+    lead.fit = fit_structure(lead.records, {}, selection_.base.point);
+    StructureFit from_given = fit_structure(lead.records, {}, data_.given);
+    if (from_given.mean_square_mm2 < lead.fit.mean_square_mm2) lead.fit = std::move(from_given);
+    return lead;
+  }
+
+  /// The best of a grid, then between its neighbours by halves.
+  [[nodiscard]] ReadingLead best(double about_s) const {
+    ReadingLead best = at(about_s);
+    const auto try_at = [&](double lead_s) {
+      ReadingLead other = at(lead_s);
+      if (other.fit.mean_square_mm2 < best.fit.mean_square_mm2) best = std::move(other);
+    };
+    for (const double ratio : first_leads) try_at(ratio * about_s);
+    double step_s = 0.25 * about_s;
+    for (int k = 0; k < refinements; ++k, step_s /= 2) {
+      const double middle_s = best.lead_s;
+      try_at(middle_s - step_s);
+      try_at(middle_s + step_s);
+    }
+    best.ci95 = interval(best, step_s);
+    return best;
+  }
+
+ private:
+  /// The lead at which the mean square has risen by what 95 % allow, on the parabola through 3 leads.
+  [[nodiscard]] Interval interval(const ReadingLead& best, double step_s) const {
+    const double rise =
+        0.5 * (at(best.lead_s - step_s).fit.mean_square_mm2 + at(best.lead_s + step_s).fit.mean_square_mm2) -
+        best.fit.mean_square_mm2;
+    double readings = 0;
+    for (const Record& record : best.records) readings += static_cast<double>(record.readings);
+    const double deviation_s =
+        rise > 0 ? step_s * std::sqrt(best.fit.mean_square_mm2 / (readings * rise)) : best.lead_s;
+    return {best.lead_s - 1.96 * deviation_s, best.lead_s + 1.96 * deviation_s};
+  }
+
+  const SearchData& data_;
+  const Selection& selection_;
+};
+
+}  // namespace
+
+std::vector<Record> with_drive_ahead(std::vector<Record> records, double lead_s) {
+  for (Record& record : records) {
+    const std::vector<double> drive_kpa = record.drive_kpa;
+    const std::vector<double>& time_s = record.time_s;
+    std::size_t next = 0;
+    for (std::size_t i = 1; i < record.size(); ++i) {
+      const double at_s = time_s[i] + lead_s;
+      while (next < time_s.size() && time_s[next] <= at_s) ++next;
+      if (next == time_s.size()) {
+        record.drive_kpa[i] = drive_kpa.back();
+        if (at_s > time_s.back()) hide(record, i);
+        continue;
+      }
+      const double part = record.held ? 0 : (at_s - time_s[next - 1]) / (time_s[next] - time_s[next - 1]);
+      record.drive_kpa[i] = std::lerp(drive_kpa[next - 1], drive_kpa[next], part);
+    }
+  }
+  return records;
+}
+
+std::optional<ReadingLead> fit_lead(const SearchData& data, const Selection& selection, double noise_mm) {
+  const auto position = position_of(selection.extended.point.model, *find_cause(causes::ClockOffset::id));
+  if (!position) return std::nullopt;
+  const double about_s = selection.extended.point.model.blocks[*position].values.front();
+  if (about_s <= 0) return std::nullopt;
+  ReadingLead lead = LeadSearch(data, selection).best(about_s);
+  const UnexplainedError left = unexplained_error_of(lead.fit.residual_mm, noise_mm);
+  if (lead.ci95.lower <= 0 || left.excess_mm > selection.left.excess_mm) return std::nullopt;
+  return lead;
+}
+
+}  // namespace softgrip::sysid

@@ -1,0 +1,31 @@
+#pragma once
+// How far the readings are ahead of their command.
+
+#include <optional>
+#include <vector>
+
+#include "sysid/diagnosis/search/selection.h"
+#include "sysid/fitting/interval.h"
+
+namespace softgrip::sysid {
+
+struct ReadingLead {
+  double lead_s = 0;
+  Interval
+      ci95;  ///< from the profile of the mean square, all parameters of the structure fitted at each lead
+  StructureFit fit;
+  std::vector<Record> records;  ///< with the drive ahead by the lead
+};
+
+/// Returns the records with a drive that comes `lead_s` earlier. The first sample keeps its drive: it is the
+/// state in which the record begins. Readings that answer a drive behind the end of the record are hidden.
+[[nodiscard]] std::vector<Record> with_drive_ahead(std::vector<Record> records, double lead_s);
+
+/// Fits the lead exactly, if a selection contains clock_offset. That block extrapolates the motion and is
+/// wrong at its corners; the shifted drive is not.
+/// @returns no value if the selection does not contain the cause, if the readings do not lead with 95 %
+/// confidence, or if the shift leaves more than the causes of the selection.
+[[nodiscard]] std::optional<ReadingLead> fit_lead(const SearchData& data, const Selection& selection,
+                                                  double noise_mm);
+
+}  // namespace softgrip::sysid
