@@ -140,7 +140,7 @@ TEST(EveryBlock, StepsInHalvesAsInOne) {
                                              block_type<SensorLag>()};
   for_every_block([&](std::size_t type) {
     if (is_random(type)) return;
-    // A clock offset takes the slope from the step itself, whichever length it has.
+    // A clock offset takes the slope from the last step, which has half the length.
     const double tolerance_mm = type == block_type<ClockOffset>()            ? 5e-3
                                 : std::ranges::count(approximate, type) == 0 ? 1e-8
                                                                              : 2e-4;

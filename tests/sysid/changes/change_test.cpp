@@ -45,7 +45,7 @@ TEST(Change, AnotherGainBesideAnotherZeroMayBeAWeight) {
   EXPECT_FALSE(may_be_a_weight({.gain = 0.2 * 0.95}));
 }
 
-/// What has changed, if each reading of the later logs is that of another sample.
+/// The diagnosis of later logs in which each reading is that of another sample.
 ChangeDiagnosis read_at(std::size_t (*sample)(std::size_t)) {
   std::vector<Log> later = logs_of({}, 5);
   for (Log& log : later) {
