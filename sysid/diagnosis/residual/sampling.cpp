@@ -16,20 +16,20 @@ constexpr std::size_t fewest_stretches = 20;
 constexpr double fine_share = 0.25;
 constexpr double frozen_ratio = 5, moved_share = 0.1;
 /// Readings that add less than this share of the noise are not hidden: outliers have the same limit.
-constexpr double worth = 0.25;
+constexpr double worth_hiding = 0.25;
 
 /// Equal readings, one after the other: places in `samples`.
 struct Stretch {
   std::size_t first = 0, length = 0;
 };
 
-struct Readings {
+struct Stretches {
   std::vector<std::size_t> samples;
   std::vector<Stretch> stretches;
 };
 
-Readings readings_of(const Record& record) {
-  Readings all;
+Stretches stretches_of(const Record& record) {
+  Stretches all;
   for (std::size_t i = 0; i < record.size(); ++i) {
     if (!std::isfinite(record.reading_mm[i])) continue;
     const bool is_new = all.samples.empty() || record.reading_mm[i] != record.reading_mm[all.samples.back()];
@@ -46,14 +46,14 @@ double quantile(std::vector<double> values, double share) {
 }
 
 /// The first and the last stretch may be cut off.
-std::vector<double> whole_lengths(const Readings& readings) {
+std::vector<double> whole_lengths(const Stretches& readings) {
   std::vector<double> lengths;
   for (std::size_t k = 1; k + 1 < readings.stretches.size(); ++k)
     lengths.push_back(static_cast<double>(readings.stretches[k].length));
   return lengths;
 }
 
-bool is_fine(const Record& record, const Readings& readings) {
+bool is_fine(const Record& record, const Stretches& readings) {
   std::vector<double> changes;
   for (std::size_t k = 1; k < readings.stretches.size(); ++k) {
     const std::size_t first = readings.stretches[k].first;
@@ -64,13 +64,13 @@ bool is_fine(const Record& record, const Readings& readings) {
 }
 
 /// Samples from one new reading to the next; 1: each is new.
-std::size_t samples_per_reading(const Record& record, const Readings& readings) {
+std::size_t samples_per_reading(const Record& record, const Stretches& readings) {
   const std::vector<double> lengths = whole_lengths(readings);
   if (lengths.size() < fewest_stretches || quantile(lengths, 0.1) < 2 || !is_fine(record, readings)) return 1;
   return static_cast<std::size_t>(quantile(lengths, 0.5));
 }
 
-bool is_frozen(const Record& record, const Readings& readings, const Stretch& stretch, double usual_length) {
+bool is_frozen(const Record& record, const Stretches& readings, const Stretch& stretch, double usual_length) {
   if (static_cast<double>(stretch.length) < frozen_ratio * usual_length) return false;
   const double value = record.reading_mm[readings.samples[stretch.first]];
   const auto [low, high] = std::minmax_element(
@@ -110,7 +110,7 @@ SamplingEvidence hide_repeated(std::vector<Record>& records) {
   double squares = 0;
   for (std::size_t r = 0; r < records.size(); ++r) {
     Record& record = fresh[r];
-    const Readings readings = readings_of(records[r]);
+    const Stretches readings = stretches_of(records[r]);
     evidence.readings += readings.samples.size();
     if (readings.stretches.size() < fewest_stretches) continue;
     const std::size_t period = samples_per_reading(record, readings);
@@ -133,7 +133,7 @@ SamplingEvidence hide_repeated(std::vector<Record>& records) {
   if (evidence.hidden == 0) return evidence;
   if (!intervals_s.empty()) evidence.interval_s = quantile(intervals_s, 0.5);
   evidence.excess_mm = std::sqrt(squares / static_cast<double>(evidence.readings));
-  evidence.present = evidence.excess_mm > worth * measured_noise_mm(fresh);
+  evidence.present = evidence.excess_mm > worth_hiding * measured_noise_mm(fresh);
   if (evidence.present) records = std::move(fresh);
   return evidence;
 }
