@@ -132,7 +132,7 @@ class Records(unittest.TestCase):
             return world if runs == 3 else {**world, "baseline_runs": runs}
         rows = [row(1, 1, "first"), row(1, 0.15, "missed"), row(3, 1, "first"), row(3, 0.15, "listed"),
                 row(3, 0, "unchanged", "none")]
-        page = changed_campaign.page(rows, "command", 5, varying.text(arguments(variation=1.0)))
+        page = changed_campaign.page(rows, "command", 5, varying.text(arguments(variation=1.0)), "softgrip 0.1.0")
         self.assertIn("Run-to-run variation of strength 1:", page)
         self.assertIn("| 1 | 1 |\n| 3 | 0.15 |", page)
 
