@@ -15,5 +15,20 @@ TEST(ClockOffset, AStraightMotionIsReadAheadOfTime) {
   EXPECT_NEAR(block.output(), 3 + 5 * (0.02 * 50 + 0.12), 1e-12);
 }
 
+// The slope of a step is that of its middle: the error falls with the length of the steps.
+TEST(ClockOffset, AParabolaIsReadWithAnErrorInProportionToTheStep) {
+  constexpr double lead_s = 0.12;
+  for (const double step_s : {0.02, 0.01, 0.005}) {
+    ClockOffset<double> block = make<ClockOffset<double>>({lead_s});
+    block.reset(0);
+    double t = 0;
+    for (int i = 1; i <= 200; ++i) {
+      t = step_s * i;
+      block.sample(t * t, step_s, {});
+    }
+    EXPECT_NEAR(block.output(), t * t + lead_s * (2 * t - step_s), 1e-12) << step_s;
+  }
+}
+
 }  // namespace
 }  // namespace softgrip::model::testing::clock_offset_test
