@@ -140,10 +140,10 @@ class RunSpread {
 };
 
 std::string other_start(const std::string& record) {
-  return record +
-         " begins as no healthy log does (under pressure, or without): a slow change after its start is not "
-         "judged. "
-         "Record a healthy log that begins in the same way";
+  return "No healthy log begins like " + record +
+         " (under pressure, or without): a slow change after its start is not judged. Record a healthy log "
+         "that "
+         "begins in the same way";
 }
 
 /// One reading from its healthy records to what it shows of the later ones.

@@ -198,9 +198,9 @@ LaterReadings::LaterReadings(const Base& base, std::vector<Record> later, Binned
     add(own, 1 / base_.zero_spread_mm);
   }
   for (std::size_t r = 0; r < later_.size(); ++r) {
+    if (begins_as_a_healthy_one(base_, later_[r])) continue;
     Binned own = none;
     for (const double lag_s : transient_lags_s) {
-      if (begins_as_a_healthy_one(base_, later_[r])) continue;
       own[r] = transient(own[r].size(), base_.bin_s, lag_s);
       add(own, 0);
     }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "model/blocks/chamber_lag.h"
 #include "model/blocks/quantisation.h"
@@ -90,6 +91,12 @@ std::vector<Record> make_records(const std::vector<Log>& logs, const RecordOptio
     campaign_time_s += log.time_s.back();
   }
   return records;
+}
+
+void hide_reading(Record& record, std::size_t sample) {
+  if (!std::isfinite(record.reading_mm[sample])) return;
+  record.reading_mm[sample] = std::numeric_limits<double>::quiet_NaN();
+  --record.readings;
 }
 
 double step_duration_s(double duration_s) {

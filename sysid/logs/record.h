@@ -94,6 +94,9 @@ struct Record {
 /// Drive::measured every log must have a pressure_kpa column.
 [[nodiscard]] std::vector<Record> make_records(const std::vector<Log>& logs, const RecordOptions& options);
 
+/// Takes a reading out of a record, where there is one (NaN: no reading).
+void hide_reading(Record& record, std::size_t sample);
+
 /// A step's duration without the rounding of written times: differences below a picosecond go, so that equal
 /// durations share their coefficients.
 [[nodiscard]] double step_duration_s(double duration_s);

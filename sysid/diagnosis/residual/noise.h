@@ -11,6 +11,10 @@ namespace softgrip::sysid {
 /// Smooth motion and single wrong samples do not contribute; quantisation does.
 [[nodiscard]] double measured_noise_mm(const std::vector<Record>& records);
 
+/// Wrong readings that add less than this share of the noise to the error are not reported, because they may
+/// be corners of a motion.
+inline constexpr double distorting_share = 0.25;
+
 /// The unexplained error: the part of a residual beyond the noise.
 struct UnexplainedError {
   double excess_mm = 0;         ///< root of mean square minus noise squared, 0 where that is negative

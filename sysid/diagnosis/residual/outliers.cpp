@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <span>
 
 #include "base/statistics.h"
+#include "sysid/diagnosis/residual/noise.h"
 #include "sysid/logs/sensor_codes.h"
 
 namespace softgrip::sysid {
@@ -15,9 +15,6 @@ namespace {
 /// A reading against the median of its four neighbours has a deviation of about 1.15 of the noise; beyond
 /// this many a normal one falls less than once in ten million.
 constexpr double beyond = 6.0;
-/// Outliers that add less than this share of the noise are not reported, because they may be corners of a
-/// motion.
-constexpr double worth = 0.25;
 /// A smaller number of outliers is not significant.
 constexpr std::size_t fewest = 5;
 
@@ -109,13 +106,12 @@ void weigh(OutlierEvidence& evidence, double noise_mm) {
   evidence.size_low_mm = std::sqrt(std::max(0.0, square / count - z * deviation));
   evidence.size_high_mm = std::sqrt(square / count + z * deviation);
   // At six deviations noise gives none; a handful may be a knock on the table.
-  evidence.distorts = evidence.excess_mm > worth * noise_mm;
+  evidence.distorts = evidence.excess_mm > distorting_share * noise_mm;
   evidence.present = evidence.count >= fewest && evidence.distorts;
 }
 
 void hide(Record& record, std::size_t i, double size_mm, OutlierEvidence& evidence) {
-  record.reading_mm[i] = std::numeric_limits<double>::quiet_NaN();
-  --record.readings;
+  hide_reading(record, i);
   evidence.sizes_mm.push_back(size_mm);
 }
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "base/statistics.h"
 #include "sysid/diagnosis/residual/noise.h"
@@ -14,9 +13,8 @@ namespace {
 constexpr std::size_t fewest_stretches = 20;
 /// The smallest changes of a fine sensor are less than this share of the usual ones.
 constexpr double fine_share = 0.25;
+/// A frozen stretch is this many times as long as the usual longest one, while the drive moves by this share.
 constexpr double frozen_ratio = 5, moved_share = 0.1;
-/// Readings that add less than this share of the noise are not hidden: outliers have the same limit.
-constexpr double worth_hiding = 0.25;
 
 /// Equal readings, one after the other: places in `samples`.
 struct Stretch {
@@ -123,8 +121,7 @@ SamplingEvidence hide_repeated(std::vector<Record>& records) {
       if (frozen) evidence.frozen_s += record.time_s[last] - record.time_s[readings.samples[stretch.first]];
       for (std::size_t k = 0; k < stretch.length; ++k) {
         if (k % kept_each == 0) continue;
-        record.reading_mm[readings.samples[stretch.first + k]] = std::numeric_limits<double>::quiet_NaN();
-        --record.readings;
+        hide_reading(record, readings.samples[stretch.first + k]);
         ++evidence.hidden;
       }
     }
@@ -133,7 +130,7 @@ SamplingEvidence hide_repeated(std::vector<Record>& records) {
   if (evidence.hidden == 0) return evidence;
   if (!intervals_s.empty()) evidence.interval_s = quantile(intervals_s, 0.5);
   evidence.excess_mm = std::sqrt(squares / static_cast<double>(evidence.readings));
-  evidence.present = evidence.excess_mm > worth_hiding * measured_noise_mm(fresh);
+  evidence.present = evidence.excess_mm > distorting_share * measured_noise_mm(fresh);
   if (evidence.present) records = std::move(fresh);
   return evidence;
 }

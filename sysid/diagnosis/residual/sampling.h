@@ -12,8 +12,9 @@ namespace softgrip::sysid {
 struct SamplingEvidence {
   double interval_s = 0;  ///< median time between new readings; 0: each sample is a new reading
   double frozen_s = 0;    ///< in total, while the reading is frozen and the drive moves
-  double excess_mm =
-      0;  ///< root mean square, over all readings, of their distance to a line through new ones
+  /// Root mean square, over all readings, of the distance of repeated readings to a line through the new
+  /// ones.
+  double excess_mm = 0;
   std::size_t hidden = 0, readings = 0;
   bool present = false;  ///< the excess is more than a quarter of the noise
 };

@@ -249,14 +249,14 @@ class Diagnostician {
 
   /// If the readings lead their command, the drive is shifted, and the search begins again.
   bool shift_drive(const Selection& selection, const Division& division) {
-    std::optional<ReadingLead> lead = fit_lead(data_, selection, d_.noise_mm);
-    if (!lead) return false;
-    const BlockLosses losses = held_out_losses(lead->records, division, lead->fit);
+    std::optional<LeadFit> shifted = fit_lead(data_, selection, d_.noise_mm);
+    if (!shifted) return false;
+    const BlockLosses losses = held_out_losses(shifted->records, division, shifted->fit);
     if (!is_missed(selection.base_losses, losses, 0.01 * square(d_.noise_mm), options_.seed)) return false;
     unshifted_ = Unshifted{d_.as_given_rmse_mm, selection.base_losses, losses};
-    use(lead->records);
-    d_.recalibrated = lead->fit;
-    d_.lead = std::move(lead);
+    use(std::move(shifted->records));
+    d_.recalibrated = std::move(shifted->fit);
+    d_.lead = shifted->lead;
     return true;
   }
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include "base/statistics.h"
 #include "sysid/diagnosis/causes/clock_offset.h"
@@ -11,57 +10,51 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Leads that are tried first, in multiples of the block's: it is wrong at corners and may be far off.
-constexpr std::array first_leads{0.5, 1.0, 1.5, 2.0, 3.0};
+/// Leads that are tried beside the block's, of it: the block is wrong at corners and may be far off.
+constexpr std::array other_leads{0.5, 1.5, 2.0, 3.0};
 constexpr int refinements = 5;
-
-void hide(Record& record, std::size_t i) {
-  if (!std::isfinite(record.reading_mm[i])) return;
-  record.reading_mm[i] = std::numeric_limits<double>::quiet_NaN();
-  --record.readings;
-}
 
 class LeadSearch {
  public:
   LeadSearch(const SearchData& data, const Selection& selection) : data_(data), selection_(selection) {}
 
-  [[nodiscard]] ReadingLead at(double lead_s) const {
-    ReadingLead lead{lead_s, {}, {}, with_drive_ahead(data_.records, lead_s)};
-    lead.fit = fit_structure(lead.records, {}, selection_.base.point);
-    StructureFit from_given = fit_structure(lead.records, {}, data_.given);
-    if (from_given.mean_square_mm2 < lead.fit.mean_square_mm2) lead.fit = std::move(from_given);
-    return lead;
+  [[nodiscard]] LeadFit at(double lead_s) const {
+    LeadFit shifted{{lead_s, {}}, {}, with_drive_ahead(data_.records, lead_s)};
+    shifted.fit = fit_structure(shifted.records, {}, selection_.base.point);
+    StructureFit from_given = fit_structure(shifted.records, {}, data_.given);
+    if (from_given.mean_square_mm2 < shifted.fit.mean_square_mm2) shifted.fit = std::move(from_given);
+    return shifted;
   }
 
   /// The best of a grid, then between its neighbours by halves.
-  [[nodiscard]] ReadingLead best(double about_s) const {
-    ReadingLead best = at(about_s);
+  [[nodiscard]] LeadFit best(double about_s) const {
+    LeadFit best = at(about_s);
     const auto try_at = [&](double lead_s) {
-      ReadingLead other = at(lead_s);
+      LeadFit other = at(lead_s);
       if (other.fit.mean_square_mm2 < best.fit.mean_square_mm2) best = std::move(other);
     };
-    for (const double ratio : first_leads) try_at(ratio * about_s);
+    for (const double ratio : other_leads) try_at(ratio * about_s);
     double step_s = 0.25 * about_s;
     for (int k = 0; k < refinements; ++k, step_s /= 2) {
-      const double middle_s = best.lead_s;
+      const double middle_s = best.lead.lead_s;
       try_at(middle_s - step_s);
       try_at(middle_s + step_s);
     }
-    best.ci95 = interval(best, step_s);
+    best.lead.ci95 = interval(best, step_s);
     return best;
   }
 
  private:
   /// The lead at which the mean square has risen by what 95 % allow, on the parabola through 3 leads.
-  [[nodiscard]] Interval interval(const ReadingLead& best, double step_s) const {
-    const double rise =
-        0.5 * (at(best.lead_s - step_s).fit.mean_square_mm2 + at(best.lead_s + step_s).fit.mean_square_mm2) -
-        best.fit.mean_square_mm2;
+  [[nodiscard]] Interval interval(const LeadFit& best, double step_s) const {
+    const double lead_s = best.lead.lead_s, least_mm2 = best.fit.mean_square_mm2;
+    const double beside_mm2 =
+        0.5 * (at(lead_s - step_s).fit.mean_square_mm2 + at(lead_s + step_s).fit.mean_square_mm2);
     double readings = 0;
     for (const Record& record : best.records) readings += static_cast<double>(record.readings);
-    const double deviation_s =
-        rise > 0 ? step_s * std::sqrt(best.fit.mean_square_mm2 / (readings * rise)) : best.lead_s;
-    return {best.lead_s - 1.96 * deviation_s, best.lead_s + 1.96 * deviation_s};
+    const double rise_mm2 = beside_mm2 - least_mm2;
+    const double deviation_s = rise_mm2 > 0 ? step_s * std::sqrt(least_mm2 / (readings * rise_mm2)) : lead_s;
+    return {lead_s - 1.96 * deviation_s, lead_s + 1.96 * deviation_s};
   }
 
   const SearchData& data_;
@@ -80,7 +73,7 @@ std::vector<Record> with_drive_ahead(std::vector<Record> records, double lead_s)
       while (next < time_s.size() && time_s[next] <= at_s) ++next;
       if (next == time_s.size()) {
         record.drive_kpa[i] = drive_kpa.back();
-        if (at_s > time_s.back()) hide(record, i);
+        if (at_s > time_s.back()) hide_reading(record, i);
         continue;
       }
       const double part = record.held ? 0 : (at_s - time_s[next - 1]) / (time_s[next] - time_s[next - 1]);
@@ -90,15 +83,15 @@ std::vector<Record> with_drive_ahead(std::vector<Record> records, double lead_s)
   return records;
 }
 
-std::optional<ReadingLead> fit_lead(const SearchData& data, const Selection& selection, double noise_mm) {
+std::optional<LeadFit> fit_lead(const SearchData& data, const Selection& selection, double noise_mm) {
   const auto position = position_of(selection.extended.point.model, *find_cause(causes::ClockOffset::id));
   if (!position) return std::nullopt;
   const double about_s = selection.extended.point.model.blocks[*position].values.front();
   if (about_s <= 0) return std::nullopt;
-  ReadingLead lead = LeadSearch(data, selection).best(about_s);
-  const UnexplainedError left = unexplained_error_of(lead.fit.residual_mm, noise_mm);
-  if (lead.ci95.lower <= 0 || left.excess_mm > selection.left.excess_mm) return std::nullopt;
-  return lead;
+  LeadFit shifted = LeadSearch(data, selection).best(about_s);
+  const UnexplainedError left = unexplained_error_of(shifted.fit.residual_mm, noise_mm);
+  if (shifted.lead.ci95.lower <= 0 || left.excess_mm > selection.left.excess_mm) return std::nullopt;
+  return shifted;
 }
 
 }  // namespace softgrip::sysid

@@ -11,8 +11,12 @@ namespace softgrip::sysid {
 
 struct ReadingLead {
   double lead_s = 0;
-  Interval
-      ci95;  ///< from the profile of the mean square, all parameters of the structure fitted at each lead
+  /// From the profile of the mean square: all parameters of the structure are fitted at each lead.
+  Interval ci95;
+};
+
+struct LeadFit {
+  ReadingLead lead;
   StructureFit fit;
   std::vector<Record> records;  ///< with the drive ahead by the lead
 };
@@ -25,7 +29,7 @@ struct ReadingLead {
 /// wrong at its corners; the shifted drive is not.
 /// @returns no value if the selection does not contain the cause, if the readings do not lead with 95 %
 /// confidence, or if the shift leaves more than the causes of the selection.
-[[nodiscard]] std::optional<ReadingLead> fit_lead(const SearchData& data, const Selection& selection,
-                                                  double noise_mm);
+[[nodiscard]] std::optional<LeadFit> fit_lead(const SearchData& data, const Selection& selection,
+                                              double noise_mm);
 
 }  // namespace softgrip::sysid
