@@ -48,6 +48,19 @@ double rms(std::span<const double> values) {
   return count == 0 ? 0 : std::sqrt(sum / static_cast<double>(count));
 }
 
+double rmse_of(const model::Model& model, const std::vector<StartState>& starts,
+               const std::vector<Record>& records) {
+  double sum = 0;
+  std::size_t readings = 0;
+  for (std::size_t r = 0; r < records.size(); ++r) {
+    const double each = rms(residual(records[r], predict(model, records[r], starts[r])));
+    sum += each * each * static_cast<double>(records[r].readings);
+    readings += records[r].readings;
+  }
+  const double rmse = std::sqrt(sum / static_cast<double>(std::max<std::size_t>(readings, 1)));
+  return std::isfinite(rmse) ? rmse : std::numeric_limits<double>::infinity();
+}
+
 std::vector<double> branch_time_constants_s(const model::Model& model) {
   std::vector<double> time_constants;
   const auto position = model::position_of<model::KelvinVoigt>(model);

@@ -26,6 +26,11 @@ void add_start(const model::Model& model, const Record& record, const StartState
 /// Root of the mean square of the finite values.
 [[nodiscard]] double rms(std::span<const double> values);
 
+/// Root of the mean square error of all readings [mm]; infinity if a prediction is not finite.
+/// @param starts  by record.
+[[nodiscard]] double rmse_of(const model::Model& model, const std::vector<StartState>& starts,
+                             const std::vector<Record>& records);
+
 /// The time constants c/k of the model's Kelvin-Voigt branches [s] (of the first such block).
 [[nodiscard]] std::vector<double> branch_time_constants_s(const model::Model& model);
 

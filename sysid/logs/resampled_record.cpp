@@ -150,6 +150,16 @@ Record averaged_to(const Record& record, double interval_s) {
   return thin;
 }
 
+std::vector<Record> averaged_to_count(std::vector<Record> records, std::size_t most, double longest_s) {
+  std::size_t readings = 0;
+  for (const Record& record : records) readings += record.readings;
+  if (readings <= most) return records;
+  const double samples = std::ceil(static_cast<double>(readings) / static_cast<double>(most));
+  for (Record& record : records)
+    record = averaged_to(record, std::min((samples + 0.5) * record.mean_interval_s(), longest_s));
+  return records;
+}
+
 Record thinned_to_centres(const Record& record, double interval_s) {
   if (interval_s <= record.mean_interval_s()) return record;
   Record thin = thinned_record(record, nearest_to_centres(record, interval_s));

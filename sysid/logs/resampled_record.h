@@ -12,6 +12,10 @@
 
 namespace softgrip::sysid {
 
+/// Readings that show a finger completely: an hour at 10 Hz, or seven minutes at 100 Hz. The time of a
+/// diagnosis and of a choice of structure grows with their number.
+inline constexpr std::size_t enough_readings = 40'000;
+
 /// The samples at `kept` (ascending, the first is 0), with durations between them; of irregular sampling
 /// where nothing else is said.
 [[nodiscard]] Record thinned_record(const Record& record, std::span<const std::size_t> kept);
@@ -26,6 +30,10 @@ namespace softgrip::sysid {
 /// their noise falls with the root of their number. A motion is not blurred as long as it bends little within
 /// `interval_s`.
 [[nodiscard]] Record averaged_to(const Record& record, double interval_s);
+/// All records averaged so that about `most` readings are left in all. No mean covers more than `longest_s`,
+/// so of a very long campaign more readings are left.
+[[nodiscard]] std::vector<Record> averaged_to_count(std::vector<Record> records, std::size_t most,
+                                                    double longest_s);
 /// The first sample, and of every interval of such a length, counted from it, the sample that is nearest to
 /// its middle: what is reckoned there stands for the interval's mean, but for how much it bends in it. A
 /// record that is coarser already stays as it is.

@@ -52,10 +52,11 @@ class Valve {
 
 }  // namespace
 
-DrivenPressure driven_pressure(const Record& record, const BaseStructure& structure,
-                               const NonlinearNumbers& numbers) {
-  DrivenPressure driven;
+void drive(const Record& record, const BaseStructure& structure, const NonlinearNumbers& numbers,
+           DrivenPressure& driven) {
   driven.first_kpa = record.drive_kpa.front();
+  driven.segments.clear();
+  driven.until.clear();
   driven.segments.reserve(3 * record.size());
   driven.until.reserve(record.size());
   Valve valve(record, structure, numbers, driven.first_kpa);
@@ -71,7 +72,6 @@ DrivenPressure driven_pressure(const Record& record, const BaseStructure& struct
     step(record.duration_s[i], record.held ? end : begin, end);
     driven.until.push_back(driven.segments.size());
   }
-  return driven;
 }
 
 }  // namespace softgrip::sysid

@@ -22,8 +22,9 @@ struct DrivenPressure {
   }
 };
 
+/// Writes into `driven`, whose memory is used again: a search asks for it thousands of times.
 /// @param numbers  those of the delay, the lag and the regulator count, as far as `structure` has them.
-[[nodiscard]] DrivenPressure driven_pressure(const Record& record, const BaseStructure& structure,
-                                             const NonlinearNumbers& numbers);
+void drive(const Record& record, const BaseStructure& structure, const NonlinearNumbers& numbers,
+           DrivenPressure& driven);
 
 }  // namespace softgrip::sysid

@@ -11,6 +11,7 @@
 #include "sysid/identification/combinations.h"
 #include "sysid/identification/estimates.h"
 #include "sysid/logs/division.h"
+#include "sysid/logs/resampled_record.h"
 #include "sysid/structure/published_element.h"
 #include "sysid/structure/structure_model.h"
 #include "sysid/structure/valve_stage.h"
@@ -23,6 +24,8 @@ using Failure = tl::unexpected<std::string>;
 /// A search that ends within this of the best RMSE has reached it.
 constexpr double reached_share = 1e-3;
 constexpr std::size_t fewest_readings = 100;
+/// A structure is chosen with means over at most this time [s], so that a valve's lag is still seen.
+constexpr double longest_mean_s = 0.02;
 
 StructureEvidence evidence_of(const StructureChoice& choice, const std::vector<WithoutIngredient>& ablation) {
   StructureEvidence evidence;
@@ -37,6 +40,14 @@ StructureEvidence evidence_of(const StructureChoice& choice, const std::vector<W
     evidence.ablation.push_back(
         {std::string(name_of(w.ingredient)), w.trial.rmse_mm, w.trial.heldout_rmse_mm});
   return evidence;
+}
+
+std::string chosen_by_means(const std::vector<Record>& averaged) {
+  double longest_s = 0;
+  for (const Record& record : averaged) longest_s = std::max(longest_s, record.mean_interval_s());
+  return "more than " + std::to_string(enough_readings) +
+         " readings: the structure was chosen with means over " + significant(1e3 * longest_s, 2) +
+         " ms, and its parameters were fitted to all samples";
 }
 
 /// Intervals of the numbers that the fit moved, those that stand at zero or at a bound without one.
@@ -150,10 +161,17 @@ tl::expected<Identification, std::string> identify_structure(const std::vector<L
   if (options.progress) {
     choice_options.progress = [&](const std::string& stage) { options.progress({0, 0, 0, stage}); };
   }
-  result.records = with_simplest_start(result.records, choice_options);
-  const StructureChoice choice = choose_structure(result.records, choice_options);
-  const StructureTrial& chosen = choice.trials[choice.chosen];
+  const std::vector<Record> fewer =
+      with_simplest_start(averaged_to_count(result.records, enough_readings, longest_mean_s), choice_options);
+  for (std::size_t k = 0; k < fewer.size(); ++k) result.records[k].start_unknown = fewer[k].start_unknown;
+  const StructureChoice choice = choose_structure(fewer, choice_options);
+  StructureTrial chosen = choice.trials[choice.chosen];
   if (!std::isfinite(chosen.rmse_mm)) return Failure("the model's answer is not finite from any start");
+  result.structure = evidence_of(choice, ablation_of(fewer, choice, choice_options));
+  if (readings > enough_readings) {
+    chosen = fitted_to(std::move(chosen), result.records, record.drive);
+    result.warnings.push_back(chosen_by_means(fewer));
+  }
   result.fitted = chosen.point.model;
   result.fitted.name = "identified";
   result.model = result.fitted;
@@ -162,7 +180,6 @@ tl::expected<Identification, std::string> identify_structure(const std::vector<L
   result.multistart = multistart_of(chosen);
   add_scores(chosen, whole, result);
   add_estimates(chosen, result);
-  result.structure = evidence_of(choice, ablation_of(result.records, choice, choice_options));
   add_warnings(result);
   if (two_stages) join_valve(logs, options, result);
   result.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();

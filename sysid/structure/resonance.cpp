@@ -48,18 +48,6 @@ std::vector<std::size_t> latencies(const model::Model& model) {
   return flat;
 }
 
-double rmse_of(const FitPoint& point, const std::vector<Record>& records) {
-  double sum = 0;
-  std::size_t readings = 0;
-  for (std::size_t r = 0; r < records.size(); ++r) {
-    const double each = rms(residual(records[r], predict(point.model, records[r], point.starts[r])));
-    sum += each * each * static_cast<double>(records[r].readings);
-    readings += records[r].readings;
-  }
-  const double rmse = std::sqrt(sum / static_cast<double>(std::max<std::size_t>(readings, 1)));
-  return std::isfinite(rmse) ? rmse : std::numeric_limits<double>::infinity();
-}
-
 ResonantFit minimised(const FitPoint& from, const std::vector<Record>& records) {
   FitSpace space(from.model, records, latencies(from.model));
   space.hold_starts(from.starts);
@@ -88,7 +76,7 @@ ResonantFit with_resonance(const FitPoint& point, const std::vector<Record>& rec
     for (std::size_t d = 0; d < damping_ratios.size(); ++d) {
       ResonantFit start{point, 0};
       put(start.point, period_s, damping_ratios[d]);
-      start.rmse_mm = rmse_of(start.point, records);
+      start.rmse_mm = rmse_of(start.point.model, start.point.starts, records);
       if (start.rmse_mm < best[d].rmse_mm) best[d] = std::move(start);
     }
   }

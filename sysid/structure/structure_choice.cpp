@@ -9,6 +9,7 @@
 #include "base/parallel.h"
 #include "sysid/fitting/held_out.h"
 #include "sysid/fitting/minimise.h"
+#include "sysid/fitting/trajectory.h"
 #include "sysid/identification/identify.h"
 #include "sysid/structure/bounded_answer.h"
 #include "sysid/structure/published_element.h"
@@ -374,6 +375,22 @@ StructureChoice choose_structure(const std::vector<Record>& records, const Struc
     offer(judge.judge_resonant(choice.trials[choice.chosen]), choice);
   }
   return choice;
+}
+
+StructureTrial fitted_to(StructureTrial trial, const std::vector<Record>& records, Drive drive) {
+  if (trial.structure.published) {
+    trial.point = refit_published(records, trial.point);
+  } else {
+    BaseStructure still = trial.structure;
+    const bool rings = std::exchange(still.resonance, false);
+    const StructureFitOptions options{.ridge = trial.ridge, .most_iterations = fold_iterations};
+    const FittedStructure fit = fit_form(records, still, grid_for(records), options, &trial.numbers);
+    trial.numbers = fit.numbers;
+    const FitPoint point = point_of(fit, records, drive);
+    trial.point = rings ? with_resonance_of(trial.point, point, records) : point;
+  }
+  trial.rmse_mm = rmse_of(trial.point.model, trial.point.starts, records);
+  return trial;
 }
 
 std::vector<WithoutIngredient> ablation_of(const std::vector<Record>& records, const StructureChoice& choice,

@@ -106,6 +106,10 @@ struct WithoutIngredient {
 [[nodiscard]] StructureChoice choose_structure(const std::vector<Record>& records,
                                                const StructureChoiceOptions& options);
 
+/// A trial that was chosen with averaged records, fitted to the records as they are, from its own numbers.
+/// Its losses in held-out blocks stay those of the choice.
+[[nodiscard]] StructureTrial fitted_to(StructureTrial trial, const std::vector<Record>& records, Drive drive);
+
 /// The choice without each of those of the ingredients that it has: what each brings. None of the published
 /// element.
 /// @param records, options  those of the choice.

@@ -201,7 +201,7 @@ const Eigen::MatrixXd& StructureColumns::at(const NonlinearNumbers& numbers) {
   driven_.resize(records_.size());
   for_each_record(records_, [&](std::size_t r) {
     if (!driven_alike) {
-      driven_[r] = driven_pressure(records_[r], structure_, numbers);
+      drive(records_[r], structure_, numbers, driven_[r]);
       write_driven(r);
     }
     if (layout_.hysteretic() > 0) write_hysteresis(r);

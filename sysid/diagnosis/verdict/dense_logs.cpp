@@ -11,7 +11,7 @@ namespace softgrip::sysid {
 bool average_dense(std::vector<Record>& records, std::vector<std::string>& warnings) {
   std::size_t readings = 0;
   for (const Record& record : records) readings += record.readings;
-  if (readings <= most_readings) return false;
+  if (readings <= enough_readings) return false;
   bool any = false;
   for (Record& record : records) {
     Record averaged = averaged_to(record, averaged_interval_s);

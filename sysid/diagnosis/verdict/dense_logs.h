@@ -9,14 +9,11 @@
 
 namespace softgrip::sysid {
 
-/// Campaigns with at most this number of readings are not changed.
-inline constexpr std::size_t most_readings = 40'000;
-/// Readings of a larger campaign that are closer together are averaged over at most this time [s]: half a
-/// sample at 100 Hz.
+/// Readings that are closer together are averaged over at most this time [s]: half a sample at 100 Hz.
 inline constexpr double averaged_interval_s = 0.005;
 
-/// Averages the records of such a campaign, and adds one sentence per averaged record to `warnings`. Returns
-/// true if any record was averaged.
+/// Averages the records of a campaign with more than enough_readings (`sysid/logs/resampled_record.h`), and
+/// adds one sentence per averaged record to `warnings`. Returns true if any record was averaged.
 bool average_dense(std::vector<Record>& records, std::vector<std::string>& warnings);
 
 }  // namespace softgrip::sysid

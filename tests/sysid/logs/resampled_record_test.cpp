@@ -121,6 +121,15 @@ TEST(AveragedRecord, ThatIsSparseEnoughStaysAsItIs) {
   EXPECT_EQ(averaged_to(record, 0.0015).reading_mm, record.reading_mm);
 }
 
+TEST(AveragedRecord, ACampaignKeepsAboutAsManyReadingsAsWanted) {
+  const std::vector<Record> campaign{parabola(0), parabola(0)};  // 4001 readings each
+  EXPECT_EQ(averaged_to_count(campaign, 8002, 1).front().size(), 4001U) << "few enough";
+  const std::vector<Record> averaged = averaged_to_count(campaign, 800, 1);
+  ASSERT_EQ(averaged.size(), 2U);
+  for (const Record& record : averaged) EXPECT_EQ(record.size(), 364U) << "each 11th";
+  EXPECT_EQ(averaged_to_count(campaign, 800, 0.005).front().size(), 801U) << "no mean over more than 5 ms";
+}
+
 TEST(StridedRecord, LeavesOutReadingsButTellsMotionsApartLikeTheLog) {
   EXPECT_EQ(thinned_to(parabola(0), 0.02).finest_interval_s, 1e-3);
   EXPECT_NEAR(averaged_to(parabola(0), 0.02).finest_interval_s, 0.02, 1e-12) << "a mean blurs what is faster";

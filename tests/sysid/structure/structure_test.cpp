@@ -16,6 +16,7 @@
 #include "model/chain.h"
 #include "model/named.h"
 #include "sysid/fitting/trajectory.h"
+#include "sysid/logs/resampled_record.h"
 #include "sysid/structure/identify_structure.h"
 #include "sysid/structure/published_element.h"
 #include "sysid/structure/structure.h"
@@ -185,6 +186,27 @@ TEST(IdentifyStructure, FindsThePublishedElementWithItsDelayAndItsLag) {
     ++checked;
   }
   EXPECT_EQ(checked, 2);
+}
+
+TEST(IdentifyStructure, IsChosenByMeansOfADenseLogAndFittedToAllItsSamples) {
+  const double noise_mm = 0.05;
+  const std::vector<Log> logs{simulated(loaded("bench_twin"), SignalName::tp1, 1000, noise_mm, 3)};
+  ASSERT_GT(logs.front().size(), enough_readings);
+  const auto found = identify_structure(logs, StructureQuestion::bouc_wen);
+  ASSERT_TRUE(found) << found.error();
+  ASSERT_EQ(found->warnings.size(), 1U);
+  EXPECT_NE(found->warnings.front().find("means over 2 ms"), std::string::npos) << found->warnings.front();
+  EXPECT_NEAR(found->rmse_mm, noise_mm, 0.02 * noise_mm) << "of all samples; a mean of two has less noise";
+  const auto chosen = std::find_if(found->structure->candidates.begin(), found->structure->candidates.end(),
+                                   [](const auto& c) { return c.chosen; });
+  EXPECT_NEAR(chosen->heldout_rmse_mm, noise_mm, 0.05 * noise_mm)
+      << "two samples have no mean around the second";
+  for (const Estimate& e : found->parameters) {
+    if (e.name != "transport_delay.delay_s") continue;
+    ASSERT_TRUE(e.ci95);
+    EXPECT_LE(e.ci95->lower, 0.13);
+    EXPECT_GE(e.ci95->upper, 0.13);
+  }
 }
 
 TEST(IdentifyStructure, FindsAFingerOfPlays) {

@@ -1,0 +1,167 @@
+#!/usr/bin/python3
+"""How long softgrip takes for large logs: 40,000 rows in `diagnose` and 600,000 rows in `identify --structure auto`.
+
+    scripts/large_logs.py [--build build/release] [--threads 2] [--only CASE ...] [--page docs/results/large-logs.md]
+
+The commands are ramps to random pressures (printed seeds), the fingers are models of config/models. The cases run one after
+the other, as a user runs them: reading the files, closed loop and report included. Nothing else should run meanwhile.
+"""
+import argparse
+import json
+import os
+import pathlib
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+
+import numpy as np
+
+import results_page
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+MODELS = ROOT / "config/models"
+TWIN, GIVEN, PLAY = MODELS / "bench_twin.yaml", MODELS / "zhang2025.yaml", MODELS / "soft_arm_play.yaml"
+MOST_S = {"diagnose": 30, "identify": 20}
+MEDIAN_S = 10
+
+
+def command(length_s, rate_hz, seed):
+    """Times [s] and pressures [kPa]: ramps of 0.1 to 4 s to 0 or 5 to 60 kPa, then 0.5 to 6 s of hold."""
+    random = np.random.default_rng(seed)
+    knots, at_s = [(0, 0), (2, 0)], 2
+    while at_s < length_s - 4:
+        level = random.choice([0, 0, random.uniform(5, 60)])
+        ramp_s, hold_s = random.uniform(0.1, 4), random.uniform(0.5, 6)
+        knots += [(at_s + ramp_s, level), (at_s + ramp_s + hold_s, level)]
+        at_s += ramp_s + hold_s
+    times, levels = zip(*knots, (length_s, 0))
+    time_s = np.arange(int(length_s * rate_hz)) / rate_hz
+    return time_s, np.interp(time_s, times, levels)
+
+
+class Logs:
+    def __init__(self, softgrip, folder):
+        self.softgrip, self.folder, self.count = softgrip, folder, 0
+
+    def write(self, header, *columns):
+        self.count += 1
+        path = self.folder / f"log{self.count}.csv"
+        np.savetxt(path, np.column_stack(columns), delimiter=",", header=header, comments="", fmt="%.7g")
+        return path
+
+    def answer(self, model, time_s, pressure_kpa, seed):
+        driven = self.write("time_s,pressure_command_kpa", time_s, pressure_kpa)
+        out = driven.with_name(f"answer_{driven.name}")
+        subprocess.run([self.softgrip, "simulate", "--model", model, "--input", driven, "--noise-mm", "0.04", "--seed", str(seed),
+                        "--out", out], check=True, capture_output=True)
+        return out
+
+    def made(self, model, length_s, rate_hz, seed):
+        return self.answer(model, *command(length_s, rate_hz, seed), seed)
+
+    def measured(self, model, length_s, rate_hz, seed):
+        """The model follows a measured pressure: the command behind a lag of 0.1 s, with 0.05 kPa of noise in its column."""
+        time_s, command_kpa = command(length_s, rate_hz, seed)
+        pressure_kpa, kept = np.empty_like(command_kpa), np.exp(-1 / (rate_hz * 0.1))
+        state = 0.0
+        for i, kpa in enumerate(command_kpa):
+            state = kept * state + (1 - kept) * kpa
+            pressure_kpa[i] = state
+        displacement = np.genfromtxt(self.answer(model, time_s, pressure_kpa, seed), delimiter=",", names=True)["displacement_mm"]
+        noise = 0.05 * np.random.default_rng(seed).standard_normal(len(time_s))
+        return self.write("time_s,pressure_command_kpa,pressure_kpa,displacement_mm", time_s, command_kpa, pressure_kpa + noise,
+                          displacement)
+
+
+def cases(logs):
+    """name: (program, arguments), made when they are asked for."""
+    def diagnose(given, data, healthy=()):
+        return "diagnose", ["--model", given, "--data", *data, *(["--healthy", *healthy] if healthy else [])]
+
+    def healthy(make):
+        return [make(TWIN, 100, 100, seed) for seed in (2, 3, 4)]
+
+    return {
+        "nothing hidden, 400 s at 100 Hz": lambda: diagnose(TWIN, [logs.made(TWIN, 400, 100, 1)]),
+        "delay and lag, 400 s at 100 Hz": lambda: diagnose(GIVEN, [logs.made(TWIN, 400, 100, 1)]),
+        "delay and lag, 40 s at 1 kHz": lambda: diagnose(GIVEN, [logs.made(TWIN, 40, 1000, 7)]),
+        "another structure, 400 s at 100 Hz": lambda: diagnose(GIVEN, [logs.made(PLAY, 400, 100, 1)]),
+        "measured pressure, 4 logs of 100 s at 100 Hz": lambda: diagnose(
+            GIVEN, [logs.measured(TWIN, 100, 100, seed) for seed in (2, 3, 4, 5)]),
+        "3 healthy logs and 1 unchanged, 100 s at 100 Hz each": lambda: diagnose(
+            GIVEN, [logs.made(TWIN, 100, 100, 5)], healthy(logs.made)),
+        "3 healthy logs and 1 of another finger, 100 s at 100 Hz each": lambda: diagnose(
+            GIVEN, [logs.made(GIVEN, 100, 100, 5)], healthy(logs.made)),
+        "the same with measured pressure": lambda: diagnose(
+            GIVEN, [logs.measured(GIVEN, 100, 100, 5)], healthy(logs.measured)),
+        "600 s at 1 kHz, published structure": lambda: (
+            "identify", ["--structure", "auto", "--data", logs.made(TWIN, 600, 1000, 6)]),
+        "600 s at 1 kHz, play operators": lambda: (
+            "identify", ["--structure", "auto", "--data", logs.made(PLAY, 600, 1000, 6)]),
+    }
+
+
+def timed(softgrip, name, made, threads, folder):
+    program, arguments = made()
+    paths = [a for a in arguments if isinstance(a, pathlib.Path) and a.suffix == ".csv"]
+    rows = sum(len(path.read_text().splitlines()) - 1 for path in paths)
+    began, before = time.monotonic(), os.times()
+    done = subprocess.run([softgrip, program, *arguments, "--threads", str(threads), "--out", folder / "out", "--json"],
+                          capture_output=True, text=True, check=False)
+    after = os.times()
+    if done.returncode not in (0, 6):
+        sys.exit(f"{name}: {done.stderr}")
+    answer = json.loads(done.stdout)
+    verdict = answer["verdict"] if program == "diagnose" else next(
+        c["description"] for c in answer["structure"]["candidates"] if c["chosen"])
+    return {"name": name, "program": program, "rows": rows, "wall_s": time.monotonic() - began,
+            "processor_s": after.children_user - before.children_user, "verdict": verdict, "load": os.getloadavg()[0]}
+
+
+def page(args, rows):
+    lines, by_program = [], {}
+    for row in rows:
+        by_program.setdefault(row["program"], []).append(row["wall_s"])
+        lines.append(f"| `{row['program']}` | {row['name']} | {row['rows']:,} | {row['verdict']} | {row['wall_s']:.1f} | "
+                     f"{row['processor_s']:.1f} | {MOST_S[row['program']]} | {row['load']:.1f} |")
+    meaning = "; ".join(f"{name} takes at most {max(times):.0f} s (median {statistics.median(times):.0f} s)"
+                        for name, times in (("a diagnosis of 40,000 rows", by_program.get("diagnose", [])),
+                                            ("`identify --structure auto` on 600,000 rows", by_program.get("identify", []))) if times)
+    loads = [row["load"] for row in rows]
+    return "\n".join([
+        *results_page.head("Duration for large logs", meaning[0].upper() + meaning[1:] + ".", results_page.version_of(args.build),
+                           "scripts/large_logs.py --page", f"{os.cpu_count()} processors, {args.threads} threads, 1-minute load "
+                           f"{min(loads):.1f} to {max(loads):.1f}"),
+        f"Required: a diagnosis at most {MOST_S['diagnose']} s, median {MEDIAN_S} s; `identify` at most {MOST_S['identify']} s.", "",
+        "| command | case | rows | answer | took [s] | processor time [s] | at most [s] | load |", "|---|---|---|---|---|---|---|---|",
+        *lines, ""])
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build/release")
+    parser.add_argument("--threads", type=int, default=2)
+    parser.add_argument("--only", nargs="+", help="cases whose name contains one of these")
+    parser.add_argument("--page", type=pathlib.Path)
+    args = parser.parse_args()
+    args.build = args.build.resolve()
+    softgrip, rows = args.build / "tools/softgrip", []
+    with tempfile.TemporaryDirectory() as folder:
+        work = pathlib.Path(folder)
+        for name, made in cases(Logs(softgrip, work)).items():
+            if args.only and not any(part in name for part in args.only):
+                continue
+            rows.append(timed(softgrip, name, made, args.threads, work))
+            row = rows[-1]
+            print(f"{row['program']}, {name}: {row['wall_s']:.1f} s, {row['processor_s']:.1f} s of processor time, {row['verdict']}",
+                  flush=True)
+    if not rows:
+        parser.error("no case has such a name")
+    text = page(args, rows)
+    args.page.write_text(text) if args.page else print(text, end="")
+
+
+if __name__ == "__main__":
+    main()
