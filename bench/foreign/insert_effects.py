@@ -1,12 +1,13 @@
 #!/usr/bin/python3
 """Inserts known effects into real repeated runs, as data sets for bench/foreign.py.
 
-    bench/foreign/insert_effects.py --out DIR [--data DIR]
+    bench/foreign/insert_effects.py --out DIR [--data DIR] [--pulses]
     bench/foreign.py --data DIR --only changes --out RESULTS --page PAGE
 
 The runs are those that a laboratory recorded without a change in between (`repeats` of the table of a set). In the later
 run an effect is inserted into the readings; the baseline runs stay as they were recorded. So the finger, the valve, the
 noise and the differences between runs are real, and only the effect is known. With 1 set of DIR for each set of --data.
+--pulses takes the pulses of one recording instead of runs: 1 healthy pulse, then the next one with an effect.
 Sizes are shares of the stroke (highest minus lowest reading), noise that an operation removes is added again (0.1 % of the
 stroke, seed 1).
 """
@@ -119,11 +120,11 @@ def write_set(data_set, pairs, folder):
         f"licence: \"{data_set.licence}\"", "logs:", *entries.values(), "changes:", *changes, "identification: []", ""]))
 
 
-def chosen(pairs):
-    """For each later run the pair with most baseline runs. Pulses of 1 recording are left out."""
+def chosen(pairs, pulses):
+    """For each later run the pair with most baseline runs."""
     most = {}
     for pair in pairs:
-        if pair.group == "runs" and len(pair.baseline) > len(getattr(most.get(pair.later), "baseline", [])):
+        if (pair.group != "runs") == pulses and len(pair.baseline) > len(getattr(most.get(pair.later), "baseline", [])):
             most[pair.later] = pair
     return list(most.values())
 
@@ -132,12 +133,13 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--out", type=pathlib.Path, required=True)
     parser.add_argument("--data", type=pathlib.Path, default=SHARED if SHARED.is_dir() else HERE / "data")
+    parser.add_argument("--pulses", action="store_true", help="pulses of one recording instead of runs")
     args = parser.parse_args()
     sets, problems = set_table.find_sets([args.data], HERE / "sets", args.out / "tables")
     for problem in problems:
         print(problem, file=sys.stderr)
     for data_set in sets:
-        pairs = chosen(data_set.repeats)
+        pairs = chosen(data_set.repeats, args.pulses)
         if pairs:
             write_set(data_set, pairs, args.out / f"{data_set.name}_inserted")
             print(f"{args.out / data_set.name}_inserted: {len(pairs)} runs with {len(EFFECTS)} effects each")

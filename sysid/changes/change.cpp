@@ -39,14 +39,19 @@ using Failure = tl::unexpected<std::string>;
 
 struct Prepared {
   std::vector<Record> records;
+  double noise_mm = 0;
   OutlierEvidence outliers;
   SamplingEvidence sampling;
 };
 
-Prepared driven_records(const std::vector<Log>& logs, Drive drive, const ChangeOptions& options) {
-  Prepared p{make_records(logs, {.drive = drive, .held = options.held}), {}, {}};
+/// @param healthy_noise_mm  A reading within the healthy noise is no outlier. The later noise may be smaller:
+/// a sensor at the end of its range has none.
+Prepared driven_records(const std::vector<Log>& logs, Drive drive, const ChangeOptions& options,
+                        double healthy_noise_mm = 0) {
+  Prepared p{make_records(logs, {.drive = drive, .held = options.held}), 0, {}, {}};
   p.sampling = hide_repeated(p.records);
-  p.outliers = hide_outliers(p.records, measured_noise_mm(p.records));
+  p.noise_mm = std::max(healthy_noise_mm, measured_noise_mm(p.records));
+  p.outliers = hide_outliers(p.records, p.noise_mm);
   return p;
 }
 
@@ -434,7 +439,6 @@ std::string unused_pressure(const DriveChoice& choice) {
 
 /// Causes that are found in the readings, without a fit: isolated wrong samples, and readings that repeat.
 void judge_readings(const Prepared& healthy, const Prepared& later, ChangeDiagnosis& diagnosis) {
-  const double noise_mm = measured_noise_mm(later.records);
   const auto add = [&](std::string_view id, ChangeSize size, std::optional<Interval> interval,
                        double excess_mm) {
     ChangeCause cause;
@@ -446,7 +450,7 @@ void judge_readings(const Prepared& healthy, const Prepared& later, ChangeDiagno
     cause.intervals.size = interval;
     cause.effect_mm = excess_mm;
     cause.share_percent = 100;
-    cause.gain = noise_mm > 0 ? std::pow(excess_mm / noise_mm, 2) : 0;
+    cause.gain = later.noise_mm > 0 ? std::pow(excess_mm / later.noise_mm, 2) : 0;
     diagnosis.causes.push_back(std::move(cause));
   };
   const OutlierEvidence& outliers = later.outliers;
@@ -524,7 +528,7 @@ tl::expected<ChangeDiagnosis, std::string> diagnose_change(const std::vector<Log
     }
   }
   const Drive drive = pressure ? Drive::measured : Drive::command;
-  const Prepared after = driven_records(later, drive, options);
+  const Prepared after = driven_records(later, drive, options, before.noise_mm);
   judge_readings(before, after, diagnosis);
   if (pressure) {
     Judge valve(fit_base(pressure_records(healthy, options.held), Judged::pressure, Drive::command, base),
