@@ -9,7 +9,7 @@
 #include "base/statistics.h"
 #include "model/catalogue.h"
 #include "sysid/changes/downstream.h"
-#include "sysid/changes/echo_fit.h"
+#include "sysid/changes/filter_fit.h"
 #include "sysid/changes/regulator_fit.h"
 #include "sysid/fitting/start_estimate.h"
 #include "sysid/fitting/trajectory.h"
@@ -21,11 +21,11 @@
 namespace softgrip::sysid {
 namespace {
 
-/// A valve answers sooner than a finger: whatever the command drives is judged in shorter bins, and so is a
-/// finger's own delay told from its lag.
+/// A valve responds faster than a finger. With the command as input the bins are therefore shorter, which
+/// also separates the delay of a finger from its lag.
 constexpr double shortest_finger_bin_s = 0.05, shortest_commanded_bin_s = 0.02;
-/// In bins, of what is left; of a finger, which forgets later than a valve, so many seconds where that is
-/// more.
+/// Order of the autoregression of the residual [bins]. For a finger, whose memory is longer, it covers at
+/// least finger_memory_s.
 constexpr std::size_t whitening_order = 8;
 constexpr double finger_memory_s = 0.4;
 /// From day to day no gain and no zero stays nearer than this.
@@ -59,12 +59,12 @@ double mean_temperature(const std::vector<Record>& records) {
   return count > 0 ? sum / count : 20;
 }
 
-/// Of a pressure: what a regulator makes of the command, which drives the record; without one nothing.
+/// Prediction of a pressure: the output of the regulator, which drives the record; without a regulator 0.
 std::vector<double> without_model(const std::optional<Regulator>& regulator, const Record& driven) {
   return regulator ? driven.drive_kpa : std::vector<double>(driven.size(), 0.0);
 }
 
-/// Where a run begins that was not fitted. Its zero is left to whoever compares runs.
+/// Estimated start of a run that was not fitted. The comparison of runs estimates its zero.
 StartState start_of(const model::Model& model, const Record& record) {
   if (model.blocks.empty()) return {};
   StartState start = estimated_start(model, record);
@@ -85,7 +85,7 @@ std::vector<double> plain_prediction(const model::Model& model, const std::optio
   return predict(model, record, own);
 }
 
-/// What a candidate leaves of all records, in bins, fitted to those that are left without a unit.
+/// Residual of a candidate for all records, in bins. The candidate is fitted without one unit.
 /// @param model  receives the model.
 Binned left_by(const Candidate& candidate, const std::vector<Record>& records, const Units& units,
                std::size_t unit, double bin_s, model::Model& model) {
@@ -146,10 +146,10 @@ std::vector<Candidate> candidates(const std::vector<Record>& records, const Base
 }
 
 /// Behind a valve whose pressure is not recorded, a finger shows what either of them does.
-std::vector<EchoKind> kinds_for(Judged judged, Drive drive) {
-  if (judged == Judged::pressure) return {EchoKind::valve};
-  if (drive == Drive::measured) return {EchoKind::finger};
-  return {EchoKind::finger, EchoKind::valve_and_finger};
+std::vector<FilterKind> kinds_for(Judged judged, Drive drive) {
+  if (judged == Judged::pressure) return {FilterKind::valve};
+  if (drive == Drive::measured) return {FilterKind::finger};
+  return {FilterKind::finger, FilterKind::valve_and_finger};
 }
 
 /// A candidate with what it leaves, fitted without each unit and to all.
@@ -179,9 +179,9 @@ std::vector<Fitted> fit_all(const std::vector<Candidate>& all, const std::vector
 /// regulator is fitted to all units: of its model only what is behind it is fitted without a unit.
 void choose(Base& base, const std::vector<Candidate>& all, const std::vector<Record>& records,
             const BaseOptions& options) {
-  const std::vector<EchoKind> kinds = kinds_for(base.judged, base.drive);
+  const std::vector<FilterKind> kinds = kinds_for(base.judged, base.drive);
   const std::vector<Fitted> fitted = fit_all(all, records, base, options.threads);
-  std::vector<FittedEcho> echoes(all.size() * kinds.size());
+  std::vector<FittedFilters> fits(all.size() * kinds.size());
   // Candidates without a regulator follow the same drives and share their columns.
   std::vector<std::vector<std::size_t>> groups(1);
   for (std::size_t c = 0; c < all.size(); ++c) {
@@ -196,25 +196,25 @@ void choose(Base& base, const std::vector<Candidate>& all, const std::vector<Rec
     if (group.empty()) return;
     std::vector<LeftByUnit> left;
     for (const std::size_t c : group) left.push_back(fitted[c].left);
-    std::vector<FittedEcho> own = fit_echo(fitted[group.front()].driven, base.units, kinds[k], base.bin_s,
-                                           base.largest_kpa, left, options.seed);
-    for (std::size_t i = 0; i < group.size(); ++i) echoes[group[i] * kinds.size() + k] = std::move(own[i]);
+    std::vector<FittedFilters> own = fit_filters(fitted[group.front()].driven, base.units, kinds[k],
+                                                 base.bin_s, base.largest_kpa, left, options.seed);
+    for (std::size_t i = 0; i < group.size(); ++i) fits[group[i] * kinds.size() + k] = std::move(own[i]);
   });
   for (std::size_t c = 0; c < all.size(); ++c) {
     for (std::size_t k = 0; k < kinds.size(); ++k) {
-      FittedEcho& echo = echoes[c * kinds.size() + k];
-      if (!std::isfinite(echo.left_mm)) continue;
+      FittedFilters& filters = fits[c * kinds.size() + k];
+      if (!std::isfinite(filters.left_mm)) continue;
       const bool is_first = !std::isfinite(base.left_mm);
       if (!is_first &&
-          !is_better(compare(losses_of(base.left, echo.left, base.units, base.bin_s), 0, options.seed)))
+          !is_better(compare(losses_of(base.left, filters.left, base.units, base.bin_s), 0, options.seed)))
         continue;
       base.model = fitted[c].model;
       base.regulator = all[c].regulator;
       base.description = all[c].description;
       base.kind = kinds[k];
-      base.echo_weights = std::move(echo.weights);
-      base.left_mm = echo.left_mm;
-      base.left = std::move(echo.left);
+      base.filter_weights = std::move(filters.weights);
+      base.left_mm = filters.left_mm;
+      base.left = std::move(filters.left);
     }
     if (options.progress) options.progress(all[c].description);
   }
@@ -258,8 +258,9 @@ std::vector<double> walked_with(const Driven& driven, const std::vector<model::B
   return plain_prediction(model, {}, driven.walked, driven.start);
 }
 
-/// Model and echo with the blocks of an extension. What stands behind the model acts on the echo, too; the
-/// model is walked anew only where they reach into it or look at the way to a sample.
+/// Model and filter bank with the blocks of an extension. Blocks behind the model act on the
+/// filter bank, too. The model is simulated again only if a block changes it or depends on the motion between
+/// samples.
 std::vector<double> extended_prediction(const Driven& driven, const std::vector<model::BlockSpec>& blocks) {
   std::vector<model::BlockSpec> within, behind;
   for (const model::BlockSpec& block : blocks) {
@@ -269,15 +270,15 @@ std::vector<double> extended_prediction(const Driven& driven, const std::vector<
   std::stable_sort(behind.begin(), behind.end(),
                    [](const model::BlockSpec& a, const model::BlockSpec& b) { return a.type < b.type; });
   const std::vector<double> plain = within.empty() ? driven.plain : walked_with(driven, within);
-  std::vector<double> with_echo(plain.size());
-  std::transform(plain.begin(), plain.end(), driven.echo.begin(), with_echo.begin(), std::plus());
-  if (behind.empty()) return with_echo;
-  with_echo = downstream(behind, driven.walked, std::move(with_echo));
-  if (is_downstream(behind, driven.model, driven.walked)) return with_echo;
-  // Between samples only the model's own way is known: the echo's goes straight.
-  const std::vector<double> without_echo = downstream(behind, driven.walked, plain);
+  std::vector<double> with_filters(plain.size());
+  std::transform(plain.begin(), plain.end(), driven.filters.begin(), with_filters.begin(), std::plus());
+  if (behind.empty()) return with_filters;
+  with_filters = downstream(behind, driven.walked, std::move(with_filters));
+  if (is_downstream(behind, driven.model, driven.walked)) return with_filters;
+  // Between samples only the model's own way is known: the filter bank's goes straight.
+  const std::vector<double> without_filters_mm = downstream(behind, driven.walked, plain);
   std::vector<double> exact = walked_with(driven, blocks);
-  for (std::size_t i = 0; i < exact.size(); ++i) exact[i] += with_echo[i] - without_echo[i];
+  for (std::size_t i = 0; i < exact.size(); ++i) exact[i] += with_filters[i] - without_filters_mm[i];
   return exact;
 }
 
@@ -301,8 +302,8 @@ std::vector<double> driven_prediction(const Base& base, const Driven& driven, co
   return y;
 }
 
-/// What the base's regulator, if it has one, makes of a command behind these blocks. A command that bends
-/// between the samples is followed there.
+/// Output of the base's regulator, if it has one, for a command behind these blocks. A command that bends
+/// between the samples is simulated with finer steps.
 std::vector<double> drive_of(const Base& base, const Record& record,
                              const std::vector<model::BlockSpec>& valve, const RegulatorFault& fault) {
   if (!base.regulator) return drive_behind(valve, record);
@@ -321,10 +322,10 @@ std::vector<double> drive_of(const Base& base, const Record& record,
 }
 
 /// The readings that the model alone has to explain.
-Record with_echo_taken_off(const Driven& driven) {
+Record without_filters(const Driven& driven) {
   Record record = driven.walked;
   for (std::size_t i = 0; i < record.size(); ++i)
-    record.reading_mm[i] -= driven.echo(static_cast<Eigen::Index>(i));
+    record.reading_mm[i] -= driven.filters(static_cast<Eigen::Index>(i));
   return record;
 }
 
@@ -364,11 +365,11 @@ Driven driven_by(const Base& base, const Record& record, const std::vector<model
   const auto whole = is_walked_whole ? with_valve(base.model, valve) : std::nullopt;
   if (whole) driven.model = *whole;
   driven.walked = whole ? record : driven.record;
-  driven.echo = base.echo_weights.size() == 0
-                    ? Eigen::VectorXd(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(record.size())))
-                    : weighted_echo(driven.record, driven.record.drive_kpa, base.kind, base.largest_kpa,
-                                    base.echo_weights);
-  driven.start = start != nullptr ? *start : start_of(driven.model, with_echo_taken_off(driven));
+  driven.filters = base.filter_weights.size() == 0
+                       ? Eigen::VectorXd(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(record.size())))
+                       : weighted_filters(driven.record, driven.record.drive_kpa, base.kind, base.largest_kpa,
+                                          base.filter_weights);
+  driven.start = start != nullptr ? *start : start_of(driven.model, without_filters(driven));
   driven.plain = plain_prediction(driven.model, base.regulator, driven.walked, driven.start);
   return driven;
 }
@@ -382,8 +383,7 @@ std::vector<double> predict_base(const Base& base, const Record& record, const E
 }
 
 Record thinned_for(const Base& base, const Record& record) {
-  // A hundredth of a second in a finger's bins, whatever drives it: what rings or lags by less is told by
-  // how.
+  // 0.01 s for a finger with either input: a faster oscillation or lag is identified by its form.
   constexpr double commanded_parts = 2, measured_parts = 5, valve_parts = 4;
   const double finger_parts = base.drive == Drive::measured ? measured_parts : commanded_parts;
   return thinned_to_centres(record,
@@ -411,9 +411,9 @@ Base fit_base(const std::vector<Record>& records, Judged judged, Drive drive, co
   base.units = Units(records);
   base.left_mm = std::numeric_limits<double>::infinity();
   choose(base, candidates(records, base, options), records, options);
-  Binned haste;
-  for (const Record& record : records) haste.push_back(haste_of(record, base.bin_s));
-  base.whitener = whitener_of(base.left, haste, order_for(base));
+  Binned peak_rate;
+  for (const Record& record : records) peak_rate.push_back(peak_rate_of(record, base.bin_s));
+  base.whitener = whitener_of(base.left, peak_rate, order_for(base));
   for (const Record& record : records) base.records.push_back(thinned_for(base, record));
   spread(base);
   return base;

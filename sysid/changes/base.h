@@ -12,8 +12,8 @@
 
 #include "model/model.h"
 #include "sysid/changes/bins.h"
-#include "sysid/changes/echo.h"
 #include "sysid/changes/extension.h"
+#include "sysid/changes/filter_bank.h"
 #include "sysid/changes/regulator.h"
 #include "sysid/evidence/units.h"
 #include "sysid/fitting/fit_space.h"
@@ -21,8 +21,8 @@
 
 namespace softgrip::sysid {
 
-/// Which column is judged. Of the pressure: command -> pressure_kpa, in the place of the displacement in
-/// every name below that ends with _mm (then kPa).
+/// The column that is judged. For `pressure` the model leads from the command to pressure_kpa, and each name
+/// below that ends with _mm is in kPa.
 enum class Judged { displacement, pressure };
 [[nodiscard]] constexpr const char* name_of(Judged judged) {
   return judged == Judged::pressure ? "pressure" : "displacement";
@@ -35,11 +35,11 @@ struct Base {
   Judged judged = Judged::displacement;
   Drive drive = Drive::command;
   std::string description;  ///< of the model that was chosen
-  model::Model model;       ///< without blocks: the regulator's pressure, or the echo alone
-  EchoKind kind = EchoKind::finger;
+  model::Model model;       ///< without blocks: the regulator's pressure, or the filter bank alone
+  FilterKind kind = FilterKind::finger;
   std::optional<Regulator> regulator;  ///< between the command and the model
   double largest_kpa = 0;
-  Eigen::VectorXd echo_weights;
+  Eigen::VectorXd filter_weights;
   double temperature_c = 20;  ///< of the healthy logs, mean
   double gain_per_c = 0;      ///< that the healthy logs show
   double noise_mm = 0;        ///< of the readings, sample to sample
@@ -74,12 +74,12 @@ struct BaseOptions {
 [[nodiscard]] Binned left_out_by_play(const std::vector<Record>& records, Drive drive, double bin_s,
                                       unsigned threads);
 
-/// A record behind the valve of a base, the model's prediction there, and what the echo adds to it.
+/// A record behind the valve of a base, the model's prediction there, and what the filter bank adds to it.
 struct Driven {
   Record record;       ///< driven by what the finger sees at the samples
   Record walked;       ///< what `model` is walked along: that, or the command itself
   model::Model model;  ///< the base's, with what happens to the command in front where it can carry it
-  Eigen::VectorXd echo;
+  Eigen::VectorXd filters;
   StartState start;  ///< of the model, without offset
   std::vector<double> plain;
 };
@@ -89,7 +89,7 @@ struct Driven {
                                const std::vector<model::BlockSpec>& valve = {},
                                const RegulatorFault& fault = {}, const StartState* start = nullptr);
 
-/// What the base, changed by `extension`, would read; without offset.
+/// Prediction of the base with `extension`, without an offset.
 /// @param driven  driven_by() of the record, where it is known already.
 [[nodiscard]] std::vector<double> predict_base(const Base& base, const Record& record,
                                                const Extension& extension, const Driven* driven = nullptr);

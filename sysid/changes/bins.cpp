@@ -27,16 +27,16 @@ void subtract_mean(std::vector<double>& series) {
 }
 
 /// The spread of the residual, by class of the input rate.
-void add_classes(const Binned& residual, const Binned& haste, Whitener& whitener) {
-  const WhiteRows rows(residual, haste, whitener);
+void add_classes(const Binned& residual, const Binned& peak_rate, Whitener& whitener) {
+  const WhiteRows rows(residual, peak_rate, whitener);
   const Eigen::VectorXd white = rows(residual);
   std::vector<double> all;
-  for (const WhiteRows::Row& row : rows.rows()) all.push_back(haste[row.record][row.bin]);
+  for (const WhiteRows::Row& row : rows.rows()) all.push_back(peak_rate[row.record][row.bin]);
   if (all.empty()) return;
   std::vector<double> sorted = all;
   std::sort(sorted.begin(), sorted.end());
   for (const double share : class_ends)
-    whitener.haste_kpa_per_s.push_back(
+    whitener.peak_rate_kpa_per_s.push_back(
         sorted[static_cast<std::size_t>(share * static_cast<double>(sorted.size()))]);
   std::vector<double> sum(class_ends.size() + 1, 0), count(class_ends.size() + 1, 0);
   for (std::size_t i = 0; i < all.size(); ++i) {
@@ -53,12 +53,13 @@ void add_classes(const Binned& residual, const Binned& haste, Whitener& whitener
 
 }  // namespace
 
-std::size_t Whitener::class_of(double haste) const {
-  return static_cast<std::size_t>(std::lower_bound(haste_kpa_per_s.begin(), haste_kpa_per_s.end(), haste) -
-                                  haste_kpa_per_s.begin());
+std::size_t Whitener::class_of(double peak_rate) const {
+  return static_cast<std::size_t>(
+      std::lower_bound(peak_rate_kpa_per_s.begin(), peak_rate_kpa_per_s.end(), peak_rate) -
+      peak_rate_kpa_per_s.begin());
 }
 
-std::vector<double> haste_of(const Record& record, double bin_s) {
+std::vector<double> peak_rate_of(const Record& record, double bin_s) {
   return binned(record, rates_of(record), bin_s);
 }
 
@@ -87,7 +88,7 @@ std::vector<double> binned(const Record& record, const std::vector<double>& seri
   return sum;
 }
 
-Whitener whitener_of(Binned residual, const Binned& haste, std::size_t order) {
+Whitener whitener_of(Binned residual, const Binned& peak_rate, std::size_t order) {
   for (std::vector<double>& series : residual) subtract_mean(series);
   Eigen::VectorXd correlation = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(order) + 1);
   for (const std::vector<double>& series : residual) {
@@ -108,18 +109,18 @@ Whitener whitener_of(Binned residual, const Binned& haste, std::size_t order) {
   Whitener whitener;
   whitener.before.assign(weights.begin(), weights.end());
   whitener.spread = {1.0};
-  add_classes(residual, haste, whitener);
+  add_classes(residual, peak_rate, whitener);
   return whitener;
 }
 
-WhiteRows::WhiteRows(const Binned& residual, const Binned& haste, Whitener whitener)
+WhiteRows::WhiteRows(const Binned& residual, const Binned& peak_rate, Whitener whitener)
     : whitener_(std::move(whitener)) {
   const std::size_t order = whitener_.before.size();
   for (std::size_t r = 0; r < residual.size(); ++r) {
     std::size_t finite = 0;
     for (std::size_t b = 0; b < residual[r].size(); ++b) {
       finite = std::isfinite(residual[r][b]) ? finite + 1 : 0;
-      if (finite > order) rows_.push_back({r, b, whitener_.spread_at(haste[r][b])});
+      if (finite > order) rows_.push_back({r, b, whitener_.spread_at(peak_rate[r][b])});
     }
   }
 }

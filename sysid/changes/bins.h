@@ -11,7 +11,7 @@
 
 namespace softgrip::sysid {
 
-/// Of every record, its bins in time; NaN: nothing there.
+/// Means of each record over intervals of equal duration; NaN: no reading in the interval.
 using Binned = std::vector<std::vector<double>>;
 
 /// The bin of records: `least_s`, or two samples where they are farther apart [s].
@@ -26,23 +26,23 @@ using Binned = std::vector<std::vector<double>>;
 [[nodiscard]] std::vector<double> with_bins(std::vector<double> series, std::size_t bins);
 
 /// How fast the drive moves or has moved half a second before, in bins [kPa/s].
-[[nodiscard]] std::vector<double> haste_of(const Record& record, double bin_s);
+[[nodiscard]] std::vector<double> peak_rate_of(const Record& record, double bin_s);
 
-/// Prediction error of an autoregression, in units of its own spread while the drive is as hasty.
+/// Prediction error of an autoregression, in units of its own spread at this rate of the input.
 struct Whitener {
-  std::vector<double> before;           ///< weights of the bins before, the nearest first
-  std::vector<double> haste_kpa_per_s;  ///< from where the next class of haste begins, ascending
-  std::vector<double> spread;           ///< by class, one more
+  std::vector<double> before;               ///< weights of the bins before, the nearest first
+  std::vector<double> peak_rate_kpa_per_s;  ///< from where the next class of peak_rate begins, ascending
+  std::vector<double> spread;               ///< by class, one more
 
-  [[nodiscard]] std::size_t class_of(double haste) const;
-  [[nodiscard]] double spread_at(double haste) const {
-    return spread[spread.size() > 1 ? class_of(haste) : 0];
+  [[nodiscard]] std::size_t class_of(double peak_rate) const;
+  [[nodiscard]] double spread_at(double peak_rate) const {
+    return spread[spread.size() > 1 ? class_of(peak_rate) : 0];
   }
 };
 
 /// By Yule's and Walker's equations from a residual; every record's mean is taken away first.
-/// @param haste  of the same bins.
-[[nodiscard]] Whitener whitener_of(Binned residual, const Binned& haste, std::size_t order);
+/// @param peak_rate  of the same bins.
+[[nodiscard]] Whitener whitener_of(Binned residual, const Binned& peak_rate, std::size_t order);
 
 /// The rows of a residual that can be whitened: those with enough finite bins before them.
 class WhiteRows {
@@ -52,7 +52,7 @@ class WhiteRows {
     double spread = 1;
   };
 
-  WhiteRows(const Binned& residual, const Binned& haste, Whitener whitener);
+  WhiteRows(const Binned& residual, const Binned& peak_rate, Whitener whitener);
   [[nodiscard]] const std::vector<Row>& rows() const { return rows_; }
   /// A series whitened; what is missing in it counts as 0.
   [[nodiscard]] Eigen::VectorXd operator()(const Binned& series) const;

@@ -13,7 +13,7 @@
 #include "sysid/changes/change_search.h"
 #include "sysid/changes/change_size.h"
 #include "sysid/changes/drive_choice.h"
-#include "sysid/changes/echo_fit.h"
+#include "sysid/changes/filter_fit.h"
 #include "sysid/diagnosis/causes/ageing.h"
 #include "sysid/diagnosis/causes/outliers.h"
 #include "sysid/diagnosis/causes/sampling.h"
@@ -31,8 +31,8 @@ namespace {
 /// From here on the temperature is the finger's own.
 constexpr double own_temperature_gain = 0.05;
 constexpr std::size_t most_causes = 3;
-/// A cause that gains less than this share of another one's, in the other reading, may follow from it: a base
-/// is less certain of a course that it never saw.
+/// A cause in one reading with less than this share of the improvement of a cause in the other reading may
+/// follow from it: the base is less certain for an input that it was not fitted to.
 constexpr double beside_another = 0.02;
 
 using Failure = tl::unexpected<std::string>;
@@ -123,24 +123,24 @@ class RunSpread {
       const double rms = unit.readings.plain_rms({});
       mean_square_ += square(rms) / static_cast<double>(healthy.size());
       worst_rms_ = std::max(worst_rms_, rms);
-      worst_misfit_ = std::max(worst_misfit_, per_bin(unit.readings, unit.readings.white({})));
+      worst_loss_ = std::max(worst_loss_, per_bin(unit.readings, unit.readings.white({})));
     }
   }
   [[nodiscard]] double usual_rms() const { return std::sqrt(mean_square_); }
   [[nodiscard]] double allowed_rms() const { return std::sqrt(factor_ * mean_square_); }
-  /// @param rms  of the readings as they are. @param misfit  mean square of the whitened ones: 1 for healthy
+  /// @param rms  of the readings as they are. @param loss  mean square of the whitened ones: 1 for healthy
   /// units.
-  [[nodiscard]] bool is_exceeded(double rms, double misfit) const {
-    return rms > allowed_rms() || misfit > factor_;
+  [[nodiscard]] bool is_exceeded(double rms, double loss) const {
+    return rms > allowed_rms() || loss > factor_;
   }
-  /// Whether a change may be sought. Where several runs say how much a search finds by itself, it is enough
-  /// that the readings are predicted worse than every healthy run was.
-  [[nodiscard]] bool admits_a_change(double rms, double misfit) const {
-    return is_exceeded(rms, misfit) || (are_runs_ && (rms > worst_rms_ || misfit > worst_misfit_));
+  /// Returns true if a change is searched for. With several runs the tolerance of the search is known. Then
+  /// it suffices that the prediction of the readings is worse than that of each healthy run.
+  [[nodiscard]] bool admits_a_change(double rms, double loss) const {
+    return is_exceeded(rms, loss) || (are_runs_ && (rms > worst_rms_ || loss > worst_loss_));
   }
 
  private:
-  double factor_ = 1, mean_square_ = 0, worst_rms_ = 0, worst_misfit_ = 0;
+  double factor_ = 1, mean_square_ = 0, worst_rms_ = 0, worst_loss_ = 0;
   bool are_runs_ = false;
 };
 
@@ -178,7 +178,7 @@ class Judge {
     for (const std::string& name : other_starts) diagnosis.warnings.push_back(other_start(name));
     std::vector<FittedEffect> found;
     Eigen::VectorXd white = readings.white(found);
-    judged.misfit_before = judged.misfit_left = per_bin(readings, white);
+    judged.loss_before = judged.loss_left = per_bin(readings, white);
     for (std::size_t step = 0; step < most_causes; ++step) {
       say("which changes the later logs show");
       std::vector<ScoredEffect> ranked =
@@ -195,15 +195,15 @@ class Judge {
       // A further cause is sought only in an error that another run would not show.
       const double rms = readings.plain_rms(found);
       const bool is_comparable = step == 0 && other_starts.empty();
-      if (is_comparable ? !spread_.admits_a_change(rms, judged.misfit_left)
-                        : !spread_.is_exceeded(rms, judged.misfit_left))
+      if (is_comparable ? !spread_.admits_a_change(rms, judged.loss_left)
+                        : !spread_.is_exceeded(rms, judged.loss_left))
         break;
       const std::optional<ChangeCause> cause = first_change(readings, ranked, white, found, judged);
       if (!cause) break;
       diagnosis.causes.push_back(*cause);
       found.push_back(cause->fitted);
       white = readings.white(found);
-      judged.misfit_left = per_bin(readings, white);
+      judged.loss_left = per_bin(readings, white);
     }
     finish(readings, effects, found, judged);
     diagnosis.readings.push_back(std::move(judged));
@@ -233,14 +233,14 @@ class Judge {
     return found;
   }
 
-  /// Of each row what the finger was told and did.
+  /// The rows whose operating point meets the condition.
   [[nodiscard]] std::vector<bool> required_rows(const LaterReadings& readings, Appears appears) const {
     Binned drive, rate;
     for (std::size_t r = 0; r < readings.records().size(); ++r) {
       const Record& record = readings.records()[r];
       const std::size_t bins = readings.left()[r].size();
       drive.push_back(with_bins(binned(record, record.drive_kpa, base_.bin_s), bins));
-      rate.push_back(with_bins(haste_of(record, base_.bin_s), bins));
+      rate.push_back(with_bins(peak_rate_of(record, base_.bin_s), bins));
     }
     std::vector<OperatingPoint> conditions;
     for (const auto& [r, b, spread] : readings.rows().rows())
@@ -248,8 +248,8 @@ class Judge {
     return required_at(appears, conditions);
   }
 
-  /// Whether later units to which an effect was not fitted are predicted worse with it. Units in which it
-  /// does not act say nothing: half of a run need not reach the end of a sensor.
+  /// Returns true if the effect makes the prediction of later units worse to which it was not fitted. Units
+  /// in which it does not act are no evidence: half of a run need not reach the end of a sensor.
   [[nodiscard]] bool predicts_worse(const LaterReadings& readings, const Effect& effect,
                                     const std::vector<FittedEffect>& found) const {
     PairedLosses losses;
@@ -266,7 +266,7 @@ class Judge {
     return is_better(compare(losses, 0, options_.seed));
   }
 
-  /// What a size of this unit is at most: the range of the signal that the cause acts on.
+  /// The largest possible size in this unit: the range of the signal that the cause acts on.
   [[nodiscard]] double largest_size(const LaterReadings& readings, const std::string& unit) const {
     double length_s = 0;
     for (const Record& record : readings.records()) length_s = std::max(length_s, record.length_s());
@@ -304,7 +304,7 @@ class Judge {
                                                         const std::vector<FittedEffect>& found,
                                                         JudgedChange& judged) const {
     const auto reject = [&](const ScoredEffect& scored, std::string_view reason) {
-      for (ChangeRival& tried : judged.tried) {
+      for (TriedCause& tried : judged.tried) {
         if (tried.id == scored.fit.fitted.effect.id && tried.rejected.empty()) tried.rejected = reason;
       }
     };
@@ -326,7 +326,8 @@ class Judge {
     return std::nullopt;
   }
 
-  /// Whether a zero [mm] differs from those of the healthy runs by more than another healthy run's may.
+  /// Returns true if a zero [mm] differs from those of the healthy runs by more than the zero of one more
+  /// healthy run may.
   [[nodiscard]] bool is_another_zero(double zero_mm) const {
     const auto units = static_cast<double>(base_.units.count());
     return std::abs(zero_mm - base_.zero_mm) >
@@ -351,12 +352,13 @@ class Judge {
     cause.gain_upper = spread.upper;
     for (std::size_t i = 1; i < ranked.size(); ++i) {
       if (ties(ranked.front(), ranked[i]) && vetoed(readings, ranked[i], without, found) == Veto::none)
-        cause.rivals.push_back(ranked[i].fit.fitted.effect.id);
+        cause.alternatives.push_back(ranked[i].fit.fitted.effect.id);
     }
     if ((cause.id == causes::Ageing::WithTime::id ||
-         std::count(cause.rivals.begin(), cause.rivals.end(), causes::Ageing::WithTime::id) > 0) &&
-        is_another_zero(readings.slack(with(found, best)).zero_mm))
-      cause.rivals.emplace_back(payload.id);
+         std::count(cause.alternatives.begin(), cause.alternatives.end(), causes::Ageing::WithTime::id) >
+             0) &&
+        is_another_zero(readings.nuisance(with(found, best)).zero_mm))
+      cause.alternatives.emplace_back(payload.id);
     cause.effect_mm = rms_of(added);
     cause.full_pressure_mm = at_full_pressure(readings, added);
     cause.size = size_of(readings, best, cause.full_pressure_mm);
@@ -368,7 +370,7 @@ class Judge {
   void finish(const LaterReadings& readings, const std::vector<Effect>& effects,
               const std::vector<FittedEffect>& found, JudgedChange& judged) const {
     judged.intervals = intervals_of(readings, found, healthy_);
-    judged.left_over = spread_.is_exceeded(readings.plain_rms(found), judged.misfit_left);
+    judged.left_over = spread_.is_exceeded(readings.plain_rms(found), judged.loss_left);
     judged.bin_s = base_.bin_s;
     for (const Record& record : readings.records()) judged.logs.push_back(record.name);
     judged.left = readings.left();
@@ -380,9 +382,9 @@ class Judge {
     for (std::size_t r = 0; r < judged.logs.size(); ++r)
       judged.runs.push_back(
           {judged.logs[r], false, rms_about_mean(judged.left[r]), rms_about_mean(judged.explained[r])});
-    const LaterReadings::Slack slack = readings.slack(found);
-    judged.zero_mm = slack.zero_mm;
-    judged.gain_percent = 100 * slack.gain;
+    const LaterReadings::Nuisance nuisance = readings.nuisance(found);
+    judged.zero_mm = nuisance.zero_mm;
+    judged.gain_percent = 100 * nuisance.gain;
     judged.later_mm = readings.plain_rms({});
     judged.explained_mm = readings.plain_rms(found);
     for (const Effect& effect : effects) {
@@ -481,11 +483,11 @@ void add_intervals(ChangeDiagnosis& diagnosis) {
 ChangeVerdict verdict_of(const ChangeDiagnosis& d) {
   const bool left =
       std::any_of(d.readings.begin(), d.readings.end(), [](const JudgedChange& j) { return j.left_over; });
-  const bool rivals =
-      std::any_of(d.causes.begin(), d.causes.end(), [](const ChangeCause& c) { return !c.rivals.empty(); });
+  const bool alternatives = std::any_of(d.causes.begin(), d.causes.end(),
+                                        [](const ChangeCause& c) { return !c.alternatives.empty(); });
   if (d.causes.empty()) return left ? ChangeVerdict::unexplained : ChangeVerdict::unchanged;
   if (left) return ChangeVerdict::partly_explained;
-  return rivals ? ChangeVerdict::ambiguous : ChangeVerdict::cause_found;
+  return alternatives ? ChangeVerdict::ambiguous : ChangeVerdict::cause_found;
 }
 
 }  // namespace

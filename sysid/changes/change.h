@@ -1,5 +1,6 @@
 #pragma once
-// What became of a finger since it was healthy: a base from the healthy logs, frozen, and causes as changes.
+// Change of a finger since it was healthy: a base fitted to the healthy logs is held constant, and causes are
+// fitted as changes of it.
 
 #include <cstdint>
 #include <functional>
@@ -50,11 +51,11 @@ struct ChangeCause {
   double share_percent = 0;  ///< of what its reading shows beyond the healthy spread
   double gain = 0;           ///< per bin, in units of the healthy spread
   double gain_lower = 0, gain_upper = 0;
-  std::vector<std::string> rivals;  ///< ids that explain as much
+  std::vector<std::string> alternatives;  ///< ids that explain as much
 };
 
-/// What was tried and not named.
-struct ChangeRival {
+/// A cause that was tried, and the reason if it was rejected.
+struct TriedCause {
   std::string id, form;
   double gain = 0;
   double healthy_gain = 0;  ///< what it improves in healthy units that are left out, on average
@@ -76,15 +77,15 @@ struct JudgedChange {
   std::string base;     ///< in words
   double noise_mm = 0;  ///< kPa of the pressure
   std::size_t healthy_runs = 0;
-  double healthy_mm = 0;                      ///< what the base leaves of healthy units that are left out
-  double allowed_mm = 0;                      ///< what another healthy run may leave
-  double later_mm = 0;                        ///< what it leaves of the later ones, but for zero and gain
-  double explained_mm = 0;                    ///< with the causes
-  double misfit_before = 1, misfit_left = 1;  ///< mean squares, whitened; 1: as on the healthy logs
-  double zero_mm = 0;                         ///< by which the zero is another one
-  double gain_percent = 0;                    ///< within the healthy spread
+  double healthy_mm = 0;                  ///< what the base leaves of healthy units that are left out
+  double allowed_mm = 0;                  ///< what another healthy run may leave
+  double later_mm = 0;                    ///< what it leaves of the later ones, but for zero and gain
+  double explained_mm = 0;                ///< with the causes
+  double loss_before = 1, loss_left = 1;  ///< mean squares, whitened; 1: as on the healthy logs
+  double zero_mm = 0;                     ///< by which the zero is another one
+  double gain_percent = 0;                ///< within the healthy spread
   bool left_over = false;
-  std::vector<ChangeRival> tried;
+  std::vector<TriedCause> tried;
   std::vector<EffectIntervals> intervals;         ///< of its causes, in the order in which they were found
   std::map<std::string, std::string> not_tested;  ///< causes, each with the recording that would show it
   double bin_s = 0.05;

@@ -44,8 +44,8 @@ Eigen::MatrixXd slopes_of(const LaterReadings& readings, const std::vector<Fitte
   return slopes;
 }
 
-/// What blocks of rows add to the gradient, squared and summed. Rows behind the readings are blocks of their
-/// own, whose spread is known.
+/// Sum of the squared gradients of the blocks of rows. Each row behind the readings is a block whose spread
+/// is known.
 Eigen::MatrixXd spread_of_gradient(const LaterReadings& readings, const Eigen::MatrixXd& slopes,
                                    const Eigen::VectorXd& white) {
   const std::vector<std::size_t> blocks = blocks_of(readings);
@@ -118,7 +118,7 @@ double healthy_variance(const std::vector<HealthyFits>& healthy, const FittedEff
   });
 }
 
-/// What the effect's size is with these numbers.
+/// Size of the effect with these numbers.
 double size_with(const LaterReadings& readings, const FittedEffect& effect) {
   return size_of(readings, effect, at_full_pressure(readings, readings.added({effect}))).value;
 }

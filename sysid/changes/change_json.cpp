@@ -40,13 +40,14 @@ Json cause_json(const ChangeCause& cause) {
 
 Json reading_json(const JudgedChange& judged) {
   Json tried = Json::array();
-  for (const ChangeRival& rival : judged.tried)
-    tried.push_back({{"id", rival.id},
-                     {"form", rival.form},
-                     {"gain", rival.gain},
-                     {"healthy_gain", rival.healthy_gain},
-                     {"tolerance", rival.tolerance},
-                     {"rejected", rival.rejected.empty() ? Json(nullptr) : Json(rival.rejected)}});
+  for (const TriedCause& alternative : judged.tried)
+    tried.push_back(
+        {{"id", alternative.id},
+         {"form", alternative.form},
+         {"gain", alternative.gain},
+         {"healthy_gain", alternative.healthy_gain},
+         {"tolerance", alternative.tolerance},
+         {"rejected", alternative.rejected.empty() ? Json(nullptr) : Json(alternative.rejected)}});
   Json runs = Json::array();
   for (const RunLeft& run : judged.runs)
     runs.push_back({{"run", run.run},
@@ -62,7 +63,7 @@ Json reading_json(const JudgedChange& judged) {
           {"allowed_rms", judged.allowed_mm},
           {"later_rms", judged.later_mm},
           {"explained_rms", judged.explained_mm},
-          {"misfit", {{"before", judged.misfit_before}, {"left", judged.misfit_left}}},
+          {"misfit", {{"before", judged.loss_before}, {"left", judged.loss_left}}},
           {"structure_left", judged.left_over},
           {"zero", judged.zero_mm},
           {"gain_percent", judged.gain_percent},
@@ -83,7 +84,7 @@ Json json_of(const ChangeDiagnosis& d) {
   json["alternatives"] = Json::array();
   for (const ChangeCause& cause : d.causes) {
     json["causes"].push_back(cause_json(cause));
-    json["alternatives"].push_back(cause.rivals);
+    json["alternatives"].push_back(cause.alternatives);
   }
   const JudgedChange& finger = d.readings.back();
   json["noise_mm"] = finger.noise_mm;
@@ -91,9 +92,9 @@ Json json_of(const ChangeDiagnosis& d) {
       {"as_given", finger.later_mm}, {"recalibrated", finger.later_mm}, {"extended", finger.explained_mm}};
   const double gain = finger.later_mm > 0 ? 100 * (1 - finger.explained_mm / finger.later_mm) : 0;
   json["gain_percent"] = {{"value", gain}, {"ci95", nullptr}};
-  const double excess = finger.misfit_before - 1;
+  const double excess = finger.loss_before - 1;
   json["unexplained_percent"] =
-      excess > 0 ? std::clamp(100 * (finger.misfit_left - 1) / excess, 0.0, 100.0) : 0.0;
+      excess > 0 ? std::clamp(100 * (finger.loss_left - 1) / excess, 0.0, 100.0) : 0.0;
   json["partial_causes"] = Json::array();
   json["base"] = finger.base;
   json["next_experiment"] = nullptr;

@@ -10,7 +10,7 @@
 namespace softgrip::sysid {
 namespace {
 
-/// So many of the causes that were tried are drawn.
+/// Number of tried causes in the figure.
 constexpr std::size_t drawn_causes = 8;
 
 Tone tone_of(ChangeVerdict verdict) {
@@ -29,7 +29,7 @@ void add_causes(Page& page, const ChangeDiagnosis& d) {
     table.rows.push_back(
         {cause.id, size_text(cause), interval_text(cause),
          significant(cause.full_pressure_mm, 2) + " " + unit_of(cause.judged, cause.output_unit),
-         fixed(cause.share_percent, 0), cause.rivals.empty() ? "-" : with_commas(cause.rivals)});
+         fixed(cause.share_percent, 0), cause.alternatives.empty() ? "-" : with_commas(cause.alternatives)});
   }
   page.table(table);
   for (const ChangeCause& cause : d.causes) {
@@ -39,8 +39,8 @@ void add_causes(Page& page, const ChangeDiagnosis& d) {
   }
 }
 
-/// What the base leaves of the later readings, log after log, before and with the causes.
-Figure misfit_figure(const JudgedChange& judged, bool explained) {
+/// Residual of the later readings, log after log, without and with the causes.
+Figure residual_figure(const JudgedChange& judged, bool explained) {
   std::vector<Chart> charts;
   for (std::size_t r = 0; r < judged.left.size(); ++r) {
     Chart chart;
@@ -148,7 +148,7 @@ void add_reading(Page& page, const JudgedChange& judged, const ChangeDiagnosis& 
               {"gain within the healthy spread", significant(judged.gain_percent, 2) + " %"}});
   bool explained = false;
   for (const ChangeCause& cause : d.causes) explained |= cause.judged == judged.judged;
-  page.figure(misfit_figure(judged, explained));
+  page.figure(residual_figure(judged, explained));
   page.figure(runs_figure(judged, explained));
   page.figure(tried_figure(judged));
   page.table(tried_table(judged));
@@ -178,7 +178,7 @@ Table tried_table(const JudgedChange& judged) {
               {"cause", "improvement", "in healthy runs", "tolerance", "rejected because"},
               {false, true, true, true, false},
               {}};
-  for (const ChangeRival& tried : judged.tried)
+  for (const TriedCause& tried : judged.tried)
     table.rows.push_back({tried.id, fixed(tried.gain, 3), fixed(tried.healthy_gain, 3),
                           fixed(tried.tolerance, 3), tried.rejected});
   return table;

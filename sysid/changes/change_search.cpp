@@ -24,7 +24,7 @@ double beyond_usual(const ScoredEffect& scored) {
 /// How many numbers shape it, and how many it has.
 std::pair<std::size_t, std::size_t> numbers_of(const ScoredEffect& scored) {
   const Effect& effect = scored.fit.fitted.effect;
-  return {effect.numbers.size() - effect.slack_numbers, effect.numbers.size()};
+  return {effect.numbers.size() - effect.nuisance_numbers, effect.numbers.size()};
 }
 
 }  // namespace

@@ -20,14 +20,14 @@ struct ScoredEffect {
   double tolerance = 0;  ///< what it must improve to be a change
 };
 
-/// What the numbers of an effect must take to be worth it, in whitened squares.
+/// Penalty for the parameters of an effect, in whitened squares.
 [[nodiscard]] double price_of(const Effect& effect);
 
-/// The same for each row of the readings.
+/// Penalty for the parameters of an effect, divided by the number of rows.
 [[nodiscard]] double price_per_row(const LaterReadings& readings, const Effect& effect);
 
-/// Whether the data cannot tell two effects apart: the best one improves the readings beyond the other one by
-/// no more than its tolerance. Causes that are declared to give the same readings always tie.
+/// Returns true if the data cannot separate two effects: the best one improves the readings more than the
+/// other one by no more than its tolerance. Causes that are declared indistinguishable always tie.
 using Ties = std::function<bool(const ScoredEffect& best, const ScoredEffect& other)>;
 [[nodiscard]] Ties ties_in(const LaterReadings& readings, std::uint64_t seed);
 

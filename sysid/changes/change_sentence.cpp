@@ -9,8 +9,8 @@ namespace {
 
 std::string named(const ChangeCause& cause) {
   std::string text = std::string(plain_words(cause.id)) + " (" + cause.id + ": " + size_text(cause) + ")";
-  for (const std::string& rival : cause.rivals)
-    text += ", or " + std::string(plain_words(rival)) + " (" + rival + ")";
+  for (const std::string& alternative : cause.alternatives)
+    text += ", or " + std::string(plain_words(alternative)) + " (" + alternative + ")";
   return text;
 }
 

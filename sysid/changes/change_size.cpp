@@ -46,7 +46,7 @@ double at_full_pressure(const LaterReadings& readings, const Binned& added) {
 ChangeSize size_of(const LaterReadings& readings, const FittedEffect& effect, double full_pressure_mm) {
   // Of another gain, what counts as no change is a part.
   if (const double* gain = number(effect, "gain_change"); gain != nullptr && effect.numbers.size() == 1)
-    return {"gain", 100 * (*gain + readings.slack({effect}).gain), "%"};
+    return {"gain", 100 * (*gain + readings.nuisance({effect}).gain), "%"};
   const SizedBy size = effect.effect.size.value_or(sized_by(effect.effect.id));
   const auto sized = [&](double value) {
     return ChangeSize{std::string(size.what), size.factor * value, std::string(size.unit)};

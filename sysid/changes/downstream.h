@@ -9,13 +9,12 @@
 
 namespace softgrip::sysid {
 
-/// Whether `blocks`, joined to `base`, would stand behind all of its blocks and show at a sample what follows
-/// from the base's reading at that sample alone, whatever the way to it was. Of a held command or an unknown
-/// start: never.
+/// Returns true if all `blocks` are behind those of `base` and their output at a sample depends on the base's
+/// output at that sample alone. Always false for a held command or an unknown start.
 [[nodiscard]] bool is_downstream(const std::vector<model::BlockSpec>& blocks, const model::Model& base,
                                  const Record& record);
 
-/// What predict() gives of the base with the blocks.
+/// Result of predict() for the base with the blocks.
 /// @param blocks  is_downstream(). @param base_mm  the base's own prediction of the record.
 [[nodiscard]] std::vector<double> downstream(const std::vector<model::BlockSpec>& blocks,
                                              const Record& record, std::vector<double> base_mm);

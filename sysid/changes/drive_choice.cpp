@@ -5,7 +5,7 @@
 
 #include "base/statistics.h"
 #include "sysid/changes/base.h"
-#include "sysid/changes/echo_fit.h"
+#include "sysid/changes/filter_fit.h"
 #include "sysid/evidence/tolerance.h"
 
 namespace softgrip::sysid {

@@ -8,7 +8,7 @@
 #include <Eigen/Cholesky>
 
 #include "base/statistics.h"
-#include "sysid/changes/echo.h"
+#include "sysid/changes/filter_bank.h"
 #include "sysid/fitting/start_estimate.h"
 
 namespace softgrip::sysid {
@@ -48,7 +48,7 @@ std::vector<double> within(const Effect& effect, std::vector<double> numbers) {
   return numbers;
 }
 
-/// What a number is counted in while it is fitted.
+/// Scale of a parameter during the fit.
 double unit(const FittedEffect& fitted, std::size_t i) {
   const double scale = std::min(fitted.effect.numbers[i].scale, fitted.effect.numbers[i].upper);
   return std::max(0.3 * std::abs(fitted.numbers[i]), 0.05 * scale);
@@ -139,10 +139,10 @@ class Fit {
   const std::vector<FittedEffect>& others_;
 };
 
-Binned all_haste_of(const std::vector<Record>& records, double bin_s, const Binned& left) {
+Binned peak_rates_of(const std::vector<Record>& records, double bin_s, const Binned& left) {
   Binned all;
   for (std::size_t r = 0; r < records.size(); ++r)
-    all.push_back(with_bins(haste_of(records[r], bin_s), left[r].size()));
+    all.push_back(with_bins(peak_rate_of(records[r], bin_s), left[r].size()));
   return all;
 }
 
@@ -179,7 +179,7 @@ LaterReadings::LaterReadings(const Base& base, std::vector<Record> later, Binned
       left_(std::move(left)),
       plain_(std::move(plain)),
       driven_(std::move(driven)),
-      rows_(left_, all_haste_of(later_, base.bin_s, left_), base.whitener) {
+      rows_(left_, peak_rates_of(later_, base.bin_s, left_), base.whitener) {
   target_ = rows_(left_);
   std::vector<Eigen::VectorXd> columns;
   std::vector<double> prices;
@@ -205,15 +205,15 @@ LaterReadings::LaterReadings(const Base& base, std::vector<Record> later, Binned
       add(own, 0);
     }
   }
-  slack_.resize(target_.size(), static_cast<Eigen::Index>(columns.size()));
-  for (std::size_t k = 0; k < columns.size(); ++k) slack_.col(static_cast<Eigen::Index>(k)) = columns[k];
-  price_ = Eigen::Map<const Eigen::VectorXd>(prices.data(), slack_.cols());
-  Eigen::MatrixXd normal = slack_.transpose() * slack_;
+  nuisance_.resize(target_.size(), static_cast<Eigen::Index>(columns.size()));
+  for (std::size_t k = 0; k < columns.size(); ++k) nuisance_.col(static_cast<Eigen::Index>(k)) = columns[k];
+  price_ = Eigen::Map<const Eigen::VectorXd>(prices.data(), nuisance_.cols());
+  Eigen::MatrixXd normal = nuisance_.transpose() * nuisance_;
   normal.diagonal() += price_.cwiseAbs2();
   normal.diagonal().array() += 1e-9;
-  solver_ = normal.ldlt().solve(slack_.transpose());
+  solver_ = normal.ldlt().solve(nuisance_.transpose());
   motion_ = rows_(plain_);
-  motion_left_ = motion_ - slack_ * (solver_ * motion_);
+  motion_left_ = motion_ - nuisance_ * (solver_ * motion_);
 }
 
 template <class Keep>
@@ -268,7 +268,7 @@ LaterReadings::Split LaterReadings::split(const std::vector<FittedEffect>& effec
   split.gain = square > 0 ? std::clamp(motion_left_.dot(split.left) / square, -bound, bound) : 0;
   split.left -= split.gain * motion_;
   split.zeros = solver_ * split.left;
-  split.left -= slack_ * split.zeros;
+  split.left -= nuisance_ * split.zeros;
   return split;
 }
 
@@ -289,7 +289,7 @@ Eigen::VectorXd LaterReadings::white_and_gain(const std::vector<FittedEffect>& e
   return out;
 }
 
-LaterReadings::Slack LaterReadings::slack(const std::vector<FittedEffect>& effects) const {
+LaterReadings::Nuisance LaterReadings::nuisance(const std::vector<FittedEffect>& effects) const {
   const Split split = this->split(effects);
   return {split.zeros(0), split.gain};
 }

@@ -17,8 +17,8 @@ struct FittedEffect {
   std::vector<double> numbers;
 };
 
-/// What later records show beside a base, with what is no change: another zero, and a gain within what the
-/// healthy logs themselves vary by.
+/// Residuals of later records after the base, without the differences that are no change: the zero, and a
+/// gain within the variation of the healthy logs.
 class LaterReadings {
  public:
   /// @param later  thinned_for() the base. @param left  what the base leaves of them, in bins.
@@ -39,18 +39,18 @@ class LaterReadings {
   /// healthy records do not show their slow transient, so it is no change, either.
   [[nodiscard]] std::vector<std::string> other_starts() const;
   [[nodiscard]] const Binned& left() const { return left_; }
-  /// What the unchanged base predicts, in bins.
+  /// Prediction of the unchanged base, in bins.
   [[nodiscard]] const Binned& plain() const { return plain_; }
-  /// What the effects add to the prediction, in bins.
+  /// Difference of the prediction with and without the effects, in bins.
   [[nodiscard]] Binned added(const std::vector<FittedEffect>& effects) const;
   /// Root mean square of what is left of the readings with these effects, as they are and not whitened;
   /// every record's zero and the common gain each at their best.
   [[nodiscard]] double plain_rms(const std::vector<FittedEffect>& effects) const;
   /// Zero and gain that go with the effects: common zero [mm], relative gain.
-  struct Slack {
+  struct Nuisance {
     double zero_mm = 0, gain = 0;
   };
-  [[nodiscard]] Slack slack(const std::vector<FittedEffect>& effects) const;
+  [[nodiscard]] Nuisance nuisance(const std::vector<FittedEffect>& effects) const;
 
  private:
   LaterReadings(const Base& base, std::vector<Record> later, Binned left, Binned plain,
@@ -75,7 +75,7 @@ class LaterReadings {
   WhiteRows rows_;
   Eigen::VectorXd target_;
   /// Columns of zeros and of transients after other starts; what turns a residual into their sizes.
-  Eigen::MatrixXd slack_, solver_;
+  Eigen::MatrixXd nuisance_, solver_;
   Eigen::VectorXd price_;                 ///< root of what each costs
   Eigen::VectorXd motion_, motion_left_;  ///< the base's own motion, whole and without what zeros take
 };

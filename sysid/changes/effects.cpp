@@ -39,7 +39,7 @@ std::vector<std::vector<double>> some(std::vector<std::vector<double>> all) {
   return kept;
 }
 
-/// Whether the base can carry the block at all.
+/// Returns true if the block can be added to the base.
 bool is_carried(const Base& base, const model::BlockSpec& block) {
   if (base.model.blocks.empty()) return false;
   return model::validate(model::with_block(base.model, block)).empty();
@@ -142,7 +142,7 @@ class Collector {
     return found == effects_.end() ? nullptr : &*found;
   }
 
-  /// The gain is another than it was, once and for all.
+  /// A gain that has changed and is constant.
   void add_gain() {
     Effect effect = form_of(cause_with<model::Ageing>(), "another_gain");
     effect.numbers = {gain_change};
@@ -176,15 +176,15 @@ class Collector {
     effect.apply = [](Extension& e, const std::vector<double>& n) { e.crescent = {n[0], n[1]}; };
     effects_.push_back(std::move(effect));
   }
-  /// At which displacement the gain is still what it was, nobody knows: beside the bend goes a gain.
+  /// The displacement at which the gain is unchanged is unknown, so a gain is fitted with the curvature.
   void add_stiffening() {
     Effect* const plain = first_of(cause_with<model::Stiffening>());
     if (plain == nullptr) return;
-    // What gives way more the farther it is bent has not stiffened.
+    // A finger whose gain increases with the displacement has not stiffened.
     plain->numbers[0].lower = 0;
     std::erase_if(plain->starts, [](const std::vector<double>& start) { return start[0] < 0; });
     Effect effect = *plain;
-    effect.slack_numbers = 1;
+    effect.nuisance_numbers = 1;
     effect.form = "stiffening_about_a_point";
     effect.numbers.push_back(gain_change);
     effect.nothing.push_back(0);
@@ -207,7 +207,7 @@ class Collector {
     effect.apply = [bend = bent->apply](Extension& e, const std::vector<double>& n) { bend(e, {n[0], 0}); };
     effects_.push_back(std::move(effect));
   }
-  /// At which temperature the gain is still what it was, nobody knows: beside the slope goes a gain.
+  /// The temperature at which the gain is unchanged is unknown, so a gain is fitted with the slope.
   void add_thermal() {
     Effect effect = form_of(cause_with<model::ThermalGain>(), causes::ThermalGain::id);
     effect.numbers = {{"gain_per_c", "1/degC", 0.002, -0.2, 0.2}, gain_change};
@@ -238,7 +238,7 @@ class Collector {
     effects_.push_back(std::move(slow));
   }
 
-  /// What a regulator of known ways makes of them.
+  /// Faults of the regulator that the base contains.
   void add_faults() {
     const double p = base_.largest_kpa, per_s = leaking_kpa_per_s(p);
     Effect leaking = form_of(leak);

@@ -1,5 +1,5 @@
 #pragma once
-// What may have changed: every cause as a change of a frozen base, with few numbers.
+// The causes as changes of a constant base, each with few parameters.
 
 #include <functional>
 #include <optional>
@@ -35,11 +35,11 @@ struct Effect {
   /// The id of a cause that gives the same readings; or none.
   std::string twin = {};
   /// Of its numbers, how many only say where it is counted from.
-  std::size_t slack_numbers = 0;
+  std::size_t nuisance_numbers = 0;
   /// No mechanism is quite like it.
   bool is_ideal = false;
   Appears appears = Appears::anywhere;
-  /// What this form is measured by, where it is not what its cause is.
+  /// Size of this form, if it differs from that of its cause.
   std::optional<SizedBy> size = {};
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// What may have changed since a healthy log, as numbers beside a frozen base.
+// Parameters of a change since the healthy logs, added to a constant base.
 
 #include <optional>
 #include <vector>
@@ -9,9 +9,8 @@
 
 namespace softgrip::sysid {
 
-/// Pressure that gets lost while the valve stands still, and is made up for when it moves: d' = rate
-/// p/largest
-/// - d (1/recovery + |command'|/way).
+/// Pressure that is lost while the valve does not move and recovered when it does:
+/// d' = rate p/largest - d (1/recovery + |command'|/way).
 struct PressureLoss {
   double rate_kpa_per_s = 0;
   double recovery_s = 5;
@@ -39,7 +38,7 @@ struct Crescent {
   double exponent = 3;
 };
 
-/// Behind a regulator that answers for it: the ports open where they stood shut, the tube throttles more.
+/// Faults behind a regulator: ports that leak when closed, a tube with less conductance.
 struct RegulatorFault {
   double leak_per_s = 0;  ///< as Regulator::leak_per_s
   double blocked = 0;     ///< share of the tube's conductance that is gone, below 1
@@ -71,7 +70,7 @@ struct Extension {
 [[nodiscard]] std::vector<double> softened(const Softening& softening, const Record& record,
                                            double largest_kpa);
 
-/// What a crescent adds, as a share of the span, sample by sample.
+/// Contribution of a crescent at each sample, as a share of the span.
 [[nodiscard]] std::vector<double> added_by(const Crescent& crescent, const Record& record,
                                            double largest_kpa);
 

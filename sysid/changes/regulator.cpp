@@ -49,14 +49,14 @@ class Walk {
   [[nodiscard]] double gauge_kpa() const { return finger_kpa_ - atmosphere_kpa; }
 
  private:
-  /// Where the spool stands at the end of a step, in the error that it answers [kPa].
+  /// Position of the spool at the end of a step, as the error that causes it [kPa].
   [[nodiscard]] double spool_with(double valve_kpa, double step_s) const {
     const Regulator& r = regulator_;
     const double most = r.dead_kpa + r.full_kpa;
     const double wanted = std::clamp(seen_kpa_ + atmosphere_kpa - valve_kpa + integral_kpa_, -most, most);
     return spool_kpa_ + (wanted - spool_kpa_) * step_s / (step_s + r.spool_lag_s);
   }
-  /// What flows in through the ports [kPa/s of the finger].
+  /// Flow through the ports [kPa/s of the finger].
   [[nodiscard]] double inflow(double spool_kpa, double valve_kpa, double supply_kpa) const {
     const Regulator& r = regulator_;
     const double open = std::min((std::abs(spool_kpa) - r.dead_kpa) / r.full_kpa, 1.0);
@@ -64,7 +64,7 @@ class Walk {
     return r.port_per_s * open *
            (spool_kpa > 0 ? flow(supply_kpa, valve_kpa) : -flow(valve_kpa, atmosphere_kpa));
   }
-  /// What flows on into the finger [kPa/s of it]: at most until both are the same, however wide the tube.
+  /// Flow into the finger [kPa/s of it]. With any tube, the flow of a step at most equalises both pressures.
   [[nodiscard]] double through_the_tube(double valve_kpa, double step_s) const {
     const double above = valve_kpa - finger_kpa_;
     if (above == 0) return 0;

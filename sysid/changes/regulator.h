@@ -18,12 +18,12 @@ struct Regulator {
   double integral_per_s = 2;   ///< of the error
   double port_per_s = 5;       ///< choked, fully open: by what share of the pressure before it a second fills
   double tube_per_s = 10;      ///< likewise
-  double spool_lag_s = 0.01;   ///< behind what the controller asks for
+  double spool_lag_s = 0.01;   ///< behind the command of the controller
   double chamber_share = 0.2;  ///< of the finger's volume: the valve's before the tube
   double leak_per_s = 0;       ///< as tube_per_s, from the finger into the open
 };
 
-/// What a leak of 1 per second lets out of a finger [kPa/s of its own pressure], while nothing flows in.
+/// Pressure that a finger loses through a leak of 1 per second [kPa/s], without inflow.
 [[nodiscard]] double leaking_kpa_per_s(double gauge_kpa);
 
 /// The pressure at the finger [kPa], sample by sample; it begins settled.

@@ -6,7 +6,7 @@
 #include <Eigen/Cholesky>
 
 #include "sysid/changes/bins.h"
-#include "sysid/changes/echo.h"
+#include "sysid/changes/filter_bank.h"
 #include "sysid/logs/resampled_record.h"
 
 namespace softgrip::sysid {
@@ -14,11 +14,12 @@ namespace {
 
 constexpr Eigen::Index numbers = 8;
 constexpr int most_regulator_steps = 15;
-/// Of the logarithms: a difference for a derivative, the longest move of a step.
+/// Difference for a derivative, and longest move of a step, both of the logarithms.
 constexpr double beside_by = 0.03, longest_move = 1.5;
 constexpr double least_progress = 0.003;
-/// What a number costs that is e times what is usual, of the squares that are left there: the bank's own lags
-/// can stand for a wide tube, and what the readings do not tell stays where it is.
+/// Penalty for a parameter that differs from its usual value by a factor of e, as a share of the residual
+/// squares: lags of the bank can replace a wide tube, and a parameter that the readings do not determine
+/// keeps its usual value.
 constexpr double prior_share = 0.003;
 
 /// The search's numbers are logarithms, 0 where it starts.
@@ -55,19 +56,19 @@ class BinnedReadings {
     Eigen::Index first = 0;
     for (std::size_t r = 0; r < records_.size(); ++r) {
       const Record driven = behind(regulator, records_[r]);
-      const Eigen::MatrixXd echo = seen(driven);
+      const Eigen::MatrixXd filters = seen(driven);
       if (r == 0)
         columns = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(bins_),
-                                        echo.cols() + static_cast<Eigen::Index>(records_.size()));
+                                        filters.cols() + static_cast<Eigen::Index>(records_.size()));
       const auto own = static_cast<Eigen::Index>(readings_[r].size());
-      for (Eigen::Index c = 0; c < echo.cols(); ++c) {
-        const std::vector<double> series =
-            with_bins(binned(driven, {echo.col(c).begin(), echo.col(c).end()}, bin_s_), readings_[r].size());
+      for (Eigen::Index c = 0; c < filters.cols(); ++c) {
+        const std::vector<double> series = with_bins(
+            binned(driven, {filters.col(c).begin(), filters.col(c).end()}, bin_s_), readings_[r].size());
         for (Eigen::Index b = 0; b < own; ++b) columns(first + b, c) = series[static_cast<std::size_t>(b)];
       }
       for (Eigen::Index b = 0; b < own; ++b) {
         const double reading = readings_[r][static_cast<std::size_t>(b)];
-        columns(first + b, echo.cols() + static_cast<Eigen::Index>(r)) = largest_kpa_;
+        columns(first + b, filters.cols() + static_cast<Eigen::Index>(r)) = largest_kpa_;
         if (std::isfinite(reading) && columns.row(first + b).allFinite())
           target(first + b) = reading;
         else
@@ -87,7 +88,7 @@ class BinnedReadings {
  private:
   [[nodiscard]] Eigen::MatrixXd seen(const Record& driven) const {
     if (read_by_ == ReadBy::finger)
-      return echo_columns(driven, driven.drive_kpa, EchoKind::finger, largest_kpa_);
+      return filter_columns(driven, driven.drive_kpa, FilterKind::finger, largest_kpa_);
     return Eigen::Map<const Eigen::VectorXd>(driven.drive_kpa.data(),
                                              static_cast<Eigen::Index>(driven.drive_kpa.size()));
   }

@@ -1,5 +1,5 @@
 #pragma once
-// Which regulator stands between a command and what was read.
+// Estimates the regulator between a command and a reading.
 
 #include <vector>
 
@@ -8,10 +8,10 @@
 
 namespace softgrip::sysid {
 
-/// What reads a regulator's pressure.
+/// The sensor behind a regulator.
 enum class ReadBy {
   gauge,   ///< the pressure itself, but for its gain and zero
-  finger,  ///< what a bank of plays and lags makes of it, all its weights fitted anew for every regulator
+  finger,  ///< a bank of plays and lags, whose weights are fitted again for each regulator
 };
 
 /// The regulator behind which least is left of the readings.

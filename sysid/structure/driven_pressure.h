@@ -22,7 +22,7 @@ struct DrivenPressure {
   }
 };
 
-/// Writes into `driven`, whose memory is used again: a search asks for it thousands of times.
+/// Writes into `driven`. Its memory is used again, because a search calls this thousands of times.
 /// @param numbers  those of the delay, the lag and the regulator count, as far as `structure` has them.
 void drive(const Record& record, const BaseStructure& structure, const NonlinearNumbers& numbers,
            DrivenPressure& driven);

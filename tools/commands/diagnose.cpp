@@ -280,7 +280,7 @@ void add_diagnose(CLI::App& program, ExitCode& outcome) {
   command->add_option("--threads", options->diagnosis.threads, "0: as many as there are cores")
       ->capture_default_str();
   command->add_flag("--propose", options->consequences.experiment.always,
-                    "Propose an experiment also where the verdict has no rivals");
+                    "Propose an experiment also where the verdict has no alternatives");
   command
       ->add_option("--pressure-max-kpa", options->pressure_max_kpa,
                    "Bound of the proposed experiment [the largest of the logs]")

@@ -27,7 +27,7 @@ void print_cause(const sysid::ChangeCause& cause) {
   std::printf("  %-26s %s, 95 %%: %s (%s %s at full pressure)\n", cause.id.c_str(), size_text(cause).c_str(),
               interval_text(cause).c_str(), significant(cause.full_pressure_mm, 3).c_str(),
               unit_of(cause.judged, cause.output_unit).c_str());
-  for (const std::string& rival : cause.rivals) std::printf("      %s explains as much\n", rival.c_str());
+  for (const std::string& alternative : cause.alternatives) std::printf("      %s explains as much\n", alternative.c_str());
   for (const std::string_view step : sysid::next_steps(cause.id))
     std::printf("      - %s\n", std::string(step).c_str());
 }
@@ -40,7 +40,7 @@ void print_explanation(const sysid::JudgedChange& judged) {
       significant(judged.healthy_mm, 3).c_str(), unit_of(judged.judged, judged.output_unit).c_str(),
       significant(judged.allowed_mm, 3).c_str(), significant(judged.later_mm, 3).c_str());
   std::printf("  whitened squared error of the later logs %s (1: as in healthy runs)\n",
-              significant(judged.misfit_before, 3).c_str());
+              significant(judged.loss_before, 3).c_str());
   std::printf("%s\n%s", sysid::text_of(sysid::run_table(judged)).c_str(),
               sysid::text_of(sysid::tried_table(judged)).c_str());
   for (const auto& [id, recording] : judged.not_tested)

@@ -98,7 +98,7 @@ class Investigator {
     return end(why.stopped ? InvestigationEnd::stopped : InvestigationEnd::failed, why.why);
   }
 
-  /// Nothing separates the rivals: within the budget, or at all?
+  /// Nothing separates the alternatives: within the budget, or at all?
   bool end_without_experiment(const sysid::NextExperiment& none) {
     sysid::ExperimentOptions unbounded = plan_;
     unbounded.most_minutes = 1e9;
@@ -106,7 +106,7 @@ class Investigator {
       return end(InvestigationEnd::budget_spent,
                  "what would tell them apart takes longer than the minutes left");
     }
-    std::string why = "no experiment of the menu that was not played yet would tell the rivals apart";
+    std::string why = "no experiment of the menu that was not played yet would tell the alternatives apart";
     for (const std::string& sentence : none.advice) why += "; " + sentence;
     return end(InvestigationEnd::nothing_left, why);
   }
@@ -147,7 +147,7 @@ class Investigator {
     return touched(*result_.steps.back().answer, log, sysid::campaign_size(result_.last.records).largest_kpa);
   }
 
-  /// No waveform tells the rivals apart, and they make different sensors.
+  /// No waveform tells the alternatives apart, and they make different sensors.
   bool check_sensor(const sysid::ProposedGaugeCheck& check, const std::string& folder) {
     if (check.minutes > result_.budget_minutes - result_.spent_minutes) {
       return end(InvestigationEnd::budget_spent,

@@ -52,7 +52,7 @@ struct InvestigationOptions {
 enum class InvestigationEnd {
   settled,       ///< one cause stands for each effect, or the model needs none
   unexplained,   ///< something is left that no cause explains: no waveform helps
-  nothing_left,  ///< no experiment would tell the rivals apart
+  nothing_left,  ///< no experiment would tell the alternatives apart
   budget_spent,  ///< one would, but it takes longer than what is left
   contact,       ///< the finger touched something while an experiment was played
   not_as_asked,  ///< the rig did not play the experiment that it was asked for

@@ -10,7 +10,7 @@
 #include "model/blocks/sensor_saturation.h"
 #include "model/blocks/transport_delay.h"
 #include "model/named.h"
-#include "sysid/changes/echo.h"
+#include "sysid/changes/filter_bank.h"
 #include "tests/sysid/changes/finger.h"
 
 namespace softgrip::sysid::base_test {
@@ -35,7 +35,7 @@ double left_of_mm(const Base& base, const std::vector<Log>& logs) {
   return std::sqrt(sum / count);
 }
 
-/// What no echo of the drive can know must not be learnt by heart from the blocks around.
+/// What no filter bank of the drive can know must not be learnt by heart from the blocks around.
 TEST(Base, LeavesOfAnotherDayWhatItLeavesOfHealthyLogsHeldOut) {
   const test::Finger wandering{.wander_mm = 0.1};
   const Base base = base_of(test::logs_of(wandering, 1));
@@ -104,23 +104,23 @@ TEST(Base, OfAPressureThatFollowsAtOnceADelayOfHalfASampleIsTheMeanOfTwo) {
   for (std::size_t i = 1; i < p.size(); ++i) ASSERT_NEAR(p[i], expected[i], 1e-6) << i;
 }
 
-/// A base whose echo is no small part of what it says.
-Base with_a_loud_echo() {
+/// A base whose filter bank is no small part of what it says.
+Base with_a_large_filter_part() {
   Base base = base_of(test::logs_of({}, 1));
   const Record& record = base.records.front();
-  const Eigen::Index columns = echo_columns(record, record.drive_kpa, base.kind, base.largest_kpa).cols();
-  base.echo_weights = Eigen::VectorXd::Constant(columns, 2e-4);
+  const Eigen::Index columns = filter_columns(record, record.drive_kpa, base.kind, base.largest_kpa).cols();
+  base.filter_weights = Eigen::VectorXd::Constant(columns, 2e-4);
   return base;
 }
 
-TEST(Base, ASensorShowsTheEchoAsWell) {
-  const Base base = with_a_loud_echo();
+TEST(Base, ASensorShowsTheFiltersAsWell) {
+  const Base base = with_a_large_filter_part();
   const Record record = make_records(test::logs_of({}, 5), {}).front();
   const std::vector<double> plain = predict_base(base, record, {});
-  double echo_mm = 0;
+  double filters_mm = 0;
   const Driven driven = driven_by(base, record);
-  for (const double v : driven.echo) echo_mm = std::max(echo_mm, std::abs(v));
-  ASSERT_GT(echo_mm, 0.5);
+  for (const double v : driven.filters) filters_mm = std::max(filters_mm, std::abs(v));
+  ASSERT_GT(filters_mm, 0.5);
   Extension limited;
   limited.chain.push_back({model::block_type<model::SensorSaturation>(), {-10.0, 6.0}});
   const std::vector<double> at_most = predict_base(base, record, limited);

@@ -51,11 +51,11 @@ Binned autoregression(double weight, double zero, unsigned seed) {
 }
 
 TEST(Bins, AnAutoregressionIsMadeWhite) {
-  const Binned residual = autoregression(0.9, 0, 3), haste(2, std::vector<double>(4000, 0.0));
-  const Whitener whitener = whitener_of(residual, haste, 3);
+  const Binned residual = autoregression(0.9, 0, 3), peak_rate(2, std::vector<double>(4000, 0.0));
+  const Whitener whitener = whitener_of(residual, peak_rate, 3);
   EXPECT_NEAR(whitener.before[0], 0.9, 0.05);
   EXPECT_NEAR(whitener.spread_at(0), innovation, 0.02);
-  const WhiteRows rows(residual, haste, whitener);
+  const WhiteRows rows(residual, peak_rate, whitener);
   const Eigen::VectorXd white = rows(residual);
   const Eigen::Index n = white.size() - 1;
   EXPECT_NEAR(white.squaredNorm() / static_cast<double>(n), 1, 0.05);
@@ -63,19 +63,19 @@ TEST(Bins, AnAutoregressionIsMadeWhite) {
 }
 
 TEST(Bins, TheZeroOfARunDoesNotWidenTheSpread) {
-  const Binned haste(2, std::vector<double>(4000, 0.0));
-  EXPECT_NEAR(whitener_of(autoregression(0.5, 35, 5), haste, 3).spread_at(0), innovation, 0.02);
+  const Binned peak_rate(2, std::vector<double>(4000, 0.0));
+  EXPECT_NEAR(whitener_of(autoregression(0.5, 35, 5), peak_rate, 3).spread_at(0), innovation, 0.02);
 }
 
 TEST(Bins, WhatIsHastyHasASpreadOfItsOwn) {
   std::mt19937 random(4);
   std::normal_distribution<double> normal(0, 1);
-  Binned residual(1, std::vector<double>(8000)), haste(1, std::vector<double>(8000));
+  Binned residual(1, std::vector<double>(8000)), peak_rate(1, std::vector<double>(8000));
   for (std::size_t i = 0; i < 8000; ++i) {
-    haste[0][i] = static_cast<double>(i % 100);
-    residual[0][i] = normal(random) * (haste[0][i] > 90 ? 10 : 1);
+    peak_rate[0][i] = static_cast<double>(i % 100);
+    residual[0][i] = normal(random) * (peak_rate[0][i] > 90 ? 10 : 1);
   }
-  const Whitener whitener = whitener_of(residual, haste, 2);
+  const Whitener whitener = whitener_of(residual, peak_rate, 2);
   EXPECT_NEAR(whitener.spread_at(10), 1, 0.1);
   EXPECT_NEAR(whitener.spread_at(99), 10, 1);
 }

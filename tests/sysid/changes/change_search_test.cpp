@@ -72,12 +72,12 @@ TEST_F(ChangeSearch, OfThoseThatTakeAsMuchTheOneWithFewestNumbersIsFirst) {
 }
 
 /// One that gains so much with so many numbers.
-ScoredEffect scored(const char* id, double gain, std::size_t numbers, std::size_t slack = 0) {
+ScoredEffect scored(const char* id, double gain, std::size_t numbers, std::size_t nuisance = 0) {
   ScoredEffect scored;
   scored.gain = gain;
   scored.fit.fitted.effect.id = id;
   scored.fit.fitted.effect.numbers.resize(numbers);
-  scored.fit.fitted.effect.slack_numbers = slack;
+  scored.fit.fitted.effect.nuisance_numbers = nuisance;
   return scored;
 }
 

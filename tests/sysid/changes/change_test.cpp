@@ -38,8 +38,8 @@ TEST(Change, AnotherGainBesideAnotherZeroMayBeAWeight) {
     EXPECT_FALSE(d.causes.empty()) << change_sentence(d);
     if (d.causes.empty()) return false;
     EXPECT_EQ(d.causes[0].id, "ageing");
-    const auto& rivals = d.causes[0].rivals;
-    return std::count(rivals.begin(), rivals.end(), "payload") == 1;
+    const auto& alternatives = d.causes[0].alternatives;
+    return std::count(alternatives.begin(), alternatives.end(), "payload") == 1;
   };
   EXPECT_TRUE(may_be_a_weight({.gain = 0.2 * 0.95, .zero_mm = -0.4}));
   EXPECT_FALSE(may_be_a_weight({.gain = 0.2 * 0.95}));
@@ -128,7 +128,7 @@ TEST(Change, AnotherGainIsAgeingInPercent) {
   EXPECT_GT(judged.healthy_mm, 0);
   EXPECT_GT(judged.allowed_mm, judged.healthy_mm);
   std::size_t rejected = 0;
-  for (const ChangeRival& tried : judged.tried) {
+  for (const TriedCause& tried : judged.tried) {
     if (!tried.rejected.empty()) ++rejected;
     EXPECT_FALSE(tried.id == "ageing" && !tried.rejected.empty()) << tried.rejected;
   }
@@ -191,7 +191,7 @@ TEST(Change, AFingerThatBendsAboutAPointIsStiffeningOrItsTwin) {
   const auto& found = d.causes[0].fitted;
   EXPECT_NEAR(found.numbers.at(0), 0.02, 0.002);
   EXPECT_NEAR(found.numbers.at(1), 12 * 0.02, 0.02);
-  EXPECT_EQ(d.causes[0].rivals, std::vector<std::string>{"sensor_nonlinearity"});
+  EXPECT_EQ(d.causes[0].alternatives, std::vector<std::string>{"sensor_nonlinearity"});
   EXPECT_EQ(d.verdict, ChangeVerdict::ambiguous);
 }
 

@@ -6,7 +6,7 @@
 #include "model/blocks/transport_delay.h"
 #include "model/blocks/valve_lag.h"
 #include "model/named.h"
-#include "sysid/changes/echo.h"
+#include "sysid/changes/filter_bank.h"
 #include "tests/sysid/changes/finger.h"
 
 namespace softgrip::sysid::extension_test {
@@ -80,7 +80,7 @@ TEST(Extension, ABlockedLineFillsMoreSlowlyThanItEmpties) {
   EXPECT_NEAR(p[500 + 10 - 1], 10 * std::exp(-1), 0.2);        // 0.2 s
 }
 
-TEST(Echo, ALagIsExactForWhatIsStraightBetweenSamples) {
+TEST(FilterBank, ALagIsExactForWhatIsStraightBetweenSamples) {
   Record r = record();
   std::vector<double> ramp(r.size());
   for (std::size_t i = 0; i < ramp.size(); ++i) ramp[i] = 2 * r.time_s[i];
@@ -89,32 +89,32 @@ TEST(Echo, ALagIsExactForWhatIsStraightBetweenSamples) {
     EXPECT_NEAR(lag[i], 2 * (r.time_s[i] - 0.5 * (1 - std::exp(-r.time_s[i] / 0.5))), 1e-9);
 }
 
-TEST(Echo, ColumnsKnowTheSupplyWhereItIsRecorded) {
+TEST(FilterBank, ColumnsKnowTheSupplyWhereItIsRecorded) {
   Record r = record();
-  const Eigen::MatrixXd plain = echo_columns(r, r.drive_kpa, EchoKind::valve, 60);
+  const Eigen::MatrixXd plain = filter_columns(r, r.drive_kpa, FilterKind::valve, 60);
   EXPECT_EQ(plain.rows(), static_cast<Eigen::Index>(r.size()));
   EXPECT_TRUE(plain.allFinite());
   r.supply_kpa.assign(r.size(), 500.0);
   r.supply_kpa[r.size() / 2] = 400.0;
-  const Eigen::MatrixXd supplied = echo_columns(r, r.drive_kpa, EchoKind::valve, 60);
+  const Eigen::MatrixXd supplied = filter_columns(r, r.drive_kpa, FilterKind::valve, 60);
   ASSERT_EQ(supplied.cols(), plain.cols());
   EXPECT_NE(supplied, plain);
 }
 
-TEST(Echo, OfACommandHoldsWhatAFingerAndWhatAValveMayDo) {
+TEST(FilterBank, OfACommandHoldsWhatAFingerAndWhatAValveMayDo) {
   const Record r = record();
-  const auto columns = [&](EchoKind kind) { return echo_columns(r, r.drive_kpa, kind, 60).cols(); };
-  const auto at_once = columns(EchoKind::valve) / 9;  // only a pressure that is recorded follows at once
-  EXPECT_EQ(columns(EchoKind::valve_and_finger),
-            columns(EchoKind::valve) - at_once + columns(EchoKind::finger));
+  const auto columns = [&](FilterKind kind) { return filter_columns(r, r.drive_kpa, kind, 60).cols(); };
+  const auto at_once = columns(FilterKind::valve) / 9;  // only a pressure that is recorded follows at once
+  EXPECT_EQ(columns(FilterKind::valve_and_finger),
+            columns(FilterKind::valve) - at_once + columns(FilterKind::finger));
 }
 
-TEST(Echo, WeightedIsItsColumnsTimesTheWeights) {
+TEST(FilterBank, WeightedIsItsColumnsTimesTheWeights) {
   const Record r = record();
-  for (const EchoKind kind : {EchoKind::valve, EchoKind::finger, EchoKind::valve_and_finger}) {
-    const Eigen::MatrixXd columns = echo_columns(r, r.drive_kpa, kind, 60);
+  for (const FilterKind kind : {FilterKind::valve, FilterKind::finger, FilterKind::valve_and_finger}) {
+    const Eigen::MatrixXd columns = filter_columns(r, r.drive_kpa, kind, 60);
     const Eigen::VectorXd weights = Eigen::VectorXd::LinSpaced(columns.cols(), -1, 2);
-    EXPECT_TRUE(weighted_echo(r, r.drive_kpa, kind, 60, weights).isApprox(columns * weights, 1e-9));
+    EXPECT_TRUE(weighted_filters(r, r.drive_kpa, kind, 60, weights).isApprox(columns * weights, 1e-9));
   }
 }
 

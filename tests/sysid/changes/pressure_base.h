@@ -1,5 +1,5 @@
 #pragma once
-// A base of the pressure, which is its echo alone: quick to fit.
+// A base of the pressure, which is its filter bank alone: quick to fit.
 
 #include <gtest/gtest.h>
 

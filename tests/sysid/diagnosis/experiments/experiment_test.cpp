@@ -59,7 +59,7 @@ model::Model softened() {
                            {find_cause("stress_softening")->forms.front().type, {0.004, 0}});
 }
 
-/// A diagnosis that names softening, fitted to what a softening finger did, with the given rivals.
+/// A diagnosis that names softening, fitted to what a softening finger did, with the given alternatives.
 Diagnosis ambiguous(const std::vector<std::string>& alternatives) {
   const model::Model base = loaded("bench_twin");
   Record record = record_of("poor", poor_command(), 0);

@@ -1,4 +1,4 @@
-// A gauge beside the logs: rivals go, names change places, and a name that the gauge contradicts does not
+// A gauge beside the logs: alternatives go, names change places, and a name that the gauge contradicts does not
 // stand.
 
 #include "sysid/diagnosis/gauge/gauge_verdict.h"

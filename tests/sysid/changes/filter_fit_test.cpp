@@ -1,4 +1,4 @@
-#include "sysid/changes/echo_fit.h"
+#include "sysid/changes/filter_fit.h"
 
 #include <cmath>
 #include <limits>
@@ -7,7 +7,7 @@
 
 #include "sysid/fitting/start_estimate.h"
 
-namespace softgrip::sysid::echo_fit_test {
+namespace softgrip::sysid::filter_fit_test {
 namespace {
 
 constexpr double bin_s = 0.1;
@@ -36,36 +36,36 @@ Binned left_of(const Record& record, double share) {
   return left;
 }
 
-std::vector<FittedEcho> fitted(const std::vector<Binned>& models) {
+std::vector<FittedFilters> fitted(const std::vector<Binned>& models) {
   const std::vector<Record> records{waving()};
   const Units units(records);
   std::vector<LeftByUnit> left;
   for (const Binned& model : models) left.emplace_back(units.count() + 1, model);
-  return fit_echo(records, units, EchoKind::finger, bin_s, 22, left, 1);
+  return fit_filters(records, units, FilterKind::finger, bin_s, 22, left, 1);
 }
 
-TEST(EchoFit, ExplainsWhatFollowsTheDrive) {
-  const FittedEcho echo = fitted({left_of(waving(), 0.1)})[0];
-  EXPECT_GT(echo.weights.size(), 0);
-  EXPECT_LT(echo.left_mm, 0.02);
-  EXPECT_GT(echo.left_mm, 0.005);
+TEST(FilterFit, ExplainsWhatFollowsTheDrive) {
+  const FittedFilters filters = fitted({left_of(waving(), 0.1)})[0];
+  EXPECT_GT(filters.weights.size(), 0);
+  EXPECT_LT(filters.left_mm, 0.02);
+  EXPECT_GT(filters.left_mm, 0.005);
 }
 
-TEST(EchoFit, OfWhatDoesNotFollowTheDriveIsNone) {
-  const FittedEcho echo = fitted({left_of(waving(), 0)})[0];
-  EXPECT_EQ(echo.weights.size(), 0);
+TEST(FilterFit, OfWhatDoesNotFollowTheDriveIsNone) {
+  const FittedFilters filters = fitted({left_of(waving(), 0)})[0];
+  EXPECT_EQ(filters.weights.size(), 0);
   const Binned model = left_of(waving(), 0);
   const auto begin = static_cast<std::size_t>(begin_s(waving()) / bin_s);
   for (std::size_t b = 0; b < model[0].size(); ++b) {
     if (b < begin)
-      EXPECT_TRUE(std::isnan(echo.left[0][b])) << b;
+      EXPECT_TRUE(std::isnan(filters.left[0][b])) << b;
     else
-      EXPECT_EQ(echo.left[0][b], model[0][b]) << b;
+      EXPECT_EQ(filters.left[0][b], model[0][b]) << b;
   }
 }
 
 /// A model that was fitted to a unit says nothing of how it predicts that unit.
-TEST(EchoFit, EachUnitIsJudgedByTheModelThatWasFittedWithoutIt) {
+TEST(FilterFit, EachUnitIsJudgedByTheModelThatWasFittedWithoutIt) {
   const std::vector<Record> records{waving()};
   const Units units(records);
   const Binned whole = left_of(waving(), 0);
@@ -74,35 +74,35 @@ TEST(EchoFit, EachUnitIsJudgedByTheModelThatWasFittedWithoutIt) {
     left.push_back(whole);
     for (double& v : left.back()[0]) v *= 2 + static_cast<double>(fitted_without);
   }
-  const FittedEcho echo = fit_echo(records, units, EchoKind::finger, bin_s, 22, {left}, 1).front();
-  ASSERT_EQ(echo.weights.size(), 0);
+  const FittedFilters filters = fit_filters(records, units, FilterKind::finger, bin_s, 22, {left}, 1).front();
+  ASSERT_EQ(filters.weights.size(), 0);
   std::size_t judged = 0;
   for (std::size_t b = 0; b < whole[0].size(); ++b) {
-    if (std::isnan(echo.left[0][b])) continue;
-    EXPECT_EQ(echo.left[0][b], left[units.unit_of(0, (static_cast<double>(b) + 0.5) * bin_s)][0][b]) << b;
+    if (std::isnan(filters.left[0][b])) continue;
+    EXPECT_EQ(filters.left[0][b], left[units.unit_of(0, (static_cast<double>(b) + 0.5) * bin_s)][0][b]) << b;
     ++judged;
   }
   EXPECT_GT(judged, whole[0].size() / 2);
 }
 
-TEST(EchoFit, OfSeveralModelsIsThatOfEach) {
+TEST(FilterFit, OfSeveralModelsIsThatOfEach) {
   const std::vector<Binned> left{left_of(waving(), 0.1), left_of(waving(), -0.2), left_of(waving(), 0.3)};
-  const std::vector<FittedEcho> together = fitted(left);
+  const std::vector<FittedFilters> together = fitted(left);
   ASSERT_EQ(together.size(), 3U);
   for (std::size_t m = 0; m < 3; ++m) {
-    const FittedEcho alone = fitted({left[m]})[0];
+    const FittedFilters alone = fitted({left[m]})[0];
     EXPECT_EQ(together[m].left_mm, alone.left_mm) << m;
     EXPECT_EQ(together[m].weights, alone.weights) << m;
   }
 }
 
-TEST(EchoFit, AModelThatIsNotFiniteIsNoChoice) {
+TEST(FilterFit, AModelThatIsNotFiniteIsNoChoice) {
   std::vector<Binned> left{left_of(waving(), 0.1), left_of(waving(), 0.1)};
   left[1][0][40] = std::numeric_limits<double>::quiet_NaN();
-  const std::vector<FittedEcho> fits = fitted(left);
+  const std::vector<FittedFilters> fits = fitted(left);
   EXPECT_LT(fits[0].left_mm, 0.02);
   EXPECT_TRUE(std::isinf(fits[1].left_mm));
 }
 
 }  // namespace
-}  // namespace softgrip::sysid::echo_fit_test
+}  // namespace softgrip::sysid::filter_fit_test

@@ -1,4 +1,4 @@
-#include "sysid/changes/echo_fit.h"
+#include "sysid/changes/filter_fit.h"
 
 #include <algorithm>
 #include <array>
@@ -41,10 +41,10 @@ Eigen::VectorXd centred(Eigen::VectorXd values, const std::vector<Row>& rows) {
 }
 
 /// The columns of all records in bins, each row in its unit.
-class EchoBank {
+class FilterBank {
  public:
-  EchoBank(const std::vector<Record>& records, const Units& units, EchoKind kind, double bin_s,
-           double largest_kpa)
+  FilterBank(const std::vector<Record>& records, const Units& units, FilterKind kind, double bin_s,
+             double largest_kpa)
       : unit_indices_(units), units_(units.count()), bin_s_(bin_s), largest_kpa_(largest_kpa) {
     for (std::size_t r = 0; r < records.size(); ++r) add(records, r, units, kind);
     for (std::size_t u = 0; u < units_; ++u) {
@@ -100,13 +100,13 @@ class EchoBank {
         if (rms_mm >= target.left_mm) continue;
         target.left_mm = rms_mm;
         target.left = std::move(left);
-        target.weights = whole.solve(target.moments[units_]).head(echo_count_);
+        target.weights = whole.solve(target.moments[units_]).head(filter_count_);
       }
     }
   }
 
-  /// An echo must be better than none by the rule for any two hypotheses.
-  [[nodiscard]] FittedEcho answer(Target target, const LeftByUnit& model, std::uint64_t seed) const {
+  /// A filter bank must be better than none by the rule for any two hypotheses.
+  [[nodiscard]] FittedFilters answer(Target target, const LeftByUnit& model, std::uint64_t seed) const {
     if (target.values.empty()) return {{}, model.back(), std::numeric_limits<double>::infinity()};
     const Binned plain = in_bins(target.plain_left, model.back()), left = in_bins(target.left, model.back());
     if (is_better(compare(losses_of(plain, left, unit_indices_, bin_s_), 0, seed)))
@@ -115,10 +115,10 @@ class EchoBank {
   }
 
  private:
-  void add(const std::vector<Record>& records, std::size_t r, const Units& units, EchoKind kind) {
+  void add(const std::vector<Record>& records, std::size_t r, const Units& units, FilterKind kind) {
     const Record& record = records[r];
-    const Eigen::MatrixXd echo = echo_columns(record, record.drive_kpa, kind, largest_kpa_);
-    echo_count_ = echo.cols();
+    const Eigen::MatrixXd filters = filter_columns(record, record.drive_kpa, kind, largest_kpa_);
+    filter_count_ = filters.cols();
     const std::vector<double> readings = binned(record, record.reading_mm, bin_s_);
     const Eigen::Index first = columns_.rows();
     for (std::size_t b = 0; b < readings.size(); ++b) {
@@ -126,18 +126,19 @@ class EchoBank {
       if (std::isfinite(readings[b]) && middle_s > begin_s(record))
         rows_.push_back({r, b, units.unit_of(r, middle_s)});
     }
-    // Each record has a column for an offset of its own behind those of the echo.
+    // Each record has a column for an offset of its own behind those of the filter bank.
     const auto count = static_cast<Eigen::Index>(rows_.size());
-    columns_.conservativeResize(count, echo_count_ + static_cast<Eigen::Index>(records.size()));
+    columns_.conservativeResize(count, filter_count_ + static_cast<Eigen::Index>(records.size()));
     columns_.bottomRows(count - first).setZero();
-    for (Eigen::Index c = 0; c < echo_count_; ++c) {
-      const std::vector<double> series = binned(record, {echo.col(c).begin(), echo.col(c).end()}, bin_s_);
+    for (Eigen::Index c = 0; c < filter_count_; ++c) {
+      const std::vector<double> series =
+          binned(record, {filters.col(c).begin(), filters.col(c).end()}, bin_s_);
       for (Eigen::Index i = first; i < count; ++i) {
         const double v = series[rows_[static_cast<std::size_t>(i)].bin];
         columns_(i, c) = std::isfinite(v) ? v : 0;
       }
     }
-    columns_.col(echo_count_ + static_cast<Eigen::Index>(r))
+    columns_.col(filter_count_ + static_cast<Eigen::Index>(r))
         .bottomRows(count - first)
         .setConstant(largest_kpa_);
   }
@@ -156,7 +157,7 @@ class EchoBank {
     return values(rows_of(unit));
   }
 
-  /// What is left of each unit by the model and the weights that were fitted without it.
+  /// Residual of each unit with the model and the weights that were fitted without it.
   [[nodiscard]] Eigen::VectorXd left_out(const Target& target,
                                          const std::vector<Eigen::VectorXd>& weights) const {
     Eigen::VectorXd left(columns_.rows());
@@ -178,7 +179,7 @@ class EchoBank {
   [[nodiscard]] double rms_of(const Eigen::VectorXd& left) const {
     return std::sqrt(centred(left, rows_).squaredNorm() / static_cast<double>(left.size()));
   }
-  /// Of all units but one; without one: units_.
+  /// Factor of the normal equations of all units without `unit`; units_: of all units.
   [[nodiscard]] Factor factor_without(std::size_t unit, double ridge) const {
     Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(columns_.cols(), columns_.cols());
     for (std::size_t u = 0; u < units_; ++u) {
@@ -194,7 +195,7 @@ class EchoBank {
   Eigen::MatrixXd columns_;
   std::vector<Eigen::MatrixXd> gram_;  ///< by unit
   std::vector<Row> rows_;
-  Eigen::Index echo_count_ = 0;
+  Eigen::Index filter_count_ = 0;
 };
 
 }  // namespace
@@ -231,15 +232,15 @@ PairedLosses losses_of(const Binned& worse, const Binned& better, const Units& u
   return paired;
 }
 
-std::vector<FittedEcho> fit_echo(const std::vector<Record>& records, const Units& units, EchoKind kind,
-                                 double bin_s, double largest_kpa, const std::vector<LeftByUnit>& left,
-                                 std::uint64_t seed) {
-  const EchoBank bank(records, units, kind, bin_s, largest_kpa);
-  std::vector<EchoBank::Target> targets;
+std::vector<FittedFilters> fit_filters(const std::vector<Record>& records, const Units& units,
+                                       FilterKind kind, double bin_s, double largest_kpa,
+                                       const std::vector<LeftByUnit>& left, std::uint64_t seed) {
+  const FilterBank bank(records, units, kind, bin_s, largest_kpa);
+  std::vector<FilterBank::Target> targets;
   targets.reserve(left.size());
   for (const LeftByUnit& model : left) targets.push_back(bank.target_of(model));
   bank.fit(targets);
-  std::vector<FittedEcho> fits;
+  std::vector<FittedFilters> fits;
   fits.reserve(left.size());
   for (std::size_t m = 0; m < left.size(); ++m)
     fits.push_back(bank.answer(std::move(targets[m]), left[m], seed));

@@ -1,4 +1,4 @@
-#include "sysid/changes/echo.h"
+#include "sysid/changes/filter_bank.h"
 
 #include <algorithm>
 #include <array>
@@ -79,13 +79,13 @@ struct SignalBank {
   std::span<const double> lags_s;
 };
 
-std::vector<SignalBank> banks(const Record& record, const Values& drive_kpa, EchoKind kind,
+std::vector<SignalBank> banks(const Record& record, const Values& drive_kpa, FilterKind kind,
                               double largest_kpa) {
   std::vector<SignalBank> all;
-  if (kind != EchoKind::valve) all.push_back({finger_signals(drive_kpa, largest_kpa), finger_lags_s});
-  if (kind != EchoKind::finger)
+  if (kind != FilterKind::valve) all.push_back({finger_signals(drive_kpa, largest_kpa), finger_lags_s});
+  if (kind != FilterKind::finger)
     all.push_back({valve_signals(record, drive_kpa, largest_kpa),
-                   std::span(valve_lags_s).subspan(kind == EchoKind::valve ? 0 : 1)});
+                   std::span(valve_lags_s).subspan(kind == FilterKind::valve ? 0 : 1)});
   return all;
 }
 
@@ -107,8 +107,8 @@ std::vector<double> lagged(const Record& record, const std::vector<double>& sign
   return out;
 }
 
-Eigen::MatrixXd echo_columns(const Record& record, const std::vector<double>& drive_kpa, EchoKind kind,
-                             double largest_kpa) {
+Eigen::MatrixXd filter_columns(const Record& record, const std::vector<double>& drive_kpa, FilterKind kind,
+                               double largest_kpa) {
   const std::vector<SignalBank> all = banks(record, drive_kpa, kind, largest_kpa);
   std::size_t count = 0;
   for (const SignalBank& bank : all) count += bank.signals.size() * bank.lags_s.size();
@@ -125,8 +125,8 @@ Eigen::MatrixXd echo_columns(const Record& record, const std::vector<double>& dr
   return columns;
 }
 
-Eigen::VectorXd weighted_echo(const Record& record, const std::vector<double>& drive_kpa, EchoKind kind,
-                              double largest_kpa, const Eigen::VectorXd& weights) {
+Eigen::VectorXd weighted_filters(const Record& record, const std::vector<double>& drive_kpa, FilterKind kind,
+                                 double largest_kpa, const Eigen::VectorXd& weights) {
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(record.size()));
   Eigen::Index first = 0;
   for (const SignalBank& bank : banks(record, drive_kpa, kind, largest_kpa)) {

@@ -1,0 +1,39 @@
+#pragma once
+// Fit of a filter bank to the residuals of models, judged on units that are left out in turn.
+
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "sysid/changes/bins.h"
+#include "sysid/changes/filter_bank.h"
+#include "sysid/evidence/comparison.h"
+#include "sysid/evidence/units.h"
+#include "sysid/logs/record.h"
+
+namespace softgrip::sysid {
+
+/// A filter bank with the weights of the best ridge.
+struct FittedFilters {
+  Eigen::VectorXd
+      weights;  ///< by the columns of filter_columns(); none where the model alone predicts as well
+  Binned left;  ///< what model and filter bank leave of each unit while it is left out; NaN: no reading
+  double left_mm = 0;  ///< root of its mean square about the mean of each unit
+};
+
+/// Squares of two residuals over blocks of some seconds, each about its mean in every unit.
+[[nodiscard]] PairedLosses losses_of(const Binned& worse, const Binned& better, const Units& units,
+                                     double bin_s);
+
+/// Residuals of a model for all records, in bins: fitted without each unit in turn, and fitted to all.
+using LeftByUnit = std::vector<Binned>;
+
+/// One filter bank for each model: all follow the records' drives, so that columns and factors are theirs
+/// together. A model that is not finite at some reading has an infinite left_mm.
+/// @param left  by model. @param largest_kpa  of all records.
+[[nodiscard]] std::vector<FittedFilters> fit_filters(const std::vector<Record>& records, const Units& units,
+                                                     FilterKind kind, double bin_s, double largest_kpa,
+                                                     const std::vector<LeftByUnit>& left, std::uint64_t seed);
+
+}  // namespace softgrip::sysid
