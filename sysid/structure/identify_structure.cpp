@@ -43,10 +43,10 @@ StructureEvidence evidence_of(const StructureChoice& choice, const std::vector<W
 }
 
 std::string chosen_by_means(const std::vector<Record>& averaged) {
-  double longest_s = 0;
-  for (const Record& record : averaged) longest_s = std::max(longest_s, record.mean_interval_s());
+  double mean_s = 0;
+  for (const Record& record : averaged) mean_s = std::max(mean_s, record.mean_interval_s());
   return "more than " + std::to_string(enough_readings) +
-         " readings: the structure was chosen with means over " + significant(1e3 * longest_s, 2) +
+         " readings: the structure was chosen with means over " + significant(1e3 * mean_s, 2) +
          " ms, and its parameters were fitted to all samples";
 }
 
