@@ -1,6 +1,7 @@
 #include "daemon/loop/bus.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <span>
@@ -186,6 +187,7 @@ void Bus::exchange() noexcept {
 }
 
 void Bus::choose_outputs() noexcept {
+  respect_found_outputs();
   const Commands& commands = shared_.commands.value();
   written_kpa_ = silent() ? commands.safe_kpa : commands.command_kpa;
   if (commands.may_rise && inhibited_ == FaultCode::none) return;
@@ -195,6 +197,7 @@ void Bus::choose_outputs() noexcept {
 }
 
 void Bus::note_success(Nanoseconds duration) noexcept {
+  found_kpa_ = BusReport::anything;
   session_ = Session::proven;
   statistics_.attempts.store(0, std::memory_order_relaxed);
   pause_ = reconnect_.first_pause.count();
@@ -225,6 +228,13 @@ void Bus::note_failure(BusStatus status) noexcept {
   for (std::size_t i = 0; i < channels_; ++i) {
     report_.outputs_kpa[i] = control::no_further(rest_kpa_[i], written_kpa_[i], report_.outputs_kpa[i]);
   }
+  if (status == BusStatus::write_refused) {
+    for (std::size_t i = 0; i < channels_; ++i) {
+      const double found_kpa = board_.found_kpa(i);
+      found_kpa_[i] = std::isfinite(found_kpa) ? found_kpa : BusReport::anything[i];
+    }
+    respect_found_outputs();
+  }
   const bool others = status == BusStatus::overwritten;
   if (others || status == BusStatus::watchdog_tripped) rest_outputs();
   // A watchdog that has acted has overwritten them, too.
@@ -236,6 +246,18 @@ void Bus::note_failure(BusStatus status) noexcept {
   if (told_failed_) return;
   told_failed_ = true;
   tell(BusEvent::Kind::failed, status, board_.detail());
+}
+
+/// Outputs that the board reports nearer to rest than they were written: writing the last commands again
+/// would move them away from rest. A hold is not dropped for that, because a gateway that repeats an old
+/// reading must not open a grip. It ends with the first commands that do not hold.
+void Bus::respect_found_outputs() noexcept {
+  const Commands& commands = shared_.commands.value();
+  for (std::size_t i = 0; i < channels_; ++i) {
+    const bool holds = commands.safe_kpa[i] != rest_kpa_[i];
+    if (holds) continue;
+    report_.outputs_kpa[i] = control::no_further(rest_kpa_[i], report_.outputs_kpa[i], found_kpa_[i]);
+  }
 }
 
 /// Once in an outage: why no new session can be opened may be another fact than why the last one ended. A

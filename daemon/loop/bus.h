@@ -32,7 +32,9 @@ namespace softgrip::daemon {
 /// - the commands of the loop time out: the safe outputs of its last commands are written (cycles_lost);
 /// - the board's watchdog must have tripped, by the time since the last good exchange, or reports that it
 /// has: the rest pressures are written (board_watchdog_tripped);
-/// - the board rejected a write (write_refused);
+/// - the board rejected a write (write_refused). Outputs that it then reports nearer to rest count as the
+/// present outputs, unless the safe action is to hold: another client may have written between two requests
+/// of the exchange, but a gateway may also repeat an old reading;
 /// - another Modbus client writes to the board: the rest pressures are written (outputs_overwritten).
 class Bus {
  public:
@@ -62,6 +64,7 @@ class Bus {
   void choose_outputs() noexcept;
   void note_success(Nanoseconds duration) noexcept;
   void note_failure(drivers::BusStatus status) noexcept;
+  void respect_found_outputs() noexcept;
   void note_refusal(drivers::BusStatus status) noexcept;
   void note_clients() noexcept;
   void judge_gap(Nanoseconds now, Nanoseconds margin) noexcept;
@@ -91,6 +94,7 @@ class Bus {
 
   BusReport report_;
   std::array<double, control::max_channels> written_kpa_ = BusReport::anything;
+  std::array<double, control::max_channels> found_kpa_ = BusReport::anything;  // since the last good exchange
   Session session_ = Session::none;
   bool spoken_ = false;                                      // the loop, at least once
   control::FaultCode inhibited_ = control::FaultCode::none;  // why, or none

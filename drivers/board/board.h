@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <string>
 
@@ -50,6 +51,12 @@ class Board {
 
   /// What connect() or exchange() last failed of, for the event log; valid until the next call of either.
   [[nodiscard]] virtual const char* detail() const noexcept { return ""; }
+
+  /// Returns what a channel's output was in an exchange that ended with `write_refused` [kPa]. NaN if it was
+  /// as written, or if the board did not say. Valid until the next exchange.
+  [[nodiscard]] virtual double found_kpa(std::size_t /*channel*/) const noexcept {
+    return std::numeric_limits<double>::quiet_NaN();
+  }
 
   /// One line for the start-up report: "ADAM-6024 at 127.0.0.1:502 unit 1".
   [[nodiscard]] virtual std::string describe() const = 0;

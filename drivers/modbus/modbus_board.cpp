@@ -154,11 +154,13 @@ BusStatus ModbusBoard::Parts::transact(Nanoseconds deadline) noexcept {
       return failed(status, module);
     }
   }
+  BusStatus result = BusStatus::ok;
   for (ModbusModule& module : modules) {
     if (module.reads_first()) continue;
-    if (const BusStatus status = module.check(); status != BusStatus::ok) return failed(status, module);
+    const BusStatus status = module.check();
+    if (status != BusStatus::ok && result == BusStatus::ok) result = failed(status, module);
   }
-  return BusStatus::ok;
+  return result;
 }
 
 void ModbusBoard::Parts::fill(std::span<Reading> readings) const noexcept {
@@ -198,6 +200,7 @@ BusStatus ModbusBoard::exchange(std::span<const double> commands_kpa, std::span<
                                 std::chrono::nanoseconds deadline) noexcept {
   Parts& parts = *parts_;
   const Nanoseconds until = monotonic_now() + deadline.count();
+  for (ModbusModule& module : parts.modules) module.forget_found();
   if (commands_kpa.size() != channels() || readings.size() != channels()) {
     return parts.say(BusStatus::write_refused, "not one command and one reading per channel");
   }
@@ -219,6 +222,10 @@ BusStatus ModbusBoard::exchange(std::span<const double> commands_kpa, std::span<
 
 const char* ModbusBoard::detail() const noexcept {
   return parts_->detail.data();
+}
+
+double ModbusBoard::found_kpa(std::size_t channel) const noexcept {
+  return parts_->modules[parts_->settings.wiring[channel].valve.module].found_kpa(channel);
 }
 
 std::string ModbusBoard::describe() const {

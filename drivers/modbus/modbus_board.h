@@ -43,6 +43,7 @@ class ModbusBoard final : public Board {
   [[nodiscard]] BusStatus exchange(std::span<const double> commands_kpa, std::span<Reading> readings,
                                    std::chrono::nanoseconds deadline) noexcept override;
   [[nodiscard]] const char* detail() const noexcept override;
+  [[nodiscard]] double found_kpa(std::size_t channel) const noexcept override;
   [[nodiscard]] std::string describe() const override;
   [[nodiscard]] Budget budget() const override;
   /// True if every module that drives outputs has one.

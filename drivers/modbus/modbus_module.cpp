@@ -32,7 +32,8 @@ ModbusModule::ModbusModule(ModbusModuleSettings settings, std::size_t index,
       link_(link),
       output_words_(plan_.output_words),
       requested_raws_(wiring.size()),
-      accepted_(settings_.map.read_back.has_value() ? *settings_.map.read_back : ReadBack{}, wiring.size()) {
+      accepted_(settings_.map.read_back.has_value() ? *settings_.map.read_back : ReadBack{}, wiring.size()),
+      found_kpa_(wiring.size(), std::numeric_limits<double>::quiet_NaN()) {
   for (const ReadStep& step : plan_.reads) replies_.emplace_back(step.count);
 }
 
@@ -239,6 +240,15 @@ double ModbusModule::raw_at(const Slot& slot, RegisterKind kind) const noexcept 
   return decode(words, kind, settings_.map.word_order);
 }
 
+double ModbusModule::read_back_kpa(std::size_t channel) const noexcept {
+  const double raw = raw_at(*plan_.channels[channel].read_back, settings_.map.read_back->registers.kind);
+  return wiring_[channel].valve.scaling.y_at(settings_.map.outputs.scaling.y_at(raw));
+}
+
+void ModbusModule::forget_found() noexcept {
+  std::fill(found_kpa_.begin(), found_kpa_.end(), std::numeric_limits<double>::quiet_NaN());
+}
+
 BusStatus ModbusModule::check() noexcept {
   if (is_tripped()) {
     return say(BusStatus::watchdog_tripped,
@@ -247,6 +257,7 @@ BusStatus ModbusModule::check() noexcept {
   if (!settings_.map.read_back.has_value() || !drives_outputs()) return BusStatus::ok;
   if (!reads_first_) accepted_.note(requested_raws_);
   const RegisterKind kind = settings_.map.read_back->registers.kind;
+  BusStatus status = BusStatus::ok;
   for (std::size_t i = 0; i < requested_raws_.size(); ++i) {
     if (!plan_.channels[i].read_back.has_value()) continue;
     const double raw = raw_at(*plan_.channels[i].read_back, kind);
@@ -258,8 +269,11 @@ BusStatus ModbusModule::check() noexcept {
           "raw %g",
           i, raw);
     }
-    return fail(BusStatus::write_refused, "channel '%s': the output reads back as raw %g", i, raw);
+    found_kpa_[i] = read_back_kpa(i);
+    if (status == BusStatus::ok)
+      status = fail(BusStatus::write_refused, "channel '%s': the output reads back as raw %g", i, raw);
   }
+  if (status != BusStatus::ok) return status;
   // Where the reading was first the write comes now, and is seen in the next exchange.
   if (reads_first_) accepted_.note(requested_raws_);
   confirmed_ = !reads_first_;
@@ -294,10 +308,7 @@ void ModbusModule::fill(std::size_t channel, Reading& reading) const noexcept {
     const JudgedInput temperature = input(*wiring.temperature, *slots.temperature, slots.temperature_status);
     if (temperature.validity == model::Validity::valid) reading.temperature_c = temperature.physical;
   }
-  if (slots.read_back.has_value()) {
-    const double raw = raw_at(*slots.read_back, settings_.map.read_back->registers.kind);
-    reading.command_readback_kpa = wiring.valve.scaling.y_at(settings_.map.outputs.scaling.y_at(raw));
-  }
+  if (slots.read_back.has_value()) reading.command_readback_kpa = read_back_kpa(channel);
 }
 
 std::vector<TransactionSize> ModbusModule::transactions() const {

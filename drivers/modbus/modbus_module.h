@@ -56,7 +56,11 @@ class ModbusModule {
   /// What write() has not read yet.
   [[nodiscard]] BusStatus read(Nanoseconds deadline) noexcept;
   /// What the board says of its outputs; `overwritten` is said only where the reading was first.
+  /// With `write_refused`, found_kpa() returns what the outputs were instead.
   [[nodiscard]] BusStatus check() noexcept;
+  /// NaN where the channel is not wired to the module, or where the last check() found what was written.
+  [[nodiscard]] double found_kpa(std::size_t channel) const noexcept { return found_kpa_[channel]; }
+  void forget_found() noexcept;
   /// Puts what the module knows of a channel into its reading.
   void fill(std::size_t channel, Reading& reading) const noexcept;
 
@@ -79,6 +83,7 @@ class ModbusModule {
   [[nodiscard]] bool combines() const noexcept { return plan_.combined_read.has_value() && !reads_first_; }
   [[nodiscard]] bool is_tripped() const noexcept;
   [[nodiscard]] double raw_at(const Slot& slot, RegisterKind kind) const noexcept;
+  [[nodiscard]] double read_back_kpa(std::size_t channel) const noexcept;
   [[nodiscard]] JudgedInput input(const InputWiring& wiring, const Slot& slot,
                                   const std::optional<Slot>& status) const noexcept;
   BusStatus fail(BusStatus status, const char* format, std::size_t channel, double value) noexcept;
@@ -91,6 +96,7 @@ class ModbusModule {
   std::vector<std::uint16_t> output_words_;
   std::vector<double> requested_raws_;  ///< what each output was told, after rounding and clamping
   ReadBackHistory accepted_;
+  std::vector<double> found_kpa_;
   std::vector<std::vector<std::uint16_t>> replies_;  ///< one per read of the plan; bits as 0 or 1
   Nanoseconds sampled_at_ = 0;
   std::uint32_t unlooked_ = 0;  ///< exchanges since one began with the reading

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -22,9 +23,10 @@ class ScriptedBoard final : public drivers::Board {
   bool readers_feed = false;
   unsigned counted_clients = 0;
   const char* said = "scripted";
-  std::function<void()> on_connect;           ///< while it connects
-  std::function<void()> on_exchange;          ///< before what was sent arrives
-  std::vector<Nanoseconds> connect_attempts;  ///< when
+  double found = std::numeric_limits<double>::quiet_NaN();  ///< by a refused exchange, at every output
+  std::function<void()> on_connect;                         ///< while it connects
+  std::function<void()> on_exchange;                        ///< before what was sent arrives
+  std::vector<Nanoseconds> connect_attempts;                ///< when
 
   [[nodiscard]] std::size_t channels() const noexcept override { return channels_; }
   [[nodiscard]] drivers::BusStatus connect(std::chrono::nanoseconds) noexcept override {
@@ -46,6 +48,7 @@ class ScriptedBoard final : public drivers::Board {
     return drivers::BusStatus::ok;
   }
   [[nodiscard]] const char* detail() const noexcept override { return said; }
+  [[nodiscard]] double found_kpa(std::size_t) const noexcept override { return found; }
   [[nodiscard]] std::string describe() const override { return "scripted board"; }
   [[nodiscard]] Budget budget() const override { return {}; }
   [[nodiscard]] bool has_watchdog() const noexcept override { return watchdog.count() > 0; }

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "tests/daemon/scripted_board.h"
@@ -508,6 +509,62 @@ TEST_F(BusTest, AnAnswerThatRefusesKeepsTheSession) {
     EXPECT_EQ(shared_.bus.value().health.consecutive_failures, status == BusStatus::exception ? 1U : 2U);
   }
   EXPECT_EQ(board_.connect_attempts.size(), 1U);
+}
+
+// Between the write and the reading of one exchange another master has written 5 kPa.
+TEST_F(BusTest, OutputsFoundNearerToRestAreNotWrittenBack) {
+  command(12, 0, true);
+  step();
+  board_.next_exchange = BusStatus::write_refused;
+  board_.found = 5;
+  step();
+  EXPECT_EQ(fault(), FaultCode::write_refused);
+  EXPECT_EQ(shared_.bus.value().outputs_kpa[0], 5);
+  board_.next_exchange = BusStatus::ok;
+  step();
+  EXPECT_EQ(last_written(), 5);
+  command(12, 0, false, shared_.bus.value().health.inhibit);
+  step();
+  EXPECT_EQ(last_written(), 5) << "the loop has heard of the fault, and its ramp begins further from rest";
+  command(4, 0, false, shared_.bus.value().health.inhibit);
+  step();
+  EXPECT_EQ(last_written(), 4);
+}
+
+TEST_F(BusTest, OutputsFoundFurtherFromRestOrNotAtAllDoNotRaiseTheCommands) {
+  for (const double found : {20.0, std::numeric_limits<double>::quiet_NaN()}) {
+    board_.found = found;
+    command(12, 0, false, shared_.bus.value().health.inhibit);
+    board_.next_exchange = BusStatus::ok;
+    step();
+    board_.next_exchange = BusStatus::write_refused;
+    step();
+    EXPECT_EQ(shared_.bus.value().outputs_kpa[0], 12);
+  }
+}
+
+// A gateway that repeats an old reading says the same, and what is held must not be dropped for it.
+TEST_F(BusTest, AHoldIsNotDroppedForOutputsFoundNearerToRest) {
+  command(12, 12, true);
+  step();
+  board_.next_exchange = BusStatus::write_refused;
+  board_.found = 5;
+  step();
+  board_.next_exchange = BusStatus::ok;
+  step();
+  EXPECT_EQ(last_written(), 12);
+}
+
+TEST_F(BusTest, OutputsFoundNearerToRestAreNotWrittenBackByTheFirstCommandsThatDoNotHold) {
+  command(12, 12, true);
+  step();
+  board_.next_exchange = BusStatus::write_refused;
+  board_.found = 5;
+  step();
+  board_.next_exchange = BusStatus::ok;
+  command(11, 0, false, shared_.bus.value().health.inhibit);
+  step();
+  EXPECT_EQ(last_written(), 5);
 }
 
 TEST_F(BusTest, WhatTheBoardSaidOnceIsReportedAndNothingRisesUntilTheLoopHasHeardIt) {

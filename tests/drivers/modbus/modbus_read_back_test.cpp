@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <cstdint>
 #include <string>
 
 #include "tests/drivers/modbus/modbus_board_fixture.h"
@@ -27,6 +29,27 @@ TEST_F(ModbusBoardTest, AnOutputThatDoesNotFollowIsRefused) {
   EXPECT_NE(std::string(board_->detail()).find("left"), std::string::npos) << board_->detail();
   server_.ignore_writes(false);
   EXPECT_EQ(exchange(50, 10), BusStatus::ok);
+}
+
+// Another master writes to one output between the write and the reading of one exchange.
+TEST_F(ModbusBoardTest, ARefusedExchangeNamesTheOutputsThatItHasFound) {
+  BoardMap map = shipped("adam-6024.yaml");
+  map.read_back->lag_exchanges = 0;
+  connect(map);
+  ASSERT_EQ(exchange(40, 60), BusStatus::ok);
+  EXPECT_TRUE(std::isnan(board_->found_kpa(1)));
+  bool writes = true;
+  server_.on_request([&writes](RegisterServer& server, const RegisterServer::Request& request) {
+    if (writes && request.function != 16) server.holding_[11] = 819;
+    server.input_[10] = server.holding_[10];
+    server.input_[11] = server.holding_[11];
+  });
+  EXPECT_EQ(exchange(40, 60), BusStatus::write_refused);
+  EXPECT_TRUE(std::isnan(board_->found_kpa(0))) << "it is as written";
+  EXPECT_NEAR(board_->found_kpa(1), 20, 0.1);
+  writes = false;
+  EXPECT_EQ(exchange(40, 20), BusStatus::ok);
+  EXPECT_TRUE(std::isnan(board_->found_kpa(1)));
 }
 
 TEST_F(ModbusBoardTest, WhatSomebodyElseWritesIsNoticedWithinEightExchanges) {
