@@ -39,6 +39,8 @@ FAULTS = (
      "if (action_for(fault.code, fault_phase_) == SafeAction::vent) venting_ = all_;", ""),
     ("what another master wrote is no fault", "daemon/loop/bus.cpp", "return FaultCode::outputs_overwritten;",
      "return FaultCode::none;"),
+    ("what another master wrote between two requests is written over", "daemon/loop/bus.cpp", "    if (holds) continue;",
+     "    if (holds || true) continue;"),
     ("the bus takes the lowest pressure for the rest pressure", "daemon/loop/bus.cpp",
      "rest_kpa_[i] = control::resting_kpa(rig.channels[i].limits);",
      "rest_kpa_[i] = rig.channels[i].limits.pressure_min_kpa;"),

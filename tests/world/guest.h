@@ -75,6 +75,7 @@ class Guest {
 /// Returns null for the daemon alone.
 [[nodiscard]] std::unique_ptr<Guest> make_guest(Tool tool, Host& host);
 /// The rig for that tool.
-[[nodiscard]] RigShape shape_for(Tool tool, const rig::RigFile& example, std::uint64_t seed);
+[[nodiscard]] RigShape shape_for(Tool tool, const rig::RigFile& example, std::uint64_t seed,
+                                 bool always_habits);
 
 }  // namespace softgrip::world

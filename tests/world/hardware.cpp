@@ -1,6 +1,7 @@
 #include "tests/world/hardware.h"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 namespace softgrip::world {
@@ -75,16 +76,15 @@ void Hardware::read(std::size_t channel, Nanoseconds now, model::Reading& readin
   reading.sampled_at = now;
 }
 
-WorldBoard::WorldBoard(Hardware& hardware, Habits habits, Line& line, Scheduler& scheduler, OnWrite on_write,
-                       std::function<void()> on_exchange, std::function<void()> on_hindered)
+WorldBoard::WorldBoard(Hardware& hardware, Habits habits, Line& line, Scheduler& scheduler,
+                       Callbacks callbacks)
     : hardware_(hardware),
       habits_(habits),
       line_(line),
       scheduler_(scheduler),
-      on_write_(std::move(on_write)),
-      on_exchange_(std::move(on_exchange)),
-      on_hindered_(std::move(on_hindered)),
-      carrier_(scheduler.add("line", [this] { carry(); })) {}
+      callbacks_(std::move(callbacks)),
+      carrier_(scheduler.add("line", [this] { carry(); })),
+      found_(hardware.channels(), std::numeric_limits<double>::quiet_NaN()) {}
 
 void WorldBoard::carry() {
   for (;;) {
@@ -99,13 +99,14 @@ void WorldBoard::carry() {
       }
       const bool begins = request.first == 0 && !request.again;
       const bool looks_first = begins && ++exchanges_ % looks_first_every == 0 && !left_.empty();
+      request.foreign_writes = hardware_.foreign_writes;
       request.overwritten =
           looks_first && !std::equal(left_.begin(), left_.end(), hardware_.outputs_kpa().begin());
       if (request.overwritten) {
         request.there = true;
         continue;
       }
-      if (!hardware_.ignores_writes()) on_write_(request.began, request.sent);
+      if (!hardware_.ignores_writes() && request.count > 0) callbacks_.on_write(request.began, request.sent);
       std::vector<double> outputs(hardware_.outputs_kpa().begin(), hardware_.outputs_kpa().end());
       for (std::size_t i = request.first; i < request.first + request.count; ++i)
         outputs[i] = request.sent[i];
@@ -139,7 +140,7 @@ bool WorldBoard::ask(Request request, Nanoseconds end, bool lost) {
 
 BusStatus WorldBoard::hindered(BusStatus status) {
   left_.clear();
-  on_hindered_();
+  callbacks_.on_hindered();
   return status;
 }
 
@@ -160,7 +161,7 @@ BusStatus WorldBoard::connect(std::chrono::nanoseconds deadline) noexcept {
 BusStatus WorldBoard::exchange(std::span<const double> commands_kpa, std::span<model::Reading> readings,
                                std::chrono::nanoseconds deadline) noexcept {
   const Nanoseconds began = scheduler_.now();
-  on_exchange_();
+  callbacks_.on_exchange();
   const BusStatus status = line_.status;
   if (status == BusStatus::disconnected || status == BusStatus::exception) {
     pass(line_.latency / 2);
@@ -178,12 +179,15 @@ BusStatus WorldBoard::exchange(std::span<const double> commands_kpa, std::span<m
   bool taken = true;
   bool answered = true;
   bool arrives = !lost || line_.reply_lost;
-  for (std::size_t first = 0; first < channels && arrives; first += at_once) {
+  // With a reading apart the last request writes no channel.
+  const std::size_t requests_end = channels + (habits_.reads_apart ? 1 : 0);
+  for (std::size_t first = 0; first < requests_end && arrives;
+       first = std::max(first + 1, std::min(first + at_once, channels))) {
     Request request;
     request.began = began;
     request.sent.assign(commands_kpa.begin(), commands_kpa.end());
     request.first = first;
-    request.count = std::min(at_once, channels - first);
+    request.count = std::min(at_once, channels - std::min(first, channels));
     request.read.assign(readings.begin(), readings.end());
     answered = (first == 0 || scheduler_.now() < end) && ask(std::move(request), end, lost);
     taken = answered && request_->taken;
@@ -197,15 +201,21 @@ BusStatus WorldBoard::exchange(std::span<const double> commands_kpa, std::span<m
   }
   if (habits_.spoils_every > 0 && ++answers_ % habits_.spoils_every == 0)
     return hindered(BusStatus::bad_reply);
-  if (request_ && request_->overwritten) {
+  callbacks_.on_read(request_->foreign_writes);
+  if (request_->overwritten) {
     left_.clear();
     return BusStatus::overwritten;
   }
   left_.clear();  // known again when this one is confirmed
   if (!taken) return BusStatus::watchdog_tripped;
+  bool as_written = true;
   for (std::size_t i = 0; i < readings.size(); ++i) {
-    if (request_->read[i].command_readback_kpa != commands_kpa[i]) return BusStatus::write_refused;
+    const double outputs_kpa = request_->read[i].command_readback_kpa;
+    const bool same = outputs_kpa == commands_kpa[i];
+    found_[i] = same ? std::numeric_limits<double>::quiet_NaN() : outputs_kpa;
+    as_written = as_written && same;
   }
+  if (!as_written) return BusStatus::write_refused;
   for (std::size_t i = 0; i < readings.size(); ++i) {
     ++request_->read[i].sequence;
     readings[i] = request_->read[i];

@@ -42,6 +42,7 @@ class Hardware {
   [[nodiscard]] Nanoseconds watchdog() const noexcept { return settings_.watchdog; }
   [[nodiscard]] simulation::Plant& plant(std::size_t channel) { return plants_[channel]; }
   bool refuses_writes = false;
+  std::uint64_t foreign_writes = 0;  ///< by another master
 
  private:
   void advance_plants(Nanoseconds until);
@@ -65,6 +66,7 @@ struct Habits {
   unsigned closes_every = 0;         ///< every Nth connection is closed at once
   unsigned loses_every = 0;          ///< every Nth response is lost
   unsigned spoils_every = 0;         ///< every Nth exchange has more stray bytes than are discarded
+  bool reads_apart = false;          ///< one request writes, and another one reads (no function code 23)
 };
 
 /// What is between daemon and board.
@@ -81,10 +83,14 @@ class WorldBoard final : public drivers::Board {
   /// Told before a request takes effect: when the exchange began, and what it writes.
   using OnWrite = std::function<void(Nanoseconds began, std::span<const double> commands_kpa)>;
 
-  /// `on_exchange`: told when an exchange begins.
-  /// `on_hindered` is called when a habit has made an exchange fail.
-  WorldBoard(Hardware& hardware, Habits habits, Line& line, Scheduler& scheduler, OnWrite on_write,
-             std::function<void()> on_exchange, std::function<void()> on_hindered);
+  struct Callbacks {
+    OnWrite on_write;
+    std::function<void()> on_exchange;  ///< when an exchange begins
+    std::function<void()> on_hindered;  ///< when a habit has made an exchange fail
+    /// When the daemon has read the outputs as they were after this number of writes of another master.
+    std::function<void(std::uint64_t foreign_writes)> on_read;
+  };
+  WorldBoard(Hardware& hardware, Habits habits, Line& line, Scheduler& scheduler, Callbacks callbacks);
 
   /// Who spoke is gone: what is on its way is lost.
   void hang_up() noexcept { request_.reset(); }
@@ -94,6 +100,7 @@ class WorldBoard final : public drivers::Board {
   [[nodiscard]] drivers::BusStatus exchange(std::span<const double> commands_kpa,
                                             std::span<model::Reading> readings,
                                             std::chrono::nanoseconds deadline) noexcept override;
+  [[nodiscard]] double found_kpa(std::size_t channel) const noexcept override { return found_[channel]; }
   [[nodiscard]] std::string describe() const override { return "a board in the world"; }
   [[nodiscard]] Budget budget() const override { return {}; }
   [[nodiscard]] bool has_watchdog() const noexcept override { return hardware_.watchdog() > 0; }
@@ -112,7 +119,8 @@ class WorldBoard final : public drivers::Board {
     bool there = false;
     bool ignored = false;
     bool taken = false;
-    bool overwritten = false;  ///< it read before it wrote, and found what nobody here had written
+    bool overwritten = false;          ///< it read before it wrote, and found what nobody here had written
+    std::uint64_t foreign_writes = 0;  ///< by another master, before it read
     std::vector<model::Reading> read;
   };
   void pass(Nanoseconds duration) { scheduler_.sleep_until(scheduler_.now() + duration); }
@@ -127,12 +135,11 @@ class WorldBoard final : public drivers::Board {
   Habits habits_;
   Line& line_;
   Scheduler& scheduler_;
-  OnWrite on_write_;
-  std::function<void()> on_exchange_;
-  std::function<void()> on_hindered_;
+  Callbacks callbacks_;
   ActorId carrier_;
   std::optional<Request> request_;
-  std::vector<double> left_;  // what the last good exchange of this session left at the outputs
+  std::vector<double> found_;  // where the newest reading is not as written, else NaN
+  std::vector<double> left_;   // what the last good exchange of this session left at the outputs
   unsigned exchanges_ = 0;
   unsigned connections_ = 0, responses_ = 0, answers_ = 0;
   bool closes_ = false;  // the present connection

@@ -29,6 +29,7 @@ struct Options {
   bool trace = false;
   bool twice = false;
   bool stop_at_first = false;
+  bool habits = false;
 };
 
 /// Fewer may miss a rare incident.
@@ -132,6 +133,7 @@ Sum run_share(const Library& library, const Options& options, unsigned job) {
   for (std::uint64_t k = job; k < options.count; k += options.jobs) {
     const std::uint64_t seed = options.first + k;
     world.trace = options.trace && options.count == 1;
+    world.always_habits = options.habits;
     world.tool = tool_of(options, seed);
     world.length = nanoseconds(options.length_s * lives[static_cast<std::size_t>(world.tool)]);
     const WorldResult result = run_world(library, seed, world);
@@ -219,6 +221,7 @@ int run(int argc, char** argv) {
   app.add_option("--seconds", options.length_s, "Simulated, each")->capture_default_str();
   app.add_flag("--trace", options.trace, "With --count 1: everything that happens");
   app.add_flag("--twice", options.twice, "Run each twice and compare");
+  app.add_flag("--habits", options.habits, "Every seed has a board with habits, not one in 5");
   app.add_flag("--stop", options.stop_at_first, "At the first violation");
   CLI11_PARSE(app, argc, argv);
   const Library library = load_library();

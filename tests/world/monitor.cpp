@@ -67,7 +67,8 @@ void Monitor::boots() {
   state_ = State::starting;
   safe_kpa_.clear();
   for (std::size_t i = 0; i < rig_.channels.size(); ++i) safe_kpa_.push_back(rest_of(rig_, i));
-  last_kpa_ = safe_kpa_;
+  last_kpa_ = safe_at_entry_ = safe_kpa_;
+  foreign_left_.assign(rig_.channels.size(), false);
   halted_by_ = 0;
   seen_by_ = {};
   results_ = {};
@@ -164,22 +165,21 @@ void Monitor::write(Nanoseconds began, Nanoseconds now, std::span<const double> 
                     std::span<const double> commands_kpa, bool safe_outputs) {
   const double period_s = 1 / rig_.rate_hz;
   // An exchange may write more than once.
-  if (began != last_began_) {
-    excused_ = excused_left_ > 0;
-    if (excused_) --excused_left_;
+  if (began != last_began_)
     elapsed_s_ = last_began_ == 0 ? period_s : seconds(began - last_began_) + 2 * period_s;
-  }
   if (watch_gap(began, now, commands_kpa)) safe_outputs = true;
   last_began_ = began;
   last_woke_ = woke_;
   for (std::size_t i = 0; i < commands_kpa.size(); ++i) {
     const double rest_kpa = rest_of(rig_, i);
-    const double allowed_kpa = control::no_further(rest_kpa, commands_kpa[i], outputs_kpa[i]);
-    if (!is_excused() && std::abs(commands_kpa[i] - allowed_kpa) > equal_kpa && !armed_at_entry_)
+    if (outputs_kpa[i] == last_kpa_[i]) foreign_left_[i] = false;
+    const double known = known_kpa(i, outputs_kpa[i]);
+    const double allowed_kpa = control::no_further(rest_kpa, commands_kpa[i], known);
+    if (std::abs(commands_kpa[i] - allowed_kpa) > equal_kpa && !armed_at_entry_)
       violate(now, "nothing moves away from rest unasked",
               fmt::format("channel {}: {:.3f} -> {:.3f} kPa in an exchange that began {:.4f} s ago", i,
                           outputs_kpa[i], commands_kpa[i], seconds(now - began)));
-    watch_way(now, i, outputs_kpa[i], commands_kpa[i], elapsed_s_, safe_outputs);
+    watch_way(now, i, known, commands_kpa[i], elapsed_s_, safe_outputs);
     last_kpa_[i] = commands_kpa[i];
     const control::LimitSettings& limits = rig_.channels[i].limits;
     if (commands_kpa[i] < limits.pressure_min_kpa - equal_kpa ||
@@ -187,6 +187,14 @@ void Monitor::write(Nanoseconds began, Nanoseconds now, std::span<const double> 
       violate(now, "outputs stay in range", fmt::format("channel {}: {} kPa is written", i, commands_kpa[i]));
   }
   foreign_ = false;
+}
+
+/// Returns what the daemon must take for the output: what is there, unless another master has written it and
+/// the daemon has not read it or holds.
+double Monitor::known_kpa(std::size_t channel, double output_kpa) const {
+  const bool unread = foreign_read_ != foreign_writes_;
+  const bool holds = safe_at_entry_[channel] != rest_of(rig_, channel);
+  return foreign_left_[channel] && (unread || holds) ? last_kpa_[channel] : output_kpa;
 }
 
 /// After a gap in which the board has or may have vented, the daemon writes the rest pressures. Returns true
@@ -219,7 +227,7 @@ void Monitor::watch_way(Nanoseconds now, std::size_t channel, double output_kpa,
     const double leaving = side > 0 ? limits.slew_up_kpa_per_s : limits.slew_down_kpa_per_s;
     const double returning = side > 0 ? limits.slew_down_kpa_per_s : limits.slew_up_kpa_per_s;
     const double there_kpa = away_kpa(rest_kpa, command_kpa, side);
-    if (!is_excused() && there_kpa - away_kpa(rest_kpa, output_kpa, side) > leaving * elapsed_s + equal_kpa)
+    if (there_kpa - away_kpa(rest_kpa, output_kpa, side) > leaving * elapsed_s + equal_kpa)
       violate(now, "outputs leave rest within their slew",
               fmt::format("channel {}: {:.3f} -> {:.3f} kPa", channel, output_kpa, command_kpa));
     if (!safe_outputs && away_kpa(rest_kpa, last_kpa, side) - there_kpa > returning * elapsed_s + equal_kpa)
@@ -276,7 +284,8 @@ void Monitor::passed(Nanoseconds now, const Excuse& excuse, std::span<const doub
 
 void Monitor::foreign_wrote(std::span<const double> outputs_kpa) noexcept {
   foreign_ = true;
-  excused_left_ = exchanges_excused;
+  ++foreign_writes_;
+  foreign_left_.assign(foreign_left_.size(), true);
   bool differs = false;
   for (std::size_t i = 0; i < outputs_kpa.size(); ++i)
     differs = differs || std::abs(outputs_kpa[i] - last_kpa_[i]) > equal_kpa;

@@ -44,17 +44,18 @@ class Monitor {
   /// looked at its clock before, and so at the gap since the last exchange; 0: not known.
   void exchange_begins(Nanoseconds now = 0, Nanoseconds woke = 0) noexcept {
     armed_at_entry_ = armed_;
+    safe_at_entry_ = safe_kpa_;
     before_ = std::exchange(exchange_, now);
     woke_ = woke;
   }
   /// For a program without a loop: it may move pressures away from rest, or may not any more.
   void may_rise(bool allowed) noexcept { armed_ = allowed; }
-  /// Another master has written these.
+  /// Another master has written these. Outputs that the daemon has not read since may move again up to what
+  /// it wrote itself, within the slew limits. So may those that it has read, if its safe action is to hold.
   void foreign_wrote(std::span<const double> outputs_kpa) noexcept;
   void foreign_ended() noexcept { foreign_unseen_.reset(); }
-  /// Exchanges that may write over the outputs of another master. If an exchange has several requests, the
-  /// first one reports that a write was rejected, and the second one writes the last commands again.
-  unsigned exchanges_excused = 1;
+  /// The daemon has read the outputs as they were after this number of writes of another master.
+  void outputs_read(std::uint64_t foreign_writes) noexcept { foreign_read_ = foreign_writes; }
   /// The board's watchdog has vented. `has_spoken`: the daemon has had a good exchange, so it can know.
   void tripped(bool has_spoken);
   void asked(control::Request::Kind kind);
@@ -97,20 +98,22 @@ class Monitor {
   std::optional<Violation> violation_;
   bool armed_ = false;  // a start was accepted, and nothing since forbids to leave rest
   bool armed_at_entry_ = false;
-  [[nodiscard]] bool is_excused() const noexcept { return foreign_ || excused_; }
-  bool foreign_ = false;        // another master has written since our last write
-  bool excused_ = false;        // or shortly before the present exchange
-  unsigned excused_left_ = 0;   // exchanges
-  Nanoseconds last_began_ = 0;  // an exchange
-  double elapsed_s_ = 0;        // at its first write, since the one before it
-  Nanoseconds exchange_ = 0;    // when the newest one began, whether it writes or not, ...
-  Nanoseconds before_ = 0;      // and the one before it
+  [[nodiscard]] double known_kpa(std::size_t channel, double output_kpa) const;
+  bool foreign_ = false;              // another master has written since our last write
+  std::uint64_t foreign_writes_ = 0;  // by another master
+  std::uint64_t foreign_read_ = 0;    // of them, before the daemon's newest reading of the outputs
+  std::vector<bool> foreign_left_;    // the output is still that of another master
+  Nanoseconds last_began_ = 0;        // an exchange
+  double elapsed_s_ = 0;              // at its first write, since the one before it
+  Nanoseconds exchange_ = 0;          // when the newest one began, whether it writes or not, ...
+  Nanoseconds before_ = 0;            // and the one before it
   Nanoseconds woke_ = 0;
   Nanoseconds last_woke_ = 0;  // for the exchange of last_began_
   Nanoseconds seen_ = 0;
   std::uint32_t halted_by_ = 0;  // the newest request to stop or to vent
   control::State state_ = control::State::starting;
   std::vector<double> safe_kpa_;
+  std::vector<double> safe_at_entry_;
   std::vector<double> last_kpa_;  // as written
   struct Seen {                   // by the tick before
     Nanoseconds at = 0;

@@ -9,6 +9,7 @@
 
 #include "base/numbers.h"
 #include "base/random.h"
+#include "tests/world/guest.h"
 #include "tests/world/surroundings.h"
 #include "tools/commissioning/procedure.h"
 #include "tools/commissioning/rig_examination.h"
@@ -60,7 +61,7 @@ class MotionWorld {
   MotionWorld(const Library& library, std::uint64_t seed, const WorldOptions& options)
       : options_(options),
         seed_(derived_seed(seed, 4)),
-        around_(draw_shape(library.rig, seed), options.trace),
+        around_(shape_for(options.tool, library.rig, seed, options.always_habits), options.trace),
         clock_(around_.scheduler) {
     around_.on_write = [this](Nanoseconds began, std::span<const double> commands) {
       wrote(began, commands);
@@ -72,13 +73,14 @@ class MotionWorld {
       spoke_since_trip_ = true;
       around_.monitor.exchange_begins();
     };
+    around_.on_hindered = [this] { good_ = false; };
     around_.on_trip = [this] { tripped(); };
     result_.shape = around_.shape.text;
     result_.incidents =
-        options.incidents ? *options.incidents
-                          : draw_incidents({seed, options.length, around_.shape.watchdog,
-                                            around_.shape.trip_latches || around_.shape.watchdog == 0,
-                                            library.sequences.size(), around_.hardware.channels(), false, 1});
+        options.incidents
+            ? *options.incidents
+            : draw_incidents({seed, options.length, around_.shape.watchdog, around_.shape.may_pause_late(),
+                              library.sequences.size(), around_.hardware.channels(), false, 1});
   }
 
   WorldResult run() {
@@ -198,7 +200,10 @@ class MotionWorld {
 
   void wrote(Nanoseconds began, std::span<const double> commands) {
     const auto outputs = around_.hardware.outputs_kpa();
-    if (!written_.empty() && !std::equal(outputs.begin(), outputs.end(), written_.begin())) ++overwritten_;
+    const std::uint64_t foreign_writes = around_.hardware.foreign_writes;
+    const bool foreign = std::exchange(foreign_writes_, foreign_writes) != foreign_writes;
+    if (foreign && !written_.empty() && !std::equal(outputs.begin(), outputs.end(), written_.begin()))
+      ++overwritten_;
     written_.assign(commands.begin(), commands.end());
     up_ = false;
     for (std::size_t i = 0; i < commands.size(); ++i)
@@ -217,7 +222,7 @@ class MotionWorld {
     if (!begins || !alive_) return;
     const Nanoseconds until = around_.scheduler.now() + incident.duration;
     // On a board that clears a trip with any write no program can know such a gap.
-    const bool may_be_late = around_.shape.trip_latches || around_.shape.watchdog == 0;
+    const bool may_be_late = around_.shape.may_pause_late();
     switch (incident.kind) {
       case Kind::stop:
       case Kind::terminate:
@@ -286,7 +291,8 @@ class MotionWorld {
   bool spoke_ = false;             // it has had a good exchange, so it can know of a gap
   bool spoke_since_trip_ = false;  // so the command can know
   std::vector<double> written_;    // its last write that has arrived
-  unsigned overwritten_ = 0;       // writes that found something else there
+  unsigned overwritten_ = 0;       // writes that found the values of another master
+  std::uint64_t foreign_writes_ = 0;
   Nanoseconds again_at_ = 0;
 };
 

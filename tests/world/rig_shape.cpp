@@ -57,9 +57,9 @@ RigShape draw_shape(const rig::RigFile& example, std::uint64_t seed) {
   return shape;
 }
 
-void draw_habits(RigShape& shape) {
+void draw_habits(RigShape& shape, bool always) {
   constexpr std::uint64_t one_in = 5;
-  if (shape.seed % one_in != 0) return;
+  if (!always && shape.seed % one_in != 0) return;
   std::uint64_t drawn = 0;
   const auto one_of = [&](auto... values) {
     const std::array all{values...};
@@ -76,11 +76,13 @@ void draw_habits(RigShape& shape) {
   habits.closes_every = static_cast<unsigned>(one_of(0, 2, 5));
   habits.loses_every = static_cast<unsigned>(one_of(0, 7, 50, 400));
   habits.spoils_every = static_cast<unsigned>(one_of(0, 60, 500));
+  habits.reads_apart = one_of(false, true);
   shape.text += fmt::format(
       ", deaf {} s, settle_s {:.2f}, repeat_after_s {:.3f}, {} channels a request, closes every {}. session, "
-      "loses every {}. response, spoils every {}.",
+      "loses every {}. response, spoils every {}.{}",
       deaf_s, seconds(habits.settle), seconds(habits.repeat_after), habits.channels_at_once,
-      habits.closes_every, habits.loses_every, habits.spoils_every);
+      habits.closes_every, habits.loses_every, habits.spoils_every,
+      habits.reads_apart ? ", reads apart" : "");
 }
 
 }  // namespace softgrip::world

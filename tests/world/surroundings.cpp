@@ -40,14 +40,16 @@ Surroundings::Surroundings(RigShape rig_shape, bool tracing_)
       scheduler(derived_seed(shape.seed, 2), ns_per_s),
       begin(scheduler.now()),
       hardware(hardware_settings()),
-      board(
-          hardware, shape.habits, line, scheduler,
-          [this](Nanoseconds began, std::span<const double> commands) { on_write(began, commands); },
-          [this] { on_exchange(); }, [this] { nobody_spoke(); }),
+      board(hardware, shape.habits, line, scheduler,
+            {[this](Nanoseconds began, std::span<const double> commands) { on_write(began, commands); },
+             [this] { on_exchange(); },
+             [this] {
+               nobody_spoke();
+               on_hindered();
+             },
+             [this](std::uint64_t foreign_writes) { monitor.outputs_read(foreign_writes); }}),
       monitor(shape.rig.settings, shape.watchdog,
-              rig::watchdog_margin(shape.rig.loop, std::chrono::nanoseconds(shape.watchdog)).count()) {
-  if (shape.habits.channels_at_once > 0) monitor.exchanges_excused = 2;
-}
+              rig::watchdog_margin(shape.rig.loop, std::chrono::nanoseconds(shape.watchdog)).count()) {}
 
 HardwareSettings Surroundings::hardware_settings() {
   HardwareSettings settings;
@@ -143,6 +145,7 @@ void Surroundings::write_as_another(const Incident& incident) {
     const std::vector<double> outputs(hardware.channels(), incident.value);
     while (foreign_ == &incident) {
       monitor.foreign_wrote(outputs);
+      ++hardware.foreign_writes;
       hardware.write(scheduler.now(), outputs);
       scheduler.sleep_until(scheduler.now() + foreign_period);
     }

@@ -55,6 +55,7 @@ class Surroundings {
   WorldBoard::OnWrite on_write = [](auto, auto) {};
   std::function<void()> on_exchange = [] {};
   std::function<void()> on_trip = [] {};
+  std::function<void()> on_hindered = [] {};  ///< a habit of the board has made an exchange fail
 
   RigShape shape;
   bool tracing;

@@ -64,18 +64,12 @@ void fill_disk(bool full) {
   setrlimit(RLIMIT_FSIZE, &limit);
 }
 
-/// After a settle time, the next look of the bus at the clock is behind its last commands. If it pauses
-/// there, it writes them late, which is not promised.
-bool may_pause_late(const RigShape& shape) {
-  return (shape.trip_latches || shape.watchdog == 0) && shape.habits.settle == 0;
-}
-
 class World final : public Host {
  public:
   World(const Library& library, std::uint64_t seed, const WorldOptions& options)
       : library_(library),
         options_(options),
-        around_(shape_for(options.tool, library.rig, seed), options.trace),
+        around_(shape_for(options.tool, library.rig, seed, options.always_habits), options.trace),
         guest_(make_guest(options.tool, *this)) {
     around_.on_write = [this](Nanoseconds began, std::span<const double> commands) {
       wrote(began, commands);
@@ -86,7 +80,7 @@ class World final : public Host {
     result_.incidents =
         options.incidents
             ? *options.incidents
-            : draw_incidents({seed, options.length, around_.shape.watchdog, may_pause_late(around_.shape),
+            : draw_incidents({seed, options.length, around_.shape.watchdog, around_.shape.may_pause_late(),
                               library.sequences.size(), around_.shape.rig.settings.channels.size(),
                               options.tool == Tool::plc, guest_ ? guest_->calm() : 1});
   }

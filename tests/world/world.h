@@ -38,6 +38,7 @@ struct WorldOptions {
   /// Every write, tick with an event and incident, in words.
   bool trace = false;
   bool record = true;
+  bool always_habits = false;  ///< else one seed in five has a board with habits
 };
 
 struct WorldResult {
