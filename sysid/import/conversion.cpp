@@ -229,7 +229,21 @@ class Converter {
       remarks_.notes.push_back("--skip-bad-lines leaves out " + std::to_string(table_.rows() - rows.size()) +
                                " rows with a cell that is no number");
     const bool by_times = mapping_[Role::time].columns.size() > 1;
+    if (table_.has_rows_of_signals && !by_times) leave_out_unused(rows);
     return by_times ? samples_by_times(rows) : samples_of_rows(rows);
+  }
+
+  /// Messages of topics that are not used.
+  void leave_out_unused(std::vector<std::size_t>& rows) {
+    const auto unused = [&](std::size_t row) {
+      return std::none_of(roles.begin(), roles.end(), [&](const RoleSpec& spec) {
+        const Source& source = sources_[static_cast<std::size_t>(spec.role)];
+        return spec.role != Role::time && !source.columns.empty() && std::isfinite(value_at(source, row));
+      });
+    };
+    const auto kept = std::remove_if(rows.begin(), rows.end(), unused);
+    remarks_.account.leave_out(LeftOut::empty, static_cast<std::size_t>(rows.end() - kept));
+    rows.erase(kept, rows.end());
   }
 
   ForeignSamples samples_of_rows(const std::vector<std::size_t>& rows) {
@@ -420,7 +434,8 @@ class Converter {
     std::vector<std::string> names;
     for (std::size_t i = 0; i < table_.columns.size(); ++i) {
       const bool is_channel = !table_.channels.empty() && table_.columns[i].name == table_.channel_column;
-      if (!is_used(i) && !is_channel) names.push_back("'" + document::shown(word_of(table_, i), 40) + "'");
+      if (!is_used(i) && !is_channel && !table_.columns[i].is_part_of_time)
+        names.push_back("'" + document::shown(word_of(table_, i), 40) + "'");
     }
     for (std::size_t i = 0; i < names.size(); i += names_a_note) {
       const auto end = names.begin() + static_cast<std::ptrdiff_t>(std::min(i + names_a_note, names.size()));

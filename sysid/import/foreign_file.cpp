@@ -13,6 +13,7 @@
 #include "sysid/import/mat_elements.h"
 #include "sysid/import/mat_table.h"
 #include "sysid/import/mcap_table.h"
+#include "sysid/import/split_times.h"
 #include "sysid/import/tdms_table.h"
 #include "sysid/import/text_table.h"
 #include "sysid/import/xlsx_table.h"
@@ -155,7 +156,9 @@ std::optional<ForeignTable> read_foreign_file(const std::string& given, const Ta
     const std::string opened = "/proc/self/fd/" + std::to_string(file->descriptor.get());
     table = read_bytes(path, opened, *bytes, options, problems);
   }
-  if (table) table->sha256 = sha256(*bytes);
+  if (!table) return std::nullopt;
+  combine_split_times(table->columns, table->notes);
+  table->sha256 = sha256(*bytes);
   return table;
 }
 

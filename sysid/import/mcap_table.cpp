@@ -3,17 +3,23 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <set>
+#include <span>
 #include <utility>
 #include <vector>
 
 #include "base/enumerated.h"
+#include "base/numbers.h"
+#include "base/statistics.h"
 #include "sysid/import/byte_scanner.h"
 #include "sysid/import/cell_value.h"
 #include "sysid/import/proposal.h"
+#include "sysid/import/split_times.h"
 
 namespace softgrip::sysid {
 namespace {
@@ -22,6 +28,36 @@ constexpr std::size_t most_mcap_columns = 10'000;
 constexpr std::size_t largest_message = std::size_t{1} << 20U;
 constexpr std::size_t deepest_object = 8;
 constexpr double missing_value = std::numeric_limits<double>::quiet_NaN();
+
+/// Times of two topics against the times of the recording, where they still are of one clock [s].
+constexpr double clock_tolerance_s = 1;
+
+/// A topic with its messages. The values of its columns are counted in its own messages.
+struct McapTopic {
+  std::string name;
+  std::vector<TableColumn> columns;
+  std::map<std::string, std::size_t> places;  ///< by key
+  std::vector<std::size_t> rows;              ///< of the table
+
+  [[nodiscard]] bool offers(Role role) const {
+    return std::any_of(columns.begin(), columns.end(), [&](const TableColumn& column) {
+      return names_role(column.name, role) && fitness_for(column, role) > 0;
+    });
+  }
+  /// A drive and a reading: a finger by itself.
+  [[nodiscard]] bool is_finger() const {
+    return offers(Role::displacement) && (offers(Role::command) || offers(Role::pressure));
+  }
+  /// The column that has a time in each message; nullptr: there is none.
+  [[nodiscard]] const TableColumn* time(const std::string& key) const {
+    const auto found = std::find_if(columns.begin(), columns.end(),
+                                    [&](const TableColumn& column) { return column.name == key; });
+    const bool whole = found != columns.end() && fitness_for(*found, Role::time) > 0 &&
+                       std::all_of(found->values.begin(), found->values.end(),
+                                   [](double value) { return std::isfinite(value); });
+    return whole ? &*found : nullptr;
+  }
+};
 
 class McapReader {
  public:
@@ -34,12 +70,11 @@ class McapReader {
 
   std::optional<ForeignTable> read(std::string_view bytes) {
     const bool is_complete = bytes.ends_with(mcap_magic);
-    records(bytes.substr(mcap_magic.size()), false);
+    bytes.remove_prefix(mcap_magic.size());
+    find_topic(bytes);
+    records(bytes, false);
     if (cut_off_bytes_ > 0 && is_complete) refuse("a record is longer than the file");
     if (table_.channels.empty()) refuse("no topic has messages in JSON");
-    if (rows_ == 0)
-      refuse("no topic is called '" + document::shown(options_.channel) + "'",
-             "the topics are " + with_commas(table_.channels));
     if (refused_) return std::nullopt;
     if (cut_off_bytes_ > 0)
       table_.notes.push_back("the file is cut off: its last " + std::to_string(cut_off_bytes_) +
@@ -50,9 +85,23 @@ class McapReader {
                              document::shown(said.first, 40) + "', not in JSON");
     for (const std::string& name : arrays_)
       table_.notes.push_back("'" + document::shown(name, 40) + "' is skipped: an array");
-    if (table_.channels == std::vector<std::string>{"signals"}) table_.channels.clear();
-    for (TableColumn& column : table_.columns) column.values.resize(rows_, missing_value);
-    add_log_time();
+    for (McapTopic& topic : read_) {
+      for (TableColumn& column : topic.columns) column.values.resize(topic.rows.size(), missing_value);
+      combine_split_times(topic.columns, table_.notes);
+      topic.columns.erase(std::remove_if(topic.columns.begin(), topic.columns.end(),
+                                         [](const TableColumn& column) { return column.is_part_of_time; }),
+                          topic.columns.end());
+    }
+    if (has_topics_of_signals()) {
+      merge_signals();
+    } else if (rows_ == 0 || (!options_.channel.empty() && !has_channel_)) {
+      refuse("no topic is called '" + document::shown(options_.channel) + "'",
+             "the topics are " + with_commas(table_.channels));
+    } else {
+      if (table_.channels == std::vector<std::string>{"signals"}) table_.channels.clear();
+      join_fingers();
+    }
+    if (refused_) return std::nullopt;
     return std::move(table_);
   }
 
@@ -67,6 +116,16 @@ class McapReader {
     refused_ = true;
   }
 
+  /// If no topic has the name of the channel, the channel may be a finger in the names of several topics.
+  void find_topic(std::string_view bytes) {
+    if (options_.channel.empty()) return;
+    looks_for_topics_ = true;
+    records(bytes, false);
+    looks_for_topics_ = false;
+    has_channel_ = std::any_of(topics_.begin(), topics_.end(),
+                               [&](const auto& topic) { return topic.second.name == options_.channel; });
+  }
+
   void records(std::string_view bytes, bool in_chunk) {
     while (!bytes.empty() && !refused_) {
       ByteScanner scan(bytes);
@@ -78,7 +137,7 @@ class McapReader {
       if (kind == McapOpcode::data_end && !in_chunk) return;
       if (kind == McapOpcode::chunk && !in_chunk) chunk(content, true);
       if (kind == McapOpcode::channel) topic(content);
-      if (kind == McapOpcode::message) message(content);
+      if (kind == McapOpcode::message && !looks_for_topics_) message(content);
       bytes = rest.substr(size);
     }
   }
@@ -86,6 +145,7 @@ class McapReader {
   /// The complete records in an incomplete chunk are read.
   void cut_off(McapOpcode kind, std::string_view bytes, std::string_view content, bool in_chunk) {
     if (kind == McapOpcode::chunk && !in_chunk) return chunk(content, false);
+    if (looks_for_topics_) return;
     cut_off_bytes_ += bytes.size();
     if (kind != McapOpcode::message) return;
     ++table_.account.rows;
@@ -100,7 +160,7 @@ class McapReader {
     const auto size = scan.value<std::uint64_t>();
     const std::string_view inside = scan.rest();
     if (!scan.good() && !complete) {
-      cut_off_bytes_ += content.size();
+      if (!looks_for_topics_) cut_off_bytes_ += content.size();
       return;
     }
     if (!scan.good() || (complete && size != inside.size())) return refuse("a chunk is shorter than it says");
@@ -142,7 +202,7 @@ class McapReader {
     ++messages_;
     if (std::find(table_.channels.begin(), table_.channels.end(), of.name) == table_.channels.end())
       table_.channels.push_back(of.name);
-    if (!options_.channel.empty() && of.name != options_.channel) return leave_out(LeftOut::other_channel);
+    if (has_channel_ && of.name != options_.channel) return leave_out(LeftOut::other_channel);
     const std::string_view text = scan.rest();
     const auto json = text.size() > largest_message ? nlohmann::json(nlohmann::json::value_t::discarded)
                                                     : nlohmann::json::parse(text, nullptr, false);
@@ -152,9 +212,19 @@ class McapReader {
                     std::to_string(largest_message) + " bytes; --skip-bad-lines leaves such messages out");
     if (++rows_ > most_rows) return refuse("it has more than " + std::to_string(most_rows) + " messages");
     log_times_.push_back(log_time);
-    object(json, "", 0);
-    if (rows_ > most_values / std::max<std::size_t>(table_.columns.size(), 1))
+    McapTopic& topic = topic_of(of.name);
+    topic.rows.push_back(rows_ - 1);
+    object(topic, json, "", 0);
+    if (rows_ > most_values / std::max<std::size_t>(column_count_, 1))
       refuse("it has more than " + std::to_string(most_values) + " values");
+  }
+
+  McapTopic& topic_of(const std::string& name) {
+    const auto found =
+        std::find_if(read_.begin(), read_.end(), [&](const McapTopic& topic) { return topic.name == name; });
+    if (found != read_.end()) return *found;
+    read_.push_back({name, {}, {}, {}});
+    return read_.back();
   }
 
   void leave_out(LeftOut reason) {
@@ -162,28 +232,29 @@ class McapReader {
     table_.account.leave_out(reason);
   }
 
-  void object(const nlohmann::json& json, const std::string& path, std::size_t depth) {
+  void object(McapTopic& topic, const nlohmann::json& json, const std::string& path, std::size_t depth) {
     for (const auto& [key, value] : json.items()) {
       const std::string name = path + key;
       if (value.is_object() && depth < deepest_object) {
-        object(value, name + ".", depth + 1);
+        object(topic, value, name + ".", depth + 1);
       } else if (value.is_structured()) {
         if (arrays_.size() < most_mcap_columns) arrays_.insert(name);
       } else if (!value.is_null()) {
-        add(name, value);
+        add(topic, name, value);
       }
     }
   }
 
-  void add(const std::string& name, const nlohmann::json& value) {
-    const auto place = columns_.try_emplace(name, table_.columns.size());
+  void add(McapTopic& topic, const std::string& name, const nlohmann::json& value) {
+    const auto place = topic.places.try_emplace(name, topic.columns.size());
     if (place.second) {
-      if (table_.columns.size() == most_mcap_columns)
+      if (column_count_++ == most_mcap_columns)
         return refuse("its messages have more than " + std::to_string(most_mcap_columns) + " keys");
-      table_.columns.emplace_back().name = name;
+      topic.columns.emplace_back().name = name;
     }
-    TableColumn& column = table_.columns[place.first->second];
-    column.values.resize(rows_, missing_value);
+    if (refused_) return;
+    TableColumn& column = topic.columns[place.first->second];
+    column.values.resize(topic.rows.size(), missing_value);
     column.values.back() = number(column, value);
   }
 
@@ -202,32 +273,166 @@ class McapReader {
     return missing_value;
   }
 
-  void add_log_time() {
+  /// Each topic is a finger: columns of one key are one.
+  void join_fingers() {
+    for (McapTopic& topic : read_) {
+      for (TableColumn& column : topic.columns) place(topic, std::move(column), rows_);
+    }
     const bool has_time =
         std::any_of(table_.columns.begin(), table_.columns.end(), [](const TableColumn& column) {
-          return column.bad_count == 0 && names_role(column.name, Role::time);
+          return column.bad_count == 0 && (names_role(column.name, Role::time) || !column.unit.empty());
         });
-    if (has_time) return;
+    if (!has_time) table_.columns.push_back(log_time_column());
+  }
+
+  /// Adds the values of a topic's column to the table's column of the same name.
+  void place(const McapTopic& topic, TableColumn column, std::size_t rows) {
+    auto found = std::find_if(table_.columns.begin(), table_.columns.end(),
+                              [&](const TableColumn& other) { return other.name == column.name; });
+    if (found == table_.columns.end()) {
+      found = table_.columns.insert(found, TableColumn{});
+      found->name = column.name;
+      found->unit = column.unit;
+      found->values.assign(rows, missing_value);
+    }
+    for (std::size_t i = 0; i < column.values.size(); ++i) found->values[topic.rows[i]] = column.values[i];
+    found->bad.insert(found->bad.end(), column.bad.begin(), column.bad.end());
+    found->bad_count += column.bad_count;
+    found->bad_rows.insert(found->bad_rows.end(), column.bad_rows.begin(), column.bad_rows.end());
+  }
+
+  [[nodiscard]] double log_time_s(std::size_t row) const {
+    return 1e-9 * static_cast<double>(static_cast<std::int64_t>(log_times_[row] - log_times_.front()));
+  }
+
+  [[nodiscard]] TableColumn log_time_column() const {
     TableColumn column;
     column.name = "log_time";
     column.unit = "s";
-    const std::uint64_t first = log_times_.front();
-    for (const std::uint64_t time : log_times_)
-      column.values.push_back(1e-9 * static_cast<double>(static_cast<std::int64_t>(time - first)));
-    table_.columns.push_back(std::move(column));
+    for (std::size_t row = 0; row < rows_; ++row) column.values.push_back(log_time_s(row));
+    return column;
+  }
+
+  /// A column of a topic of one signal is named by the topic: "/pressure" with {"data": 1} is "pressure".
+  static std::string signal_name(const McapTopic& topic, const std::string& key) {
+    std::string name = topic.name;
+    std::replace(name.begin(), name.end(), '/', '.');
+    return key == "data" || key == "value" ? name : name + "." + key;
+  }
+
+  /// Topics of single signals: none is a finger by itself, but all of them together are.
+  [[nodiscard]] bool has_topics_of_signals() const {
+    if (has_channel_ || read_.size() < 2 ||
+        std::any_of(read_.begin(), read_.end(), [](const McapTopic& topic) { return topic.is_finger(); }))
+      return false;
+    McapTopic all;
+    for (const McapTopic& topic : read_) {
+      for (const TableColumn& column : topic.columns) {
+        all.columns.emplace_back().name = signal_name(topic, column.name);
+        all.columns.back().unit = column.unit;
+      }
+    }
+    return all.is_finger();
+  }
+
+  /// The key of a time that every message of every topic has; empty: there is none.
+  [[nodiscard]] std::string common_time() const {
+    for (const TableColumn& column : read_.front().columns) {
+      const bool common = std::all_of(read_.begin(), read_.end(), [&](const McapTopic& topic) {
+        return topic.time(column.name) != nullptr;
+      });
+      if (common) return column.name;
+    }
+    return {};
+  }
+
+  void merge_signals() {
+    const std::string key = common_time();
+    TableColumn time = log_time_column();
+    if (!key.empty()) {
+      time.name = key;
+      time.unit = read_.front().time(key)->unit;
+      for (const McapTopic& topic : read_) {
+        const TableColumn& own = *topic.time(key);
+        for (std::size_t i = 0; i < topic.rows.size(); ++i) time.values[topic.rows[i]] = own.values[i];
+      }
+      check_clocks(time);
+    }
+    sort_rows(time.values);
+    table_.columns.push_back(std::move(time));
+    for (McapTopic& topic : read_) {
+      for (TableColumn& column : topic.columns) {
+        if (column.name == key) continue;
+        column.name = signal_name(topic, column.name);
+        place(topic, std::move(column), rows_);
+      }
+    }
+    table_.notes.push_back("the messages of " + std::to_string(read_.size()) + " topics are merged by " +
+                           (key.empty() ? "log_time" : "'" + key + "'") + ": each message is a row");
+    table_.channels.clear();
+    table_.has_rows_of_signals = true;
+  }
+
+  /// The times of the messages, against those of the recording, are of one clock.
+  void check_clocks(const TableColumn& time) {
+    const std::string name = time.unit.empty() ? split_unit(time.name, Quantity::time).unit : time.unit;
+    const auto unit = unit_named(name.empty() ? epoch_unit(time) : name, Quantity::time);
+    if (!unit) return;
+    std::vector<double> offsets_s;
+    for (const McapTopic& topic : read_) {
+      std::vector<double> differences_s;
+      for (const std::size_t row : topic.rows)
+        differences_s.push_back(unit->factor * time.values[row] - log_time_s(row));
+      offsets_s.push_back(median_of(std::span<double>(differences_s)));
+    }
+    const auto [least, most] = std::minmax_element(offsets_s.begin(), offsets_s.end());
+    if (*most - *least <= clock_tolerance_s) return;
+    const auto topic = [&](auto at) {
+      return "'" + document::shown(read_[static_cast<std::size_t>(at - offsets_s.begin())].name, 40) + "'";
+    };
+    refuse("the times '" + document::shown(time.name, 40) + "' of the topics " + topic(least) + " and " +
+               topic(most) + " are of two clocks: against log_time they differ by " +
+               significant(*most - *least) + " s",
+           "write the times of one clock, or no times: then log_time is used");
+  }
+
+  /// Rows in the order of time, if the times of no topic step back. A step back is judged later.
+  void sort_rows(std::vector<double>& time) {
+    for (const McapTopic& topic : read_) {
+      for (std::size_t i = 1; i < topic.rows.size(); ++i) {
+        if (time[topic.rows[i]] < time[topic.rows[i - 1]]) return;
+      }
+    }
+    std::vector<std::size_t> order(rows_);
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return time[a] < time[b]; });
+    std::vector<std::size_t> place(rows_);
+    for (std::size_t i = 0; i < rows_; ++i) place[order[i]] = i;
+    std::stable_sort(time.begin(), time.end());
+    for (McapTopic& topic : read_) {
+      for (std::size_t& row : topic.rows) row = place[row];
+      for (TableColumn& column : topic.columns) {
+        for (BadCell& cell : column.bad) cell.row = place[cell.row];
+        for (std::size_t& row : column.bad_rows) row = place[row];
+      }
+    }
   }
 
   const TableOptions& options_;
   document::Problems& problems_;
   ForeignTable table_;
   std::map<std::uint16_t, Topic> topics_;
-  std::map<std::string, std::size_t> columns_;
+  std::vector<McapTopic> read_;                                             ///< those of the rows
   std::map<std::string, std::pair<std::string, std::size_t>> passed_over_;  ///< encoding, messages
   std::set<std::string> arrays_;
   std::vector<std::uint64_t> log_times_;
   std::size_t rows_ = 0;
+  std::size_t column_count_ = 0;
   std::size_t messages_ = 0;
   std::size_t cut_off_bytes_ = 0;
+  bool looks_for_topics_ = false;
+  bool has_channel_ = false;  ///< a topic has the name of the channel
   bool refused_ = false;
 };
 

@@ -31,9 +31,14 @@ enum class McapOpcode : std::uint8_t {
 
 /// Reads each JSON message as a row. The keys are the columns; those of an object in an object are joined by
 /// points ("pose.x"). A topic is a channel: "/left" is "left", and "/signals" alone is none. Without a key
-/// for the time there is a column "log_time" in seconds after the first message. Topics in other encodings,
-/// arrays and bytes behind the last complete record are left out and named. Packed chunks, wrong checksums
-/// and more than `most_values` (table.h) are problems.
+/// for the time there is a column "log_time" in seconds after the first message.
+///
+/// If no topic has a drive and a reading, but all together have, each topic is a signal: "/pressure" with
+/// {"data": 1} is the column "pressure", and {"x": 1} of "/tip" is "tip.x". All messages are rows, in the
+/// order of the time that all of them have, or of log_time. The times of two topics that differ by more than
+/// 1 s against log_time are a problem. Topics in other encodings, arrays and bytes behind the last complete
+/// record are left out and named. Packed chunks, wrong checksums and more than `most_values` (table.h) are
+/// problems.
 [[nodiscard]] std::optional<ForeignTable> read_mcap_table(const std::string& file, std::string_view bytes,
                                                           const TableOptions& options,
                                                           document::Problems& problems);

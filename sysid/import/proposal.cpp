@@ -24,7 +24,8 @@ struct Words {
 const std::array<Words, role_count>& words() {
   static const std::array<Words, role_count> list{{
       {Role::time,
-       {"time", "t", "zeit", "timestamp", "elapsed", "date", "datetime", "clock", "uhrzeit", "epoch"}},
+       {"time", "t", "zeit", "timestamp", "elapsed", "date", "datetime", "clock", "uhrzeit", "epoch",
+        "stamp"}},
       {Role::command,
        {"command", "cmd", "set", "setpoint", "desired", "demand", "target", "ref", "reference", "soll", "sp",
         "pd", "input", "commanded", "sollwert", "valve", "ventil"}},
@@ -82,6 +83,7 @@ int fitness_for(const TableColumn& column, Role role) {
   const RoleSpec& spec = spec_of(role);
   const bool time = spec.role == Role::time;
   // A few bad cells are to be told, not to be walked around.
+  if (column.is_part_of_time) return 0;
   if (column.bad_count * 10 > column.values.size() || (column.moments > 0 && !time)) return 0;
   const std::string unit = column.unit.empty() ? split_unit(column.name, spec.quantity).unit : column.unit;
   const std::string anywhere = open_unit(column);
@@ -366,7 +368,7 @@ std::string mapping_table(const ForeignTable& table, const Mapping& mapping) {
   std::string text;
   for (std::size_t i = 0; i < table.columns.size(); ++i) {
     const TableColumn& column = table.columns[i];
-    std::string use = "-";
+    std::string use = column.is_part_of_time ? "part of the time" : "-";
     for (const RoleSpec& spec : roles) {
       const ColumnMapping& mapped = mapping[spec.role];
       const bool here = std::any_of(mapped.columns.begin(), mapped.columns.end(),

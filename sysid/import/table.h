@@ -36,6 +36,7 @@ struct TableColumn {
   std::size_t moments = 0;
   Nanoseconds first_moment = 0;  ///< of these, on the scale of moments.h
   std::size_t short_clocks = 0;  ///< how many of them have two fields ("12:34"), read as minutes and seconds
+  bool is_part_of_time = false;  ///< nanoseconds that another column contains (split_times.h)
   bool surely_minutes = false;   ///< one of the short clocks cannot be hours and minutes
   std::vector<BadCell> bad;      ///< the first few
   std::size_t bad_count = 0;
@@ -55,6 +56,7 @@ struct ForeignTable {
   std::vector<std::string> notes;  ///< what was passed over
   RowAccount account;              ///< of a text's rows, but of a binary file's only those left out
   bool is_text = false;
+  bool has_rows_of_signals = false;        ///< each row has the signal of one topic
   bool has_separators = false;             ///< characters between the columns
   std::string sheet;                       ///< of a workbook, the one that was read
   std::vector<std::size_t> missing_cells;  ///< for each word of TableOptions::missing: the cells that say it

@@ -218,6 +218,23 @@ def exported(file):
     return make
 
 
+def mcap(messages):
+    """An MCAP file of (topic, time [s], object), in the order of the time."""
+    def text(value):
+        return struct.pack("<I", len(value)) + value.encode()
+
+    def record(kind, content):
+        return struct.pack("<BQ", kind, len(content)) + content
+    names = sorted({topic for topic, _, _ in messages})
+    records = [record(4, struct.pack("<HH", i, 0) + text(name) + text("json") + struct.pack("<I", 0))
+               for i, name in enumerate(names)]
+    for topic, time_s, content in sorted(messages, key=lambda message: message[1]):
+        time_ns = 1717156800 * 10**9 + round(1e9 * time_s)
+        records.append(record(5, struct.pack("<HIQQ", names.index(topic), 0, time_ns, time_ns) + json.dumps(content).encode()))
+    magic = b"\x89MCAP0\r\n"
+    return magic + record(1, text("") + text("test")) + b"".join(records) + record(15, bytes(4)) + record(2, bytes(20)) + magic
+
+
 class File:
     """One foreign file: how it is made, what is said to import it, and what must come of it."""
 
@@ -468,11 +485,60 @@ def other_fingers_and_clocks():
         File("two_lengths.tdms", "LabVIEW TDMS: groups with times of their own", tdms.file([
             tdms.segment("valve", fast), tdms.segment("laser", slow)]), refused="'laser/tip' is skipped: 150 values where others have 300"),
         File("seconds_and_rest.csv", "seconds and nanoseconds in two columns", table(
-            ["stamp_sec", "stamp_nsec", "set_kpa", "tip_mm"], [*stamp, COMMAND, TIP]),
+            ["stamp_sec", "stamp_nsec", "set_kpa", "tip_mm"], [*stamp, COMMAND, TIP]), tolerance=1e-6,
+             says="'stamp_sec' and 'stamp_nsec' are one time"),
+        File("header_stamp.csv", "the time of a ROS header, nanoseconds first", table(
+            ["header.stamp.nanosec", "header.stamp.sec", "set_kpa", "tip_mm"], [*stamp[::-1], COMMAND, TIP]), tolerance=1e-6,
+             says="'header.stamp.sec' and 'header.stamp.nanosec' are one time"),
+        File("secs_nsecs.csv", "seconds and nanoseconds, numbers of the columns given", table(
+            ["secs", "nsecs", "p", "y"], [*stamp, COMMAND, TIP]),
+             "--time 1 --command 3 --unit command=kPa --displacement 4 --unit displacement=mm", tolerance=1e-6),
+        File("no_rest.csv", "nanoseconds that count all the time are no rest of the seconds", table(
+            ["stamp_sec", "stamp_nsec", "set_kpa", "tip_mm"], [stamp[0], [10**10 + round(1e9 * t) for t in T], COMMAND, TIP]),
              refused="the times of the columns 'stamp_sec', 'stamp_nsec' differ"),
+        *signals(stamp),
         File("place_of_no_time.csv", "a clock of whole seconds left of a time", table(
             ["board_s", "set_kpa", "tip_mm", "log_time_s"], [[7000 + 2 * int(50 * t) / 100 for t in T], COMMAND, TIP, T]),
              refused="the times of the columns 'board_s', 'log_time_s' differ"),
+    ]
+
+
+def signals(stamp):
+    """MCAP recordings with a topic for each signal."""
+    units = "--unit command=kPa --unit displacement=mm"
+
+    def of(name, values, late_s=0.0, every=1):
+        return [(name, t + late_s, {"data": value}) for t, value in list(zip(T, values))[::every]]
+
+    def stamped(name, key, values, late_s=0.0, begin=0):
+        # A message is logged later than it was stamped.
+        return [(name, t + late_s, {"header": {"stamp": {"sec": sec - begin, "nanosec": rest}}, key: value})
+                for t, sec, rest, value in zip(T, *stamp, values)]
+    half = {"time_s": sorted([*T, *(round(t + 0.002, 6) for t in T[::2])])}
+    when = {t: (c, None) for t, c in zip(T, COMMAND)} | {round(t + 0.002, 6): (c, tip) for t, c, tip in list(zip(T, COMMAND, TIP))[::2]}
+    half |= {"pressure_command_kpa": [when[t][0] for t in half["time_s"]],
+             "displacement_mm": [math.nan if when[t][1] is None else when[t][1] for t in half["time_s"]]}
+    fingers = [message for side, share in (("left", 1), ("right", 0.5)) for key, values in (("set_kpa", COMMAND), ("tip_mm", TIP))
+               for message in of(f"/{side}/{key}", [share * value for value in values])]
+    both = stamped("/valve", "set_kpa", COMMAND, 0.003) + stamped("/laser", "tip_mm", TIP, 0.02)
+    return [
+        File("signals.mcap", "MCAP: a topic per signal, at the same times", mcap(of("/command", COMMAND) + of("/displacement", TIP)), units,
+             joined=COUNT, says="the messages of 2 topics are merged by log_time"),
+        File("signals_half.mcap", "MCAP: a topic per signal, with times of their own and another message", mcap(
+            of("/command", COMMAND) + of("/displacement", TIP, 0.002, 2) + of("/room", [20.5] * 3)), units, columns=half,
+             left_out={"empty": 3}, says="not used: 'room'"),
+        File("signals_stamped.mcap", "MCAP: a topic per signal, with the stamps of ROS", mcap(both), joined=COUNT, tolerance=1e-6,
+             says="the messages of 2 topics are merged by 'header.stamp.sec'"),
+        File("signals_apart.mcap", "the same with a laser that counts from its start", mcap(
+            stamped("/valve", "set_kpa", COMMAND) + stamped("/laser", "tip_mm", TIP, begin=1717156000)),
+             refused="of the topics 'laser' and 'valve' are of two clocks: against log_time they differ by 1.717e+09 s"),
+        File("signals_back.mcap", "the same with a clock that steps back", mcap(
+            stamped("/valve", "set_kpa", COMMAND)[100:] + [(name, t + 10, content) for name, t, content in both[:100]]
+            + stamped("/laser", "tip_mm", TIP)), refused="the time goes back"),
+        File("signals_fingers.mcap", "MCAP: a topic per signal of two fingers", mcap(fingers), refused="the columns are of 2 fingers: 'left', 'right'"),
+        File("signals_left.mcap", "the same, and one of them", mcap(fingers), "--channel left", joined=COUNT, left_out={"empty": 2 * COUNT}),
+        File("signals_nobody.mcap", "the same, and a finger that is not there", mcap(fingers), "--channel middle",
+             refused="no finger is called 'middle'"),
     ]
 
 
