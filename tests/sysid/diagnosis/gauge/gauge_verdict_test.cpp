@@ -1,5 +1,5 @@
-// A gauge beside the logs: alternatives go, names change places, and a name that the gauge contradicts does not
-// stand.
+// A gauge beside the logs: alternatives go, names change places, and a name that the gauge contradicts does
+// not stand.
 
 #include "sysid/diagnosis/gauge/gauge_verdict.h"
 
