@@ -17,6 +17,7 @@ namespace softgrip::sysid::change_test {
 namespace {
 
 using test::Finger;
+using test::log_of;
 using test::logs_of;
 
 ChangeDiagnosis changed(const Finger& later, bool with_pressure = false) {
@@ -379,6 +380,30 @@ TEST(Change, TooLittleIsRefused) {
   short_logs[0] = slice(short_logs[0], 0, 100);
   EXPECT_FALSE(diagnose_change(short_logs, logs_of({}, 5)));
   EXPECT_FALSE(diagnose_change({}, logs_of({}, 5)));
+}
+
+/// A lag of 0.01 s is larger than each healthy run's error and smaller than what another healthy run may
+/// leave. That suffices only where healthy runs begin as the later one does.
+TEST(Change, AnotherStartNeedsALargerError) {
+  const std::vector<Log> healthy{log_of({}, 1), log_of({}, 2), log_of({}, 3)};
+  const Log at_rest = log_of({.valve_lag_s = 0.01}, 5);
+  const std::vector<double>& command = at_rest.pressure_command_kpa;
+  const auto first = std::find_if(command.begin(), command.end(), [](double kpa) { return kpa > 25; });
+  const Log under_pressure =
+      slice(at_rest, static_cast<std::size_t>(first - command.begin()), at_rest.size());
+  const auto diagnosis_of = [&](const Log& later) {
+    const auto d = diagnose_change(healthy, {later});
+    EXPECT_TRUE(d) << d.error();
+    EXPECT_GT(d->readings.back().later_mm, d->readings.back().healthy_mm);
+    EXPECT_LT(d->readings.back().later_mm, d->readings.back().allowed_mm);
+    return *d;
+  };
+  const ChangeDiagnosis alike = diagnosis_of(at_rest), other = diagnosis_of(under_pressure);
+  EXPECT_EQ(alike.verdict, ChangeVerdict::cause_found) << change_sentence(alike);
+  EXPECT_EQ(other.verdict, ChangeVerdict::unchanged) << change_sentence(other);
+  EXPECT_TRUE(std::any_of(other.warnings.begin(), other.warnings.end(), [](const std::string& warning) {
+    return warning.find("No healthy log begins like") == 0;
+  }));
 }
 
 }  // namespace
