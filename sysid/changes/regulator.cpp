@@ -7,7 +7,10 @@ namespace softgrip::sysid {
 namespace {
 
 constexpr double atmosphere_kpa = 101.325;
+/// Longest step, and most steps in 1 sampling interval: samples of more than 0.1 s do not show the dynamics
+/// of a regulator, and the implicit step is stable.
 constexpr double longest_step_s = 0.002;
+constexpr int most_steps = 50;
 constexpr double supply_unknown = 4;  ///< times the largest command
 /// ISO 6358-1 with a critical ratio of 0.3, of absolute pressures; per conductance [kPa].
 double flow(double from_kpa, double to_kpa) {
@@ -143,7 +146,8 @@ std::vector<double> regulated(const Regulator& regulator, const Record& record,
   const double unknown_kpa = supply_unknown * record.largest_kpa + atmosphere_kpa;
   for (std::size_t i = 1; i < out.size(); ++i) {
     const double supply_kpa = record.supply_kpa.empty() ? unknown_kpa : record.supply_kpa[i] + atmosphere_kpa;
-    const int steps = std::max(1, static_cast<int>(std::ceil(record.duration_s[i] / longest_step_s - 1e-6)));
+    const double wanted = std::ceil(record.duration_s[i] / longest_step_s - 1e-6);
+    const int steps = static_cast<int>(std::clamp(wanted, 1.0, static_cast<double>(most_steps)));
     const double step_s = record.duration_s[i] / steps;
     for (int s = 0; s < steps; ++s) {
       const double part = record.held ? 0 : (s + 0.5) / steps;

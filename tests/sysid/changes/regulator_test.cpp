@@ -54,6 +54,20 @@ TEST(Regulator, WhilePortsAreShutALeakEmptiesTheFinger) {
   EXPECT_NEAR(regulated(shut, record, record.drive_kpa).back(), 50, 1e-9);
 }
 
+/// Samples of 1 s are simulated in 50 steps each, samples of 0.1 s in 50 as well: ten times finer.
+TEST(Regulator, SlowSamplesNeedNoFinerSteps) {
+  const Record slow = record_of(test::command_kpa(3, 120, 1), 1);
+  constexpr std::size_t parts = 10;
+  const Record fine = finer_record(slow, parts);
+  for (const Regulator& regulator : {Regulator{}, Regulator{.port_per_s = 0.5, .leak_per_s = 0.01}}) {
+    const std::vector<double> coarse_kpa = regulated(regulator, slow, slow.drive_kpa);
+    const std::vector<double> fine_kpa = regulated(regulator, fine, fine.drive_kpa);
+    std::vector<double> fine_at_samples_kpa;
+    for (std::size_t i = 0; i < slow.size(); ++i) fine_at_samples_kpa.push_back(fine_kpa[i * parts]);
+    EXPECT_LT(rms(coarse_kpa, fine_at_samples_kpa), 0.005 * slow.largest_kpa) << "the resolution of a valve";
+  }
+}
+
 TEST(Regulator, AnswersForALeakWhereItsPortsOpen) {
   const Record record = step_record();
   Regulator regulator{.play_kpa = 0, .dead_kpa = 1, .integral_per_s = 4};
