@@ -33,6 +33,7 @@ function(softgrip_room folder)
   if(sources)
     add_library(${target} STATIC ${sources})
     target_link_libraries(${target} PUBLIC ${links})
+    softgrip_for_shared_library(${target})
     softgrip_arrows(${target} "${folders}" "${reachable}" ${sources} ${headers})
     softgrip_may_precompile(may)
     if(may)
@@ -46,6 +47,14 @@ function(softgrip_room folder)
   set_property(GLOBAL APPEND PROPERTY softgrip_rooms ${folder})
   set_property(GLOBAL PROPERTY softgrip_folders_of_${folder} ${folders})
   set(softgrip_room_target ${target} PARENT_SCOPE)
+endfunction()
+
+# The shared library is made of the same objects as the programs. Names that it does not export are hidden, so that calls
+# within it are direct, as in a program.
+function(softgrip_for_shared_library target)
+  set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden
+    VISIBILITY_INLINES_HIDDEN ON)
+  target_compile_options(${target} PRIVATE -fno-semantic-interposition)
 endfunction()
 
 function(softgrip_target_of folder variable)
@@ -141,6 +150,7 @@ function(softgrip_precompile_for_rooms target own)
     file(WRITE ${CMAKE_BINARY_DIR}/room_headers.cpp "")
     add_library(softgrip_room_headers OBJECT ${CMAKE_BINARY_DIR}/room_headers.cpp)
     target_link_libraries(softgrip_room_headers PRIVATE softgrip_flags)
+    softgrip_for_shared_library(softgrip_room_headers)
     softgrip_compile_together(softgrip_room_headers)
     target_precompile_headers(softgrip_room_headers PRIVATE <algorithm> <array> <chrono> <cmath> <functional> <limits> <map>
       <memory> <numeric> <optional> <span> <string> <string_view> <variant> <vector>)
