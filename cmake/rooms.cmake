@@ -75,6 +75,8 @@ softgrip_room(sysid/structure
   USES base model sysid/logs sysid/fitting sysid/identification
   LIBRARIES Eigen3::Eigen)
 softgrip_room(sysid/diagnosis/residual USES base sysid/logs LIBRARIES Eigen3::Eigen)
+softgrip_room(sysid/instrument
+  USES base model sysid/logs sysid/pages sysid/fitting sysid/identification sysid/structure sysid/diagnosis/residual)
 softgrip_room(sysid/evidence USES base sysid/logs sysid/fitting)
 softgrip_room(sysid/diagnosis/causes
   USES model sysid/logs sysid/fitting sysid/evidence sysid/diagnosis/residual)
@@ -162,7 +164,8 @@ softgrip_room(tools/baseline
   USES base daemon/service sysid/logs sysid/identification sysid/diagnosis/experiments tools/investigation tools/studies)
 softgrip_room(tools/commands
   USES base model/file control/feedforward control/tuning rig daemon/service daemon/socket sysid/logs sysid/pages
-       sysid/fitting sysid/identification sysid/structure sysid/changes sysid/diagnosis/residual sysid/diagnosis/verdict sysid/diagnosis/report tools/command_line tools/client
+       sysid/fitting sysid/identification sysid/structure sysid/instrument sysid/changes sysid/diagnosis/verdict
+       sysid/diagnosis/report tools/command_line tools/client
        tools/log_input tools/recordings tools/health tools/figures tools/importing tools/exporting tools/commissioning tools/investigation tools/verification
        tools/studies tools/baseline
   LIBRARIES CLI11::CLI11 nlohmann_json::nlohmann_json

@@ -104,4 +104,11 @@ Log with_command_before(const Log& log, double before_kpa) {
   return longer;
 }
 
+void begin_before_first_command(std::vector<Log>& logs, bool measured_stay) {
+  for (Log& log : logs) {
+    if (measured_stay && !log.pressure_kpa.empty()) continue;
+    if (const auto before_kpa = pressure_before_kpa(log)) log = with_command_before(log, *before_kpa);
+  }
+}
+
 }  // namespace softgrip::sysid

@@ -2,6 +2,7 @@
 // Logs that begin the moment their command was set: the finger was still where the one before had left it.
 
 #include <optional>
+#include <vector>
 
 #include "sysid/logs/log.h"
 
@@ -21,5 +22,10 @@ namespace softgrip::sysid {
 /// The log with one sample more before its first, without readings, at the command `before_kpa`. Times still
 /// begin at 0, so all others move by the median interval. A note states this.
 [[nodiscard]] Log with_command_before(const Log& log, double before_kpa);
+
+/// Replaces every log that begins as its command was set by with_command_before().
+/// @param measured_stay  true: not if its pressure is measured, because a stage of its own begins at that
+///                       pressure.
+void begin_before_first_command(std::vector<Log>& logs, bool measured_stay);
 
 }  // namespace softgrip::sysid

@@ -9,19 +9,14 @@
 #include <string>
 #include <vector>
 
-#include "base/enumerated.h"
 #include "base/files.h"
 #include "base/numbers.h"
 #include "model/file/model_file.h"
-#include "sysid/diagnosis/residual/wrong_readings.h"
 #include "sysid/fitting/score.h"
-#include "sysid/identification/excitation_limits.h"
 #include "sysid/identification/identify.h"
 #include "sysid/identification/identify_report.h"
-#include "sysid/identification/validate.h"
-#include "sysid/logs/plausibility_warnings.h"
+#include "sysid/instrument/identified_logs.h"
 #include "sysid/pages/page.h"
-#include "sysid/structure/identify_structure.h"
 #include "sysid/structure/structure.h"
 #include "tools/command_line/call.h"
 #include "tools/command_line/model_input.h"
@@ -69,47 +64,14 @@ std::optional<sysid::StructureQuestion> question_of(const IdentifyOptions& optio
 }
 
 /// Fits with its progress shown.
-tl::expected<sysid::Identification, std::string> identified(const std::vector<sysid::Log>& logs,
-                                                            const model::Model& start,
-                                                            const IdentifyOptions& options) {
+tl::expected<sysid::IdentifiedLogs, std::string> identified(sysid::IdentifyQuestion question) {
   ProgressLine line;
-  sysid::IdentifyOptions fit = options.fit;
-  fit.progress = progress_on(line, logs.front().output_unit);
-  if (const auto question = question_of(options)) return sysid::identify_structure(logs, *question, fit);
-  return sysid::identify(logs, start, fit);
-}
-
-std::string source_of(const std::vector<sysid::Log>& logs, double rmse_mm, const model::Model& start) {
-  return "identified by " + sysid::software_and_version() + " from " + with_commas(logs, &sysid::Log::name) +
-         " (RMSE " + significant(rmse_mm, 3) + " " + std::string(name_of(logs.front().output_unit)) +
-         "), starting from " + start.name;
-}
-
-void append(std::vector<std::string>& list, std::vector<std::string> more) {
-  for (std::string& one : more) list.push_back(std::move(one));
-}
-
-/// The error of a fit with the plausibility warnings of its logs: a unit explains a number out of its range.
-std::string refusal_of(const std::string& error, const std::vector<sysid::Log>& logs) {
-  std::string text = error;
-  for (const std::string& implausible : sysid::plausibility_warnings_among(logs)) text += "; " + implausible;
-  return text;
+  question.options.progress = progress_on(line, question.logs.front().output_unit);
+  return sysid::identify_logs(std::move(question));
 }
 
 bool any_diverges(const std::vector<sysid::Score>& scores) {
   return std::any_of(scores.begin(), scores.end(), [](const sysid::Score& s) { return s.diverges; });
-}
-
-/// Warnings about the data and the predictions: they come before the numbers that they concern.
-std::vector<std::string> warnings_of_data(const sysid::Identification& result,
-                                          const std::vector<sysid::Log>& logs,
-                                          std::vector<std::string> wrong_readings) {
-  std::vector<std::string> warnings = std::move(wrong_readings);
-  append(warnings, sysid::excitation_limits(logs, result.parameters));
-  append(warnings, sysid::plausibility_warnings_among(logs));
-  append(warnings, sysid::divergences_of(result.scores));
-  append(warnings, sysid::divergences_of(result.held_out));
-  return warnings;
 }
 
 void print_estimates(const std::vector<sysid::Estimate>& list) {
@@ -190,45 +152,24 @@ ExitCode run(IdentifyOptions options, const std::vector<std::string>& call) {
   }
   auto logs = read_logs(options.data, fitted, given ? std::optional(unit_of(*given)) : std::nullopt);
   if (!logs) return logs.error();
-  std::vector<std::string> wrong_readings = sysid::take_out_wrong_readings(*logs);
-  std::vector<sysid::Log> validation_logs;
+  sysid::IdentifyQuestion question{
+      std::move(*logs),     {},         std::move(given), options.start, options.branches,
+      question_of(options), options.fit};
   if (!options.validate.empty()) {
-    auto read = read_logs(options.validate, options.logs, unit_of(*logs));
+    auto read = read_logs(options.validate, options.logs, unit_of(question.logs));
     if (!read) return read.error();
-    validation_logs = std::move(*read);
-    append(wrong_readings, sysid::take_out_wrong_readings(validation_logs));
+    question.validation = std::move(*read);
   }
-  model::Model start = given ? std::move(*given) : sysid::base_model(*logs, options.branches);
-  options.fit.record = options.logs.record_options();
-  auto result = identified(*logs, start, options);
-  if (!result) return fail(ExitCode::input_refused, refusal_of(result.error(), *logs));
-  if (question_of(options) && !options.start.empty())
-    result->warnings.push_back("--structure searches from the data's scale: nothing of " + options.start +
-                               " was used");
-  if (options.start.empty()) {
-    start.name =
-        question_of(options) ? "structures, from the data's scale" : "base structure, from the data's scale";
-  } else {
-    result->model.name = start.name + "_identified";
-  }
-  std::vector<std::string> warnings = warnings_of_data(*result, *logs, std::move(wrong_readings));
-  append(warnings, std::move(result->warnings));
-  result->warnings = std::move(warnings);
-  result->model.source = source_of(*logs, result->rmse_mm, start);
-
-  sysid::IdentifyReport report{*result, *logs, start, options.fit.seed, {}, {}, nullptr, call};
-  if (!validation_logs.empty()) {
-    sysid::Validation validation = sysid::validate_logs(result->model, validation_logs, options.fit.record);
-    report.validation_records = std::move(validation.records);
-    report.validation = std::move(validation.scores);
-    report.validation_logs = &validation_logs;
-    result->warnings.insert(result->warnings.end(), validation.warnings.begin(), validation.warnings.end());
-  }
+  question.options.record = options.logs.record_options();
+  const auto all = identified(std::move(question));
+  if (!all) return fail(ExitCode::input_refused, all.error());
+  const sysid::Identification& result = all->result;
+  const sysid::IdentifyReport report = all->report(call);
   const std::string json = sysid::identify_json(report);
   const sysid::Page page = sysid::identify_page(report);
   const std::filesystem::path out(options.out);
   for (const auto& [name, text] :
-       {std::pair<const char*, std::string>{"model.yaml", model::to_yaml(result->model)},
+       {std::pair<const char*, std::string>{"model.yaml", model::to_yaml(result.model)},
         {"identify.json", json},
         {"report.html", page.to_html()}}) {
     if (const auto written = write_file((out / name).string(), text); !written) {
@@ -236,12 +177,10 @@ ExitCode run(IdentifyOptions options, const std::vector<std::string>& call) {
     }
   }
   std::vector<sysid::LogSeries> series =
-      series_of(*logs, result->records, result->scores, "identified", false);
-  if (!validation_logs.empty()) {
-    for (sysid::LogSeries& one :
-         series_of(validation_logs, report.validation_records, report.validation, "identified", true))
-      series.push_back(std::move(one));
-  }
+      series_of(all->logs, result.records, result.scores, "identified", false);
+  for (sysid::LogSeries& one :
+       series_of(all->validation_logs, all->validation_records, all->validation, "identified", true))
+    series.push_back(std::move(one));
   if (const auto written = write_series(options.out, series); !written)
     return fail(ExitCode::io, written.error());
   if (const auto written = write_figures(options.figures, page.figures()); !written)
@@ -252,8 +191,8 @@ ExitCode run(IdentifyOptions options, const std::vector<std::string>& call) {
     print_summary(report, options.out);
   }
   const bool diverges =
-      any_diverges(result->scores) || any_diverges(result->held_out) || any_diverges(report.validation);
-  return result->converged && !diverges ? ExitCode::done : ExitCode::not_acceptable;
+      any_diverges(result.scores) || any_diverges(result.held_out) || any_diverges(report.validation);
+  return result.converged && !diverges ? ExitCode::done : ExitCode::not_acceptable;
 }
 
 void add_fit_options(CLI::App& command, sysid::IdentifyOptions& fit) {

@@ -12,8 +12,8 @@
 
 #include "base/files.h"
 #include "base/numbers.h"
-#include "sysid/diagnosis/residual/wrong_readings.h"
 #include "sysid/identification/validate.h"
+#include "sysid/instrument/identified_logs.h"
 #include "tools/client/styled_line.h"
 #include "tools/command_line/call.h"
 #include "tools/command_line/model_input.h"
@@ -78,9 +78,7 @@ ExitCode run(const ValidateOptions& options, const std::vector<std::string>& cal
   if (!model) return model.error();
   auto logs = read_logs(options.data, options.logs, unit_of(*model));
   if (!logs) return logs.error();
-  const std::vector<std::string> wrong_readings = sysid::take_out_wrong_readings(*logs);
-  sysid::Validation v = sysid::validate_logs(*model, *logs, options.logs.record_options());
-  v.warnings.insert(v.warnings.begin(), wrong_readings.begin(), wrong_readings.end());
+  sysid::Validation v = sysid::validate_given_logs(*model, *logs, options.logs.record_options());
   v.at_most_percent = options.at_most_percent;
   v.call = call;
   const std::string json = sysid::validate_json(v, *logs);

@@ -11,18 +11,6 @@
 #include "tools/log_input/import_hint.h"
 
 namespace softgrip::tools {
-namespace {
-
-void begin_before_the_first_command(std::vector<sysid::Log>& logs, const LogInput& input) {
-  for (sysid::Log& log : logs) {
-    if (input.begins_at_measured_pressure && !log.pressure_kpa.empty()) continue;
-    if (const auto before_kpa = sysid::pressure_before_kpa(log))
-      log = sysid::with_command_before(log, *before_kpa);
-  }
-}
-
-}  // namespace
-
 sysid::RecordOptions LogInput::record_options() const {
   sysid::RecordOptions options;
   options.drive = drive == "measured" ? sysid::Drive::measured : sysid::Drive::command;
@@ -81,7 +69,8 @@ tl::expected<std::vector<sysid::Log>, ExitCode> read_logs(const std::vector<std:
     const ExitCode refused = refuse_logs(problems);
     return tl::unexpected(campaign.unreadable ? ExitCode::io : refused);
   }
-  if (input.drive == "command") begin_before_the_first_command(campaign.logs, input);
+  if (input.drive == "command")
+    sysid::begin_before_first_command(campaign.logs, input.begins_at_measured_pressure);
   return std::move(campaign.logs);
 }
 

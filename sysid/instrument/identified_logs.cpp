@@ -1,0 +1,102 @@
+#include "sysid/instrument/identified_logs.h"
+
+#include <utility>
+
+#include "base/enumerated.h"
+#include "base/numbers.h"
+#include "sysid/diagnosis/residual/wrong_readings.h"
+#include "sysid/fitting/score.h"
+#include "sysid/identification/excitation_limits.h"
+#include "sysid/logs/plausibility_warnings.h"
+#include "sysid/pages/page.h"
+#include "sysid/structure/identify_structure.h"
+
+namespace softgrip::sysid {
+namespace {
+
+void append(std::vector<std::string>& list, std::vector<std::string> more) {
+  for (std::string& one : more) list.push_back(std::move(one));
+}
+
+std::string source_of(const std::vector<Log>& logs, double rmse_mm, const model::Model& start) {
+  return "identified by " + software_and_version() + " from " + with_commas(logs, &Log::name) + " (RMSE " +
+         significant(rmse_mm, 3) + " " + std::string(name_of(logs.front().output_unit)) +
+         "), starting from " + start.name;
+}
+
+/// The error of a fit with the plausibility warnings of its logs: a unit explains a number out of its range.
+std::string refusal_of(const std::string& error, const std::vector<Log>& logs) {
+  std::string text = error;
+  for (const std::string& implausible : plausibility_warnings_among(logs)) text += "; " + implausible;
+  return text;
+}
+
+/// Warnings about the data and the predictions: they come before the numbers that they concern.
+std::vector<std::string> warnings_of_data(const Identification& result, const std::vector<Log>& logs,
+                                          std::vector<std::string> wrong_readings) {
+  std::vector<std::string> warnings = std::move(wrong_readings);
+  append(warnings, excitation_limits(logs, result.parameters));
+  append(warnings, plausibility_warnings_among(logs));
+  append(warnings, divergences_of(result.scores));
+  append(warnings, divergences_of(result.held_out));
+  return warnings;
+}
+
+}  // namespace
+
+IdentifyReport IdentifiedLogs::report(std::vector<std::string> call) const {
+  return {result,
+          logs,
+          start,
+          seed,
+          validation_records,
+          validation,
+          validation_logs.empty() ? nullptr : &validation_logs,
+          std::move(call)};
+}
+
+tl::expected<IdentifiedLogs, std::string> identify_logs(IdentifyQuestion question) {
+  IdentifiedLogs all;
+  all.logs = std::move(question.logs);
+  all.validation_logs = std::move(question.validation);
+  all.seed = question.options.seed;
+  std::vector<std::string> wrong_readings = take_out_wrong_readings(all.logs);
+  append(wrong_readings, take_out_wrong_readings(all.validation_logs));
+  const bool given = question.start.has_value();
+  all.start = given ? std::move(*question.start) : base_model(all.logs, question.branches);
+  auto result = question.structure ? identify_structure(all.logs, *question.structure, question.options)
+                                   : identify(all.logs, all.start, question.options);
+  if (!result) return tl::unexpected(refusal_of(result.error(), all.logs));
+  all.result = *std::move(result);
+  if (question.structure && given)
+    all.result.warnings.push_back("--structure searches from the data's scale: nothing of " +
+                                  question.start_file + " was used");
+  if (given) {
+    all.result.model.name = all.start.name + "_identified";
+  } else {
+    all.start.name =
+        question.structure ? "structures, from the data's scale" : "base structure, from the data's scale";
+  }
+  std::vector<std::string> warnings = warnings_of_data(all.result, all.logs, std::move(wrong_readings));
+  append(warnings, std::move(all.result.warnings));
+  all.result.warnings = std::move(warnings);
+  all.result.model.source = source_of(all.logs, all.result.rmse_mm, all.start);
+  if (!all.validation_logs.empty()) {
+    Validation validation = validate_logs(all.result.model, all.validation_logs, question.options.record);
+    all.validation_records = std::move(validation.records);
+    all.validation = std::move(validation.scores);
+    append(all.result.warnings, std::move(validation.warnings));
+  }
+  return all;
+}
+
+Validation validate_given_logs(const model::Model& model, std::vector<Log>& logs,
+                               const RecordOptions& options) {
+  std::vector<std::string> warnings = take_out_wrong_readings(logs);
+  Validation validation = validate_logs(model, logs, options);
+  append(warnings, std::move(validation.warnings));
+  validation.warnings = std::move(warnings);
+  return validation;
+}
+
+}  // namespace softgrip::sysid

@@ -1,0 +1,81 @@
+#include "sysid/instrument/identified_logs.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "tests/sysid/simulated.h"
+
+namespace softgrip::sysid::identified_logs_test {
+namespace {
+
+/// A log of the bench twin in which one reading is 20 mm too large.
+Log with_an_outlier(std::uint64_t seed) {
+  Log log = simulated(loaded("bench_twin"), model::SignalName::tp1, 20, 0.05, seed);
+  log.name = "log " + std::to_string(seed);
+  log.displacement_mm[100] += 20;
+  return log;
+}
+
+IdentifyQuestion question() {
+  IdentifyQuestion all;
+  all.logs = {with_an_outlier(1)};
+  all.start = loaded("bench_twin");
+  all.options.starts = 1;
+  return all;
+}
+
+TEST(IdentifiedLogs, AWrongReadingIsNotFittedAndIsTheFirstWarning) {
+  const auto all = identify_logs(question());
+  ASSERT_TRUE(all) << all.error();
+  EXPECT_TRUE(std::isnan(all->logs.front().displacement_mm[100]));
+  EXPECT_LT(all->result.rmse_mm, 0.06);
+  ASSERT_FALSE(all->result.warnings.empty());
+  EXPECT_NE(all->result.warnings.front().find("log 1"), std::string::npos) << all->result.warnings.front();
+  EXPECT_EQ(all->result.model.name, "bench_twin_identified");
+  EXPECT_NE(all->result.model.source.find("log 1"), std::string::npos);
+}
+
+TEST(IdentifiedLogs, ValidationLogsAreCleanedAndPredicted) {
+  IdentifyQuestion asked = question();
+  asked.validation = {with_an_outlier(2)};
+  const auto all = identify_logs(std::move(asked));
+  ASSERT_TRUE(all) << all.error();
+  ASSERT_EQ(all->validation.size(), 1U);
+  EXPECT_LT(all->validation.front().rmse_mm, 0.1);
+  const auto& warnings = all->result.warnings;
+  EXPECT_EQ(std::count_if(warnings.begin(), warnings.begin() + 2,
+                          [](const std::string& text) { return text.find("log ") != std::string::npos; }),
+            2);
+  EXPECT_EQ(all->report({}).validation_logs, &all->validation_logs);
+}
+
+TEST(IdentifiedLogs, WithoutAStartTheStructureIsTheBase) {
+  IdentifyQuestion asked = question();
+  asked.start.reset();
+  asked.branches = 1;
+  asked.options.starts = 2;
+  const auto all = identify_logs(std::move(asked));
+  ASSERT_TRUE(all) << all.error();
+  EXPECT_EQ(all->start.name, "base structure, from the data's scale");
+  EXPECT_EQ(all->report({}).validation_logs, nullptr);
+}
+
+TEST(IdentifiedLogs, ARefusalNamesTheParameter) {
+  IdentifyQuestion asked = question();
+  asked.options.fixed = {"no.such"};
+  const auto all = identify_logs(std::move(asked));
+  ASSERT_FALSE(all);
+  EXPECT_NE(all.error().find("no.such"), std::string::npos) << all.error();
+}
+
+TEST(ValidateGivenLogs, PredictsWithoutTheWrongReadings) {
+  std::vector<Log> logs{with_an_outlier(3)};
+  const Validation validation = validate_given_logs(loaded("bench_twin"), logs, {});
+  EXPECT_TRUE(std::isnan(logs.front().displacement_mm[100]));
+  EXPECT_LT(validation.scores.front().rmse_mm, 0.06);
+  ASSERT_FALSE(validation.warnings.empty());
+}
+
+}  // namespace
+}  // namespace softgrip::sysid::identified_logs_test
