@@ -48,8 +48,11 @@ void simulate(const model::Model& model, const SimulationSettings& settings, sys
   log.output_unit = model.output_unit;
   double previous_s = log.time_s.front();
   for (std::size_t i = 0; i < log.size(); ++i) {
-    const double reading_mm =
-        chain.step(log.time_s[i] - previous_s, log.pressure_command_kpa[i], surroundings_at(log, i));
+    const double duration_s = log.time_s[i] - previous_s;
+    const model::Surroundings surroundings = surroundings_at(log, i);
+    const std::size_t driving = settings.held && i > 0 ? i - 1 : i;
+    if (settings.held) chain.step(0, log.pressure_command_kpa[driving], surroundings);
+    const double reading_mm = chain.step(duration_s, log.pressure_command_kpa[driving], surroundings);
     previous_s = log.time_s[i];
     const double noise_mm = settings.noise_mm > 0 ? settings.noise_mm * normal_at(noise_seed, i) : 0;
     log.displacement_mm[i] = reading_mm + noise_mm;
