@@ -171,6 +171,14 @@ softgrip_room(tools/commands
   LIBRARIES CLI11::CLI11 nlohmann_json::nlohmann_json
   PRECOMPILE <CLI/CLI.hpp>)
 
+# The public library, which no room uses.
+softgrip_room(library FOLDERS library/include/softgrip
+  USES base document model model/file control/elements control/feedforward control/tick drivers/board simulation/plant
+       sysid/logs sysid/import sysid/fitting sysid/identification sysid/instrument sysid/diagnosis/report
+       sysid/diagnosis/verdict sysid/changes tools/studies
+  LIBRARIES nlohmann_json::nlohmann_json)
+softgrip_public_headers(library/include)
+
 softgrip_program(softgripd daemon/service/softgripd.cpp daemon ROOM daemon/service LIBRARIES CLI11::CLI11)
 softgrip_program(softgrip tools/programs/softgrip.cpp tools ROOM tools/commands)
 softgrip_program(softgrip-rig "tools/programs/softgrip_rig.cpp;tools/programs/softgrip_rig_options.cpp" tools

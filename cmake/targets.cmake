@@ -57,6 +57,11 @@ function(softgrip_for_shared_library target)
   target_compile_options(${target} PRIVATE -fno-semantic-interposition)
 endfunction()
 
+# softgrip_public_headers(FOLDER)  the last room also finds the headers under FOLDER as they are installed
+function(softgrip_public_headers folder)
+  target_include_directories(${softgrip_room_target} PUBLIC ${PROJECT_SOURCE_DIR}/${folder})
+endfunction()
+
 function(softgrip_target_of folder variable)
   string(REPLACE "/" "_" name "softgrip_${folder}")
   set(${variable} ${name} PARENT_SCOPE)

@@ -12,7 +12,7 @@ import sys
 source = pathlib.Path(__file__).resolve().parents[2]
 page = source / "docs/explanation/architecture.md"
 begin, end = "<!-- rooms: kept up to date by tests/repository/rooms.py --write -->\n", "<!-- /rooms -->\n"
-product = "base document model control drivers simulation rig daemon sysid tools gateways".split()
+product = "base document model control drivers simulation rig daemon sysid tools gateways library".split()
 
 
 def rooms():

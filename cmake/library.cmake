@@ -1,0 +1,33 @@
+# The shared library libsoftgrip, its public headers, and the files by which others find it (CMake, pkg-config). Its
+# sources are the room `library`.
+add_library(libsoftgrip SHARED $<TARGET_OBJECTS:softgrip_library>)
+target_link_libraries(libsoftgrip PRIVATE softgrip_library)
+add_library(softgrip::softgrip ALIAS libsoftgrip)
+target_compile_features(libsoftgrip INTERFACE cxx_std_20)
+target_include_directories(libsoftgrip INTERFACE $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/library/include>
+  $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+set_target_properties(libsoftgrip PROPERTIES OUTPUT_NAME softgrip EXPORT_NAME softgrip LINKER_LANGUAGE CXX
+  VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR} LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/library)
+# Only what the headers mark is exported, no instance of a standard template.
+set(exported ${PROJECT_SOURCE_DIR}/library/exported.map)
+target_link_options(libsoftgrip PRIVATE -Wl,--version-script=${exported} -Wl,-z,relro,-z,now,--as-needed)
+if(NOT SOFTGRIP_SANITIZE)  # whose functions are in the programs
+  target_link_options(libsoftgrip PRIVATE -Wl,--no-undefined)
+endif()
+set_property(TARGET libsoftgrip APPEND PROPERTY LINK_DEPENDS ${exported})
+
+# Installed by themselves (`cmake --install BUILD --component library`) and with the rest.
+include(CMakePackageConfigHelpers)
+set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/softgrip)
+file(GLOB public_headers CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/library/include/softgrip/*.h)
+install(TARGETS libsoftgrip EXPORT softgrip
+  LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT library NAMELINK_COMPONENT library)
+install(FILES ${public_headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/softgrip COMPONENT library)
+install(EXPORT softgrip NAMESPACE softgrip:: FILE softgrip-config.cmake DESTINATION ${package_folder} COMPONENT library)
+write_basic_package_version_file(${CMAKE_BINARY_DIR}/library/softgrip-config-version.cmake
+  COMPATIBILITY SameMinorVersion)
+install(FILES ${CMAKE_BINARY_DIR}/library/softgrip-config-version.cmake DESTINATION ${package_folder} COMPONENT library)
+# The prefix is found from where the file is, so the tree can be moved.
+file(RELATIVE_PATH SOFTGRIP_PC_PREFIX /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
+configure_file(${PROJECT_SOURCE_DIR}/library/softgrip.pc.in ${CMAKE_BINARY_DIR}/library/softgrip.pc @ONLY)
+install(FILES ${CMAKE_BINARY_DIR}/library/softgrip.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT library)

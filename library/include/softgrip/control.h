@@ -1,0 +1,227 @@
+#pragma once
+/// @file
+/// Controller of one finger: limits, PID, feedforward, and all of them together. Stable.
+///
+/// Construction checks its arguments and allocates. The other functions do not allocate, lock, or throw; they
+/// are for a control loop. Each object belongs to one thread at a time.
+
+#include <chrono>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <string>
+
+#include <softgrip/board.h>
+#include <softgrip/export.h>
+#include <softgrip/model.h>
+
+namespace softgrip {
+
+/// Limits of one finger. Displacements are in the unit of the model.
+struct Limits {
+  double pressure_min_kpa = 0;       ///< smallest command [kPa]
+  double pressure_max_kpa = 0;       ///< largest command [kPa], above the smallest
+  double slew_up_kpa_per_s = 300;    ///< fastest rise of the command [kPa/s], > 0
+  double slew_down_kpa_per_s = 300;  ///< fastest fall of the command [kPa/s], > 0
+  double displacement_min = -1e6;    ///< references are kept at or above
+  double displacement_max = 1e6;     ///< references are kept at or below, above the smallest
+  double rest_kpa = 0;               ///< command at rest [kPa]; the nearest end of the range counts
+};
+
+/// A command within the limits.
+struct LimitedCommand {
+  double command_kpa = 0;  ///< within the range and the slew limits [kPa]
+  bool saturated = false;  ///< the request is outside the pressure range
+  bool slewing = false;    ///< the request is further away than the slew limits allow
+  bool invalid = false;    ///< the request is not a number; the last command is held
+};
+
+/// Returns the command for a request. Same function as in the daemon.
+/// @param limits      of the finger
+/// @param wanted_kpa  the request [kPa]
+/// @param last_kpa    last command [kPa]
+/// @param elapsed_s   time since the last command [s], >= 0
+[[nodiscard]] SOFTGRIP_API LimitedCommand limit(const Limits& limits, double wanted_kpa, double last_kpa,
+                                                double elapsed_s) noexcept;
+
+/// Method that keeps the integrator from winding up while the command cannot follow the request.
+enum class AntiWindup : std::uint8_t {
+  none,              ///< no method; only for comparison
+  conditional,       ///< the integrator stops while the error pushes further into the limit
+  back_calculation,  ///< the excess drives the integrator back within `tracking_time_s`
+};
+
+/// Settings of a PID. Displacements are in the unit of the model.
+struct PidSettings {
+  double kp_kpa_per_mm = 0;           ///< proportional gain [kPa per unit of the displacement]
+  double ki_kpa_per_mm_s = 0;         ///< integral gain [kPa per unit and s]
+  double kd_kpa_s_per_mm = 0;         ///< derivative gain [kPa s per unit]
+  double derivative_filter_s = 0.02;  ///< time constant of the filter of the derivative [s], >= 0
+  double setpoint_weight = 1;         ///< share of the reference in the proportional part, 0 to 1
+  AntiWindup anti_windup = AntiWindup::back_calculation;  ///< method
+  double tracking_time_s = 0.5;                           ///< of back_calculation [s], > 0
+};
+
+/// PID with two degrees of freedom (Astrom and Hagglund, Advanced PID Control, 2006). Call order in a period:
+/// step(), limit() of the sum with the feedforward, sent().
+class SOFTGRIP_API Pid {
+ public:
+  /// @param settings  gains
+  /// @param tick_s    period of step() [s], > 0
+  /// Throws InvalidArgument.
+  Pid(const PidSettings& settings, double tick_s);
+  ~Pid();
+  Pid(Pid&& other) noexcept;
+  Pid& operator=(Pid&& other) noexcept;
+
+  /// Makes the next step() continue at `command_kpa` [kPa]: a start, or a change of the feedforward.
+  void align(double command_kpa) noexcept;
+  /// Returns the feedback [kPa]. The request is the sum of it and `feedforward_kpa`.
+  /// @param reference        at the time of the measurement
+  /// @param measurement      the reading
+  /// @param feedforward_kpa  feedforward of this period [kPa]
+  [[nodiscard]] double step(double reference, double measurement, double feedforward_kpa) noexcept;
+  /// Returns the feedback [kPa] of a period without a usable measurement. Integrator and derivative pause.
+  [[nodiscard]] double hold(double feedforward_kpa) noexcept;
+  /// Reports the command that was sent after the limits [kPa], for the anti-windup.
+  void sent(double command_kpa) noexcept;
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+/// A reference that is known in advance: up to 8 segments, which can be evaluated at any time. Value, rate
+/// and acceleration are continuous over ramps and holds (minimum jerk).
+class SOFTGRIP_API Reference {
+ public:
+  /// Holds `value` from time 0 s.
+  explicit Reference(double value = 0);
+  ~Reference();
+  Reference(const Reference& other);
+  Reference& operator=(const Reference& other);
+
+  /// Removes all segments and holds `value` from `time_s` [s].
+  void start(double time_s, double value) noexcept;
+  /// Appends a minimum-jerk ramp of `duration_s` [s], > 0. Returns false, and changes nothing, if there is no
+  /// place for a segment or an argument is out of range.
+  bool ramp_to(double value, double duration_s) noexcept;
+  /// Appends a hold of `duration_s` [s], > 0. Returns false as ramp_to() does.
+  bool hold_for(double duration_s) noexcept;
+  /// Appends mean - amplitude cos(2 pi f t) for `cycles` > 0, at `frequency_hz` > 0. A ramp to
+  /// mean - amplitude should precede it. Returns false as ramp_to() does.
+  bool sine(double mean, double amplitude, double frequency_hz, double cycles) noexcept;
+  /// Returns the value at a time [s].
+  [[nodiscard]] double at(double time_s) const noexcept;
+  /// Returns the time at which the last segment ends [s].
+  [[nodiscard]] double end_s() const noexcept;
+
+  /// Opaque content.
+  struct Parts;
+  /// For the library.
+  [[nodiscard]] const Parts& parts() const noexcept { return *parts_; }
+
+ private:
+  std::unique_ptr<Parts> parts_;
+};
+
+/// Kind of a feedforward.
+enum class FeedforwardKind : std::uint8_t {
+  none,        ///< no feedforward
+  bouc_wen,    ///< inverse of the hysteresis alone
+  full_model,  ///< inverse of the whole model: hysteresis, creep, lag, dead time
+};
+
+/// Result of Feedforward::step().
+struct FeedforwardStep {
+  double pressure_kpa = 0;    ///< command [kPa]
+  bool out_of_reach = false;  ///< the limits keep the command from the reference
+};
+
+/// Inverse of a model, one period at a time, for a reference that is not a Reference: a stream of samples.
+class SOFTGRIP_API Feedforward {
+ public:
+  /// Throws InvalidArgument, and Refused if the model has no inverse within the limits.
+  /// @param model            of the finger
+  /// @param limits           of the command
+  /// @param tick_s           period of step() [s], > 0
+  /// @param kind             of the inverse
+  /// @param extra_latency_s  from a command to the output of the board [s], 0 to 1, beyond the model's own
+  Feedforward(const Model& model, const Limits& limits, double tick_s,
+              FeedforwardKind kind = FeedforwardKind::full_model, double extra_latency_s = 0);
+  ~Feedforward();
+  Feedforward(Feedforward&& other) noexcept;
+  Feedforward& operator=(Feedforward&& other) noexcept;
+
+  /// Returns how far ahead of now step() needs the reference [s].
+  [[nodiscard]] double preview_s() const noexcept;
+  /// Starts from rest under `command_kpa` [kPa].
+  /// @param reference_ahead  the reference preview_s() from now, in the unit of the model
+  void start(double command_kpa, double reference_ahead) noexcept;
+  /// Returns the command of this period, which is held until the next one.
+  /// @param reference_ahead  the reference preview_s() from now, in the unit of the model
+  [[nodiscard]] FeedforwardStep step(double reference_ahead) noexcept;
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+/// Settings of a Controller.
+struct ControllerSettings {
+  Model model;                                                ///< of the finger in free motion
+  Limits limits = {};                                         ///< of the command
+  PidSettings pid = {};                                       ///< gains
+  FeedforwardKind feedforward = FeedforwardKind::full_model;  ///< kind of feedforward
+  double extra_latency_s = 0;       ///< from a command to the output of the board [s], 0 to 1
+  double tick_s = 0.005;            ///< period of tick() [s], 0.0001 to 1
+  double sensor_noise = 0.05;       ///< standard deviation of a reading, in the unit of the model, > 0
+  double reading_max_age_s = 0.05;  ///< an older reading is not used [s], > 0
+};
+
+/// Result of Controller::tick(). NaN: not available.
+struct ControlOutput {
+  double command_kpa = 0;                  ///< command for the board [kPa], within the limits
+  double reference = 0;                    ///< reference for now; NaN while no reference is followed
+  double displacement = 0;                 ///< last valid reading
+  double feedforward_kpa = 0;              ///< part of the command [kPa]
+  double feedback_kpa = 0;                 ///< part of the command [kPa]
+  double residual = 0;                     ///< reading minus model
+  Validity validity = Validity::none_yet;  ///< of the reading, after the plausibility check
+  bool saturated = false;                  ///< the request was outside the pressure range
+  bool slewing = false;                    ///< the slew limits reduced the request
+  bool out_of_reach = false;               ///< the feedforward cannot reach the reference
+};
+
+/// Controller of one finger: feedforward plus PID through the limits, plausibility check of the readings. It
+/// is the channel controller of the daemon, without its sequences, faults and supervisor.
+class SOFTGRIP_API Controller {
+ public:
+  /// Throws InvalidArgument, and Refused if the model has no inverse for the feedforward.
+  explicit Controller(const ControllerSettings& settings);
+  ~Controller();
+  Controller(Controller&& other) noexcept;
+  Controller& operator=(Controller&& other) noexcept;
+
+  /// Starts from rest under `command_kpa` [kPa], which is clamped to the limits.
+  void start(double command_kpa) noexcept;
+  /// From the next tick on, follows a reference whose time 0 is the time 0 of tick().
+  void follow(const Reference& reference) noexcept;
+  /// From the next tick on, holds the command.
+  void hold() noexcept;
+  /// From the next tick on, goes to the rest pressure with the slew limits.
+  void vent() noexcept;
+  /// From the next tick on, goes to a pressure [kPa] with the slew limits, without feedback.
+  void pressure(double pressure_kpa) noexcept;
+
+  /// Runs one period and returns the command.
+  /// @param now      time of this period on the clock of the readings
+  /// @param reading  newest reading of the finger
+  [[nodiscard]] ControlOutput tick(std::chrono::nanoseconds now, const Reading& reading) noexcept;
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace softgrip

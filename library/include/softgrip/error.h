@@ -1,0 +1,60 @@
+#pragma once
+/// @file
+/// Exceptions of the library. Stable.
+///
+/// Functions that are called once (loading, fitting, construction) report errors by these exceptions.
+/// Functions that are called in a control loop do not throw; they return the error as a value.
+
+#include <stdexcept>
+#include <string>
+
+#include <softgrip/export.h>
+
+/// softgrip: models, control, identification and diagnosis of soft pneumatic fingers.
+namespace softgrip {
+
+/// Base class of all exceptions of the library. what() is a sentence for people.
+class SOFTGRIP_API Error : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+  ~Error() override;
+};
+
+/// An argument that no call accepts: wrong number of values, a value that is not finite, a value out of its
+/// range. what() names the argument, the expected shape or range, and the unit.
+class SOFTGRIP_API InvalidArgument : public Error {
+ public:
+  /// @param argument  name of the argument, as in the declaration of the function
+  /// @param problem   what is wrong with it
+  InvalidArgument(std::string argument, const std::string& problem);
+  ~InvalidArgument() override;
+  /// Name of the argument, as in the declaration of the function.
+  [[nodiscard]] const std::string& argument() const noexcept { return argument_; }
+
+ private:
+  std::string argument_;
+};
+
+/// A file that cannot be read, is not written, or has content that is refused. what() lists each problem with
+/// file, line and column.
+class SOFTGRIP_API FileError : public Error {
+ public:
+  using Error::Error;
+  ~FileError() override;
+};
+
+/// Valid arguments for which there is no answer: a model without an inverse, logs that cannot be fitted.
+class SOFTGRIP_API Refused : public Error {
+ public:
+  using Error::Error;
+  ~Refused() override;
+};
+
+/// A computation that ended early because its std::stop_token requested it.
+class SOFTGRIP_API Cancelled : public Error {
+ public:
+  using Error::Error;
+  ~Cancelled() override;
+};
+
+}  // namespace softgrip

@@ -1,0 +1,102 @@
+#pragma once
+/// @file
+/// Identification: parameters of a model from logs. The functions are stable; the results gain fields.
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include <softgrip/export.h>
+#include <softgrip/log.h>
+#include <softgrip/model.h>
+
+namespace softgrip {
+
+/// 95 % interval of a number, in its unit.
+struct Interval {
+  double lower = 0;  ///< lower end
+  double upper = 0;  ///< upper end
+};
+
+/// An estimated or fixed number.
+struct Estimate {
+  std::string name;              ///< "kelvin_voigt.k1_kpa_per_mm"
+  std::string unit;              ///< of value and interval
+  double value = 0;              ///< the estimate
+  std::optional<Interval> ci95;  ///< empty: fixed, at a bound, or without effect
+  bool free = false;             ///< it was estimated
+  std::string note;              ///< reason why there is no interval
+};
+
+/// Prediction of one log.
+struct Prediction {
+  std::string log;                  ///< name of the log
+  Unit unit = Unit::mm;             ///< of prediction and errors
+  std::vector<double> time_s;       ///< times of the samples [s]
+  std::vector<double> prediction;   ///< in `unit`, one per sample
+  std::vector<double> error;        ///< reading minus prediction; NaN without a reading
+  double rmse = 0;                  ///< root mean square error, in `unit`
+  double rmse_percent_of_span = 0;  ///< relative to the range of the readings [%]
+  double largest_error = 0;         ///< largest absolute error, in `unit`
+  bool diverges = false;            ///< the prediction is not finite or larger than the readings
+};
+
+/// Called with a sentence about the present stage, from any thread, never from two at once. An exception of
+/// the callback ends the computation and reaches the caller.
+using Progress = std::function<void(const std::string& stage)>;
+
+/// Structure of the model in identify().
+enum class Structure : std::uint8_t {
+  start,      ///< that of `start`, or the base structure
+  automatic,  ///< selected on held-out blocks
+  bouc_wen,   ///< selected, with a Bouc-Wen hysteresis
+  play,       ///< selected, with play operators (Prandtl-Ishlinskii)
+};
+
+/// Settings of identify().
+struct IdentifyOptions {
+  Structure structure = Structure::start;  ///< how the structure is found
+  std::optional<Model> start = {};         ///< start of the fit; only with Structure::start
+  std::size_t branches = 2;                ///< creep branches of the base structure, 1 to 8
+  std::vector<std::string> fixed = {};     ///< parameters that keep the value of `start`
+  std::vector<std::string> free = {};      ///< if not empty, only these parameters are estimated
+  std::size_t starts = 20;                 ///< searches from as many points, 1 to 10,000
+  std::uint64_t seed = 1;                  ///< of the start points
+  bool robust = false;                     ///< outliers count linearly (Huber)
+  double fit_share = 1;                    ///< first share of each log that is fitted, 0.05 to 1
+  unsigned threads = 0;                    ///< 0: one per processor
+  LogUse use = {};                         ///< interpretation of the logs
+  std::vector<Log> validation = {};        ///< logs to predict
+  Progress progress = {};                  ///< may be empty
+  std::stop_token stop = {};               ///< requests an early end
+};
+
+/// Result of identify().
+struct Identification {
+  Model model;                         ///< identified
+  double rmse = 0;                     ///< of all fitted samples, in the unit of the model
+  bool converged = false;              ///< the minimisation ended at a minimum
+  std::string verdict;                 ///< one sentence
+  std::vector<std::string> warnings;   ///< about data and result
+  std::vector<Estimate> parameters;    ///< all of the model
+  std::vector<Estimate> combinations;  ///< properties of the finger that follow from them
+  std::vector<Prediction> fit;         ///< fitted samples, by log
+  std::vector<Prediction> held_out;    ///< other samples, by log; empty: all were fitted
+  std::vector<Prediction> validation;  ///< logs of `validation`
+  std::string json;                    ///< identify.json of `softgrip identify`
+  std::string html;                    ///< report.html of `softgrip identify`
+};
+
+/// Fits a model to logs. Same function as `softgrip identify`: maximum likelihood by nonlinear least squares
+/// from several starts, intervals from the curvature with the correlation of the residuals.
+/// Throws InvalidArgument, Refused if the logs cannot be fitted, Cancelled.
+/// @param logs     at least one log; all in the same unit
+/// @param options  structure, start, search
+[[nodiscard]] SOFTGRIP_API Identification identify(const std::vector<Log>& logs,
+                                                   const IdentifyOptions& options = {});
+
+}  // namespace softgrip

@@ -1,0 +1,31 @@
+#pragma once
+/// @file
+/// Validation: prediction of logs to which a model was not fitted. Stable; the result gains fields.
+
+#include <string>
+#include <vector>
+
+#include <softgrip/export.h>
+#include <softgrip/identify.h>
+#include <softgrip/log.h>
+#include <softgrip/model.h>
+
+namespace softgrip {
+
+/// Result of validate().
+struct Validation {
+  std::string verdict;                  ///< one sentence
+  std::vector<std::string> warnings;    ///< about the data
+  std::vector<Prediction> predictions;  ///< by log
+  std::string json;                     ///< validate.json of `softgrip validate`
+  std::string html;                     ///< report.html of `softgrip validate`
+};
+
+/// Predicts logs with a model. Same function as `softgrip validate`. Throws InvalidArgument.
+/// @param model  to predict with
+/// @param logs   at least one log, in the unit of the model
+/// @param use    interpretation of the logs
+[[nodiscard]] SOFTGRIP_API Validation validate(const Model& model, const std::vector<Log>& logs,
+                                               const LogUse& use = {});
+
+}  // namespace softgrip

@@ -1,0 +1,29 @@
+#pragma once
+// Public logs as those of sysid, checked.
+
+#include <string>
+#include <vector>
+
+#include "library/include/softgrip/log.h"
+#include "sysid/fitting/score.h"
+#include "sysid/logs/log.h"
+#include "sysid/logs/record.h"
+
+namespace softgrip::library {
+
+/// Unit that logs must have, and its origin. Empty: that of the first log.
+struct NeededUnit {
+  std::string of;  ///< "the model NAME"
+  Unit unit = Unit::mm;
+};
+
+/// Checks logs as the commands do. Throws InvalidArgument.
+/// @param argument       name of the argument, for messages
+/// @param measured_stay  see sysid::begin_before_first_command()
+[[nodiscard]] std::vector<sysid::Log> checked_logs(const std::string& argument, const std::vector<Log>& logs,
+                                                   const LogUse& use, bool measured_stay,
+                                                   const std::optional<NeededUnit>& needed);
+
+[[nodiscard]] sysid::RecordOptions record_options(const LogUse& use);
+
+}  // namespace softgrip::library

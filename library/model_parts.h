@@ -1,0 +1,46 @@
+#pragma once
+// The content of a public Model, and the checks of arguments that all public functions share.
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "document/problem.h"
+#include "library/include/softgrip/model.h"
+#include "model/model.h"
+
+namespace softgrip {
+
+struct Model::Parts {
+  model::Model value;  ///< a valid one
+};
+
+namespace library {
+
+/// Wraps a valid model.
+[[nodiscard]] Model wrapped(model::Model model);
+[[nodiscard]] model::OutputUnit unit_of(Unit unit) noexcept;
+[[nodiscard]] Unit unit_of(model::OutputUnit unit) noexcept;
+
+/// Throws FileError with all problems.
+[[noreturn]] void refuse(const document::Problems& problems);
+
+/// "[kPa]", "[mm]": how messages state a unit.
+[[nodiscard]] std::string in_brackets(model::OutputUnit unit);
+
+// Each of these throws InvalidArgument.
+/// `values` must have one value for each of `count` times.
+void require_size(const std::string& argument, std::size_t size, std::size_t count, const std::string& unit);
+/// Every value must be finite.
+void require_finite(const std::string& argument, std::span<const double> values, const std::string& unit);
+/// Times must be at least `fewest`, finite and increasing.
+void require_times(const std::string& argument, std::span<const double> time_s, std::size_t fewest);
+/// A number must be in [lower, upper].
+void require_between(const std::string& argument, double value, double lower, double upper,
+                     const std::string& unit);
+/// A number must be finite and above 0.
+void require_positive(const std::string& argument, double value, const std::string& unit);
+
+}  // namespace library
+}  // namespace softgrip

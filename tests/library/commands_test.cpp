@@ -1,0 +1,163 @@
+// The library and the command line compute the same bits: each result of `softgrip` is compared with that of
+// the library for the same logs.
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "library/include/softgrip/diagnose.h"
+#include "library/include/softgrip/identify.h"
+#include "library/include/softgrip/log.h"
+#include "library/include/softgrip/softgrip.h"
+#include "library/include/softgrip/validate.h"
+#include "tests/library/finger.h"
+
+namespace softgrip::commands_test {
+namespace {
+
+using Json = nlohmann::json;
+
+/// Logs of the bench twin and of one with another gain, written by `softgrip simulate`.
+class LibraryAndCommand : public testing::Test {
+ protected:
+  LibraryAndCommand() {
+    std::filesystem::create_directories(folder_);
+    model_ = std::string(SOFTGRIP_SOURCE_DIR) + "/config/models/bench_twin.yaml";
+    bench_twin().with("bouc_wen.alpha_mm_per_kpa", 0.26).save(path("stiffer.yaml"));
+    run("simulate --model " + model_ + " --input tp1 --rate-hz 20 --noise-mm 0.05 --out " + path("one.csv"));
+    run("simulate --model " + model_ + " --input sp1 --rate-hz 20 --noise-mm 0.05 --seed 2 --out " +
+        path("two.csv"));
+    run("simulate --model " + path("stiffer.yaml") +
+        " --input tp1 --rate-hz 20 --noise-mm 0.05 --seed 3 --out " + path("three.csv"));
+  }
+  ~LibraryAndCommand() override { std::filesystem::remove_all(folder_); }
+
+  [[nodiscard]] std::string path(const std::string& name) const { return (folder_ / name).string(); }
+  /// Runs `softgrip` and returns what it prints; an exit code other than 0 fails the test.
+  std::string run(const std::string& arguments) const {
+    const std::string output = path("output");
+    const std::string command =
+        std::string(SOFTGRIP_PROGRAM) + " " + arguments + " >" + output + " 2>" + path("errors");
+    const int status = std::system(command.c_str());
+    EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << text_of(path("errors"));
+    return text_of(output);
+  }
+  /// JSON without what differs from call to call.
+  static Json plain(const std::string& text, std::initializer_list<const char*> without) {
+    Json json = Json::parse(text);
+    for (const char* key : without) json.erase(key);
+    return json;
+  }
+
+  std::string model_;
+
+ private:
+  static std::string text_of(const std::string& path) {
+    std::ostringstream text;
+    text << std::ifstream(path).rdbuf();
+    return text.str();
+  }
+  std::filesystem::path folder_ =
+      std::filesystem::path(testing::TempDir()) /
+      ("library_commands_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+};
+
+TEST_F(LibraryAndCommand, Simulate) {
+  const Log log = read_log(path("one.csv"));
+  SimulateOptions options;
+  options.noise = 0.05;
+  EXPECT_EQ(Model::load(model_).simulate(log.time_s, log.pressure_command_kpa, options), log.displacement);
+}
+
+TEST_F(LibraryAndCommand, Identify) {
+  const Json expected =
+      plain(run("identify --starts 3 --seed 7 --json --data " + path("one.csv") + " " + path("two.csv") +
+                " --validate " + path("three.csv") + " --out " + path("out")),
+            {"call", "wall_s"});
+  IdentifyOptions options;
+  options.starts = 3;
+  options.seed = 7;
+  options.validation = {read_log(path("three.csv"))};
+  std::vector<std::string> stages;
+  options.progress = [&](const std::string& stage) { stages.push_back(stage); };
+  const Identification found = identify({read_log(path("one.csv")), read_log(path("two.csv"))}, options);
+  EXPECT_EQ(plain(found.json, {"call", "wall_s"}), expected);
+  EXPECT_EQ(found.model.yaml(), Model::load(path("out/model.yaml")).yaml());
+  EXPECT_EQ(found.fit.size(), 2U);
+  EXPECT_EQ(found.fit[1].time_s.size(), found.fit[1].prediction.size());
+  EXPECT_EQ(found.validation.size(), 1U);
+  EXPECT_FALSE(stages.empty());
+  EXPECT_NE(found.html.find("<html"), std::string::npos);
+}
+
+TEST_F(LibraryAndCommand, IdentifyWithAStructure) {
+  const Json expected = plain(
+      run("identify --structure auto --starts 3 --json --data " + path("one.csv") + " --out " + path("out")),
+      {"call", "wall_s"});
+  IdentifyOptions options;
+  options.structure = Structure::automatic;
+  options.starts = 3;
+  EXPECT_EQ(plain(identify({read_log(path("one.csv"))}, options).json, {"call", "wall_s"}), expected);
+}
+
+TEST_F(LibraryAndCommand, Validate) {
+  const std::string stiffer = path("stiffer.yaml");
+  const Json expected =
+      plain(run("validate --json --model " + stiffer + " --data " + path("one.csv") + " " + path("two.csv")),
+            {"call", "wall_s"});
+  const Validation found =
+      validate(Model::load(stiffer), {read_log(path("one.csv")), read_log(path("two.csv"))});
+  EXPECT_EQ(plain(found.json, {"call", "wall_s"}), expected);
+  EXPECT_GT(found.predictions.at(0).rmse, 0.1);
+}
+
+TEST_F(LibraryAndCommand, Diagnose) {
+  run("identify --starts 3 --data " + path("one.csv") + " --out " + path("fit"));
+  const std::string fitted = path("fit/model.yaml");
+  const auto differing = {
+      "call", "wall_s",          "stages_s",    "software",           "given",       "model",
+      "logs", "next_experiment", "closed_loop", "experiments_judged", "gauge_check", "experiment_advice"};
+  const Json expected = plain(run("diagnose --no-closed-loop --json --model " + fitted + " --data " +
+                                  path("one.csv") + " --out " + path("out")),
+                              differing);
+  const Diagnosis found = diagnose(Model::load(fitted), {read_log(path("one.csv"))});
+  EXPECT_EQ(plain(found.json, differing), expected);
+  EXPECT_EQ(found.verdict, "cause_found");
+  EXPECT_EQ(found.extended.yaml(), Model::load(path("out/model.yaml")).yaml());
+  ASSERT_FALSE(found.causes.empty());
+  EXPECT_EQ(found.causes[0].id, "transport_delay");
+}
+
+TEST_F(LibraryAndCommand, DiagnoseAChange) {
+  const Json expected =
+      plain(run("diagnose --json --model " + model_ + " --healthy " + path("one.csv") + " " +
+                path("two.csv") + " --data " + path("three.csv") + " --out " + path("out")),
+            {"wall_s", "made_of"});
+  const Change found =
+      diagnose_change(Model::load(model_), {read_log(path("one.csv")), read_log(path("two.csv"))},
+                      {read_log(path("three.csv"))});
+  EXPECT_EQ(plain(found.json, {"wall_s"}), expected);
+  EXPECT_NE(found.verdict, "unchanged");
+}
+
+TEST_F(LibraryAndCommand, RefusalsAreExceptions) {
+  const Log log = read_log(path("one.csv"));
+  EXPECT_THROW((void)identify({}), InvalidArgument);
+  EXPECT_THROW((void)identify({log}, {.fixed = {"no.such"}}), Refused);
+  EXPECT_THROW((void)identify({log}, {.starts = 0}), InvalidArgument);
+  EXPECT_THROW((void)identify({log}, {.use = {.drive = Drive::measured}}), InvalidArgument);
+  Log angle = log;
+  angle.unit = Unit::deg;
+  EXPECT_THROW((void)validate(Model::load(model_), {angle}), InvalidArgument);
+  IdentifyOptions options;
+  options.progress = [](const std::string&) { throw std::runtime_error("enough"); };
+  EXPECT_THROW((void)identify({log}, options), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace softgrip::commands_test

@@ -1,0 +1,162 @@
+#include "library/include/softgrip/control.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <limits>
+
+#include "library/include/softgrip/board.h"
+#include "tests/library/finger.h"
+
+namespace softgrip::control_test {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+ControllerSettings settings() {
+  ControllerSettings all{.model = bench_twin()};
+  all.limits.pressure_max_kpa = 80;
+  all.pid.kp_kpa_per_mm = 2.7;
+  all.pid.ki_kpa_per_mm_s = 13;
+  all.extra_latency_s = 0.005;
+  return all;
+}
+
+TEST(LibraryControl, FollowsAReferenceOnTheSimulatedBoard) {
+  SimulatedFinger finger{.model = bench_twin()};
+  finger.noise = 0.03;
+  SimulatedBoard board({finger});
+  Controller controller(settings());
+  Reference reference;
+  reference.start(1, 0);
+  ASSERT_TRUE(reference.ramp_to(6, 3));
+  ASSERT_TRUE(reference.sine(9, 3, 0.1, 2));
+  controller.follow(reference);
+  ASSERT_EQ(board.connect(1s), BusStatus::ok);
+  std::array<double, 1> command_kpa{0};
+  std::array<Reading, 1> reading;
+  double worst = 0;
+  for (int i = 0; i < 200 * 22; ++i) {
+    ASSERT_EQ(board.exchange(command_kpa, reading, 1ms), BusStatus::ok);
+    const ControlOutput output = controller.tick(board.now(), reading[0]);
+    ASSERT_GE(output.command_kpa, 0);
+    ASSERT_LE(output.command_kpa, 80);
+    command_kpa[0] = output.command_kpa;
+    if (i > 200 * 10) worst = std::max(worst, std::abs(board.displacement(0) - output.reference));
+    board.advance(5ms);
+  }
+  EXPECT_LT(worst, 0.3);
+  EXPECT_GT(board.displacement(0), 5);
+  controller.vent();
+  for (int i = 0; i < 400; ++i) {
+    ASSERT_EQ(board.exchange(command_kpa, reading, 1ms), BusStatus::ok);
+    command_kpa[0] = controller.tick(board.now(), reading[0]).command_kpa;
+    board.advance(5ms);
+  }
+  EXPECT_EQ(command_kpa[0], 0);
+}
+
+TEST(LibraryControl, HoldsTheLimitsForAnyRequest) {
+  Limits limits;
+  limits.pressure_max_kpa = 50;
+  EXPECT_EQ(limit(limits, 80, 50, 0.01).command_kpa, 50);
+  EXPECT_TRUE(limit(limits, 80, 50, 0.01).saturated);
+  EXPECT_NEAR(limit(limits, 40, 10, 0.01).command_kpa, 13, 1e-12);
+  EXPECT_TRUE(limit(limits, nan, 10, 0.01).invalid);
+  EXPECT_EQ(limit(limits, nan, 10, 0.01).command_kpa, 10);
+}
+
+TEST(LibraryControl, APidContinuesAtTheAlignedCommand) {
+  PidSettings gains;
+  gains.kp_kpa_per_mm = 1;
+  gains.ki_kpa_per_mm_s = 2;
+  Pid pid(gains, 0.01);
+  pid.align(12);
+  EXPECT_NEAR(5 + pid.step(3, 2, 5), 12, 1e-9);
+  pid.sent(12);
+  EXPECT_GT(5 + pid.step(3, 2, 5), 12);
+}
+
+TEST(LibraryControl, AReferenceRefusesWhatHasNoMeaning) {
+  Reference reference(1);
+  EXPECT_EQ(reference.at(5), 1);
+  EXPECT_FALSE(reference.ramp_to(nan, 1));
+  EXPECT_FALSE(reference.ramp_to(2, 0));
+  EXPECT_FALSE(reference.hold_for(-1));
+  EXPECT_FALSE(reference.sine(1, 1, 0, 1));
+  EXPECT_TRUE(reference.ramp_to(2, 1));
+  const Reference copy = reference;
+  EXPECT_EQ(copy.at(1), 2);
+  EXPECT_EQ(copy.end_s(), 1);
+  for (int i = 0; i < 7; ++i) EXPECT_TRUE(reference.hold_for(1)) << i;
+  EXPECT_FALSE(reference.hold_for(1));
+}
+
+TEST(LibraryControl, RefusesAModelWithoutAnInverse) {
+  const Model stiff = Model::load(std::string(SOFTGRIP_SOURCE_DIR) + "/config/models/zhang2025.yaml");
+  Limits limits;
+  limits.pressure_max_kpa = 50;
+  try {
+    const Feedforward feedforward(stiff, limits, 0.005);
+    FAIL();
+  } catch (const Refused& error) {
+    EXPECT_NE(std::string(error.what()).find("beta > alpha"), std::string::npos) << error.what();
+  }
+  ControllerSettings all{.model = stiff};
+  all.limits = limits;
+  EXPECT_THROW(Controller{all}, Refused);
+  all.feedforward = FeedforwardKind::none;
+  EXPECT_NO_THROW(Controller{all});
+}
+
+TEST(LibraryControl, RefusesSettingsByName) {
+  const auto refused = [](auto change) {
+    ControllerSettings all = settings();
+    change(all);
+    try {
+      Controller{all};
+    } catch (const InvalidArgument& error) {
+      return error.argument();
+    }
+    return std::string();
+  };
+  EXPECT_EQ(refused([](auto&) {}), "");
+  EXPECT_EQ(refused([](auto& s) { s.tick_s = 0; }), "tick_s");
+  EXPECT_EQ(refused([](auto& s) { s.limits.pressure_max_kpa = -1; }), "pressure_max_kpa");
+  EXPECT_EQ(refused([](auto& s) { s.limits.rest_kpa = nan; }), "rest_kpa");
+  EXPECT_EQ(refused([](auto& s) { s.pid.kp_kpa_per_mm = nan; }), "kp_kpa_per_mm");
+  EXPECT_EQ(refused([](auto& s) { s.pid.tracking_time_s = 0; }), "tracking_time_s");
+  EXPECT_EQ(refused([](auto& s) { s.extra_latency_s = 2; }), "extra_latency_s");
+  EXPECT_EQ(refused([](auto& s) { s.sensor_noise = 0; }), "sensor_noise");
+}
+
+TEST(LibraryBoard, TheSimulatedBoardHasObjectsAndRefusals) {
+  EXPECT_THROW(SimulatedBoard({}), InvalidArgument);
+  EXPECT_THROW(SimulatedBoard(std::vector<SimulatedFinger>(17, {.model = bench_twin()})), InvalidArgument);
+  SimulatedBoard board({{.model = bench_twin()}});
+  std::array<double, 1> command_kpa{30};
+  std::array<Reading, 1> reading;
+  EXPECT_EQ(board.exchange(command_kpa, reading, 1ms), BusStatus::disconnected);
+  EXPECT_FALSE(board.detail().empty());
+  ASSERT_EQ(board.connect(1ms), BusStatus::ok);
+  EXPECT_EQ(board.exchange(command_kpa, {}, 1ms), BusStatus::write_refused);
+  board.set_object(0, SimulatedObject{2, 0});
+  board.set_object(5, SimulatedObject{2, 0});
+  for (int i = 0; i < 400; ++i) {
+    ASSERT_EQ(board.exchange(command_kpa, reading, 1ms), BusStatus::ok);
+    board.advance(5ms);
+  }
+  EXPECT_NEAR(board.displacement(0), 2, 1e-4);
+  EXPECT_EQ(reading[0].validity, Validity::valid);
+  EXPECT_TRUE(std::isnan(board.displacement(1)));
+  command_kpa[0] = nan;
+  EXPECT_EQ(board.exchange(command_kpa, reading, 1ms), BusStatus::write_refused);
+  EXPECT_EQ(name_of(BusStatus::write_refused), "write_refused");
+}
+
+}  // namespace
+}  // namespace softgrip::control_test

@@ -1,0 +1,57 @@
+#!/usr/bin/env bash
+# Installs the library into a folder of its own, moves that, builds examples/cpp against it with find_package and one example
+# with pkg-config, and runs them: examples.sh BUILD
+set -euo pipefail
+build=$(realpath "$1")
+source=$(realpath "$(dirname "$0")/../..")
+softgrip=$build/tools/softgrip
+work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT
+cd "$work"
+
+fail() { echo "examples.sh: $*" >&2; exit 1; }
+# says TEXT COMMAND...  runs the command and requires the text in what it prints
+says() {
+  local text=$1
+  shift
+  "$@" >output.txt 2>&1 || { cat output.txt >&2; fail "failed: $*"; }
+  grep -qF -- "$text" output.txt || { cat output.txt >&2; fail "'$text' is not in the output of: $*"; }
+}
+
+cmake --install "$build" --component library --prefix "$work/first" >install.log
+mv first installed
+for word in Eigen nlohmann CLI/ yaml ceres tl/expected; do
+  ! grep -rn "include.*$word" installed/include || fail "a public header includes $word"
+done
+[ "$(ls installed/include)" = softgrip ] || fail "headers outside include/softgrip"
+
+cmake -S "$source/examples/cpp" -B examples -DCMAKE_PREFIX_PATH="$work/installed" -DCMAKE_BUILD_TYPE=Release \
+  -DCMAKE_CXX_FLAGS="-Wall -Wextra -Wpedantic -Werror" >configure.log || { cat configure.log; fail "find_package"; }
+cmake --build examples -j 2 >build.log 2>&1 || { cat build.log; fail "build"; }
+
+model=$source/config/models/bench_twin.yaml
+says "19.99," examples/simulate_finger "$model"
+says "largest error" examples/invert_finger "$model"
+grep -Eq 'largest error [0-9.]+e-[0-9]+ mm' output.txt || { cat output.txt; fail "the inverse is not exact"; }
+says "RMSE of the last cycle: 0.0" examples/closed_loop "$model"
+says "20.0 kPa: ok, 4.0 mm" examples/board_driver
+
+"$softgrip" simulate --model "$model" --input tp1 --rate-hz 20 --noise-mm 0.05 --out one.csv >/dev/null
+"$softgrip" simulate --model "$model" --input tp2 --rate-hz 20 --noise-mm 0.05 --seed 2 --out other.csv >/dev/null
+# A file of another program: other names, bar, semicolons.
+awk -F, 'BEGIN {print "Time [s];Pressure setpoint [bar];Displacement [mm]"}
+  NR > 1 {printf "%s;%.8f;%s\n", $1, $2 / 100, $3}' one.csv >external.csv
+says "transport_delay" examples/diagnose_csv external.csv report.html
+grep -q "<html" report.html || fail "no report"
+says "parameters differ" examples/compare_fingers one.csv other.csv
+
+if command -v pkg-config >/dev/null; then
+  folder=$(find installed -name softgrip.pc -printf '%h\n')
+  export PKG_CONFIG_PATH=$work/$folder
+  c++ -std=c++20 "$source/examples/cpp/simulate_finger.cpp" $(pkg-config --cflags --libs softgrip) \
+    -Wl,-rpath,"$work/$(dirname "$folder")" -o by_pkg_config
+  says "19.99," ./by_pkg_config "$model"
+fi
+for example in "$source"/examples/cpp/*.cpp; do
+  [ "$(wc -l <"$example")" -le 80 ] || fail "$example has more than 80 lines"
+done
+echo "examples built and ran"

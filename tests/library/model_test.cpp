@@ -1,0 +1,164 @@
+#include "library/include/softgrip/model.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "library/include/softgrip/error.h"
+#include "library/include/softgrip/export.h"
+#include "library/include/softgrip/version.h"
+#include "tests/library/finger.h"
+
+namespace softgrip::model_test {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// The argument that a call refuses; empty if it refuses none.
+template <class Call>
+std::string refused_argument(Call call) {
+  try {
+    call();
+  } catch (const InvalidArgument& error) {
+    return error.argument();
+  }
+  return "";
+}
+
+TEST(LibraryModel, ReadsBackWhatItWrites) {
+  const Model model = bench_twin();
+  EXPECT_EQ(model.name(), "bench_twin");
+  EXPECT_EQ(model.unit(), Unit::mm);
+  EXPECT_EQ(Model::parse(model.yaml()).hash(), model.hash());
+  const Model other = model.with("transport_delay.delay_s", 0.2);
+  EXPECT_NE(other.hash(), model.hash());
+  EXPECT_EQ(other.parameters().front().name, "transport_delay.delay_s");
+  EXPECT_EQ(other.parameters().front().value, 0.2);
+  EXPECT_EQ(other.parameters().front().unit, "s");
+}
+
+TEST(LibraryModel, NamesTheLineOfAMalformedFile) {
+  try {
+    (void)Model::parse("name: x\nactuator:\n  - bouc_wenn: {}\n", "my.yaml");
+    FAIL();
+  } catch (const FileError& error) {
+    EXPECT_NE(std::string(error.what()).find("my.yaml:3:"), std::string::npos) << error.what();
+  }
+  EXPECT_THROW((void)Model::load("/no/such/file.yaml"), FileError);
+  EXPECT_THROW((void)Model::parse(std::string("\0\xff", 2)), FileError);
+}
+
+TEST(LibraryModel, SimulatesStepByStepAsAtOnce) {
+  const Model model = bench_twin();
+  const Course course = sine(0, 40, 0.2, 1000, 0.01);
+  const std::vector<double> at_once = model.simulate(course.time_s, course.value);
+  Simulator simulator(model, 0.01);
+  simulator.reset(course.value.front());
+  double worst = 0;
+  for (std::size_t i = 0; i < at_once.size(); ++i) {
+    const double duration_s = i == 0 ? 0 : course.time_s[i] - course.time_s[i - 1];
+    worst = std::max(worst, std::abs(simulator.step(duration_s, course.value[i]) - at_once[i]));
+  }
+  // The measured sample time of the array differs from 0.01 s by its rounding.
+  EXPECT_LT(worst, 1e-10);
+  EXPECT_GT(*std::max_element(at_once.begin(), at_once.end()), 5);
+}
+
+TEST(LibraryModel, AHeldCommandActsBetweenItsSampleAndTheNext) {
+  const Model model = bench_twin();
+  const std::vector<double> time_s{0, 1, 2, 3};
+  const std::vector<double> pressure_kpa{0, 30, 30, 30};
+  SimulateOptions held;
+  held.held = true;
+  const std::vector<double> moved = model.simulate(time_s, pressure_kpa, held);
+  EXPECT_EQ(moved[1], moved[0]);
+  Simulator simulator(model);
+  (void)simulator.step(0, 30);
+  EXPECT_DOUBLE_EQ(moved[2], simulator.step(1, 30));
+}
+
+TEST(LibraryModel, TheInverseLeadsToTheReference) {
+  const Model model = bench_twin();
+  const Course wanted = sine(4, 8, 0.1, 4000, 0.005);
+  InverseOptions limits;
+  limits.pressure_max_kpa = 80;
+  const Inverse inverse = model.inverse(wanted.time_s, wanted.value, limits);
+  SimulateOptions held;
+  held.held = true;
+  const std::vector<double> moved = model.simulate(wanted.time_s, inverse.pressure_kpa, held);
+  std::size_t compared = 0;
+  for (std::size_t i = 600; i < moved.size(); ++i, ++compared) {
+    ASSERT_EQ(inverse.out_of_reach[i], 0) << i;
+    ASSERT_NEAR(moved[i], wanted.value[i], 1e-3) << i;
+  }
+  EXPECT_EQ(compared, moved.size() - 600);
+}
+
+TEST(LibraryModel, StatesThatAReferenceIsOutOfReach) {
+  const Course wanted = sine(0, 20, 0.1, 2000, 0.01);
+  InverseOptions limits;
+  limits.pressure_max_kpa = 20;
+  const Inverse inverse = bench_twin().inverse(wanted.time_s, wanted.value, limits);
+  EXPECT_LE(*std::max_element(inverse.pressure_kpa.begin(), inverse.pressure_kpa.end()), 20);
+  EXPECT_GT(std::count(inverse.out_of_reach.begin(), inverse.out_of_reach.end(), 1), 100);
+}
+
+TEST(LibraryModel, RefusesArgumentsByName) {
+  const Model model = bench_twin();
+  const std::vector<double> two{0, 1};
+  const std::vector<double> three{0, 1, 2};
+  const std::vector<double> bad{0, nan};
+  const std::vector<double> huge{0, infinity};
+  const std::vector<double> back{0, -1};
+  const std::vector<double> none;
+  EXPECT_EQ(refused_argument([&] { (void)model.simulate(two, three); }), "pressure_kpa");
+  EXPECT_EQ(refused_argument([&] { (void)model.simulate(two, bad); }), "pressure_kpa");
+  EXPECT_EQ(refused_argument([&] { (void)model.simulate(two, huge); }), "pressure_kpa");
+  EXPECT_EQ(refused_argument([&] { (void)model.simulate(back, two); }), "time_s");
+  EXPECT_EQ(refused_argument([&] { (void)model.simulate(none, none); }), "time_s");
+  EXPECT_EQ(refused_argument([&] { (void)model.simulate(two, two, {.noise = -1}); }), "noise");
+  EXPECT_EQ(refused_argument([&] { (void)model.simulate(two, two, {.supply_kpa = three}); }), "supply_kpa");
+  EXPECT_EQ(refused_argument([&] { (void)model.inverse(std::vector<double>{0, 1, 3}, three); }), "time_s");
+  EXPECT_EQ(refused_argument([&] { (void)model.inverse(two, bad); }), "displacement");
+  EXPECT_EQ(refused_argument([&] { (void)model.inverse(std::vector<double>{0, 2}, two); }), "time_s");
+  EXPECT_EQ(refused_argument([&] { (void)model.inverse(two, two, {.pressure_max_kpa = nan}); }),
+            "pressure_max_kpa");
+  EXPECT_EQ(refused_argument([&] { (void)model.inverse(two, two, {.slew_up_kpa_per_s = 0}); }),
+            "slew_up_kpa_per_s");
+  EXPECT_EQ(refused_argument([&] { (void)model.inverse(two, two, {.start_kpa = 101}); }), "start_kpa");
+  EXPECT_EQ(refused_argument([&] { (void)model.with("no.such", 1); }), "parameter");
+  EXPECT_EQ(refused_argument([&] { (void)model.with("transport_delay.delay_s", nan); }), "value");
+  EXPECT_EQ(refused_argument([&] { Simulator(model, nan); }), "sample_time_s");
+}
+
+TEST(LibraryModel, AMessageHasShapeAndUnit) {
+  const std::vector<double> two{0, 1};
+  const std::vector<double> one{0};
+  try {
+    (void)bench_twin().simulate(two, one);
+    FAIL();
+  } catch (const InvalidArgument& error) {
+    EXPECT_STREQ(error.what(),
+                 "pressure_kpa: 1 values, but there are 2 times. One value per time is required, in kPa");
+  }
+}
+
+TEST(LibraryModel, AStepIgnoresWhatIsNotFinite) {
+  Simulator simulator(bench_twin(), 0.01);
+  const double before = simulator.step(0.01, 10);
+  EXPECT_TRUE(std::isnan(simulator.step(-1, 10)));
+  EXPECT_TRUE(std::isnan(simulator.step(nan, 10)));
+  EXPECT_TRUE(std::isnan(simulator.step(0.01, infinity)));
+  simulator.reset(nan);
+  EXPECT_EQ(simulator.step(0, 10), before);
+}
+
+TEST(LibraryModel, HasAVersion) {
+  EXPECT_EQ(version().find("0."), 0U);
+}
+
+}  // namespace
+}  // namespace softgrip::model_test
