@@ -11,13 +11,15 @@
 #include <utility>
 #include <vector>
 
+#include "base/cancellation.h"
 #include "base/thread_budget.h"
 
 namespace softgrip {
 
 /// Calls work(i) for i in [0, count), in any order, on at most `threads` threads (0: as many as there are
 /// cores), of which it takes those that the thread's budget has idle. The first exception is passed on when
-/// all are done. Results belong into slot i of something prepared.
+/// all are done. If the budget's work shall end early, no further item begins, and WorkCancelled is thrown.
+/// Results belong into slot i of something prepared.
 template <class Work>
 void parallel_for(std::size_t count, unsigned threads, Work&& work) {
   ThreadBudget own(threads);
@@ -28,6 +30,7 @@ void parallel_for(std::size_t count, unsigned threads, Work&& work) {
   const auto run = [&] {
     for (std::size_t i = next++; i < count; i = next++) {
       try {
+        end_if_cancelled();
         work(i);
       } catch (...) {
         const std::lock_guard lock(failure_mutex);

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
+#include <stop_token>
 #include <thread>
+#include <utility>
 
 namespace softgrip {
 
@@ -16,7 +18,8 @@ class ThreadBudget {
   /// From here to its end, for the calling thread and for those that are started below it: `threads` at a
   /// time (0: as many as there are cores), the calling one among them. Changes nothing where the thread has a
   /// budget.
-  explicit ThreadBudget(unsigned threads) noexcept {
+  /// @param stop  requests an early end of the work (base/cancellation.h).
+  explicit ThreadBudget(unsigned threads, std::stop_token stop = {}) noexcept : stop_(std::move(stop)) {
     if (current_ != nullptr) return;
     const std::size_t all = threads != 0 ? threads : std::max(1U, std::thread::hardware_concurrency());
     idle_ = static_cast<std::ptrdiff_t>(all) - 1;
@@ -30,6 +33,9 @@ class ThreadBudget {
 
   /// The calling thread's; nullptr: it has none.
   [[nodiscard]] static ThreadBudget* current() noexcept { return current_; }
+
+  /// True if the work shall end early.
+  [[nodiscard]] bool stop_requested() const noexcept { return stop_.stop_requested(); }
 
   /// At most `wanted` more threads; how many there are.
   [[nodiscard]] std::size_t take(std::size_t wanted) noexcept {
@@ -49,6 +55,7 @@ class ThreadBudget {
 
  private:
   std::atomic<std::ptrdiff_t> idle_{0};
+  std::stop_token stop_;
   inline static thread_local ThreadBudget* current_ = nullptr;
 };
 

@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "library/cancellable.h"
 #include "library/log_parts.h"
 #include "library/model_parts.h"
 #include "library/predictions.h"
@@ -65,9 +66,12 @@ Diagnosis diagnose(const Model& model, const std::vector<Log>& logs, const Diagn
   search.threads = options.threads;
   search.null_campaigns = options.null_campaigns;
   search.progress = options.progress;
-  auto found = sysid::diagnose(checked, model.parts().value, search);
+  const auto found = library::cancellable(options.threads, options.stop, [&] {
+    auto diagnosis = sysid::diagnose(checked, model.parts().value, search);
+    if (diagnosis) sysid::examine(*diagnosis, search);
+    return diagnosis;
+  });
   if (!found) throw Refused(found.error());
-  sysid::examine(*found, search);
   std::vector<Cause> causes;
   for (const sysid::NamedCause& named : found->causes) causes.push_back(public_cause(named));
   const sysid::DiagnosisReport report{*found, checked, model.parts().value, options.seed, {}, {}, {}};
@@ -99,7 +103,8 @@ Change diagnose_change(const Model& model, const std::vector<Log>& healthy, cons
   search.seed = options.seed;
   search.threads = options.threads;
   search.progress = options.progress;
-  const auto found = sysid::diagnose_change(before, now, search);
+  const auto found = library::cancellable(options.threads, options.stop,
+                                          [&] { return sysid::diagnose_change(before, now, search); });
   if (!found) throw Refused(found.error());
   std::vector<Cause> causes;
   for (const sysid::ChangeCause& cause : found->causes) causes.push_back(public_cause(cause));

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "base/numbers.h"
+#include "library/cancellable.h"
 #include "library/include/softgrip/validate.h"
 #include "library/log_parts.h"
 #include "library/model_parts.h"
@@ -97,7 +98,8 @@ Identification identify(const std::vector<Log>& logs, const IdentifyOptions& opt
   question.options.fit_share = options.fit_share;
   question.options.record = library::record_options(options.use);
   question.options.progress = progress_of(options.progress);
-  const auto all = sysid::identify_logs(std::move(question));
+  const auto all = library::cancellable(options.threads, options.stop,
+                                        [&] { return sysid::identify_logs(std::move(question)); });
   if (!all) throw Refused(all.error());
   const sysid::Identification& found = all->result;
   const sysid::IdentifyReport report = all->report({});

@@ -5,6 +5,7 @@
 #include <functional>
 #include <limits>
 
+#include "base/cancellation.h"
 #include "base/parallel.h"
 #include "base/statistics.h"
 #include "model/catalogue.h"
@@ -283,6 +284,7 @@ std::vector<double> extended_prediction(const Driven& driven, const std::vector<
 }
 
 std::vector<double> driven_prediction(const Base& base, const Driven& driven, const Extension& extension) {
+  end_if_cancelled();
   const Record& record = driven.record;
   std::vector<double> y = extended_prediction(driven, extension.chain);
   if (extension.crescent.share != 0) {

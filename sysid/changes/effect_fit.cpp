@@ -7,6 +7,7 @@
 
 #include <Eigen/Cholesky>
 
+#include "base/cancellation.h"
 #include "base/statistics.h"
 #include "sysid/changes/filter_bank.h"
 #include "sysid/fitting/start_estimate.h"
@@ -94,6 +95,7 @@ class Fit {
       Eigen::MatrixXd curvature = jacobian.transpose() * jacobian;
       bool improved = false, settled = false;
       for (int attempt = 0; attempt < 5 && !improved; ++attempt) {
+        end_if_cancelled();
         Eigen::MatrixXd damped = curvature;
         // A gain is not felt while what counts as no change takes it: its own curvature would not damp it.
         damped.diagonal() += damping * curvature.diagonal();

@@ -5,6 +5,7 @@
 
 #include <Eigen/Cholesky>
 
+#include "base/cancellation.h"
 #include "sysid/changes/bins.h"
 #include "sysid/changes/filter_bank.h"
 #include "sysid/logs/resampled_record.h"
@@ -116,6 +117,7 @@ Regulator fit_regulator(const std::vector<Record>& records, double largest_kpa, 
   Eigen::VectorXd left = left_at(at);
   double damping = 1e-2;
   for (int step = 0; step < most_regulator_steps; ++step) {
+    end_if_cancelled();
     Eigen::MatrixXd jacobian(left.size(), numbers);
     for (Eigen::Index k = 0; k < numbers; ++k) {
       Eigen::VectorXd beside = at;

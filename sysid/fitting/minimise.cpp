@@ -10,6 +10,8 @@
 #include <ceres/ceres.h>
 #include <glog/logging.h>
 
+#include "base/cancellation.h"
+
 namespace softgrip::sysid {
 namespace {
 
@@ -33,6 +35,7 @@ class WholeTrajectory final : public ceres::CostFunction {
   }
 
   bool Evaluate(double const* const* parameters, double* r, double** jacobians) const override {
+    if (is_cancelled()) return false;  // an exception must not pass through Ceres
     const std::size_t rows = residuals_.count();
     const std::size_t columns = residuals_.space().size();
     const bool wanted = jacobians != nullptr && jacobians[0] != nullptr;
@@ -60,6 +63,7 @@ struct PlainFunctor {
   std::size_t count;
 
   bool operator()(double const* const* parameters, double* r) const {
+    if (is_cancelled()) return false;
     residuals({parameters[0], numbers}, {r, count});
     return true;
   }
@@ -111,6 +115,7 @@ Minimum minimise(const Residuals& residuals, std::vector<double> z, const Minimi
   solver.max_num_line_search_step_size_iterations = 0;
   ceres::Solver::Summary summary;
   ceres::Solve(solver, &problem, &summary);
+  end_if_cancelled();
   minimum.cost = summary.final_cost;
   minimum.iterations = static_cast<int>(summary.iterations.size());
   minimum.converged = summary.termination_type == ceres::CONVERGENCE;
@@ -144,6 +149,7 @@ PlainMinimum minimise_plain(const PlainResiduals& residuals, std::size_t count, 
   solver.gradient_tolerance = 0;
   ceres::Solver::Summary summary;
   ceres::Solve(solver, &problem, &summary);
+  end_if_cancelled();
   return {std::move(start), 2 * summary.final_cost};
 }
 

@@ -5,6 +5,7 @@
 
 #include <Eigen/Cholesky>
 
+#include "base/cancellation.h"
 #include "sysid/fitting/bounded_solve.h"
 #include "sysid/fitting/separable_free_parts.h"
 
@@ -131,6 +132,7 @@ SearchResult SeparableSearch::run(const FitPoint& start, int most_iterations, do
   const auto low = [&](Index i) { return coordinates_[static_cast<std::size_t>(i)].lower; };
   const auto high = [&](Index i) { return coordinates_[static_cast<std::size_t>(i)].upper; };
   while (result.iterations < most_iterations && !result.converged) {
+    end_if_cancelled();
     ++result.iterations;
     MatrixXd damped = normal.curvature;
     VectorXd downhill = -normal.gradient;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/cancellation.h"
 #include "model/blocks/kelvin_voigt.h"
 #include "model/catalogue.h"
 #include "model/named.h"
@@ -24,6 +25,7 @@ void add_start(const model::Model& model, const Record& record, const StartState
 }
 
 std::vector<double> predict(const model::Model& model, const Record& record, const StartState& start) {
+  end_if_cancelled();
   std::vector<double> prediction(record.size());
   walk<double>(model, {}, record, start.peak_before_kpa, start,
                [&](std::size_t i, double y) { prediction[i] = y; });

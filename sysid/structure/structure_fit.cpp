@@ -8,6 +8,7 @@
 
 #include <Eigen/Cholesky>
 
+#include "base/cancellation.h"
 #include "base/parallel.h"
 #include "model/envelope_map.h"
 #include "sysid/fitting/score.h"
@@ -105,6 +106,7 @@ class Search {
       const Normal normal = normal_at(best);
       bool improved = false;
       for (int attempt = 0; attempt < 8; ++attempt) {
+        end_if_cancelled();
         State trial = at(moved(best.numbers, step(normal, best.numbers, damping)), &best.projection.weights);
         if (trial.value < best.value) {
           converged = best.value - trial.value < 1e-5;

@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "base/cancellation.h"
 #include "sysid/fitting/bounded_solve.h"
 
 namespace softgrip::sysid {
@@ -38,6 +39,7 @@ class Projector {
       x = near != nullptr && near->size() == p_.columns.cols() ? *near : first_guess();
       double last = cost(x);
       for (int i = 0; i < most_steps; ++i) {
+        end_if_cancelled();
         const Eigen::VectorXd next = linearised(inner(x));
         Eigen::VectorXd trial = next;
         double now = cost(trial);

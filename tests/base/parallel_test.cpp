@@ -6,6 +6,11 @@
 
 #include <gtest/gtest.h>
 
+#include "base/cancellation.h"
+
+// GCC 12 takes a new std::stop_source for one that is not initialised.
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
+
 namespace softgrip::parallel_test {
 namespace {
 
@@ -39,6 +44,26 @@ TEST(ParallelFor, ComputesOnNoMoreThreadsThanItMay) {
   Crowd crowd;
   parallel_for(20, 3, [&](std::size_t) { crowd.visit(); });
   EXPECT_LE(crowd.most(), 3);
+}
+
+TEST(ParallelFor, BeginsNoItemAfterAStop) {
+  std::stop_source stop;
+  const ThreadBudget budget(2, stop.get_token());
+  std::atomic<int> begun{0};
+  EXPECT_THROW(parallel_for(1000, 2,
+                            [&](std::size_t) {
+                              if (++begun == 5) stop.request_stop();
+                            }),
+               WorkCancelled);
+  EXPECT_GE(begun, 5);
+  EXPECT_LT(begun, 8);
+  EXPECT_TRUE(is_cancelled());
+  EXPECT_THROW(end_if_cancelled(), WorkCancelled);
+}
+
+TEST(ParallelFor, AThreadWithoutABudgetIsNeverCancelled) {
+  EXPECT_FALSE(is_cancelled());
+  EXPECT_NO_THROW(end_if_cancelled());
 }
 
 TEST(ParallelFor, LoopsWithinALoopShareItsThreads) {

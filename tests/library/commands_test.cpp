@@ -4,11 +4,14 @@
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
+#include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <stop_token>
+#include <thread>
 
 #include "library/include/softgrip/diagnose.h"
 #include "library/include/softgrip/identify.h"
@@ -16,6 +19,9 @@
 #include "library/include/softgrip/softgrip.h"
 #include "library/include/softgrip/validate.h"
 #include "tests/library/finger.h"
+
+// GCC 12 takes a new std::stop_source for one that is not initialised.
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
 
 namespace softgrip::commands_test {
 namespace {
@@ -143,6 +149,52 @@ TEST_F(LibraryAndCommand, DiagnoseAChange) {
                       {read_log(path("three.csv"))});
   EXPECT_EQ(plain(found.json, {"wall_s"}), expected);
   EXPECT_NE(found.verdict, "unchanged");
+}
+
+/// The time from a stop after `after` to the exception [s]; a result instead of it fails the test.
+template <class Work>
+double time_to_stop_s(std::chrono::milliseconds after, Work work) {
+  std::stop_source stop;
+  std::chrono::steady_clock::time_point asked;
+  std::jthread other([&] {
+    std::this_thread::sleep_for(after);
+    asked = std::chrono::steady_clock::now();
+    stop.request_stop();
+  });
+  EXPECT_THROW(work(stop.get_token()), Cancelled);
+  const auto ended = std::chrono::steady_clock::now();
+  other.join();
+  return std::chrono::duration<double>(ended - asked).count();
+}
+
+TEST_F(LibraryAndCommand, AStopEndsLongComputationsWithinASecond) {
+  const Model model = Model::load(path("stiffer.yaml"));
+  const std::vector<Log> logs{read_log(path("one.csv")), read_log(path("two.csv"))};
+  std::vector<double> times_s;
+  for (const auto structure : {Structure::start, Structure::automatic}) {
+    times_s.push_back(time_to_stop_s(std::chrono::milliseconds(100), [&](const std::stop_token& stop) {
+      IdentifyOptions options;
+      options.starts = 10000;
+      options.structure = structure;
+      options.stop = stop;
+      (void)identify(logs, options);
+    }));
+  }
+  for (const int after_ms : {0, 20, 60}) {
+    times_s.push_back(time_to_stop_s(std::chrono::milliseconds(after_ms), [&](const std::stop_token& stop) {
+      DiagnoseOptions options;
+      options.null_campaigns = 1000;
+      options.stop = stop;
+      (void)diagnose(model, logs, options);
+    }));
+    times_s.push_back(time_to_stop_s(std::chrono::milliseconds(after_ms), [&](const std::stop_token& stop) {
+      DiagnoseOptions options;
+      options.stop = stop;
+      (void)diagnose_change(Model::load(model_), logs, {read_log(path("three.csv"))}, options);
+    }));
+  }
+  ASSERT_EQ(times_s.size(), 8U);
+  for (const double time_s : times_s) EXPECT_LT(time_s, 1);
 }
 
 TEST_F(LibraryAndCommand, RefusalsAreExceptions) {

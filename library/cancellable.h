@@ -1,0 +1,25 @@
+#pragma once
+// A computation of the library that a std::stop_token can end.
+
+#include <stop_token>
+#include <utility>
+
+#include "base/cancellation.h"
+#include "base/thread_budget.h"
+#include "library/include/softgrip/error.h"
+
+namespace softgrip::library {
+
+/// Returns work(), which may use `threads` threads (0: one per processor). Throws Cancelled if `stop` ended
+/// it.
+template <class Work>
+auto cancellable(unsigned threads, const std::stop_token& stop, Work&& work) {
+  const ThreadBudget budget(threads, stop);
+  try {
+    return std::forward<Work>(work)();
+  } catch (const WorkCancelled&) {
+    throw Cancelled("the computation ended early because its stop token requested it");
+  }
+}
+
+}  // namespace softgrip::library
