@@ -71,7 +71,9 @@ class SOFTGRIP_API Pid {
   /// Throws InvalidArgument.
   Pid(const PidSettings& settings, double tick_s);
   ~Pid();
+  /// Takes over the state. `other` can then only be assigned to or destroyed.
   Pid(Pid&& other) noexcept;
+  /// Takes over the state. `other` can then only be assigned to or destroyed.
   Pid& operator=(Pid&& other) noexcept;
 
   /// Makes the next step() continue at `command_kpa` [kPa]: a start, or a change of the feedforward.
@@ -98,7 +100,9 @@ class SOFTGRIP_API Reference {
   /// Holds `value` from time 0 s.
   explicit Reference(double value = 0);
   ~Reference();
+  /// Copies all segments.
   Reference(const Reference& other);
+  /// Copies all segments.
   Reference& operator=(const Reference& other);
 
   /// Removes all segments and holds `value` from `time_s` [s].
@@ -150,12 +154,15 @@ class SOFTGRIP_API Feedforward {
   Feedforward(const Model& model, const Limits& limits, double tick_s,
               FeedforwardKind kind = FeedforwardKind::full_model, double extra_latency_s = 0);
   ~Feedforward();
+  /// Takes over the state. `other` can then only be assigned to or destroyed.
   Feedforward(Feedforward&& other) noexcept;
+  /// Takes over the state. `other` can then only be assigned to or destroyed.
   Feedforward& operator=(Feedforward&& other) noexcept;
 
   /// Returns how far ahead of now step() needs the reference [s].
   [[nodiscard]] double preview_s() const noexcept;
-  /// Starts from rest under `command_kpa` [kPa].
+  /// Starts from rest.
+  /// @param command_kpa      command under which the finger is at rest [kPa]
   /// @param reference_ahead  the reference preview_s() from now, in the unit of the model
   void start(double command_kpa, double reference_ahead) noexcept;
   /// Returns the command of this period, which is held until the next one.
@@ -200,7 +207,9 @@ class SOFTGRIP_API Controller {
   /// Throws InvalidArgument, and Refused if the model has no inverse for the feedforward.
   explicit Controller(const ControllerSettings& settings);
   ~Controller();
+  /// Takes over the state. `other` can then only be assigned to or destroyed.
   Controller(Controller&& other) noexcept;
+  /// Takes over the state. `other` can then only be assigned to or destroyed.
   Controller& operator=(Controller&& other) noexcept;
 
   /// Starts from rest under `command_kpa` [kPa], which is clamped to the limits.

@@ -138,7 +138,9 @@ class SOFTGRIP_API Simulator {
   /// @param seed           of the noise of the model's sensor
   explicit Simulator(const Model& model, double sample_time_s = 0, std::uint64_t seed = 1);
   ~Simulator();
+  /// Takes over the state. `other` can then only be assigned to or destroyed.
   Simulator(Simulator&& other) noexcept;
+  /// Takes over the state. `other` can then only be assigned to or destroyed.
   Simulator& operator=(Simulator&& other) noexcept;
 
   /// Returns to rest under a command [kPa].
