@@ -1,19 +1,58 @@
-"""Client of softgripd, the controller of soft pneumatic grippers, and reader of its files.
+"""Client of softgripd, the controller of soft pneumatic grippers, reader of its files, and models on arrays.
 
-`Gripper` blocks, `AsyncGripper` is for asyncio; both speak version 1 of the daemon's socket. `Recording` and the
-`read_*` functions need NumPy, the clients need nothing but Python.
+`Gripper` blocks, `AsyncGripper` is for asyncio; both speak version 1 of the daemon's socket, and need nothing but Python.
+`Recording` and the `read_*` functions need NumPy. `Model`, `Log`, `identify()`, `validate()` and `diagnose()` need NumPy and
+the shared library; they are loaded at their first use.
 """
+
+from __future__ import annotations
+
+import importlib
+from typing import TYPE_CHECKING, Any
 
 from .aio import AsyncGripper
 from .client import Gripper
-from .errors import (ConnectionLost, GripFailed, MalformedFile, NoDaemon, NotAnswered, Owned, ProtocolError, Refused,
-                     SequenceRefused, SoftgripError, StopNotConfirmed)
+from .errors import (ConnectionLost, GripFailed, InvalidArgument, MalformedFile, NoDaemon, NoResult, NotAnswered, Owned,
+                     ProtocolError, Refused, SequenceRefused, SoftgripError, StopNotConfirmed)
 from .messages import (Channel, Checked, Event, Fault, Grip, Hello, Parameter, Problem, Result, Sequence, SequenceEnd,
                        SequenceState, State, Status)
 
+if TYPE_CHECKING:
+    from .analysis import diagnose, identify, validate
+    from .models import Inverse, Log, Model, Parameter as ModelParameter
+    from .results import Cause, Change, Diagnosis, Estimate, Identification, Prediction, Validation
+
+# Where a name is that is loaded at its first use: the module, and the name in it.
+_ON_USE = {name: ("analysis", name) for name in ("diagnose", "identify", "validate")}
+_ON_USE |= {name: ("models", name) for name in ("Inverse", "Log", "Model")}
+_ON_USE |= {"ModelParameter": ("models", "Parameter")}
+_ON_USE |= {name: ("results", name) for name in
+            ("Cause", "Change", "Diagnosis", "Estimate", "Identification", "Prediction", "Validation")}
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _ON_USE:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    module, own_name = _ON_USE[name]
+    try:
+        value = getattr(importlib.import_module(f".{module}", __name__), own_name)
+    except ModuleNotFoundError as error:
+        if error.name in ("numpy", "softgrip._core"):
+            package = "python3-numpy" if error.name == "numpy" else "the package python3-softgrip, built with pybind11"
+            raise ImportError(f"softgrip.{name} needs {package}: {error}", name=error.name) from error
+        raise
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *_ON_USE})
+
+
 __all__ = [
-    "AsyncGripper", "Channel", "Checked", "ConnectionLost", "Event", "Fault", "Grip", "GripFailed", "Gripper", "Hello",
-    "MalformedFile", "NoDaemon", "NotAnswered", "Owned", "Parameter", "Problem", "ProtocolError", "Refused", "Result",
-    "Sequence", "SequenceEnd", "SequenceRefused", "SequenceState", "SoftgripError", "State", "Status",
-    "StopNotConfirmed",
+    "AsyncGripper", "Cause", "Change", "Channel", "Checked", "ConnectionLost", "Diagnosis", "Estimate", "Event", "Fault",
+    "Grip", "GripFailed", "Gripper", "Hello", "Identification", "InvalidArgument", "Inverse", "Log", "MalformedFile",
+    "Model", "ModelParameter", "NoDaemon", "NoResult", "NotAnswered", "Owned", "Parameter", "Prediction", "Problem",
+    "ProtocolError", "Refused", "Result", "Sequence", "SequenceEnd", "SequenceRefused", "SequenceState", "SoftgripError",
+    "State", "Status", "StopNotConfirmed", "Validation", "diagnose", "identify", "validate",
 ]

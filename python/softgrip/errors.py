@@ -72,3 +72,27 @@ class StopNotConfirmed(SoftgripError):
 
 class MalformedFile(SoftgripError, ValueError):
     """A recording, a log or a report that is not as softgrip writes it."""
+
+
+# Arguments of the C++ library that have another name here.
+_ARGUMENTS = {"time_s": "t", "pressure_kpa": "pressure", "pressure_command_kpa": "command", "supply_kpa": "supply",
+              "temperature_c": "temperature", "pressure_min_kpa": "pressure_min", "pressure_max_kpa": "pressure_max",
+              "slew_up_kpa_per_s": "slew_up", "slew_down_kpa_per_s": "slew_down", "start_kpa": "start",
+              "parameter": "name"}
+
+
+class InvalidArgument(SoftgripError, ValueError):
+    """An argument that no call accepts. The text names the argument, the shape or range that is required, and the unit."""
+
+    def __init__(self, argument: str, message: str) -> None:
+        self.argument = _ARGUMENTS.get(argument, argument)
+        if message.startswith(f"{argument}: "):
+            message = self.argument + message[len(argument):]
+        super().__init__(message)
+
+    def __reduce__(self) -> tuple[type[InvalidArgument], tuple[str, str]]:
+        return type(self), (self.argument, str(self))
+
+
+class NoResult(SoftgripError):
+    """The arguments are valid, but there is no answer: a model without an inverse, logs that cannot be fitted."""

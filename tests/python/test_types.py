@@ -10,7 +10,7 @@ import package
 class Types(unittest.TestCase):
     def test_mypy_finds_nothing(self):
         done = subprocess.run(["/usr/bin/mypy", "--strict", "--cache-dir", os.devnull, "python/softgrip",
-                               "python/examples"], cwd=package.SOURCE, capture_output=True, text=True,
+                               "python/examples", "examples/python"], cwd=package.SOURCE, capture_output=True, text=True,
                               env={**os.environ, "MYPYPATH": "python"})
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
 

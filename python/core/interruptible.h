@@ -1,0 +1,100 @@
+#pragma once
+// A long computation that Python can watch and end: progress goes to a callback, and a signal such as Ctrl-C
+// ends it.
+
+#include <pybind11/pybind11.h>
+
+#include <chrono>
+#include <condition_variable>
+#include <exception>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <thread>
+#include <utility>
+
+namespace softgrip::python {
+
+/// How often signals are looked for.
+inline constexpr std::chrono::milliseconds signal_check{50};
+
+/// Calls a Python function from any thread. Its exception is kept, and ends the computation.
+class Callback {
+ public:
+  Callback(pybind11::object function, std::stop_source stop)
+      : function_(std::move(function)), stop_(std::move(stop)) {}
+
+  void operator()(const std::string& stage) {
+    const pybind11::gil_scoped_acquire gil;
+    if (failure_) return;
+    try {
+      function_(stage);
+    } catch (pybind11::error_already_set& error) {
+      failure_ = std::make_unique<pybind11::error_already_set>(error);
+      stop_.request_stop();
+    }
+  }
+  /// Throws the exception of the function, if there was one. The caller holds the GIL.
+  void rethrow() {
+    if (failure_) throw pybind11::error_already_set(*failure_);
+  }
+
+ private:
+  pybind11::object function_;
+  std::stop_source stop_;
+  std::unique_ptr<pybind11::error_already_set> failure_;
+};
+
+/// Returns work(), which runs in a thread of its own without the GIL. This thread looks for signals
+/// meanwhile: if Python's handler raises (Ctrl-C), the work is stopped and the exception passes on.
+/// @param progress  a Python function, or None
+/// @param options   its `progress` and `stop` are set before work() begins
+template <class Options, class Work>
+auto interruptible(const pybind11::object& progress, Options& options, Work work) {
+  using Result = decltype(work());
+  std::stop_source stop;
+  Callback callback(progress, stop);
+  options.stop = stop.get_token();
+  if (!progress.is_none()) options.progress = [&callback](const std::string& stage) { callback(stage); };
+
+  std::optional<Result> result;
+  std::exception_ptr failure;
+  std::mutex mutex;
+  std::condition_variable changed;
+  bool done = false;
+  std::jthread worker([&] {
+    try {
+      result.emplace(work());
+    } catch (...) {
+      failure = std::current_exception();
+    }
+    const std::lock_guard lock(mutex);
+    done = true;
+    changed.notify_one();
+  });
+  bool interrupted = false;
+  {
+    const pybind11::gil_scoped_release others_may_run;
+    std::unique_lock lock(mutex);
+    while (!changed.wait_for(lock, signal_check, [&] { return done; })) {
+      lock.unlock();
+      if (!interrupted) {
+        const pybind11::gil_scoped_acquire gil;
+        interrupted = PyErr_CheckSignals() != 0;
+        if (interrupted) stop.request_stop();
+      }
+      lock.lock();
+    }
+    lock.unlock();
+    worker.join();
+  }
+  options.progress = {};
+  if (interrupted) throw pybind11::error_already_set();
+  callback.rethrow();
+  if (failure) std::rethrow_exception(failure);
+  return *std::move(result);
+}
+
+}  // namespace softgrip::python

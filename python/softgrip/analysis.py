@@ -1,0 +1,122 @@
+"""Identification, validation and diagnosis of logs. The functions and their numbers are those of the commands."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import Any, Optional, Union
+
+from . import _core
+from .errors import InvalidArgument
+from .models import Log, Model, _number, _text, _whole
+from .results import Cause, Change, Diagnosis, Estimate, Identification, Prediction, Validation
+
+Logs = Union[Log, Iterable[Log]]
+Progress = Optional[Callable[[str], object]]
+_MOST_THREADS = 4096
+
+
+def _columns(argument: str, logs: Logs) -> list[dict[str, Any]]:
+    try:
+        all_logs = [logs] if isinstance(logs, Log) else list(logs)
+    except TypeError as error:
+        raise InvalidArgument(argument, f"{argument}: {logs!r} is no Log and no list of Logs") from error
+    for one in all_logs:
+        if not isinstance(one, Log):
+            raise InvalidArgument(argument, f"{argument}: {type(one).__name__} is no Log; use Log(t, command, displacement)")
+    return [one._columns() for one in all_logs]
+
+
+def _model(argument: str, model: Model) -> _core.Model:
+    if not isinstance(model, Model):
+        raise InvalidArgument(argument, f"{argument}: {type(model).__name__} is no Model; use Model.load()")
+    return model._core
+
+
+def _callback(progress: Progress) -> Progress:
+    if progress is not None and not callable(progress):
+        raise InvalidArgument("progress", f"progress: {progress!r} cannot be called")
+    return progress
+
+
+def _names(argument: str, names: Iterable[str]) -> list[str]:
+    if isinstance(names, str):
+        raise InvalidArgument(argument, f"{argument}: a list of names is required, not a text")
+    try:
+        return [_text(argument, one) for one in names]
+    except TypeError as error:
+        raise InvalidArgument(argument, f"{argument}: a list of names is required") from error
+
+
+def _estimates(found: list[dict[str, Any]]) -> tuple[Estimate, ...]:
+    return tuple(Estimate(**one) for one in found)
+
+
+def _predictions(found: list[dict[str, Any]]) -> tuple[Prediction, ...]:
+    return tuple(Prediction(**one) for one in found)
+
+
+def _causes(found: list[dict[str, Any]]) -> tuple[Cause, ...]:
+    for one in found:
+        one.update(parameters=_estimates(one["parameters"]), alternatives=tuple(one["alternatives"]))
+    return tuple(Cause(**one) for one in found)
+
+
+def identify(logs: Logs, structure: str = "start", *, start: Optional[Model] = None, branches: int = 2,
+             fixed: Iterable[str] = (), free: Iterable[str] = (), starts: int = 20, seed: int = 1, robust: bool = False,
+             fit_share: float = 1, threads: int = 0, drive: str = "command", begin: str = "auto", held: bool = False,
+             validation: Logs = (), progress: Progress = None) -> Identification:
+    """Fits a model to logs, as `softgrip identify` does.
+
+    structure: "start" (that of `start`, or the base structure with `branches` creep branches), or selected on held-out blocks:
+    "auto", "bouc_wen" or "play". fixed: parameters that keep the value of `start`. free: if given, only these are estimated.
+    starts: searches from as many points. fit_share: first share of each log that is fitted, 0.05 to 1. threads: 0 for one per
+    processor. drive: "command" or "measured". begin: "auto", "rest" or "unknown". validation: logs to predict. progress: is
+    called with a text about the present stage; its exception ends the call, as Ctrl-C does.
+
+    >>> model = Model.load("config/models/bench_twin.yaml")
+    >>> import numpy as np
+    >>> t = np.arange(0, 20, 0.05)
+    >>> command = 20 - 20 * np.cos(0.2 * np.pi * t)
+    >>> log = Log(t, command, model.simulate(t, command, noise=0.05))
+    >>> identify(log, start=model, starts=1).rmse < 0.06
+    True
+    """
+    found = _core.identify(
+        _columns("logs", logs), _text("structure", structure), None if start is None else _model("start", start),
+        _whole("branches", branches), _names("fixed", fixed), _names("free", free), _whole("starts", starts),
+        _whole("seed", seed), bool(robust), _number("fit_share", fit_share), _whole("threads", threads, _MOST_THREADS),
+        _text("drive", drive), _text("begin", begin), bool(held), _columns("validation", validation),
+        _callback(progress))
+    found.update({key: _estimates(found[key]) for key in ("parameters", "combinations")})
+    found.update({key: _predictions(found[key]) for key in ("fit", "held_out", "validation")})
+    found.update(model=Model(found["model"]), warnings=tuple(found["warnings"]))
+    return Identification(**found)
+
+
+def validate(model: Model, logs: Logs, *, drive: str = "command", begin: str = "auto", held: bool = False) -> Validation:
+    """Predicts logs with a model, as `softgrip validate` does."""
+    found = _core.validate(_model("model", model), _columns("logs", logs), _text("drive", drive), _text("begin", begin),
+                           bool(held))
+    found.update(predictions=_predictions(found["predictions"]), warnings=tuple(found["warnings"]))
+    return Validation(**found)
+
+
+def diagnose(model: Model, logs: Logs, healthy: Optional[Logs] = None, *, seed: int = 1, threads: int = 0,
+             null_campaigns: int = 0, drive: str = "command", begin: str = "auto", held: bool = False,
+             progress: Progress = None) -> Union[Diagnosis, Change]:
+    """Finds the error of a model on logs and its cause, as `softgrip diagnose` does. With logs of the healthy finger, finds what
+    has changed since, as `softgrip diagnose --healthy` does; the result is a `Change` then."""
+    core = _model("model", model)
+    columns = _columns("logs", logs)
+    seed = _whole("seed", seed)
+    threads = _whole("threads", threads, _MOST_THREADS)
+    if healthy is None:
+        found = _core.diagnose(core, columns, seed, threads, _whole("null_campaigns", null_campaigns),
+                               _text("drive", drive), _text("begin", begin), bool(held), _callback(progress))
+        found.update(causes=_causes(found["causes"]), warnings=tuple(found["warnings"]),
+                     refitted=Model(found["refitted"]), extended=Model(found["extended"]))
+        return Diagnosis(**found)
+    found = _core.diagnose_change(core, _columns("healthy", healthy), columns, seed, threads, bool(held),
+                                  _callback(progress))
+    found.update(causes=_causes(found["causes"]), warnings=tuple(found["warnings"]))
+    return Change(**found)

@@ -1,0 +1,332 @@
+"""Models and logs as objects on NumPy arrays. The numbers are those of the `softgrip` commands, bit for bit."""
+
+from __future__ import annotations
+
+import dataclasses
+import html
+import os
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Optional, Union
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _core
+from .errors import InvalidArgument
+
+Path = Union[str, "os.PathLike[str]"]
+Vector = npt.NDArray[np.float64]
+_EMPTY: Vector = np.empty(0)
+
+
+def _vector(argument: str, values: npt.ArrayLike, unit: str) -> Vector:
+    """A vector of numbers; anything else is an InvalidArgument."""
+    wanted = f"a vector of numbers in {unit} is required"
+    try:
+        array = np.asarray(values)
+    except Exception as error:
+        raise InvalidArgument(argument, f"{argument}: {wanted}: {error}") from error
+    if array.dtype.kind not in "fiu" and array.size:
+        raise InvalidArgument(argument, f"{argument}: type {array.dtype}; {wanted}")
+    if array.ndim != 1:
+        raise InvalidArgument(argument, f"{argument}: shape {array.shape}; one dimension, {wanted}")
+    return np.ascontiguousarray(array, dtype=np.float64)
+
+
+def _number(argument: str, value: float, unit: str = "") -> float:
+    if isinstance(value, (bool, str, bytes)):
+        raise InvalidArgument(argument, f"{argument}: {value!r} is not a number{' in ' + unit if unit else ''}")
+    try:
+        return float(value)
+    except (TypeError, ValueError, OverflowError) as error:
+        raise InvalidArgument(argument,
+                              f"{argument}: {value!r} is not a number{' in ' + unit if unit else ''}") from error
+
+
+def _whole(argument: str, value: int, largest: int = 2**63 - 1) -> int:
+    try:
+        number = value.__index__()
+    except (AttributeError, TypeError) as error:
+        raise InvalidArgument(argument, f"{argument}: {value!r} is not a whole number") from error
+    if not 0 <= number <= largest:
+        raise InvalidArgument(argument, f"{argument}: {number} is not between 0 and {largest}")
+    return number
+
+
+def _text(argument: str, value: object) -> str:
+    if not isinstance(value, str):
+        raise InvalidArgument(argument, f"{argument}: {value!r} is not a text")
+    return value
+
+
+def _path(argument: str, value: Path) -> str:
+    try:
+        path = os.fspath(value)
+    except TypeError as error:
+        raise InvalidArgument(argument, f"{argument}: {value!r} is not a path") from error
+    if not isinstance(path, str) or "\0" in path:
+        raise InvalidArgument(argument, f"{argument}: {value!r} is not a path")
+    return path
+
+
+@dataclasses.dataclass(frozen=True)
+class Parameter:
+    """A parameter of a model: its name, value and unit, its smallest and largest permitted value, and what it is."""
+
+    name: str
+    value: float
+    unit: str
+    lower: float
+    upper: float
+    about: str
+
+
+@dataclasses.dataclass(frozen=True)
+class Inverse:
+    """The command of `Model.inverse()`."""
+
+    pressure_kpa: Vector  # one per time, held until the next one
+    out_of_reach: npt.NDArray[np.bool_]  # True where the limits keep the command from the reference
+
+
+class Model:
+    """A model of a finger: a chain of blocks from the commanded pressure to the reading. It does not change.
+
+    >>> model = Model.load("config/models/bench_twin.yaml")
+    >>> model.name, model.unit
+    ('bench_twin', 'mm')
+    >>> t = np.arange(0, 5, 0.01)
+    >>> float(model.simulate(t, np.full(t.size, 20.0))[-1].round(2))
+    10.28
+    """
+
+    def __init__(self, core: _core.Model) -> None:
+        """For the package: use `load()` or `parse()`."""
+        if not isinstance(core, _core.Model):
+            raise InvalidArgument("core", "core: use Model.load() or Model.parse()")
+        self._core = core
+
+    @classmethod
+    def load(cls, path: Path) -> Model:
+        """Reads a model file. `MalformedFile` names each problem with line and column."""
+        return cls(_core.Model.load(_path("path", path)))
+
+    @classmethod
+    def parse(cls, yaml: str, name: str = "model") -> Model:
+        """Reads the text of a model file; `name` is for messages."""
+        return cls(_core.Model.parse(_text("yaml", yaml), _text("name", name)))
+
+    def save(self, path: Path) -> None:
+        """Writes a model file, which `load()` reads back without loss."""
+        self._core.save(_path("path", path))
+
+    @property
+    def yaml(self) -> str:
+        """The text of a model file."""
+        return self._core.yaml()
+
+    @property
+    def name(self) -> str:
+        """The name of the model."""
+        return self._core.name()
+
+    @property
+    def source(self) -> str:
+        """Where the numbers come from."""
+        return self._core.source()
+
+    @property
+    def unit(self) -> str:
+        """The unit of the output: "mm", or "deg" of a bending angle."""
+        return self._core.unit()
+
+    @property
+    def parameters(self) -> Mapping[str, Parameter]:
+        """All parameters by name, in the order of the chain."""
+        return {one[0]: Parameter(*one) for one in self._core.parameters()}
+
+    def with_parameter(self, name: str, value: float) -> Model:
+        """A model with another value of a parameter.
+
+        >>> model = Model.load("config/models/bench_twin.yaml").with_parameter("transport_delay.delay_s", 0.2)
+        >>> model.parameters["transport_delay.delay_s"].value
+        0.2
+        """
+        return Model(self._core.with_parameter(_text("name", name), _number("value", value)))
+
+    def simulate(self, t: npt.ArrayLike, pressure: npt.ArrayLike, *, held: bool = False, noise: float = 0,
+                 seed: int = 1, supply: Optional[npt.ArrayLike] = None,
+                 temperature: Optional[npt.ArrayLike] = None) -> Vector:
+        """The reading at each time, in the unit of the model, of a finger that is at rest under the first pressure.
+
+        t: times [s], increasing. pressure: commanded pressure [kPa], one per time. held: the pressure of a sample is held
+        until the next one, instead of going there in a straight line. noise: standard deviation of white noise, in the unit
+        of the model. seed: of all noise. supply [kPa] and temperature [degrees Celsius]: one per time.
+
+        >>> model = Model.load("config/models/bench_twin.yaml")
+        >>> model.simulate([0, 1], [0, 10, 20])
+        Traceback (most recent call last):
+        softgrip.errors.InvalidArgument: pressure: 3 values, but there are 2 times. One value per time is required, in kPa
+        """
+        return self._core.simulate(
+            _vector("t", t, "s"), _vector("pressure", pressure, "kPa"), bool(held), _number("noise", noise, self.unit),
+            _whole("seed", seed), _EMPTY if supply is None else _vector("supply", supply, "kPa"),
+            _EMPTY if temperature is None else _vector("temperature", temperature, "degrees Celsius"))
+
+    def inverse(self, t: npt.ArrayLike, displacement: npt.ArrayLike, *, pressure_min: float = 0,
+                pressure_max: float = 100, slew_up: float = 300, slew_down: float = 300, start: float = 0) -> Inverse:
+        """The command under which the finger follows a displacement.
+
+        t: times [s] with equal steps. displacement: in the unit of the model, one per time. pressure_min, pressure_max:
+        range of the command [kPa]. slew_up, slew_down: its fastest rise and fall [kPa/s]. start: the command under which the
+        finger is at rest at the first time [kPa]. `NoResult` if the model has no inverse.
+
+        >>> model = Model.load("config/models/bench_twin.yaml")
+        >>> t = np.arange(0, 10, 0.005)
+        >>> wanted = 6 - 2 * np.cos(0.2 * np.pi * t)
+        >>> command = model.inverse(t, wanted)
+        >>> moved = model.simulate(t, command.pressure_kpa, held=True)
+        >>> bool(np.abs(moved - wanted)[600:].max() < 1e-3)
+        True
+        """
+        pressure_kpa, out_of_reach = self._core.inverse(
+            _vector("t", t, "s"), _vector("displacement", displacement, self.unit),
+            _number("pressure_min", pressure_min, "kPa"), _number("pressure_max", pressure_max, "kPa"),
+            _number("slew_up", slew_up, "kPa/s"), _number("slew_down", slew_down, "kPa/s"), _number("start", start, "kPa"))
+        return Inverse(pressure_kpa, out_of_reach.astype(bool))
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Model) and self.yaml == other.yaml
+
+    def __hash__(self) -> int:
+        return hash(self.yaml)
+
+    def __reduce__(self) -> tuple[Any, tuple[str, str]]:
+        return Model.parse, (self.yaml, self.name)
+
+    def __repr__(self) -> str:
+        return f"<softgrip.Model {self.name}, {len(self.parameters)} parameters, output in {self.unit}>"
+
+    def _repr_html_(self) -> str:
+        rows = "".join(f"<tr><td>{html.escape(one.name)}</td><td>{one.value:.6g}</td><td>{html.escape(one.unit)}</td>"
+                       f"<td>{html.escape(one.about)}</td></tr>" for one in self.parameters.values())
+        return f"<p><b>{html.escape(self.name)}</b>: {html.escape(self.source)}</p><table>{rows}</table>"
+
+
+def _column(argument: str, values: Optional[npt.ArrayLike], unit: str) -> Vector:
+    return _EMPTY if values is None else _vector(argument, values, unit)
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class Log:
+    """A measured run of one finger: `Log(t, command, displacement)`, `Log.from_pandas()` or `Log.read()`.
+
+    t: times [s], increasing. command: commanded pressure [kPa]. displacement: readings in `unit`, NaN where there is none.
+    pressure: measured pressure [kPa]. temperature [degrees Celsius]. supply: supply pressure [kPa]. One value per time.
+
+    >>> log = Log([0, 0.1, 0.2], [0, 10, 20], [0, 1, 2.5], name="short")
+    >>> len(log), log.unit
+    (3, 'mm')
+    """
+
+    t: Vector
+    command: Vector
+    displacement: Vector
+    pressure: Vector = dataclasses.field(default_factory=lambda: _EMPTY)
+    temperature: Vector = dataclasses.field(default_factory=lambda: _EMPTY)
+    supply: Vector = dataclasses.field(default_factory=lambda: _EMPTY)
+    unit: str = "mm"
+    name: str = "log"
+    path: str = ""
+    sha256: str = ""
+    notes: Sequence[str] = ()
+
+    if TYPE_CHECKING:
+        def __init__(self, t: npt.ArrayLike, command: npt.ArrayLike, displacement: npt.ArrayLike,
+                     pressure: Optional[npt.ArrayLike] = None, temperature: Optional[npt.ArrayLike] = None,
+                     supply: Optional[npt.ArrayLike] = None, unit: str = "mm", name: str = "log", path: str = "",
+                     sha256: str = "", notes: Sequence[str] = ()) -> None: ...
+
+    def __post_init__(self) -> None:
+        if _text("unit", self.unit) not in ("mm", "deg"):
+            raise InvalidArgument("unit", f"unit: {self.unit!r} is not 'mm' or 'deg'")
+        for argument, unit in (("t", "s"), ("command", "kPa"), ("displacement", self.unit), ("pressure", "kPa"),
+                               ("temperature", "degrees Celsius"), ("supply", "kPa")):
+            values = _column(argument, getattr(self, argument), unit)
+            required = argument in ("t", "command", "displacement")
+            if (required or values.size) and values.size != np.size(self.t):
+                raise InvalidArgument(argument, f"{argument}: shape {values.shape}, but t has shape "
+                                                f"({np.size(self.t)},). One value per time is required, in {unit}")
+            if values.flags.writeable and values.size:
+                values = values.copy()
+                values.flags.writeable = False
+            object.__setattr__(self, argument, values)
+        for argument in ("name", "path", "sha256"):
+            _text(argument, getattr(self, argument))
+
+    @classmethod
+    def read(cls, path: Path, *, channel: str = "", columns: Optional[Mapping[str, str]] = None,
+             units: Optional[Mapping[str, str]] = None, rate_hz: Optional[float] = None, sheet: str = "",
+             import_file: bool = True) -> Log:
+        """Reads a log (CSV, or the folder of a recording), or converts a file of another program (text, XLSX, TDMS, MCAP,
+        MATLAB, HDF5) as `softgrip import` proposes; the notes state how.
+
+        columns: by role (time, command, pressure, displacement, temperature, supply), a name or a number from 1. units: by
+        role, if the file does not state them. rate_hz: samples per second of a file without times.
+        """
+        named = {_text("columns", key): _text("columns", value) for key, value in dict(columns or {}).items()}
+        united = {_text("units", key): _text("units", value) for key, value in dict(units or {}).items()}
+        found = _core.read_log(_path("path", path), _text("channel", channel), bool(import_file), named, united,
+                               None if rate_hz is None else _number("rate_hz", rate_hz, "Hz"), _text("sheet", sheet))
+        return cls(found["time_s"], found["pressure_command_kpa"], found["displacement"], found["pressure_kpa"],
+                   found["temperature_c"], found["supply_kpa"], found["unit"], found["name"], found["path"],
+                   found["sha256"], tuple(found["notes"]))
+
+    @classmethod
+    def from_pandas(cls, frame: Any, *, name: str = "log") -> Log:
+        """A log of a pandas DataFrame with the columns of a log file: time_s, pressure_command_kpa, displacement_mm (or
+        angle_deg), and optionally pressure_kpa, temperature_c and supply_kpa."""
+        unit = "deg" if "angle_deg" in frame.columns else "mm"
+        needed = ("time_s", "pressure_command_kpa", "angle_deg" if unit == "deg" else "displacement_mm")
+        for column in needed:
+            if column not in frame.columns:
+                raise InvalidArgument("frame", f"frame: no column {column!r}; it has {', '.join(map(str, frame.columns))}")
+        columns = [frame[column].to_numpy() for column in needed]
+        columns += [frame[column].to_numpy() if column in frame.columns else None
+                    for column in ("pressure_kpa", "temperature_c", "supply_kpa")]
+        t, command, displacement, pressure, temperature, supply = columns
+        return cls(t, command, displacement, pressure, temperature, supply, unit, name)
+
+    def write(self, path: Path) -> None:
+        """Writes a log file, which `read()` reads back without loss."""
+        _core.write_log(_path("path", path), self._columns())
+
+    def check(self) -> None:
+        """Raises `InvalidArgument` if `identify()` would refuse the log."""
+        _core.check(self._columns())
+
+    def _columns(self) -> dict[str, Any]:
+        return {"name": self.name, "unit": self.unit, "time_s": self.t, "pressure_command_kpa": self.command,
+                "displacement": self.displacement, "pressure_kpa": self.pressure, "temperature_c": self.temperature,
+                "supply_kpa": self.supply, "path": self.path, "sha256": self.sha256}
+
+    def __len__(self) -> int:
+        return int(self.t.size)
+
+    def __repr__(self) -> str:
+        length_s = self.t[-1] - self.t[0] if len(self) else 0
+        return f"<softgrip.Log {self.name}, {len(self)} samples, {length_s:.6g} s, readings in {self.unit}>"
+
+    def plot(self, axes: Any = None) -> Any:
+        """Draws command and displacement over time on two matplotlib axes, and returns them."""
+        from .results import two_axes
+        upper, lower = two_axes(axes)
+        upper.plot(self.t, self.command, label="command")
+        if self.pressure.size:
+            upper.plot(self.t, self.pressure, label="measured")
+            upper.legend()
+        upper.set_ylabel("pressure [kPa]")
+        lower.plot(self.t, self.displacement, ".", markersize=2)
+        lower.set_ylabel(f"{'angle' if self.unit == 'deg' else 'displacement'} [{self.unit}]")
+        lower.set_xlabel("time [s]")
+        return upper, lower

@@ -1,0 +1,231 @@
+"""Results of identification, validation and diagnosis: typed values, a table for notebooks, and plots."""
+
+from __future__ import annotations
+
+import dataclasses
+import functools
+import html
+import importlib
+import json
+from collections.abc import Mapping, Sequence
+from typing import Any, Optional
+
+import numpy as np
+import numpy.typing as npt
+
+from .errors import InvalidArgument
+from .models import Model
+
+Vector = npt.NDArray[np.float64]
+
+
+def _pyplot() -> Any:
+    return importlib.import_module("matplotlib.pyplot")  # takes a second: only who plots needs it
+
+
+def two_axes(axes: Any) -> tuple[Any, Any]:
+    """Two matplotlib axes above each other: the given ones, or new ones."""
+    if axes is None:
+        _, axes = _pyplot().subplots(2, 1, sharex=True, layout="constrained")
+    try:
+        upper, lower = axes
+    except (TypeError, ValueError) as error:
+        raise InvalidArgument("axes", "axes: two matplotlib axes are required") from error
+    return upper, lower
+
+
+def _table(title: str, warnings: Sequence[str], header: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    cells = "".join("<tr>" + "".join(f"<td>{html.escape(cell)}</td>" for cell in row) + "</tr>" for row in rows)
+    head = "".join(f"<th>{html.escape(one)}</th>" for one in header)
+    told = "".join(f"<p>warning: {html.escape(one)}</p>" for one in warnings)
+    return f"<p><b>{html.escape(title)}</b></p>{told}<table><tr>{head}</tr>{cells}</table>"
+
+
+def _interval(interval: Optional[tuple[float, float]]) -> str:
+    return "" if interval is None else f"{interval[0]:.4g} to {interval[1]:.4g}"
+
+
+@dataclasses.dataclass(frozen=True)
+class Estimate:
+    """A number with its 95 % interval, which is None if it is fixed, at a bound, or without effect (see `note`)."""
+
+    name: str
+    unit: str
+    value: float
+    ci95: Optional[tuple[float, float]]
+    free: bool
+    note: str
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class Prediction:
+    """The prediction of one log. `error` is reading minus prediction, in `unit`, NaN without a reading."""
+
+    log: str
+    unit: str
+    time_s: Vector
+    prediction: Vector
+    error: Vector
+    rmse: float
+    rmse_percent_of_span: float
+    largest_error: float
+    diverges: bool
+
+    def plot(self, axes: Any = None) -> Any:
+        """Draws readings and prediction, and the error below, on two matplotlib axes, and returns them."""
+        upper, lower = two_axes(axes)
+        upper.plot(self.time_s, self.prediction + self.error, ".", markersize=2, label="reading")
+        upper.plot(self.time_s, self.prediction, label="prediction")
+        upper.set_ylabel(f"[{self.unit}]")
+        upper.set_title(f"{self.log}: RMSE {self.rmse:.3g} {self.unit}")
+        upper.legend()
+        lower.plot(self.time_s, self.error)
+        lower.set_ylabel(f"error [{self.unit}]")
+        lower.set_xlabel("time [s]")
+        return upper, lower
+
+
+class _Reported:
+    """A result with the JSON and the page of its command."""
+
+    json: str
+    html: str
+
+    @functools.cached_property
+    def report(self) -> Mapping[str, Any]:
+        """The complete result: the JSON file of the command as Python values."""
+        return json.loads(self.json)  # type: ignore[no-any-return]
+
+    def save_html(self, path: Any) -> None:
+        """Writes the report page of the command."""
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(self.html)
+
+
+def _plotted(predictions: Sequence[Prediction], log: Optional[str], axes: Any) -> Any:
+    for one in predictions:
+        if log is None or one.log == log:
+            return one.plot(axes)
+    raise InvalidArgument("log", f"log: {log!r} is not one of {', '.join(one.log for one in predictions)}")
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class Identification(_Reported):
+    """The result of `identify()`."""
+
+    model: Model
+    rmse: float  # of all fitted samples, in the unit of the model
+    converged: bool
+    verdict: str
+    warnings: Sequence[str]
+    parameters: Sequence[Estimate]
+    combinations: Sequence[Estimate]
+    fit: Sequence[Prediction]
+    held_out: Sequence[Prediction]
+    validation: Sequence[Prediction]
+    json: str = dataclasses.field(repr=False)
+    html: str = dataclasses.field(repr=False)
+
+    def _repr_html_(self) -> str:
+        rows = [(one.name, f"{one.value:.5g}", one.unit, _interval(one.ci95), one.note) for one in self.parameters]
+        return _table(self.verdict, self.warnings, ("parameter", "value", "unit", "95 % interval", ""), rows)
+
+    def plot(self, log: Optional[str] = None, axes: Any = None) -> Any:
+        """Draws the fit of one log, by default the first."""
+        return _plotted(self.fit, log, axes)
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class Validation(_Reported):
+    """The result of `validate()`."""
+
+    verdict: str
+    warnings: Sequence[str]
+    predictions: Sequence[Prediction]
+    json: str = dataclasses.field(repr=False)
+    html: str = dataclasses.field(repr=False)
+
+    def _repr_html_(self) -> str:
+        rows = [(one.log, f"{one.rmse:.4g} {one.unit}", f"{one.rmse_percent_of_span:.3g} %",
+                 f"{one.largest_error:.3g} {one.unit}") for one in self.predictions]
+        return _table(self.verdict, self.warnings, ("log", "RMSE", "of span", "largest error"), rows)
+
+    def plot(self, log: Optional[str] = None, axes: Any = None) -> Any:
+        """Draws the prediction of one log, by default the first."""
+        return _plotted(self.predictions, log, axes)
+
+
+@dataclasses.dataclass(frozen=True)
+class Cause:
+    """A named cause. In a `Change`, the error reduction is NaN, and the parameter is the size of the change."""
+
+    id: str
+    title: str
+    error_reduction_percent: float
+    error_reduction_ci95: tuple[float, float]
+    parameters: Sequence[Estimate]
+    alternatives: Sequence[str]  # ids of causes that the logs cannot separate from it
+
+
+def _cause_rows(causes: Sequence[Cause]) -> list[tuple[str, ...]]:
+    return [(cause.id, one.name, f"{one.value:.4g} {one.unit}", _interval(one.ci95), ", ".join(cause.alternatives))
+            for cause in causes for one in cause.parameters]
+
+
+def _plotted_causes(causes: Sequence[Cause], axes: Any) -> Any:
+    if axes is None:
+        _, axes = _pyplot().subplots(layout="constrained")
+    with_reduction = [one for one in causes if np.isfinite(one.error_reduction_percent)]
+    for row, one in enumerate(with_reduction):
+        lower, upper = one.error_reduction_ci95
+        axes.plot([lower, upper], [row, row], color="tab:blue")
+        axes.plot([one.error_reduction_percent], [row], "o", color="tab:blue")
+    axes.set_yticks(range(len(with_reduction)), [one.id for one in with_reduction])
+    axes.set_xlabel("reduction of the held-out error [%], 95 % interval")
+    return axes
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class Diagnosis(_Reported):
+    """The result of `diagnose()`. Errors are root mean squares in `unit`; those of the refitted and of the extended model are
+    of held-out blocks."""
+
+    verdict: str
+    sentence: str
+    warnings: Sequence[str]
+    causes: Sequence[Cause]
+    unit: str
+    noise: float
+    rmse_given: float
+    rmse_refitted: float
+    rmse_extended: float
+    unexplained_percent: float
+    refitted: Model
+    extended: Model
+    json: str = dataclasses.field(repr=False)
+    html: str = dataclasses.field(repr=False)
+
+    def _repr_html_(self) -> str:
+        return _table(self.sentence, self.warnings, ("cause", "parameter", "value", "95 % interval", "alternatives"),
+                      _cause_rows(self.causes))
+
+    def plot(self, axes: Any = None) -> Any:
+        """Draws the error reduction of each cause with its interval on matplotlib axes, and returns them."""
+        return _plotted_causes(self.causes, axes)
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class Change(_Reported):
+    """The result of `diagnose()` with healthy logs."""
+
+    verdict: str
+    sentence: str
+    warnings: Sequence[str]
+    causes: Sequence[Cause]
+    unit: str
+    json: str = dataclasses.field(repr=False)
+    html: str = dataclasses.field(repr=False)
+
+    def _repr_html_(self) -> str:
+        return _table(self.sentence, self.warnings, ("cause", "size", "value", "95 % interval", "alternatives"),
+                      _cause_rows(self.causes))
