@@ -126,6 +126,57 @@ class Angles(bench.BenchTest):
                              "deg/later.csv", "--explain", "--out", "deg/changed", timeout_s=170).stdout
         self.assert_in_degrees("deg/changed", "diagnosis.json", said)
 
+    def gauge(self, name, header, factor=1):
+        self.write(name, header + "\n" + "".join(f"{factor * x!r},{factor * (x + 0.03 * x * (1 - x / 20))!r}\n"
+                                                 for x in [*range(0, 28, 3), *range(27, -1, -3)]))
+
+    def test_a_gauge_is_in_the_unit_of_the_logs(self):
+        found = {}
+        for unit, column in (("mm", "displacement_mm"), ("deg", "angle_deg")):
+            self.gauge(f"{unit}/gauge.csv", f"gauge_{unit},{column}")
+            model = self.in_degrees(TWIN) if unit == "deg" else TWIN
+            said = self.softgrip("diagnose", "--model", model, "--data", f"{unit}/tp1.csv", f"{unit}/sp2.csv", "--gauge",
+                                 f"{unit}/gauge.csv", "--explain", "--out", f"{unit}/diagnosed", timeout_s=170).stdout
+            found[unit] = json.loads(self.read(f"{unit}/diagnosed/diagnosis.json"))
+        self.assertEqual(without_times(found["deg"]), without_times(found["mm"]))
+        self.assertRegex(found["deg"]["gauge"]["sentence"], r"\d deg\b")
+        self.assertTrue("position by the gauge in degrees" in self.read("deg/diagnosed/report.html"))
+        self.assert_in_degrees("deg/diagnosed", "diagnosis.json", said)
+
+    def test_a_baseline_and_the_health_of_its_finger_are_in_degrees(self):
+        bases, healths = {}, {}
+        for unit in ("mm", "deg"):
+            column = {"mm": "displacement_mm", "deg": "angle_deg"}[unit]
+            runs = []
+            for run in range(12):
+                self.softgrip("simulate", "--model", TWIN, "--input", "tp1", "--rate-hz", "20", "--noise-mm", "0.05", "--seed",
+                              20 + run, "--out", "run.csv")
+                runs.append(f"{unit}/run{run:02}.csv")
+                self.rename("run.csv", runs[-1], column, 0.7 if run > 8 else 1)
+            model = self.in_degrees(TWIN) if unit == "deg" else TWIN
+            said = self.softgrip("baseline", "--data", f"{unit}/tp1.csv", "--check", runs[0], "--model", model, "--out",
+                                 f"{unit}/base", timeout_s=170).stdout
+            bases[unit] = json.loads(self.read(f"{unit}/base/baseline.json"))
+            again = self.softgrip("baseline", "--check", f"{unit}/base", timeout_s=170).stdout
+            health = self.softgrip("health", *runs, "--baseline", f"{unit}/base", "--points", "run", "--out", f"{unit}/health",
+                                   expect=6).stdout
+            healths[unit] = json.loads(self.read(f"{unit}/health/health.json"))
+        self.assertEqual(bases["deg"]["output_unit"], "deg")
+        self.assertEqual(bases["mm"]["output_unit"], "mm")
+        self.assertEqual(without_times(bases["deg"])["check"], without_times(bases["mm"])["check"])
+        self.assertEqual(without_times(healths["deg"])["fingers"], without_times(healths["mm"])["fingers"])
+        finger = healths["deg"]["fingers"][0]
+        self.assertEqual(finger["output_unit"], "deg")
+        self.assertIn("gain_mm", [alarm["number"] for alarm in finger["alarms"]])
+        for text in (said, again, health, words_of(self.read("deg/health/health.html"))):
+            self.assertEqual(re.findall(r".{0,40}(?: mm\b|\[mm).{0,20}", text), [])
+            self.assertRegex(text, r"\d deg\b")
+
+    def test_a_recording_in_another_unit_than_its_baseline_is_left_out(self):
+        self.softgrip("baseline", "--data", "deg/tp1.csv", "--model", self.in_degrees(TWIN), "--out", "base")
+        done = self.softgrip("health", "mm/tp1.csv", "--baseline", "base", expect=3)
+        self.assertIn("its readings are in mm, and the baseline of `` is in deg", done.stderr)
+
     def test_logs_of_two_units_are_refused_with_file_and_line(self):
         done = self.softgrip("identify", "--data", "mm/tp1.csv", "deg/sp2.csv", "--out", "out", expect=3)
         self.assertRegex(done.stderr, r"deg/sp2\.csv:1:\d+: .*'angle_deg' gives readings in deg, and mm/tp1\.csv is in mm")
@@ -142,9 +193,14 @@ class Angles(bench.BenchTest):
                             ["identify", "--start", model, "--out", "out"]):
                 done = self.softgrip(*command, "--data", log, expect=3)
                 self.assertRegex(done.stderr, rf"{log}:1:\d+: .*{why}")
-        for command in (["baseline", "--data", "deg/tp1.csv", "--out", "out"], ["tune", "--model", angular, "--out", "out.yaml"],
-                        ["diagnose", "--model", angular, "--data", "deg/tp1.csv", "--gauge", "gauge.csv", "--out", "out"]):
-            self.assertRegex(self.softgrip(*command, expect=3).stderr, r"\bmm\b")
+        self.assertRegex(self.softgrip("tune", "--model", angular, "--out", "out.yaml", expect=3).stderr, r"\bmm\b")
+        self.gauge("gauge.csv", "gauge_mm,displacement_mm")
+        for command in (["baseline", "--data", "deg/tp1.csv"], ["diagnose", "--model", angular, "--data", "deg/tp1.csv"]):
+            done = self.softgrip(*command, "--gauge", "gauge.csv", "--out", "out", expect=3)
+            self.assertRegex(done.stderr, r"gauge\.csv: the gauge is in mm, and (the model bench_twin|deg/tp1\.csv) is in deg")
+        done = self.softgrip("baseline", "--data", "deg/tp1.csv", "--model", TWIN, "--out", "out", expect=3)
+        self.assertIn(f"{TWIN} is in mm, and the logs are in deg", done.stderr)
+        self.assertFalse((self.folder / "out").exists())
 
     def test_no_rig_takes_a_model_in_degrees(self):
         why = "the model answers in deg, and a rig measures and controls in mm"

@@ -60,7 +60,14 @@ struct Runs {
 
 tl::expected<model::Model, ExitCode> model_of(const BaselineOptions& options,
                                               const std::vector<sysid::Log>& logs) {
-  if (!options.model.empty()) return read_rig_model(options.model);
+  if (!options.model.empty()) {
+    auto model = read_model(options.model);
+    if (!model || model->output_unit == logs.front().output_unit) return model;
+    return tl::unexpected(fail(ExitCode::input_refused, options.model + " is in " +
+                                                            std::string(name_of(model->output_unit)) +
+                                                            ", and the logs are in " +
+                                                            std::string(name_of(logs.front().output_unit))));
+  }
   ProgressLine line;
   sysid::IdentifyOptions fit;
   fit.record = options.logs.record_options();
@@ -98,6 +105,7 @@ tl::expected<Json, ExitCode> checked(const BaselineOptions& options, const Runs&
   holds = diagnosis->verdict == sysid::ChangeVerdict::unchanged;
   return Json{{"verdict", name_of(diagnosis->verdict)},
               {"sentence", sysid::change_sentence(*diagnosis)},
+              {"output_unit", name_of(runs.healthy.front().output_unit)},
               {"healthy_heldout_rms_mm", diagnosis->readings.back().healthy_mm},
               {"second_run_rms_mm", diagnosis->readings.back().later_mm},
               {"model_rmse_mm",
@@ -110,21 +118,22 @@ std::string text_of_check(const Json& check) {
   if (check.is_null())
     return "No second run was given (--check): whether the finger repeats itself is not known.";
   const auto number = [](const Json& value) { return significant(value.get<double>(), 3); };
+  const std::string unit = " " + check["output_unit"].get<std::string>();
   const Json& model = check["model_rmse_mm"];
   return "The second run: " + check["sentence"].get<std::string>() +
-         " What the base leaves: " + number(check["healthy_heldout_rms_mm"]) +
-         " mm of the first run, held out, " + number(check["second_run_rms_mm"]) +
-         " mm of the second; model.yaml from the command: " + number(model["first_run"]) + " and " +
-         number(model["second_run"]) + " mm.";
+         " What the base leaves: " + number(check["healthy_heldout_rms_mm"]) + unit +
+         " of the first run, held out, " + number(check["second_run_rms_mm"]) + unit +
+         " of the second; model.yaml from the command: " + number(model["first_run"]) + " and " +
+         number(model["second_run"]) + unit + ".";
 }
 
 tl::expected<Runs, ExitCode> recorded(const BaselineOptions& options) {
   Runs runs;
-  auto healthy = read_logs(options.data, options.logs, unit_of_rigs());
+  auto healthy = read_logs(options.data, options.logs);
   if (!healthy) return tl::unexpected(healthy.error());
   runs.healthy = std::move(*healthy);
   if (!options.check.empty()) {
-    auto again = read_logs(options.check, options.logs, unit_of_rigs());
+    auto again = read_logs(options.check, options.logs, unit_of(runs.healthy));
     if (!again) return tl::unexpected(again.error());
     runs.again = std::move(*again);
   }
@@ -178,7 +187,7 @@ tl::expected<Runs, ExitCode> played(const BaselineOptions& options) {
 
 ExitCode keep(const BaselineOptions& options, Runs runs, const std::vector<std::string>& call) {
   if (!options.gauge.empty()) {
-    if (const auto gauge = read_gauge(options.gauge); !gauge) return gauge.error();
+    if (const auto gauge = read_gauge(options.gauge, unit_of(runs.healthy)); !gauge) return gauge.error();
     auto file = baseline_file(options.gauge);
     if (!file) return fail(ExitCode::io, file.error());
     runs.contents.gauge = std::move(*file);
@@ -193,6 +202,7 @@ ExitCode keep(const BaselineOptions& options, Runs runs, const std::vector<std::
              {"made", utc_text(wall_time_now())},
              {"software_version", std::string(software_version())},
              {"call", call},
+             {"output_unit", name_of(runs.healthy.front().output_unit)},
              {"rig", runs.rig},
              {"check", *check}};
   about["noise_mm"] = Json::array();
@@ -220,7 +230,7 @@ ExitCode checked_again(BaselineOptions options) {
   options.check = baseline->second;
   const auto runs = recorded(options);
   if (!runs) return runs.error();
-  const auto model = read_rig_model(baseline->model);
+  const auto model = read_model(baseline->model);
   if (!model) return model.error();
   bool holds = false;
   const auto check = checked(options, *runs, *model, holds);

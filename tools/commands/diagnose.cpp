@@ -205,11 +205,7 @@ ExitCode run(DiagnoseOptions options, const std::vector<std::string>& call) {
   if (!options.healthy.empty()) return changed(options, *model, *logs, call);
   options.diagnosis.record = options.logs.record_options();
   if (!options.gauge.empty()) {
-    if (model->output_unit != model::OutputUnit::mm)
-      return fail(ExitCode::input_refused,
-                  "--gauge: a gauge file is in mm, and the readings of these logs are in " +
-                      std::string(name_of(model->output_unit)));
-    auto gauge = read_gauge(options.gauge);
+    auto gauge = read_gauge(options.gauge, unit_of(*model));
     if (!gauge) return gauge.error();
     options.diagnosis.gauge = std::move(*gauge);
   }

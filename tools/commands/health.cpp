@@ -76,9 +76,9 @@ class Baselines {
     if (!bytes) return std::nullopt;
     const auto baseline = read_baseline(folder);
     if (!baseline) return refuse_with(fail(ExitCode::input_refused, baseline.error()));
-    const auto model = read_rig_model(baseline->model);
+    const auto model = read_model(baseline->model);
     if (!model) return refuse_with(model.error());
-    const auto logs = read_logs(baseline->logs, {}, unit_of_rigs());
+    const auto logs = read_logs(baseline->logs, {}, unit_of(*model));
     if (!logs) return refuse_with(logs.error());
     const double full_kpa = sysid::largest_command_kpa(*logs);
     if (!(full_kpa > 0))

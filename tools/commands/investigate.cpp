@@ -229,7 +229,7 @@ ExitCode run(const InvestigateOptions& options) {
   investigation.play = ground->play;
   investigation.take_gauge = ground->take_gauge;
   if (!options.gauge.empty()) {
-    auto gauge = read_gauge(options.gauge);
+    auto gauge = read_gauge(options.gauge, unit_of_rigs());
     if (!gauge) return gauge.error();
     investigation.diagnosis.gauge = std::move(*gauge);
   }

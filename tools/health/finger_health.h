@@ -78,6 +78,7 @@ enum class FingerState : std::uint8_t {
 struct FingerHealth {
   std::string finger;
   FingerState state = FingerState::learning;
+  model::OutputUnit output_unit = model::OutputUnit::mm;  ///< of every number that is called mm
   std::vector<HealthPoint> points;
   std::vector<HealthAlarm> alarms;  ///< of all epochs, in the order in which they were noticed
   /// Changed differences from the peer fingers since the last maintenance record that are not attributed to a

@@ -68,6 +68,7 @@ FingerTrack track_of(const std::string& finger, const std::vector<ScoredRun>& ru
                      const std::vector<Note>& notes, const ScoreBase& base, bool by_day) {
   FingerTrack track;
   track.health.finger = finger;
+  track.health.output_unit = base.model.output_unit;
   track.base = base;
   std::vector<Note> own;
   for (const Note& note : notes) {

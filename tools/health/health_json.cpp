@@ -49,6 +49,7 @@ Json json_of(const FingerHealth& health, const Suspicion& suspicion) {
   for (const HealthPoint& point : health.points) grips += point.grips;
   Json finger{{"finger", health.finger},
               {"state", name_of(health.state)},
+              {"output_unit", model::name_of(health.output_unit)},
               {"sentence", health_sentence(health, suspicion)},
               {"grips", grips},
               {"points", health.points.size()},
@@ -78,6 +79,7 @@ Json json_of(const FingerHealth& health, const Suspicion& suspicion) {
 Json json_of(const SharedChange& shared) {
   return {{"number", sysid::info_of(shared.number).id},
           {"change", shared.change},
+          {"output_unit", model::name_of(shared.output_unit)},
           {"since", shared.since},
           {"noticed", shared.noticed},
           {"fingers", shared.fingers},

@@ -93,7 +93,7 @@ std::optional<sysid::Chart> chart_of(const FingerHealth& health, std::size_t num
   sysid::Chart chart;
   chart.title = std::string(info.title);
   chart.x = time_axis(health);
-  chart.y.label = "[" + std::string(info.unit) + "]";
+  chart.y.label = "[" + model::in_unit(info.unit, health.output_unit) + "]";
   chart.height = 190;
   add_reference(health, number, chart);
   for (std::size_t r = 0; r < std::min(recipes.size(), most_recipes); ++r) {
@@ -130,7 +130,7 @@ std::optional<sysid::Chart> chart_beside(const FingerHealth& health, std::size_t
   sysid::Chart chart;
   chart.title = std::string(info.title) + ", beside the other fingers";
   chart.x = time_axis(health);
-  chart.y.label = "[" + std::string(info.unit) + "]";
+  chart.y.label = "[" + model::in_unit(info.unit, health.output_unit) + "]";
   chart.height = 130;
   chart.series.push_back(std::move(series));
   add_marks(health, number, chart);
@@ -141,7 +141,7 @@ std::string slope_text(const FingerHealth& health, std::size_t number) {
   const sysid::HealthNumberInfo& info = sysid::health_number_infos[number];
   const TemperatureSlope& slope = *health.references[number]->slope;
   std::string text = std::string(info.title) + ": " + significant(slope.per_c, 3) + " " +
-                     std::string(info.unit) + " per °C, standard error " +
+                     model::in_unit(info.unit, health.output_unit) + " per °C, standard error " +
                      significant(slope.standard_error, 2) + ", seen from " + fixed(slope.lowest_c, 1) +
                      " to " + fixed(slope.highest_c, 1) + " °C";
   const auto& now_c = health.points.back().temperature_c;
@@ -201,7 +201,7 @@ void add_alarms(sysid::Page& page, const FingerHealth& health) {
   for (const HealthAlarm& alarm : health.alarms) {
     const sysid::HealthNumberInfo& info = sysid::info_of(alarm.number);
     table.rows.push_back({std::string(info.title),
-                          significant(alarm.change, 3) + " " + std::string(info.unit),
+                          significant(alarm.change, 3) + " " + model::in_unit(info.unit, health.output_unit),
                           health.points[alarm.since].label, health.points[alarm.noticed].label,
                           std::to_string(alarm.grips), alarm.epoch == health.epoch() ? "yes" : "no"});
   }
@@ -218,10 +218,10 @@ void add_numbers(sysid::Page& page, const FingerHealth& health) {
     const auto last = health.latest(static_cast<HealthNumber>(i));
     const auto& reference = health.references[i];
     const bool usual = reference && reference->points > 1;
-    table.rows.push_back({std::string(info.title), last ? significant(*last, 4) : "-",
-                          reference ? significant(reference->mean, 4) : "-",
-                          usual ? significant(reference->spread, 2) : "-",
-                          reference ? std::to_string(reference->points) : "0", std::string(info.unit)});
+    table.rows.push_back(
+        {std::string(info.title), last ? significant(*last, 4) : "-",
+         reference ? significant(reference->mean, 4) : "-", usual ? significant(reference->spread, 2) : "-",
+         reference ? std::to_string(reference->points) : "0", model::in_unit(info.unit, health.output_unit)});
   }
   page.table(table);
 }
@@ -242,7 +242,8 @@ sysid::Page health_page(const FingerHealth& health, const Suspicion& suspicion, 
   page.provenance({{"software", sysid::software_and_version()},
                    {"baseline", source.baseline},
                    {"full pressure", significant(source.base.full_kpa, 4) + " kPa, where the base comes to " +
-                                         significant(source.base.full_mm, 4) + " mm"},
+                                         significant(source.base.full_mm, 4) + " " +
+                                         std::string(name_of(health.output_unit))},
                    {"false alarms", "one in " + significant(source.options.false_alarm_points, 4) +
                                         " points of a healthy finger, over all its numbers"},
                    {"limits", "CUSUM " + significant(limits.cusum, 3) + " with allowance " +

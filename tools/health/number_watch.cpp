@@ -33,7 +33,9 @@ double mean_of(const std::vector<double>& values) {
   return sum / static_cast<double>(values.size());
 }
 
+/// Numbers in mm and in deg are not comparable.
 bool have_a_run_in_common(const FingerTrack& one, const FingerTrack& other) {
+  if (one.health.output_unit != other.health.output_unit) return false;
   return std::any_of(one.by_run.begin(), one.by_run.end(),
                      [&](const auto& run) { return other.by_run.contains(run.first); });
 }
@@ -332,7 +334,8 @@ void NumberWatch::share(std::size_t finger) {
                        noticed.label,
                        {},
                        noticed.temperature_c.has_value(),
-                       true});
+                       true,
+                       health.output_unit});
   }
   shared_.back().fingers.push_back(health.finger);
   watched.shared = shared_.size() - 1;

@@ -46,23 +46,22 @@ FingerHealth judge_finger(const std::string& finger, std::vector<ScoredRun> runs
   return std::move(judge_rig(std::move(alone), notes, options).fingers.front());
 }
 
-std::string change_text(sysid::HealthNumber number, double change) {
+std::string change_text(sysid::HealthNumber number, double change, model::OutputUnit unit) {
   const sysid::HealthNumberInfo& info = sysid::info_of(number);
   return std::string(info.title) + (change > 0 ? " +" : " -") + significant(std::abs(change), 2) + " " +
-         std::string(info.unit);
+         model::in_unit(info.unit, unit);
 }
 
 std::string unclear_sentence(const FingerHealth& health, const HealthAlarm& unclear) {
   return "Since " + health.points[unclear.since].label + " " + health.finger + " differs from " +
          with_commas(unclear.beside) +
-         " otherwise than before: " + change_text(unclear.number, unclear.change) +
+         " otherwise than before: " + change_text(unclear.number, unclear.change, health.output_unit) +
          ". Whose change it is, their own numbers do not tell yet.";
 }
 
 std::string shared_sentence(const SharedChange& shared) {
-  return "Since " + shared.since +
-         " the fingers of the rig have changed alike: " + change_text(shared.number, shared.change) +
-         ". Look first at what they share: " +
+  return "Since " + shared.since + " the fingers of the rig have changed alike: " +
+         change_text(shared.number, shared.change, shared.output_unit) + ". Look first at what they share: " +
          (shared.temperature_recorded ? "" : "the temperature (it is not recorded), ") +
          "the supply, the line before the fingers, the parts.";
 }

@@ -40,6 +40,7 @@ struct SharedChange {
   bool temperature_recorded = false;  ///< and allowed for, as far as it is known what it does
   /// False: a later repair or a later shared change ended it, or the alarm of a finger explains it.
   bool stands = true;
+  model::OutputUnit output_unit = model::OutputUnit::mm;  ///< of `change`
 };
 
 struct RigHealth {
@@ -58,7 +59,7 @@ struct RigHealth {
                                         const HealthOptions& options);
 
 /// "gain (at full pressure) -0.62 mm"
-[[nodiscard]] std::string change_text(sysid::HealthNumber number, double change);
+[[nodiscard]] std::string change_text(sysid::HealthNumber number, double change, model::OutputUnit unit);
 
 /// "Since 2026-03-20 the gain of left is another beside right's: ...", of FingerHealth::unclear.
 [[nodiscard]] std::string unclear_sentence(const FingerHealth& health, const HealthAlarm& unclear);

@@ -56,13 +56,16 @@ void score_one(const std::string& path, const BaseOf& base_of, RunScores& scores
   }
   for (std::size_t c = 0; c < recording->channels.size(); ++c) {
     const std::string& finger = recording->channels[c].channel;
-    if (recording->channels[c].output_unit != model::OutputUnit::mm) {
-      scores.skipped.push_back({name, "its readings are angles, and the health of rigs is in mm"});
-      continue;
-    }
     const FingerBase* const base = base_of(finger);
     if (base == nullptr) {
       scores.skipped.push_back({name, "there is no baseline of `" + finger + "`"});
+      continue;
+    }
+    const model::OutputUnit unit = recording->channels[c].output_unit;
+    if (unit != base->base.model.output_unit) {
+      scores.skipped.push_back({name, "its readings are in " + std::string(name_of(unit)) +
+                                          ", and the baseline of `" + finger + "` is in " +
+                                          std::string(name_of(base->base.model.output_unit))});
       continue;
     }
     scores.runs.push_back({recording->name, finger, recording->started_at, recording->recipe, base->id,

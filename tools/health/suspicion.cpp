@@ -118,7 +118,7 @@ std::string health_sentence(const FingerHealth& health, const Suspicion& suspici
   std::string sentence =
       health.finger + " has changed since " + health.points[alarms.front().since].label + ": ";
   for (std::size_t i = 0; i < alarms.size(); ++i)
-    sentence += (i > 0 ? ", " : "") + change_text(alarms[i].number, alarms[i].change);
+    sentence += (i > 0 ? ", " : "") + change_text(alarms[i].number, alarms[i].change, health.output_unit);
   if (suspicion.suspects.empty()) return sentence + ". No cause in the library shows such signs.";
   sentence += ". Suspected: " + suspicion.suspects.front().words;
   for (std::size_t i = 1; i < suspicion.suspects.size(); ++i)

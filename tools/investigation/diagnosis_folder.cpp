@@ -87,7 +87,8 @@ tl::expected<std::string, std::string> write_diagnosis_folder(const std::string&
   // One that stands there may have been filled in by now: never overwritten, never removed.
   if (const auto& check = consequences.experiment.gauge_check;
       check && !std::filesystem::exists(out / sysid::gauge_positions_file, ignored)) {
-    files.emplace_back(sysid::gauge_positions_file, sysid::positions_csv(check->positions_mm));
+    files.emplace_back(sysid::gauge_positions_file,
+                       sysid::positions_csv(check->positions_mm, check->output_unit));
   }
   for (const auto& [name, text] : files) {
     if (const auto written = write_file((out / name).string(), text); !written)

@@ -83,8 +83,12 @@ ExitCode refuse_logs(const document::Problems& problems) {
   return refused;
 }
 
-tl::expected<sysid::GaugeFile, ExitCode> read_gauge(const std::string& path) {
-  return read_input(path, sysid::read_gauge);
+tl::expected<sysid::GaugeFile, ExitCode> read_gauge(const std::string& path, const RequiredUnit& required) {
+  auto gauge = read_input(path, sysid::read_gauge);
+  if (!gauge || gauge->output_unit == required.unit) return gauge;
+  return tl::unexpected(fail(ExitCode::input_refused,
+                             path + ": the gauge is in " + std::string(name_of(gauge->output_unit)) +
+                                 ", and " + required.of + " is in " + std::string(name_of(required.unit))));
 }
 
 }  // namespace softgrip::tools

@@ -56,7 +56,9 @@ struct RequiredUnit {
 /// ExitCode::input_refused.
 ExitCode refuse_logs(const document::Problems& problems);
 
-/// Reads a gauge file; where it is refused, prints all problems and returns the exit code.
-[[nodiscard]] tl::expected<sysid::GaugeFile, ExitCode> read_gauge(const std::string& path);
+/// Reads a gauge file; where it is refused, prints all problems and returns the exit code. One in another
+/// unit is refused.
+[[nodiscard]] tl::expected<sysid::GaugeFile, ExitCode> read_gauge(const std::string& path,
+                                                                  const RequiredUnit& required);
 
 }  // namespace softgrip::tools

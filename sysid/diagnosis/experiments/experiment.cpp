@@ -260,7 +260,9 @@ class Designer {
     if (check.positions_mm.empty()) return;
     check.separates = std::move(separates);
     check.minutes = minutes_for(check.positions_mm.size());
-    result_.advice.push_back(gauge_advice(check.positions_mm, check.separates));
+    check.output_unit = d_.records.front().output_unit;
+    result_.advice.push_back(
+        model::in_unit(gauge_advice(check.positions_mm, check.separates), check.output_unit));
     result_.gauge_check = std::move(check);
   }
 
@@ -273,9 +275,7 @@ class Designer {
       const Contest& contest = contests_[pairs_[p].contest];
       const AdviceFacts facts{options_.pressure_recorded, data_.scales.has_temperature,
                               furthest >= separation_needed_sigma, d_.gauge.has_value()};
-      // A gauge measures positions, and no angles.
-      const bool in_mm = d_.records.front().output_unit == model::OutputUnit::mm;
-      if (in_mm && asks_for_gauge(pairs_[p], facts) && !facts.gauge_made) {
+      if (asks_for_gauge(pairs_[p], facts) && !facts.gauge_made) {
         for (const std::string& id : {contest.ids[pairs_[p].one], contest.ids[pairs_[p].other]}) {
           if (std::find(by_gauge.begin(), by_gauge.end(), id) == by_gauge.end()) by_gauge.push_back(id);
         }

@@ -47,8 +47,9 @@ struct JudgedWaveform {
 /// A check of the sensor at known positions. It separates alternatives with different sensor shapes if no
 /// waveform can.
 struct ProposedGaugeCheck {
-  std::vector<double> positions_mm;    ///< in the order in which they are read
-  std::vector<std::string> separates;  ///< ids of causes
+  std::vector<double> positions_mm;                       ///< in the order in which they are read
+  model::OutputUnit output_unit = model::OutputUnit::mm;  ///< of the positions
+  std::vector<std::string> separates;                     ///< ids of causes
   double minutes = 0;
 };
 

@@ -8,6 +8,7 @@
 #include "base/numbers.h"
 #include "base/sha256.h"
 #include "sysid/logs/csv_text.h"
+#include "sysid/logs/log_columns.h"
 #include "sysid/logs/log_reporter.h"
 
 namespace softgrip::sysid {
@@ -19,14 +20,36 @@ constexpr double same_mm = 1e-6;
 constexpr double beyond = 1.3;
 constexpr std::size_t fewest_planned = 9;
 
-constexpr std::array<std::string_view, 3> columns{"gauge_mm", "displacement_mm", "samples"};
+/// The columns of the positions, beside those of the readings of a log (log_columns.h).
+constexpr std::array<std::string_view, reading_columns.size()> position_columns{"gauge_mm", "gauge_deg",
+                                                                                "gauge_rad"};
+constexpr std::size_t column_count = 3;
 constexpr std::size_t needed_columns = 2;
+
+/// Of a file with these columns: which of reading_columns it has.
+std::size_t reading_column_in(const std::vector<std::string>& names) {
+  for (std::size_t i = 0; i < reading_columns.size(); ++i) {
+    const bool here = std::any_of(names.begin(), names.end(), [&](const std::string& name) {
+      return name == position_columns[i] || name == reading_columns[i].name;
+    });
+    if (here) return i;
+  }
+  return 0;
+}
+
+std::string header_of(model::OutputUnit output_unit) {
+  const auto found = std::find_if(
+      reading_columns.begin(), reading_columns.end(),
+      [&](const ReadingColumn& column) { return column.unit == output_unit && column.factor == 1; });
+  const auto i = static_cast<std::size_t>(found - reading_columns.begin());
+  return std::string(position_columns[i]) + "," + std::string(found->name);
+}
 
 class GaugeReader {
  public:
   GaugeReader(const std::string& file, document::Problems& problems) : report_(file, problems) {}
 
-  std::optional<std::vector<GaugeReading>> read(std::string_view text) {
+  std::optional<GaugeFile> read(std::string_view text) {
     const std::vector<std::string_view> lines = lines_of(text);
     if (lines.empty()) {
       report_.add("file", {1, 1}, {}, "the file is empty", "the first line is gauge_mm,displacement_mm");
@@ -37,7 +60,7 @@ class GaugeReader {
     if (!report_.any()) check_positions();
     report_.finish();
     if (report_.any()) return std::nullopt;
-    return std::move(readings_);
+    return GaugeFile{{}, {}, std::move(readings_), reading_->unit};
   }
 
  private:
@@ -48,19 +71,24 @@ class GaugeReader {
     std::vector<std::string> names;
     for (std::size_t i = 0; i < cells.size(); ++i) {
       names.push_back(cell_text(unquoted(cells[i].text)));
-      const auto known = std::find(columns.begin(), columns.end(), names.back());
-      if (known == columns.end()) continue;
-      int& index = index_[static_cast<std::size_t>(known - columns.begin())];
-      if (index >= 0)
-        report_.add("header", {1, cells[i].column}, line, "a second column '" + names.back() + "'");
+    }
+    const std::size_t of = reading_column_in(names);
+    reading_ = &reading_columns[of];
+    columns_ = {position_columns[of], reading_->name, "samples"};
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      const auto known = std::find(columns_.begin(), columns_.end(), names[i]);
+      if (known == columns_.end()) continue;
+      int& index = index_[static_cast<std::size_t>(known - columns_.begin())];
+      if (index >= 0) report_.add("header", {1, cells[i].column}, line, "a second column '" + names[i] + "'");
       index = static_cast<int>(i);
     }
     for (std::size_t i = 0; i < needed_columns; ++i) {
       if (index_[i] >= 0) continue;
-      const std::string near = document::nearest(columns[i], names);
-      report_.add("header", {1, 1}, line, "no column '" + std::string(columns[i]) + "'",
-                  near.empty() ? "the first line is gauge_mm,displacement_mm"
-                               : "is '" + document::shown(near) + "' meant?");
+      const std::string near = document::nearest(columns_[i], names);
+      report_.add("header", {1, 1}, line, "no column '" + std::string(columns_[i]) + "'",
+                  near.empty()
+                      ? "the first line is " + std::string(columns_[0]) + "," + std::string(columns_[1])
+                      : "is '" + document::shown(near) + "' meant?");
     }
     report_.finish();
     return !report_.any();
@@ -75,10 +103,10 @@ class GaugeReader {
                   cells.size() == 2 * count_ ? "numbers with a decimal comma?" : "");
       return;
     }
-    std::array<double, columns.size()> values{0, 0, 1};
-    for (std::size_t i = 0; i < columns.size(); ++i) {
+    std::array<double, column_count> values{0, 0, 1};
+    for (std::size_t i = 0; i < column_count; ++i) {
       if (index_[i] < 0) continue;
-      const auto value = number_in(cells[static_cast<std::size_t>(index_[i])], columns[i], number, line);
+      const auto value = number_in(cells[static_cast<std::size_t>(index_[i])], columns_[i], number, line);
       if (!value) return;
       values[i] = *value;
     }
@@ -87,7 +115,7 @@ class GaugeReader {
                   "a reading is the mean of at least 1 sample");
       return;
     }
-    readings_.push_back({values[0], values[1], values[2]});
+    readings_.push_back({reading_->factor * values[0], reading_->factor * values[1], values[2]});
   }
 
   std::optional<double> number_in(const Cell& cell, std::string_view column, int number,
@@ -117,7 +145,9 @@ class GaugeReader {
   }
 
   LogReporter report_;
-  std::array<int, columns.size()> index_{-1, -1, -1};
+  const ReadingColumn* reading_ = reading_columns.data();
+  std::array<std::string_view, column_count> columns_;
+  std::array<int, column_count> index_{-1, -1, -1};
   std::size_t count_ = 0;
   std::vector<GaugeReading> readings_;
 };
@@ -137,9 +167,11 @@ double round_step(double span) {
 
 std::optional<GaugeFile> parse_gauge(const std::string& file, std::string_view text,
                                      document::Problems& problems) {
-  auto readings = GaugeReader(file, problems).read(text);
-  if (!readings) return std::nullopt;
-  return GaugeFile{file, sha256(text), std::move(*readings)};
+  auto gauge = GaugeReader(file, problems).read(text);
+  if (!gauge) return std::nullopt;
+  gauge->path = file;
+  gauge->sha256 = sha256(text);
+  return gauge;
 }
 
 std::optional<GaugeFile> read_gauge(const std::string& path, document::Problems& problems) {
@@ -149,8 +181,8 @@ std::optional<GaugeFile> read_gauge(const std::string& path, document::Problems&
   return std::nullopt;
 }
 
-std::string format_gauge(const std::vector<GaugeReading>& readings) {
-  std::string text = "gauge_mm,displacement_mm,samples\n";
+std::string format_gauge(const std::vector<GaugeReading>& readings, model::OutputUnit output_unit) {
+  std::string text = header_of(output_unit) + ",samples\n";
   for (const GaugeReading& r : readings)
     text += shortest(r.position_mm) + "," + shortest(r.reading_mm) + "," + shortest(r.samples) + "\n";
   return text;
@@ -186,8 +218,8 @@ std::vector<double> planned_positions(double largest_reading_mm) {
   return all;
 }
 
-std::string positions_csv(const std::vector<double>& positions_mm) {
-  std::string text = "gauge_mm,displacement_mm\n";
+std::string positions_csv(const std::vector<double>& positions_mm, model::OutputUnit output_unit) {
+  std::string text = header_of(output_unit) + "\n";
   for (const double position : positions_mm) text += shortest(position) + ",\n";
   return text;
 }

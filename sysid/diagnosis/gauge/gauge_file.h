@@ -4,6 +4,7 @@
 //
 //   gauge_mm,displacement_mm[,samples][,...]
 //
+// Of a bending angle the columns are gauge_deg and angle_deg, or gauge_rad and angle_rad, which become deg.
 // One row per reading, in the order in which the readings were taken. Positions may repeat and need not
 // increase. `samples`: number of sensor samples that a reading averages (1 without the column). Other columns
 // are ignored.
@@ -14,6 +15,7 @@
 #include <vector>
 
 #include "document/problem.h"
+#include "model/output_unit.h"
 
 namespace softgrip::sysid {
 
@@ -29,6 +31,7 @@ struct GaugeFile {
   std::string path;    ///< as the user named it
   std::string sha256;  ///< of its bytes, lower-case hexadecimal
   std::vector<GaugeReading> readings;
+  model::OutputUnit output_unit = model::OutputUnit::mm;  ///< of positions and readings
 };
 
 /// Two positions fit a straight line exactly.
@@ -42,7 +45,8 @@ inline constexpr std::size_t fewest_gauge_positions = 3;
 [[nodiscard]] std::optional<GaugeFile> read_gauge(const std::string& path, document::Problems& problems);
 
 /// Returns the CSV text. parse_gauge() of this text gives the same readings.
-[[nodiscard]] std::string format_gauge(const std::vector<GaugeReading>& readings);
+[[nodiscard]] std::string format_gauge(const std::vector<GaugeReading>& readings,
+                                       model::OutputUnit output_unit = model::OutputUnit::mm);
 
 /// Returns the distinct positions in increasing order.
 [[nodiscard]] std::vector<double> distinct_positions(std::vector<double> positions_mm);
@@ -54,7 +58,8 @@ inline constexpr std::size_t fewest_gauge_positions = 3;
 [[nodiscard]] std::vector<double> planned_positions(double largest_reading_mm);
 
 /// Returns a gauge file without readings, as a template.
-[[nodiscard]] std::string positions_csv(const std::vector<double>& positions_mm);
+[[nodiscard]] std::string positions_csv(const std::vector<double>& positions_mm,
+                                        model::OutputUnit output_unit = model::OutputUnit::mm);
 
 /// Duration of one reading: place the target, let it rest, read [s].
 inline constexpr double seconds_per_reading = 20;

@@ -38,10 +38,6 @@ std::string in_words(const SensorShape& shape) {
   return text.empty() ? "a straight sensor" : text;
 }
 
-std::string mm(double value) {
-  return significant(value, 2) + " mm";
-}
-
 double mean_offset_mm(const FitPoint& point) {
   double sum = 0;
   for (const StartState& start : point.starts) sum += start.offset_mm;
@@ -229,7 +225,7 @@ class Weighing {
     evidence_.replaced = true;
     if (!left_too_much && leaves_too_much(selection_.left, selection_.base_unexplained, question_.noise_mm)) {
       warnings_.push_back("where the bend is, the gauge has told; the catalogue's form of it leaves " +
-                          mm(selection_.left.excess_mm) + " of structure");
+                          with_unit(selection_.left.excess_mm) + " of structure");
     }
   }
 
@@ -248,17 +244,20 @@ class Weighing {
     return fit_structure(data_.records, std::move(causes), point);
   }
 
+  [[nodiscard]] std::string unit() const { return " " + std::string(name_of(question_.file.output_unit)); }
+  [[nodiscard]] std::string with_unit(double value) const { return significant(value, 2) + unit(); }
+
   [[nodiscard]] std::string covered() const {
     const std::vector<double> positions = distinct_positions(question_.file.readings);
-    return "over " + significant(positions.front(), 3) + " to " + significant(positions.back(), 3) + " mm";
+    return "over " + significant(positions.front(), 3) + " to " + significant(positions.back(), 3) + unit();
   }
 
   /// How a sensor that is no straight line departs from one.
   [[nodiscard]] std::string bend_in_words() const {
     const GaugeCheck::Departure departure = evidence_.check.departure();
-    if (!departure.clips) return "bent by up to " + mm(departure.largest_mm);
+    if (!departure.clips) return "bent by up to " + with_unit(departure.largest_mm);
     const GaugeFit& end = evidence_.check.free_end;
-    return "at its end at " + significant(end.shape.at(1e6), 3) + " mm";
+    return "at its end at " + significant(end.shape.at(1e6), 3) + unit();
   }
 
   /// Returns true if the logs alone do not determine the sensor.
@@ -273,11 +272,11 @@ class Weighing {
   [[nodiscard]] std::string sentence_decided() const {
     const GaugeFit& best = evidence_.check.fits[evidence_.check.best];
     if (best.shape.blocks.empty()) {
-      return "The gauge shows a straight sensor " + covered() + ", to " + mm(best.rms_mm) +
+      return "The gauge shows a straight sensor " + covered() + ", to " + with_unit(best.rms_mm) +
              ": what bends these readings is the finger or what it meets, not the sensor.";
     }
     return "The gauge shows the sensor " + bend_in_words() + ", as these logs ask for, to " +
-           mm(best.rms_mm) + ": the sensor is to blame, not the finger.";
+           with_unit(best.rms_mm) + ": the sensor is to blame, not the finger.";
   }
 
   /// Where more than one shape is left.
@@ -290,7 +289,7 @@ class Weighing {
     }
     const std::string besides = out.empty() ? "" : " It rules out: " + out + ".";
     if (check.outcome != GaugeOutcome::unexplained) {
-      return "The gauge does not tell: its readings fit alike " + left + " (" + mm(check.noise_mm) +
+      return "The gauge does not tell: its readings fit alike " + left + " (" + with_unit(check.noise_mm) +
              " of noise). Read up to the largest reading of the logs and beyond it, more often, or with a "
              "better gauge." +
              besides;
@@ -325,8 +324,8 @@ class Weighing {
     if (bent && check.fits[check.best].shape.blocks.empty()) tell_of_bend();
     if (asked_ && !settled && check.outcome == GaugeOutcome::unexplained) {
       warnings_.push_back("the gauge readings fit no explanation of these logs (" +
-                          mm(check.fits[check.best].rms_mm) + " are left at best, their noise is " +
-                          mm(check.noise_mm) + "): the verdict stays open");
+                          with_unit(check.fits[check.best].rms_mm) + " are left at best, their noise is " +
+                          with_unit(check.noise_mm) + "): the verdict stays open");
     }
   }
 
@@ -340,9 +339,11 @@ class Weighing {
   }
 
   void tell_of_bend() {
-    warnings_.push_back("by the gauge the displacement sensor is " + bend_in_words() +
-                        ", and no cause that is named says so: every displacement in these logs has that in "
-                        "it; calibrate the sensor before anything else");
+    warnings_.push_back(model::in_unit(
+        "by the gauge the displacement sensor is " + bend_in_words() +
+            ", and no cause that is named says so: every displacement in these logs has that in it; "
+            "calibrate the sensor before anything else",
+        question_.file.output_unit));
   }
 
   const GaugeQuestion& question_;

@@ -19,9 +19,9 @@ Colour colour_of(std::size_t hypothesis) {
   return colours[std::min<std::size_t>(hypothesis, 3)];
 }
 
-Table hypotheses_table(const GaugeCheck& check) {
+Table hypotheses_table(const GaugeCheck& check, model::OutputUnit unit) {
   Table table;
-  table.header = {"the sensor is", "leaves [mm]", "log likelihood behind the best", ""};
+  table.header = {"the sensor is", model::in_unit("leaves [mm]", unit), "log likelihood behind the best", ""};
   table.numeric = {false, true, true, false};
   for (const GaugeFit& fit : check.fits) {
     table.rows.push_back({title_of(fit), significant(fit.rms_mm, 3), significant(fit.behind, 3),
@@ -51,8 +51,8 @@ Chart gauge_chart(const GaugeEvidence& gauge) {
     return series;
   };
   Chart chart;
-  chart.x.label = "position by the gauge [mm]";
-  chart.y.label = "reading minus straight line [mm]";
+  chart.x.label = model::in_unit("position by the gauge [mm]", gauge.file.output_unit);
+  chart.y.label = model::in_unit("reading minus straight line [mm]", gauge.file.output_unit);
   for (std::size_t h = 0; h < check.fits.size(); ++h) {
     Series curve = beside(check.fits[h].predicted_mm);
     curve.label = title_of(check.fits[h]);
@@ -77,10 +77,10 @@ void add_gauge_section(Page& page, const GaugeEvidence& gauge) {
                    "), beside the straight line that fits best; dashed: ruled out. Readings are "
                    "cut a little beyond what the logs have read.",
                {{gauge_chart(gauge)}}});
-  page.table(hypotheses_table(check));
+  page.table(hypotheses_table(check, gauge.file.output_unit));
   page.paragraph("Zero and scale of every hypothesis are fitted to the readings. Noise of a reading: " +
-                 significant(check.noise_mm, 2) + " mm (readings at one position differ by " +
-                 significant(check.repeat_noise_mm, 2) +
+                 significant(check.noise_mm, 2) + " " + std::string(name_of(gauge.file.output_unit)) +
+                 " (readings at one position differ by " + significant(check.repeat_noise_mm, 2) +
                  "); a fifth of what two hypotheses differ by is allowed beside it where they are compared. "
                  "Ruled out is "
                  "what is a thousand times less likely than the most likely hypothesis, if that explains the "

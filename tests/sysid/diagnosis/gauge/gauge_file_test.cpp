@@ -38,12 +38,31 @@ TEST(GaugeFile, ComesBackAsItWasWritten) {
   EXPECT_EQ(gauge->readings, readings);
 }
 
+TEST(GaugeFile, OfABendingAngleIsInDegrees) {
+  const std::vector<GaugeReading> readings{{0, 0.1, 200}, {22.5, 22.7, 200}, {90, 91, 7}};
+  document::Problems problems;
+  const std::string text = format_gauge(readings, model::OutputUnit::deg);
+  EXPECT_EQ(text.substr(0, text.find('\n')), "gauge_deg,angle_deg,samples");
+  const auto gauge = parse_gauge("gauge.csv", text, problems);
+  ASSERT_TRUE(gauge) << problems.format();
+  EXPECT_EQ(gauge->readings, readings);
+  EXPECT_EQ(gauge->output_unit, model::OutputUnit::deg);
+  const auto radians = parse_gauge("gauge.csv", "gauge_rad,angle_rad\n0,0.1\n0.5,0.6\n1,1.1\n", problems);
+  ASSERT_TRUE(radians) << problems.format();
+  EXPECT_EQ(radians->output_unit, model::OutputUnit::deg);
+  EXPECT_NEAR(radians->readings[1].position_mm, 28.6479, 1e-4);
+  EXPECT_NEAR(radians->readings[1].reading_mm, 34.3775, 1e-4);
+  EXPECT_EQ(parse_gauge("gauge.csv", format_gauge(readings), problems)->output_unit, model::OutputUnit::mm);
+  EXPECT_EQ(positions_csv({0, 15}, model::OutputUnit::deg), "gauge_deg,angle_deg\n0,\n15,\n");
+}
+
 TEST(GaugeFile, SaysWhereItIsWrongAndWhatWasMeant) {
   const std::string header = "gauge_mm,displacement_mm\n";
   const std::map<std::string, std::string> wrong{
       {"", "the file is empty"},
       {"gauge_m,displacement_mm\n0,0\n", "is 'gauge_m' meant?"},
       {"gauge_mm,gauge_mm,displacement_mm\n0,0,0\n", "a second column"},
+      {"gauge_deg,displacement_mm\n0,0\n", "no column 'gauge_mm'"},
       {header + "0,0\n1,1\n", "2 different positions: at least 3"},
       {header + "0,0\n1,nan\n2,2\n", "gauge.csv:3:3"},
       {header + "0,0\n1,inf\n2,2\n", "gauge.csv:3:3"},
