@@ -1,5 +1,6 @@
 """Boards with habits that people report: what status, events and doctor say of them."""
 
+import datetime
 import json
 import socket
 import socketserver
@@ -73,6 +74,19 @@ class BoardHabits(bench.BenchTest):
         daemon = self.daemon(self.rig(emulator.port, changes))
         daemon.wait_for_state("idle")
         emulator.ask("clear it")
+
+    def test_a_silent_board_is_used_with_its_first_answers(self):
+        emulator = self.habit("lost_request")
+        daemon = self.daemon(self.rig(emulator.port))
+        bench.wait_for("attempts", lambda: daemon.status()["bus"]["attempts"] > 2, patience_s=30)
+        self.assertEqual(daemon.status()["state"], "starting")
+        emulator.ask("clear it")
+        daemon.wait_for_state("idle")
+        at = {event["kind"]: datetime.datetime.fromisoformat(event["at"].replace("Z", "+00:00"))
+              for event in reversed(daemon.events()) if event["kind"] == "bus_connected" or event.get("code") == "idle"}
+        took_s = (at["state_changed"] - at["bus_connected"]).total_seconds()
+        print(f"idle {took_s:.3f} s after the first answer of the board")
+        self.assertLess(took_s, 0.5)
 
     def board(self, name, *changes):
         """The emulator's own board map with changes, as config/boards/NAME.yaml."""
