@@ -72,7 +72,7 @@ Json json_of(const FingerHealth& health, const Suspicion& suspicion) {
   finger["advice"] = suspicion.advice;
   finger["notes"] = Json::array();
   for (const auto& [before, note] : health.notes)
-    finger["notes"].push_back({{"date", note.date}, {"mended", note.mended}});
+    finger["notes"].push_back({{"date", note.date}, {"action", note.action}, {"mended", note.action}});
   return finger;
 }
 

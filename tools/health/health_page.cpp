@@ -78,7 +78,7 @@ void add_marks(const FingerHealth& health, std::size_t number, sysid::Chart& cha
   using Direction = sysid::Mark::Direction;
   for (const auto& [before, note] : health.notes) {
     if (before < health.points.size())
-      chart.marks.push_back({Direction::vertical, place_of(health, before) - 0.5, note.mended});
+      chart.marks.push_back({Direction::vertical, place_of(health, before) - 0.5, note.action});
   }
   for (const HealthAlarm& alarm : health.alarms) {
     if (static_cast<std::size_t>(alarm.number) != number) continue;

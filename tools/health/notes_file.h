@@ -2,8 +2,8 @@
 // The maintenance records: notes.yaml.
 //
 //   notes:
-//     - {date: 2026-11-03, finger: left, mended: finger replaced}
-//     - {date: 2026-11-20T14:30:00Z, mended: "sensors clamped again"}
+//     - {date: 2026-11-03, finger: left, action: finger replaced}
+//     - {date: 2026-11-20T14:30:00Z, action: "sensors clamped again"}
 
 #include <optional>
 #include <string>
@@ -16,7 +16,7 @@ namespace softgrip::tools::health {
 struct Note {
   std::string date;    ///< UTC, "2026-11-03" (as the day begins) or "2026-11-03T14:30:00Z"
   std::string finger;  ///< empty: all
-  std::string mended;  ///< in a few words
+  std::string action;  ///< in a few words
 };
 
 /// In the order of their dates; nothing if there are problems, which are all added.

@@ -101,7 +101,9 @@ Json bins_json(const ConditionEvidence& e) {
 
 Json residual_json(const ResidualEvidence& r, bool with_bins) {
   Json json{{"rms_mm", r.rms_mm},
+            {"unexplained_rms_mm", r.structure_mm},
             {"structure_mm", r.structure_mm},
+            {"correlation_time_s", r.memory_s},
             {"memory_s", r.memory_s},
             {"block_s", r.block_s},
             {"blocks", r.blocks}};
@@ -230,19 +232,21 @@ Json json_of(const Diagnosis& d) {
                                 {"largest_gain_percent", nulls->largest_gain_percent},
                                 {"p_value", nulls->p_value}};
   }
-  json["staircase"] = nullptr;
+  json["stick_slip"] = nullptr;
   if (const auto& stick_slip = d.stick_slip) {
-    json["staircase"] = {{"jumps", stick_slip->jumps},
-                         {"scatter_percent", 100 * stick_slip->scatter},
-                         {"heldout_rmse_mm", stick_slip->heldout_rmse_mm},
-                         {"gain_percent", spread(stick_slip->gain_percent)}};
+    json["stick_slip"] = {{"jumps", stick_slip->jumps},
+                          {"scatter_percent", 100 * stick_slip->scatter},
+                          {"heldout_rmse_mm", stick_slip->heldout_rmse_mm},
+                          {"gain_percent", spread(stick_slip->gain_percent)}};
   }
+  json["staircase"] = json["stick_slip"];  // deprecated
   json["gauge"] = d.gauge ? gauge_json(*d.gauge) : Json(nullptr);
   json["not_tested"] = d.not_tested;
   json["partial_causes"] = Json::array();
   for (const NamedCause& named : d.partial) json["partial_causes"].push_back(cause_json(named, budget));
-  json["structure_mm"] = {{"recalibrated", d.unexplained_recalibrated.excess_mm},
-                          {"left", d.unexplained_error.excess_mm}};
+  json["unexplained_rms_mm"] = {{"recalibrated", d.unexplained_recalibrated.excess_mm},
+                                {"left", d.unexplained_error.excess_mm}};
+  json["structure_mm"] = json["unexplained_rms_mm"];  // deprecated
   Json candidates = Json::object();
   for (const auto* list : {&d.causes, &d.partial}) {
     for (const NamedCause& named : *list) {

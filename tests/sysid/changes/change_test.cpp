@@ -358,6 +358,11 @@ TEST(Change, TheJsonHasTheKeysOfEveryDiagnosis) {
   EXPECT_LT(json["causes"][0]["size"]["ci95"][0], -4.9);
   EXPECT_GT(json["causes"][0]["size"]["ci95"][1], -5.1);
   EXPECT_LT(json["heldout_rmse_mm"]["extended"], json["heldout_rmse_mm"]["as_given"]);
+  const auto& reading = json["readings"][0];
+  EXPECT_GT(reading["whitened_loss"]["before"], reading["whitened_loss"]["left"]);
+  EXPECT_EQ(reading["misfit"], reading["whitened_loss"]) << "deprecated";
+  EXPECT_TRUE(reading["unexplained"].is_boolean());
+  EXPECT_EQ(reading["structure_left"], reading["unexplained"]) << "deprecated";
 }
 
 TEST(Change, ThePageSaysWhatToDoAndShowsTheMisfit) {

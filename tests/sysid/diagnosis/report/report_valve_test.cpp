@@ -51,6 +51,25 @@ TEST(ReportValve, IsNoTableWhereNothingIsLacking) {
   EXPECT_NE(page.to_html().find("another thing"), std::string::npos);
 }
 
+TEST(DiagnosisJson, HasDeprecatedKeysBesideTheirReplacements) {
+  Diagnosis d;
+  d.unexplained_recalibrated.excess_mm = 0.5;
+  EXPECT_TRUE(json_of(d).at("stick_slip").is_null());
+  d.stick_slip.emplace().jumps = 7;
+  d.evidence.emplace().recalibrated.structure_mm = 0.25;
+  d.evidence->recalibrated.memory_s = 1.5;
+  const auto json = json_of(d);
+  EXPECT_EQ(json.at("stick_slip").at("jumps"), 7);
+  EXPECT_EQ(json.at("staircase"), json.at("stick_slip"));
+  EXPECT_EQ(json.at("unexplained_rms_mm").at("recalibrated"), 0.5);
+  EXPECT_EQ(json.at("structure_mm"), json.at("unexplained_rms_mm"));
+  const auto& residual = json.at("evidence").at("recalibrated");
+  EXPECT_EQ(residual.at("unexplained_rms_mm"), 0.25);
+  EXPECT_EQ(residual.at("structure_mm"), 0.25);
+  EXPECT_EQ(residual.at("correlation_time_s"), 1.5);
+  EXPECT_EQ(residual.at("memory_s"), 1.5);
+}
+
 TEST(DiagnosisJson, ACauseThatTheMeasuredPressureShowsStandsAmongTheCauses) {
   Diagnosis d;
   d.verdict = Verdict::adequate;
