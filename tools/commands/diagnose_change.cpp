@@ -27,7 +27,8 @@ void print_cause(const sysid::ChangeCause& cause) {
   std::printf("  %-26s %s, 95 %%: %s (%s %s at full pressure)\n", cause.id.c_str(), size_text(cause).c_str(),
               interval_text(cause).c_str(), significant(cause.full_pressure_mm, 3).c_str(),
               unit_of(cause.judged, cause.output_unit).c_str());
-  for (const std::string& alternative : cause.alternatives) std::printf("      %s explains as much\n", alternative.c_str());
+  for (const std::string& alternative : cause.alternatives)
+    std::printf("      %s explains as much\n", alternative.c_str());
   for (const std::string_view step : sysid::next_steps(cause.id))
     std::printf("      - %s\n", std::string(step).c_str());
 }

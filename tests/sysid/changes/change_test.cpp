@@ -123,7 +123,7 @@ TEST(Change, AnotherGainIsAgeingInPercent) {
   EXPECT_EQ(d.causes[0].id, "ageing");
   EXPECT_EQ(d.causes[0].size.unit, "%");
   EXPECT_NEAR(d.causes[0].size.value, 3, 0.4);
-  // What was compared is stated, and why the others were rejected.
+  // The JSON states the compared causes, and why the others were rejected.
   const JudgedChange& judged = d.readings.back();
   EXPECT_EQ(judged.healthy_runs, logs_of({}, 1).size());
   EXPECT_GT(judged.healthy_mm, 0);

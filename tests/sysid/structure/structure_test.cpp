@@ -48,7 +48,7 @@ model::Model play_finger() {
   return model::with_block(std::move(m), {model::block_type<model::Characteristic>(), {0.6, 25}});
 }
 
-/// The same with generalised plays.
+/// play_finger() with generalised plays.
 model::Model bent_play_finger() {
   model::Model m = play_finger();
   std::vector<double>& values = m.blocks[*model::position_of<model::PrandtlIshlinskii>(m)].values;
