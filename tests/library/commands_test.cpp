@@ -172,7 +172,7 @@ TEST_F(LibraryAndCommand, AStopEndsLongComputationsWithinASecond) {
   const std::vector<Log> logs{read_log(path("one.csv")), read_log(path("two.csv"))};
   std::vector<double> times_s;
   for (const auto structure : {Structure::start, Structure::automatic}) {
-    times_s.push_back(time_to_stop_s(std::chrono::milliseconds(100), [&](const std::stop_token& stop) {
+    times_s.push_back(time_to_stop_s(std::chrono::milliseconds(20), [&](const std::stop_token& stop) {
       IdentifyOptions options;
       options.starts = 10000;
       options.structure = structure;
@@ -180,7 +180,7 @@ TEST_F(LibraryAndCommand, AStopEndsLongComputationsWithinASecond) {
       (void)identify(logs, options);
     }));
   }
-  for (const int after_ms : {0, 20, 60}) {
+  for (const int after_ms : {0, 2, 10}) {
     times_s.push_back(time_to_stop_s(std::chrono::milliseconds(after_ms), [&](const std::stop_token& stop) {
       DiagnoseOptions options;
       options.null_campaigns = 1000;
