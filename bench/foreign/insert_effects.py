@@ -120,7 +120,7 @@ def write_set(data_set, pairs, folder):
         f"licence: \"{data_set.licence}\"", "logs:", *entries.values(), "changes:", *changes, "identification: []", ""]))
 
 
-def chosen(pairs, pulses):
+def chosen(pairs, pulses=False):
     """For each later run the pair with most baseline runs."""
     most = {}
     for pair in pairs:

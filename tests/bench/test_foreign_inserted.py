@@ -68,6 +68,8 @@ class Inserted(ForeignCase):
         self.assertEqual([problem for pair in made.changes for problem in pair.problems], [])
         self.assertEqual(made.fits, [])
         self.assertEqual((folder / "a.csv").read_text().splitlines()[1], "0,0,0")
+        pulses = insert_effects.chosen(found.repeats, pulses=True)
+        self.assertEqual([(pair.baseline, pair.later) for pair in pulses], [(["a"], "b")])
 
 
 if __name__ == "__main__":
