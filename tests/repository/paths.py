@@ -107,11 +107,12 @@ class Judge:
         return word in self.names
 
     def program_exists(self, word):
-        """build/PRESET/path/to/program; deeper inside build/ lies what programs write"""
+        """build/PRESET/path/to/program, or a folder of programs; deeper inside build/ lies what programs write"""
         parts = word.split("/", 2)
         if len(parts) < 3 or self.programs is None:
             return True
-        return not parts[2] or any(fnmatch.fnmatchcase(name, parts[2]) for name in self.programs)
+        built = parts[2].rstrip("/")
+        return not built or any(fnmatch.fnmatchcase(name, built) or name.startswith(f"{built}/") for name in self.programs)
 
     def word(self, place, word):
         root = word.removeprefix("./").split("/")[0]
