@@ -97,7 +97,7 @@ class ModelReader {
       for (const Node* item : top.sequence(name_of(station), required)) read_block(*item, station, model);
     }
     top.finish();
-    if (!has_element_) {
+    if (!has_element_ && document_.complete) {
       top_problem("the actuator has no element that turns pressure into displacement",
                   "bouc_wen and kelvin_voigt are such elements");
     }
