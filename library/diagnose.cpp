@@ -51,15 +51,11 @@ Cause public_cause(const sysid::ChangeCause& changed) {
   return cause;
 }
 
-library::NeededUnit needed_for(const Model& model) {
-  return {"the model " + model.name(), model.unit()};
-}
-
 }  // namespace
 
 Diagnosis diagnose(const Model& model, const std::vector<Log>& logs, const DiagnoseOptions& options) {
   const std::vector<sysid::Log> checked =
-      library::checked_logs("logs", logs, options.use, false, needed_for(model));
+      library::checked_logs("logs", logs, options.use, false, library::needed_for(model));
   sysid::DiagnosisOptions search;
   search.record = library::record_options(options.use);
   search.seed = options.seed;
@@ -94,9 +90,9 @@ Diagnosis diagnose(const Model& model, const std::vector<Log>& logs, const Diagn
 Change diagnose_change(const Model& model, const std::vector<Log>& healthy, const std::vector<Log>& later,
                        const DiagnoseOptions& options) {
   const std::vector<sysid::Log> before =
-      library::checked_logs("healthy", healthy, options.use, false, needed_for(model));
+      library::checked_logs("healthy", healthy, options.use, false, library::needed_for(model));
   const std::vector<sysid::Log> now =
-      library::checked_logs("later", later, options.use, false, needed_for(model));
+      library::checked_logs("later", later, options.use, false, library::needed_for(model));
   sysid::ChangeOptions search;
   search.held = options.use.held;
   search.given = model.parts().value;

@@ -46,10 +46,6 @@ std::vector<Estimate> estimates_of(const std::vector<sysid::Estimate>& list) {
   return all;
 }
 
-std::optional<library::NeededUnit> unit_needed(const Model& model) {
-  return library::NeededUnit{"the model " + model.name(), model.unit()};
-}
-
 }  // namespace
 
 namespace library {
@@ -82,8 +78,9 @@ Identification identify(const std::vector<Log>& logs, const IdentifyOptions& opt
   library::require_between("branches", static_cast<double>(options.branches), 1, 8, "");
   library::require_between("starts", static_cast<double>(options.starts), 1, 10000, "");
   library::require_between("fit_share", options.fit_share, 0.05, 1, "");
-  question.logs = library::checked_logs("logs", logs, options.use, question.structure.has_value(),
-                                        options.start ? unit_needed(*options.start) : std::nullopt);
+  question.logs = library::checked_logs(
+      "logs", logs, options.use, question.structure.has_value(),
+      options.start ? std::optional(library::needed_for(*options.start)) : std::nullopt);
   if (!options.validation.empty())
     question.validation = library::checked_logs("validation", options.validation, options.use, false,
                                                 library::NeededUnit{logs.front().name, logs.front().unit});
@@ -118,7 +115,8 @@ Identification identify(const std::vector<Log>& logs, const IdentifyOptions& opt
 }
 
 Validation validate(const Model& model, const std::vector<Log>& logs, const LogUse& use) {
-  std::vector<sysid::Log> checked = library::checked_logs("logs", logs, use, false, unit_needed(model));
+  std::vector<sysid::Log> checked =
+      library::checked_logs("logs", logs, use, false, library::needed_for(model));
   const sysid::Validation found =
       sysid::validate_given_logs(model.parts().value, checked, library::record_options(use));
   return {sysid::verdict_of(found), found.warnings, library::predictions_of(found.records, found.scores),

@@ -165,6 +165,10 @@ sysid::RecordOptions record_options(const LogUse& use) {
   return options;
 }
 
+NeededUnit needed_for(const Model& model) {
+  return {"the model " + model.name(), model.unit()};
+}
+
 std::vector<sysid::Log> checked_logs(const std::string& argument, const std::vector<Log>& logs,
                                      const LogUse& use, bool measured_stay,
                                      const std::optional<NeededUnit>& needed) {

@@ -1,6 +1,7 @@
 #pragma once
 // Public logs as those of sysid, checked.
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,9 @@ struct NeededUnit {
   std::string of;  ///< "the model NAME"
   Unit unit = Unit::mm;
 };
+
+/// The unit of a model.
+[[nodiscard]] NeededUnit needed_for(const Model& model);
 
 /// Checks logs as the commands do. Throws InvalidArgument.
 /// @param argument       name of the argument, for messages

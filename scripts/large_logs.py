@@ -3,7 +3,7 @@
 
     scripts/large_logs.py [--build build/release] [--threads 2] [--only CASE ...] [--page docs/results/large-logs.md]
 
-The commands are ramps to random pressures (printed seeds), the fingers are models of config/models. The cases run one after
+The commands are ramps to random pressures (the seeds are in this file), the fingers are models of config/models. The cases run one after
 the other, as a user runs them: reading the files, closed loop and report included. Nothing else should run meanwhile.
 """
 import argparse

@@ -40,15 +40,15 @@ using Failure = tl::unexpected<std::string>;
 struct Prepared {
   std::vector<Record> records;
   double noise_mm = 0;
-  OutlierEvidence outliers;
-  SamplingEvidence sampling;
+  OutlierEvidence outliers = {};
+  SamplingEvidence sampling = {};
 };
 
 /// @param healthy_noise_mm  A reading within the healthy noise is no outlier. The later noise may be smaller:
 /// a sensor at the end of its range has none.
 Prepared driven_records(const std::vector<Log>& logs, Drive drive, const ChangeOptions& options,
                         double healthy_noise_mm = 0) {
-  Prepared p{make_records(logs, {.drive = drive, .held = options.held}), 0, {}, {}};
+  Prepared p{.records = make_records(logs, {.drive = drive, .held = options.held})};
   p.sampling = hide_repeated(p.records);
   p.noise_mm = std::max(healthy_noise_mm, measured_noise_mm(p.records));
   p.outliers = hide_outliers(p.records, p.noise_mm);

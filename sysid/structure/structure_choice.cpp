@@ -279,9 +279,9 @@ void offer_extended(const std::function<StructureTrial(const BaseStructure&, con
 
 /// @param near  where the nonlinear numbers begin; nullptr: at every start.
 FitPoint fit_from(const NonlinearNumbers* near, const StructureTrial& trial,
-                  const std::vector<Record>& records, Drive drive) {
+                  const std::vector<Record>& records, Drive drive, StructureFitOptions options = {}) {
   if (trial.structure.published) return refit_published(records, trial.point);
-  const StructureFitOptions options{.ridge = trial.ridge};
+  options.ridge = trial.ridge;
   return point_of(fit_form(records, trial.structure, grid_for(records), options, near), records, drive);
 }
 
@@ -378,17 +378,10 @@ StructureChoice choose_structure(const std::vector<Record>& records, const Struc
 }
 
 StructureTrial fitted_to(StructureTrial trial, const std::vector<Record>& records, Drive drive) {
-  if (trial.structure.published) {
-    trial.point = refit_published(records, trial.point);
-  } else {
-    BaseStructure still = trial.structure;
-    const bool rings = std::exchange(still.resonance, false);
-    const StructureFitOptions options{.ridge = trial.ridge, .most_iterations = fold_iterations};
-    const FittedStructure fit = fit_form(records, still, grid_for(records), options, &trial.numbers);
-    trial.numbers = fit.numbers;
-    const FitPoint point = point_of(fit, records, drive);
-    trial.point = rings ? with_resonance_of(trial.point, point, records) : point;
-  }
+  StructureTrial still = trial;
+  const bool rings = std::exchange(still.structure.resonance, false);
+  FitPoint point = fit_from(&trial.numbers, still, records, drive, {.most_iterations = fold_iterations});
+  trial.point = rings ? with_resonance_of(trial.point, std::move(point), records) : std::move(point);
   trial.rmse_mm = rmse_of(trial.point.model, trial.point.starts, records);
   return trial;
 }

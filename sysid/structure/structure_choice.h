@@ -107,7 +107,7 @@ struct WithoutIngredient {
                                                const StructureChoiceOptions& options);
 
 /// A trial that was chosen with averaged records, fitted to the records as they are, from its own numbers.
-/// Its losses in held-out blocks stay those of the choice.
+/// Its nonlinear numbers and its losses in held-out blocks stay those of the choice.
 [[nodiscard]] StructureTrial fitted_to(StructureTrial trial, const std::vector<Record>& records, Drive drive);
 
 /// The choice without each of those of the ingredients that it has: what each brings. None of the published
