@@ -178,6 +178,9 @@ BusStatus ModbusLink::send_until_heard(std::span<const std::uint8_t> frame, Nano
   first_asked_at_ = monotonic_now();
   for (repeats_ = 0;; ++repeats_) {
     asked_at_ = monotonic_now();
+    // After a pause of the process, a request from before it may move what the board's watchdog has vented.
+    if (asked_at_ >= deadline)
+      return fail(BusStatus::timed_out, "before sending the request", "the deadline passed");
     if (const BusStatus status = send(frame, deadline); status != BusStatus::ok) return status;
     const Nanoseconds again = monotonic_now() + sending_time(frame.size()) + repeat_after_;
     if (repeat_after_ == 0 || again >= deadline) return BusStatus::ok;

@@ -100,6 +100,10 @@ class Soak:
         self.runs.end()
         return code
 
+    def note(self, sentence):
+        self.unexpected.append(sentence)
+        print(f"  {sentence}", flush=True)
+
     def take_events(self, awaited=()):
         """New events; faults among them are counted and told, but for the awaited kinds."""
         events = self.daemon.events(self.newest)
@@ -120,7 +124,7 @@ class Soak:
         reply = json.loads(client.ask(json.dumps({"command": "start", "sequence": sequence})))
         client.close()
         if not reply["ok"]:
-            self.unexpected.append(f"{sequence}: {reply['error']['message']}")
+            self.note(f"{sequence}: {reply['error']['message']}")
             self.recover()
             return
         bench.wait_for(f"the end of {sequence}", lambda: self.daemon.status()["state"] in ("idle", "faulted"), 180, 0.25)
@@ -130,8 +134,7 @@ class Soak:
         events = self.take_events()
         if came[0] != end or not (result in came[1] or any(e["kind"] == "grip_result" and e["code"] == result
                                                             for e in events) or sequence == "track_sine"):
-            self.unexpected.append(f"{sequence}: ended {came[0]}, {sorted(came[1])}")
-            print(f"  {self.unexpected[-1]}", flush=True)
+            self.note(f"{sequence}: ended {came[0]}, {sorted(came[1])}")
         self.recover()
         time.sleep(1.2)  # the recording's tail
         self.read_recordings()
@@ -149,8 +152,8 @@ class Soak:
             if about["state"] == "recording":
                 continue
             if about["state"] != "complete" or about["dropped_rows"] or about["error"]:
-                self.unexpected.append(f"{recording.name}: {about['state']}, {about['dropped_rows']} dropped, "
-                                       f"{about['error']}")
+                self.note(f"{recording.name}: {about['state']}, {about['dropped_rows']} dropped, "
+                          f"{about['error']}")
             rows = 0
             with open(recording / "run.csv", newline="") as file:
                 for row in csv.reader(file):
@@ -158,7 +161,7 @@ class Soak:
             # Two channels, and a header. A row's time is that of its wake-up, so only the whole has no jitter.
             self.missing += max(0, round(float(row[0]) * RATE_HZ) + 1 - (rows - 1) // 2)
             if rows - 1 != about["rows"]:
-                self.unexpected.append(f"{recording.name}: {rows - 1} rows, run.json says {about['rows']}")
+                self.note(f"{recording.name}: {rows - 1} rows, run.json says {about['rows']}")
             self.rows += rows - 1
             shutil.rmtree(recording)
 

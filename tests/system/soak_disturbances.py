@@ -43,7 +43,7 @@ class Runs:
 
 
 class Disturbances:
-    """One after the other, each with a sequence of its own. `soak` gives daemon, emulator and the list `unexpected`."""
+    """One after the other, each with a sequence of its own. `soak` gives daemon and emulator, and notes what is unexpected."""
 
     def __init__(self, soak, runs, seed):
         self.soak, self.runs, self.chance = soak, runs, random.Random(seed)
@@ -61,7 +61,7 @@ class Disturbances:
         self.soak.take_events()
         ended = self.soak.daemon.status()["sequence"]["ended"]
         if ended != "done":
-            self.soak.unexpected.append(f"{what}: the sequence ended {ended}")
+            self.soak.note(f"{what}: the sequence ended {ended}")
 
     def clients(self):
         """They connect, ask, and go: with their answer, without it, in the middle of a line, without a word."""
@@ -102,10 +102,10 @@ class Disturbances:
         codes = {event["code"] for event in self.soak.take_events(awaited=("fault_latched",))
                  if event["kind"] == "fault_latched"}
         if "F303" not in codes:
-            self.soak.unexpected.append(f"a pause of {LONG_PAUSE_S} s: faults {sorted(codes)}")
+            self.soak.note(f"a pause of {LONG_PAUSE_S} s: faults {sorted(codes)}")
         if risen:
-            self.soak.unexpected.append(f"a pause of {LONG_PAUSE_S} s: {max(kpa for _, kpa in risen):.4g} kPa after the board "
-                                        f"had vented, seen {risen[0][0]:.4f} to {risen[-1][0]:.4f} s after it")
+            self.soak.note(f"a pause of {LONG_PAUSE_S} s: {max(kpa for _, kpa in risen):.4g} kPa after the board "
+                           f"had vented, seen {risen[0][0]:.4f} to {risen[-1][0]:.4f} s after it")
 
     def full_disk(self):
         if not self.runs.mounted:
@@ -117,9 +117,9 @@ class Disturbances:
         events = self.soak.take_events(awaited=("recording_failed",))
         self.done["full disks"] += 1
         if self.soak.daemon.status()["sequence"]["ended"] != "done":
-            self.soak.unexpected.append(f"a full disk: ended {self.soak.daemon.status()['sequence']['ended']}")
+            self.soak.note(f"a full disk: ended {self.soak.daemon.status()['sequence']['ended']}")
         if not any(event["kind"] == "recording_failed" for event in events):
-            self.soak.unexpected.append("a full disk: nobody said that the recording failed")
+            self.soak.note("a full disk: nobody said that the recording failed")
         self.runs.free()
         self.soak.remove_recordings()
 

@@ -358,6 +358,22 @@ TEST(ModbusTcpLink, WhatComesWhileItSettlesAnswersNothing) {
   EXPECT_EQ(session.ask(1, read_four, now() + deadline), BusStatus::timed_out) << session.detail();
 }
 
+TEST(ModbusTcpLink, ARequestAfterItsDeadlineIsNotSent) {
+  std::atomic<int> requests = 0;
+  ScriptedServer server([&](Peer& peer, const Bytes& request, std::size_t) {
+    ++requests;
+    answer_well(peer, request);
+  });
+  ModbusTcpLink session(TcpAddress{"127.0.0.1", server.port()});
+  ASSERT_EQ(session.open(now() + generous), BusStatus::ok) << session.detail();
+  EXPECT_EQ(session.ask(1, read_four, now() - 1), BusStatus::timed_out);
+  EXPECT_NE(std::string(session.detail()).find("before sending the request"), std::string::npos)
+      << session.detail();
+  ASSERT_EQ(session.open(now() + generous), BusStatus::ok) << session.detail();
+  EXPECT_EQ(session.ask(1, read_four, now() + generous), BusStatus::ok) << session.detail();
+  EXPECT_EQ(requests, 1);
+}
+
 TEST(ModbusTcpLink, ExceptionsKeepTheSession) {
   for (const int code : {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 0x55, 255}) {
     const Outcome outcome = ask_once(
