@@ -7,9 +7,9 @@
 
 #include <Eigen/Cholesky>
 
-#include "base/cancellation.h"
 #include "base/statistics.h"
 #include "sysid/changes/filter_bank.h"
+#include "sysid/fitting/descent.h"
 #include "sysid/fitting/start_estimate.h"
 
 namespace softgrip::sysid {
@@ -85,34 +85,43 @@ class Fit {
     return other.sum_of_squares < fit.sum_of_squares ? other : fit;
   }
 
-  [[nodiscard]] EffectFit descend(EffectFit best) const {
+  [[nodiscard]] EffectFit descended(EffectFit from) const {
+    return descend(*this, std::move(from),
+                   {.most_steps = most_effect_steps,
+                    .most_trials = 5,
+                    .longest_step = std::numeric_limits<double>::infinity(),
+                    .least_share = 1e-4,
+                    .least_gain = 0.1,
+                    // A gain has no curvature while the nuisance gain replaces it.
+                    .least_damping = least_curvature})
+        .point;
+  }
+
+  [[nodiscard]] static double loss(const EffectFit& fit) { return fit.sum_of_squares; }
+
+  [[nodiscard]] NormalEquations normal(const EffectFit& from) const {
     const auto n = static_cast<Eigen::Index>(effect_.numbers.size());
-    double damping = 1e-2;
-    for (int step = 0; step < most_effect_steps && n > 0; ++step) {
-      Eigen::MatrixXd jacobian(best.white.size(), n);
-      for (Eigen::Index k = 0; k < n; ++k) jacobian.col(k) = derivative(best, static_cast<std::size_t>(k));
-      const Eigen::VectorXd gradient = jacobian.transpose() * best.white;
-      Eigen::MatrixXd curvature = jacobian.transpose() * jacobian;
-      bool improved = false, settled = false;
-      for (int attempt = 0; attempt < 5 && !improved; ++attempt) {
-        end_if_cancelled();
-        Eigen::MatrixXd damped = curvature;
-        // A gain is not felt while what counts as no change takes it: its own curvature would not damp it.
-        damped.diagonal() += damping * curvature.diagonal();
-        damped.diagonal().array() += 1e-12 + damping * least_curvature * curvature.trace();
-        const Eigen::VectorXd by = -damped.ldlt().solve(gradient);
-        std::vector<double> moved = best.fitted.numbers;
-        for (std::size_t i = 0; i < moved.size(); ++i)
-          moved[i] += by(static_cast<Eigen::Index>(i)) * unit(best.fitted, i);
-        EffectFit trial = at(within(effect_, moved));
-        improved = trial.sum_of_squares < best.sum_of_squares;
-        settled = improved && best.sum_of_squares - trial.sum_of_squares < 1e-4 * best.sum_of_squares + 0.1;
-        damping = improved ? std::max(damping / 5, 1e-6) : damping * 6;
-        if (improved) best = std::move(trial);
-      }
-      if (!improved || settled) break;
+    Eigen::MatrixXd jacobian(from.white.size(), n);
+    for (Eigen::Index k = 0; k < n; ++k) jacobian.col(k) = derivative(from, static_cast<std::size_t>(k));
+    return {jacobian.transpose() * from.white, jacobian.transpose() * jacobian};
+  }
+
+  [[nodiscard]] StepBounds bounds(const EffectFit& from) const {
+    const auto n = static_cast<Eigen::Index>(effect_.numbers.size());
+    StepBounds bounds{Eigen::VectorXd(n), Eigen::VectorXd(n)};
+    for (Eigen::Index k = 0; k < n; ++k) {
+      const auto i = static_cast<std::size_t>(k);
+      bounds.lower(k) = (effect_.numbers[i].lower - from.fitted.numbers[i]) / unit(from.fitted, i);
+      bounds.upper(k) = (effect_.numbers[i].upper - from.fitted.numbers[i]) / unit(from.fitted, i);
     }
-    return best;
+    return bounds;
+  }
+
+  [[nodiscard]] EffectFit moved(const EffectFit& from, const Eigen::VectorXd& step) const {
+    std::vector<double> numbers = from.fitted.numbers;
+    for (std::size_t i = 0; i < numbers.size(); ++i)
+      numbers[i] += step(static_cast<Eigen::Index>(i)) * unit(from.fitted, i);
+    return at(within(effect_, numbers));
   }
 
  private:
@@ -378,9 +387,9 @@ EffectFit fit_effect(const LaterReadings& readings, const Effect& effect,
   }
   std::sort(looks.begin(), looks.end(),
             [](const EffectFit& a, const EffectFit& b) { return a.sum_of_squares < b.sum_of_squares; });
-  EffectFit best = fit.descend(looks.front());
+  EffectFit best = fit.descended(looks.front());
   for (std::size_t i = 1; i < std::min(followed, looks.size()); ++i) {
-    EffectFit other = fit.descend(looks[i]);
+    EffectFit other = fit.descended(looks[i]);
     if (other.sum_of_squares < best.sum_of_squares) best = std::move(other);
   }
   return best;

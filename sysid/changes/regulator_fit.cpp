@@ -5,9 +5,9 @@
 
 #include <Eigen/Cholesky>
 
-#include "base/cancellation.h"
 #include "sysid/changes/bins.h"
 #include "sysid/changes/filter_bank.h"
+#include "sysid/fitting/descent.h"
 #include "sysid/logs/resampled_record.h"
 
 namespace softgrip::sysid {
@@ -17,6 +17,8 @@ constexpr Eigen::Index numbers = 8;
 constexpr int most_regulator_steps = 15;
 /// Difference for a derivative, and longest move of a step, both of the logarithms.
 constexpr double beside_by = 0.03, longest_move = 1.5;
+/// Bound of the logarithms: a factor of 400.
+constexpr double largest_logarithm = 6;
 constexpr double least_progress = 0.003;
 /// Penalty for a parameter that differs from its usual value by a factor of e, as a share of the residual
 /// squares: lags of the bank can replace a wide tube, and a parameter that the readings do not determine
@@ -25,7 +27,7 @@ constexpr double prior_share = 0.003;
 
 /// The search's numbers are logarithms, 0 where it starts.
 Regulator regulator_at(const Eigen::VectorXd& t, double largest_kpa) {
-  const auto times = [&](Eigen::Index i) { return std::exp(std::clamp(t(i), -6.0, 6.0)); };
+  const auto times = [&](Eigen::Index i) { return std::exp(t(i)); };
   return {0.002 * largest_kpa * times(0),
           0.01 * largest_kpa * times(1),
           0.2 * largest_kpa * times(2),
@@ -102,47 +104,64 @@ class BinnedReadings {
   std::size_t bins_ = 0;
 };
 
+/// The search for a regulator, as descend() needs it.
+class RegulatorSearch {
+ public:
+  struct Point {
+    Eigen::VectorXd t, left;  ///< residuals, and behind them the penalties
+  };
+
+  RegulatorSearch(const BinnedReadings& bank, double largest_kpa)
+      : bank_(bank),
+        largest_kpa_(largest_kpa),
+        price_(std::sqrt(prior_share) *
+               bank.left_by(regulator_at(Eigen::VectorXd::Zero(numbers), largest_kpa)).norm()) {}
+
+  [[nodiscard]] Point at(const Eigen::VectorXd& t) const {
+    const Eigen::VectorXd readings = bank_.left_by(regulator_at(t, largest_kpa_));
+    Point point{t, Eigen::VectorXd(readings.size() + numbers)};
+    point.left << readings, price_ * t;
+    return point;
+  }
+
+  [[nodiscard]] static double loss(const Point& point) { return point.left.squaredNorm(); }
+
+  [[nodiscard]] NormalEquations normal(const Point& point) const {
+    Eigen::MatrixXd jacobian(point.left.size(), numbers);
+    for (Eigen::Index k = 0; k < numbers; ++k) {
+      Eigen::VectorXd beside = point.t;
+      beside(k) += beside_by;
+      jacobian.col(k) = (at(beside).left - point.left) / beside_by;
+    }
+    return {jacobian.transpose() * point.left, jacobian.transpose() * jacobian};
+  }
+
+  [[nodiscard]] static StepBounds bounds(const Point& point) {
+    return {-largest_logarithm - point.t.array(), largest_logarithm - point.t.array()};
+  }
+
+  [[nodiscard]] Point moved(const Point& from, const Eigen::VectorXd& step) const {
+    return at(from.t + step);
+  }
+
+ private:
+  const BinnedReadings& bank_;
+  double largest_kpa_;
+  double price_;
+};
+
 }  // namespace
 
 Regulator fit_regulator(const std::vector<Record>& records, double largest_kpa, ReadBy read_by) {
   const BinnedReadings bank(records, largest_kpa, read_by);
-  Eigen::VectorXd at = Eigen::VectorXd::Zero(numbers);
-  const double price = std::sqrt(prior_share) * bank.left_by(regulator_at(at, largest_kpa)).norm();
-  const auto left_at = [&](const Eigen::VectorXd& t) {
-    const Eigen::VectorXd readings = bank.left_by(regulator_at(t, largest_kpa));
-    Eigen::VectorXd all(readings.size() + numbers);
-    all << readings, price * t;
-    return all;
-  };
-  Eigen::VectorXd left = left_at(at);
-  double damping = 1e-2;
-  for (int step = 0; step < most_regulator_steps; ++step) {
-    end_if_cancelled();
-    Eigen::MatrixXd jacobian(left.size(), numbers);
-    for (Eigen::Index k = 0; k < numbers; ++k) {
-      Eigen::VectorXd beside = at;
-      beside(k) += beside_by;
-      jacobian.col(k) = (left_at(beside) - left) / beside_by;
-    }
-    const Eigen::MatrixXd curvature = jacobian.transpose() * jacobian;
-    const Eigen::VectorXd gradient = jacobian.transpose() * left;
-    const double before = left.squaredNorm();
-    for (int attempt = 0; attempt < 4; ++attempt) {
-      Eigen::MatrixXd damped = curvature;
-      damped.diagonal().array() += damping * curvature.trace() / numbers;
-      const Eigen::VectorXd by = damped.ldlt().solve(gradient);
-      const Eigen::VectorXd moved = at - by.cwiseMax(-longest_move).cwiseMin(longest_move);
-      const Eigen::VectorXd trial = left_at(moved);
-      const bool better = trial.squaredNorm() < left.squaredNorm();
-      damping = better ? std::max(damping / 10, 1e-6) : damping * 8;
-      if (!better) continue;
-      at = moved;
-      left = trial;
-      break;
-    }
-    if (!(left.squaredNorm() < (1 - least_progress) * before)) break;
-  }
-  return regulator_at(at, largest_kpa);
+  RegulatorSearch search(bank, largest_kpa);
+  const auto end = descend(search, search.at(Eigen::VectorXd::Zero(numbers)),
+                           {.most_steps = most_regulator_steps,
+                            .most_trials = 4,
+                            .longest_step = longest_move,
+                            .least_share = least_progress,
+                            .least_damping = 1.0 / numbers});
+  return regulator_at(end.point.t, largest_kpa);
 }
 
 }  // namespace softgrip::sysid

@@ -5,8 +5,8 @@
 
 #include <Eigen/Cholesky>
 
-#include "base/cancellation.h"
 #include "sysid/fitting/bounded_solve.h"
+#include "sysid/fitting/descent.h"
 #include "sysid/fitting/separable_free_parts.h"
 
 namespace softgrip::sysid {
@@ -80,12 +80,12 @@ SeparableSearch::Linear SeparableSearch::project(const SeparablePoint& point) co
   return {solution.x, solution.at_bound, cost};
 }
 
-SeparableSearch::Normal SeparableSearch::normal(const SeparablePoint& point, const Linear& linear) const {
+NormalEquations SeparableSearch::normal(const SeparablePoint& point, const Linear& linear) const {
   const auto n = static_cast<Index>(lower_.size());
   const auto m = static_cast<Index>(coordinates_.size());
   MatrixXd linear_gram = MatrixXd::Zero(n, n);
   MatrixXd cross = MatrixXd::Zero(n, m);
-  Normal normal{VectorXd::Zero(m), MatrixXd::Zero(m, m)};
+  NormalEquations normal{VectorXd::Zero(m), MatrixXd::Zero(m, m)};
   for (std::size_t k = 0; k < records_.size(); ++k) {
     const SeparableColumns& c = records_[k].columns();
     GramSink sink(c.all() + 1);
@@ -121,57 +121,50 @@ SeparableSearch::Normal SeparableSearch::normal(const SeparablePoint& point, con
   return normal;
 }
 
-SearchResult SeparableSearch::run(const FitPoint& start, int most_iterations, double damping) const {
-  SeparablePoint point = to_separable(shape_, start);
-  VectorXd q = coordinates_of(point);
-  point = moved(std::move(point), q);
-  Linear linear = project(point);
-  set_linear(point, linear.values);
-  SearchResult result;
-  Normal normal = this->normal(point, linear);
-  const auto low = [&](Index i) { return coordinates_[static_cast<std::size_t>(i)].lower; };
-  const auto high = [&](Index i) { return coordinates_[static_cast<std::size_t>(i)].upper; };
-  while (result.iterations < most_iterations && !result.converged) {
-    end_if_cancelled();
-    ++result.iterations;
-    MatrixXd damped = normal.curvature;
-    VectorXd downhill = -normal.gradient;
-    for (Index i = 0; i < q.size(); ++i) {
-      // Held where it is: at a bound that the gradient pushes against.
-      const bool held = (q(i) <= low(i) && downhill(i) < 0) || (q(i) >= high(i) && downhill(i) > 0);
-      if (held) {
-        damped.row(i).setZero();
-        damped.col(i).setZero();
-        downhill(i) = 0;
-        damped(i, i) = 1;
-      } else {
-        damped(i, i) += damping * damped(i, i) + 1e-12 * normal.curvature.trace() + 1e-300;
-      }
-    }
-    VectorXd step = damped.ldlt().solve(downhill);
-    // More than a factor e^2 in a rate, or twice the whole range, is beyond what the slope can know.
-    const double longest = step.cwiseAbs().maxCoeff();
-    if (longest > 2) step *= 2 / longest;
-    VectorXd trial = q + step;
-    for (Index i = 0; i < q.size(); ++i) trial(i) = std::clamp(trial(i), low(i), high(i));
-    SeparablePoint trial_point = moved(point, trial);
-    Linear trial_linear = project(trial_point);
-    if (std::isfinite(trial_linear.cost) && trial_linear.cost < linear.cost) {
-      const double gained = (linear.cost - trial_linear.cost) / linear.cost;
-      set_linear(trial_point, trial_linear.values);
-      q = trial;
-      point = std::move(trial_point);
-      linear = std::move(trial_linear);
-      damping = std::max(damping / 8, 1e-12);
-      result.converged = gained < 1e-7;
-      if (!result.converged) normal = this->normal(point, linear);
-    } else {
-      damping *= 6;
-      result.converged = damping > 1e6 || step.cwiseAbs().maxCoeff() < 1e-9;
-    }
+/// The search from one start, as descend() needs it.
+struct SeparableSearch::Descending {
+  struct Point {
+    SeparablePoint point;
+    VectorXd q;
+    Linear linear;
+  };
+
+  const SeparableSearch& search;
+
+  [[nodiscard]] Point at(SeparablePoint from, VectorXd q) const {
+    Point point{search.moved(std::move(from), q), std::move(q), {}};
+    point.linear = search.project(point.point);
+    search.set_linear(point.point, point.linear.values);
+    return point;
   }
-  result.point = to_fit_point(start, point);
-  result.rmse_mm = std::sqrt(std::max(linear.cost, 0.0) / static_cast<double>(residual_count_));
+
+  [[nodiscard]] static double loss(const Point& at) { return at.linear.cost; }
+  [[nodiscard]] NormalEquations normal(const Point& at) const { return search.normal(at.point, at.linear); }
+  [[nodiscard]] StepBounds bounds(const Point& at) const {
+    StepBounds bounds{-at.q, -at.q};
+    for (Index i = 0; i < at.q.size(); ++i) {
+      bounds.lower(i) += search.coordinates_[static_cast<std::size_t>(i)].lower;
+      bounds.upper(i) += search.coordinates_[static_cast<std::size_t>(i)].upper;
+    }
+    return bounds;
+  }
+  [[nodiscard]] Point moved(const Point& from, const VectorXd& step) const {
+    return at(from.point, from.q + step);
+  }
+};
+
+SearchResult SeparableSearch::run(const FitPoint& start, int most_iterations, double damping) const {
+  const SeparablePoint point = to_separable(shape_, start);
+  const Descending problem{*this};
+  // More than a factor of e^2 in a rate, or twice the range, is beyond the validity of the derivatives.
+  const auto end = descend(problem, problem.at(point, coordinates_of(point)),
+                           {.most_steps = most_iterations,
+                            .most_trials = 12,
+                            .damping = damping,
+                            .longest_step = 2,
+                            .least_share = 1e-7});
+  SearchResult result{to_fit_point(start, end.point.point), 0, end.steps, end.converged};
+  result.rmse_mm = std::sqrt(std::max(end.point.linear.cost, 0.0) / static_cast<double>(residual_count_));
   return result;
 }
 

@@ -12,6 +12,7 @@
 
 #include <Eigen/Core>
 
+#include "sysid/fitting/descent.h"
 #include "sysid/fitting/fit_space.h"
 #include "sysid/fitting/separable.h"
 
@@ -56,11 +57,7 @@ class SeparableSearch {
     std::vector<bool> at_bound;
     double cost = 0;  ///< sum of squares [mm^2]
   };
-  /// Of the reduced problem.
-  struct Normal {
-    Eigen::VectorXd gradient;
-    Eigen::MatrixXd curvature;
-  };
+  struct Descending;
   struct FreeParts;
 
   SeparableSearch(const std::vector<Record>& records, const FitSpace& space, const SeparableShape& shape,
@@ -72,7 +69,8 @@ class SeparableSearch {
   [[nodiscard]] SeparablePoint moved(SeparablePoint point, const Eigen::VectorXd& q) const;
   void set_linear(SeparablePoint& point, const Eigen::VectorXd& values) const;
   [[nodiscard]] Linear project(const SeparablePoint& point) const;
-  [[nodiscard]] Normal normal(const SeparablePoint& point, const Linear& linear) const;
+  /// Of the reduced problem.
+  [[nodiscard]] NormalEquations normal(const SeparablePoint& point, const Linear& linear) const;
   [[nodiscard]] Eigen::MatrixXd coordinate_map(const SeparablePoint& point, std::size_t record) const;
   [[nodiscard]] FitPoint to_fit_point(FitPoint start, const SeparablePoint& point) const;
   /// Where the linear columns of a record stand among all linear parameters; -1: fixed.

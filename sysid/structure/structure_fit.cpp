@@ -6,11 +6,9 @@
 #include <limits>
 #include <utility>
 
-#include <Eigen/Cholesky>
-
-#include "base/cancellation.h"
 #include "base/parallel.h"
 #include "model/envelope_map.h"
+#include "sysid/fitting/descent.h"
 #include "sysid/fitting/score.h"
 #include "sysid/logs/resampled_record.h"
 #include "sysid/structure/structure_columns.h"
@@ -98,36 +96,64 @@ class Search {
     return state;
   }
 
-  State run(const NonlinearNumbers& start, bool& converged) {
-    State best = at(start);
-    double damping = 1e-2;
-    converged = coordinates_.empty();
-    for (int i = 0; i < options_.most_iterations && !converged; ++i) {
-      const Normal normal = normal_at(best);
-      bool improved = false;
-      for (int attempt = 0; attempt < 8; ++attempt) {
-        end_if_cancelled();
-        State trial = at(moved(best.numbers, step(normal, best.numbers, damping)), &best.projection.weights);
-        if (trial.value < best.value) {
-          converged = best.value - trial.value < 1e-5;
-          best = std::move(trial);
-          damping = std::max(damping / 5, 1e-7);
-          improved = true;
-          break;
-        }
-        damping *= 5;
+  [[nodiscard]] Descent<State> run(const NonlinearNumbers& start) {
+    return descend(*this, at(start),
+                   {.most_steps = options_.most_iterations, .most_trials = 8, .least_gain = 1e-5});
+  }
+
+  [[nodiscard]] static double loss(const State& state) { return state.value; }
+
+  [[nodiscard]] NormalEquations normal(const State& state) {
+    const auto n = static_cast<Eigen::Index>(coordinates_.size());
+    Eigen::MatrixXd jacobian(state.residual.size(), n);
+    NormalEquations normal;
+    // First those that leave the pressure in the finger where the last look has left it.
+    for (const bool drives : {false, true}) {
+      for (Eigen::Index k = 0; k < n; ++k) {
+        const Coordinate& c = coordinates_[static_cast<std::size_t>(k)];
+        if (c.drives != drives) continue;
+        const double t = c.get(state.numbers);
+        const double h = t + 1e-4 > c.upper ? -1e-4 : 1e-4;
+        NonlinearNumbers beside = state.numbers;
+        c.set(beside, t + h);
+        jacobian.col(k) = (at(beside, &state.projection.weights).residual - state.residual) / h;
       }
-      if (!improved) converged = true;
     }
-    return best;
+    const double sum = state.residual.squaredNorm();
+    normal.curvature = jacobian.transpose() * jacobian / sum;
+    normal.gradient = jacobian.transpose() * state.residual / sum;
+    for (Eigen::Index k = 0; k < n; ++k) {
+      const Coordinate& c = coordinates_[static_cast<std::size_t>(k)];
+      normal.curvature(k, k) += prior;
+      normal.gradient(k) += prior * (c.get(state.numbers) - c.centre);
+    }
+    return normal;
+  }
+
+  [[nodiscard]] StepBounds bounds(const State& state) const {
+    const auto n = static_cast<Eigen::Index>(coordinates_.size());
+    StepBounds bounds{Eigen::VectorXd(n), Eigen::VectorXd(n)};
+    for (Eigen::Index k = 0; k < n; ++k) {
+      const Coordinate& c = coordinates_[static_cast<std::size_t>(k)];
+      const double t = c.get(state.numbers);
+      // A logarithm of a bound is not exact.
+      bounds.lower(k) = t <= c.lower + 1e-9 ? 0 : c.lower - t;
+      bounds.upper(k) = t >= c.upper - 1e-9 ? 0 : c.upper - t;
+    }
+    return bounds;
+  }
+
+  [[nodiscard]] State moved(const State& from, const Eigen::VectorXd& step) {
+    NonlinearNumbers numbers = from.numbers;
+    for (std::size_t k = 0; k < coordinates_.size(); ++k) {
+      const Coordinate& c = coordinates_[k];
+      const double t = c.get(from.numbers) + step(static_cast<Eigen::Index>(k));
+      c.set(numbers, std::clamp(t, c.lower, c.upper));
+    }
+    return at(numbers, &from.projection.weights);
   }
 
  private:
-  struct Normal {
-    Eigen::MatrixXd curvature;
-    Eigen::VectorXd gradient;
-  };
-
   void add_driving(Coordinate coordinate) {
     coordinate.drives = true;
     coordinates_.push_back(std::move(coordinate));
@@ -180,62 +206,6 @@ class Search {
                               [=](N& n, double t) { n.peak_before_kpa[r] = t * width; }, first / width,
                               first / width, 1});
     }
-  }
-
-  Normal normal_at(const State& state) {
-    const auto n = static_cast<Eigen::Index>(coordinates_.size());
-    Eigen::MatrixXd jacobian(state.residual.size(), n);
-    Normal normal{Eigen::MatrixXd(n, n), Eigen::VectorXd(n)};
-    // First those that leave the pressure in the finger where the last look has left it.
-    for (const bool drives : {false, true}) {
-      for (Eigen::Index k = 0; k < n; ++k) {
-        const Coordinate& c = coordinates_[static_cast<std::size_t>(k)];
-        if (c.drives != drives) continue;
-        const double t = c.get(state.numbers);
-        const double h = t + 1e-4 > c.upper ? -1e-4 : 1e-4;
-        NonlinearNumbers beside = state.numbers;
-        c.set(beside, t + h);
-        jacobian.col(k) = (at(beside, &state.projection.weights).residual - state.residual) / h;
-      }
-    }
-    const double sum = state.residual.squaredNorm();
-    normal.curvature = jacobian.transpose() * jacobian / sum;
-    normal.gradient = jacobian.transpose() * state.residual / sum;
-    for (Eigen::Index k = 0; k < n; ++k) {
-      const Coordinate& c = coordinates_[static_cast<std::size_t>(k)];
-      normal.curvature(k, k) += prior;
-      normal.gradient(k) += prior * (c.get(state.numbers) - c.centre);
-    }
-    return normal;
-  }
-
-  Eigen::VectorXd step(const Normal& normal, const NonlinearNumbers& from, double damping) const {
-    Eigen::MatrixXd damped = normal.curvature;
-    damped.diagonal() *= 1 + damping;
-    Eigen::VectorXd gradient = normal.gradient;
-    // A number at its bound that would leave its range stays out of the step.
-    for (Eigen::Index k = 0; k < gradient.size(); ++k) {
-      const Coordinate& c = coordinates_[static_cast<std::size_t>(k)];
-      const double t = c.get(from);
-      const bool stuck = (t <= c.lower + 1e-9 && gradient(k) > 0) || (t >= c.upper - 1e-9 && gradient(k) < 0);
-      if (!stuck) continue;
-      const double keep = damped(k, k);
-      damped.row(k).setZero();
-      damped.col(k).setZero();
-      damped(k, k) = keep;
-      gradient(k) = 0;
-    }
-    return -damped.ldlt().solve(gradient);
-  }
-
-  [[nodiscard]] NonlinearNumbers moved(NonlinearNumbers numbers, const Eigen::VectorXd& by) const {
-    const NonlinearNumbers from = numbers;
-    for (std::size_t k = 0; k < coordinates_.size(); ++k) {
-      const Coordinate& c = coordinates_[k];
-      const double change = std::clamp(by(static_cast<Eigen::Index>(k)), -1.0, 1.0);
-      c.set(numbers, std::clamp(c.get(from) + change, c.lower, c.upper));
-    }
-    return numbers;
   }
 
   const std::vector<Record>& records_;
@@ -306,20 +276,16 @@ FittedStructure fit_form(const std::vector<Record>& records, const BaseStructure
   double best = std::numeric_limits<double>::infinity();
   const std::vector<NonlinearNumbers> starts =
       near != nullptr ? std::vector{*near} : starts_for(records, grid);
-  struct Run {
-    Search::State found;
-    bool converged = false;
-  };
-  std::vector<Run> runs(starts.size());
+  std::vector<Descent<Search::State>> runs(starts.size());
   parallel_for_idle(starts.size(), [&](std::size_t i) {
     NonlinearNumbers start = starts[i];
     if (!structure.delay) start.delay_s = 0;
     if (!structure.lag) start.filling_s = start.venting_s = 0;
     if (structure.second_lag && start.second_s == 0) start.second_s = start.filling_s / 2;
     Search look(few, structure, grid, options);
-    runs[i].found = look.run(start, runs[i].converged);
+    runs[i] = look.run(start);
   });
-  for (const auto& [found, converged] : runs) {
+  for (const auto& [found, steps, converged] : runs) {
     fit.start_rmse_mm.push_back(std::sqrt(found.projection.mean_square_mm2));
     if (!(found.value < best)) continue;
     best = found.value;

@@ -1,0 +1,86 @@
+#pragma once
+// The descent of all fits whose linear parameters are eliminated: damped Gauss-Newton steps (Levenberg 1944,
+// Marquardt 1963) within bounds. minimise() is for residuals that are kept whole.
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <Eigen/Core>
+
+#include "base/cancellation.h"
+
+namespace softgrip::sysid {
+
+/// Derivatives of half a loss by the coordinates of a search.
+struct NormalEquations {
+  Eigen::VectorXd gradient;
+  Eigen::MatrixXd curvature;  ///< Gauss-Newton matrix
+};
+
+/// Change of each coordinate that its bounds permit: lower <= 0 <= upper.
+struct StepBounds {
+  Eigen::VectorXd lower, upper;
+};
+
+struct DescentOptions {
+  int most_steps = 40;       ///< steps that reduce the loss
+  int most_trials = 8;       ///< of one step, each with more damping
+  double damping = 1e-2;     ///< of the first trial, as a share of the curvature
+  double longest_step = 1;   ///< largest change of a coordinate in one step
+  double least_share = 0;    ///< the descent ends after a step that reduces the loss by a smaller share
+  double least_gain = 0;     ///< and this much
+  double least_damping = 0;  ///< of a coordinate: a share of the sum of all curvatures, times the damping
+};
+
+/// End of a descent.
+template <class Point>
+struct Descent {
+  Point point;
+  int steps = 0;
+  bool converged = false;  ///< false if the number of steps ended it
+};
+
+/// One damped Gauss-Newton step. A coordinate at a bound that the gradient pushes against does not move.
+[[nodiscard]] Eigen::VectorXd damped_step(const NormalEquations& normal, const StepBounds& bounds,
+                                          double damping, const DescentOptions& options);
+
+/// Descends from a point to a minimum of the loss. `Problem` has the functions
+///   double loss(const Point&)                         infinity or NaN if the point is impossible
+///   NormalEquations normal(const Point&)
+///   StepBounds bounds(const Point&)
+///   Point moved(const Point&, const Eigen::VectorXd& step)
+/// Throws WorkCancelled if the computation is cancelled.
+template <class Problem, class Point>
+[[nodiscard]] Descent<Point> descend(Problem& problem, Point start, const DescentOptions& options) {
+  constexpr double more_damping = 6, less_damping = 1.0 / 6, weakest_damping = 1e-10;
+  Descent<Point> descent{std::move(start)};
+  double damping = options.damping;
+  double loss = problem.loss(descent.point);
+  StepBounds bounds = problem.bounds(descent.point);
+  descent.converged = bounds.lower.size() == 0;
+  while (descent.steps < options.most_steps && !descent.converged) {
+    const NormalEquations normal = problem.normal(descent.point);
+    double gain = 0;
+    for (int trial = 0; trial < options.most_trials && gain == 0; ++trial) {
+      end_if_cancelled();
+      Point moved = problem.moved(descent.point, damped_step(normal, bounds, damping, options));
+      const double moved_loss = problem.loss(moved);
+      if (!(moved_loss < loss)) {
+        damping *= more_damping;
+        continue;
+      }
+      gain = loss - moved_loss;
+      loss = moved_loss;
+      descent.point = std::move(moved);
+      bounds = problem.bounds(descent.point);
+      ++descent.steps;
+      damping = std::max(damping * less_damping, weakest_damping);
+    }
+    const double least = options.least_share * (loss + gain) + options.least_gain;
+    descent.converged = gain == 0 || (std::isfinite(gain) && gain < least);
+  }
+  return descent;
+}
+
+}  // namespace softgrip::sysid
