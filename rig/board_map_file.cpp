@@ -78,7 +78,7 @@ class BoardReader {
     return static_cast<drivers::WordOrder>(in.choice("word_order", names));
   }
 
-  /// The address on the wire of what the file calls `address`.
+  /// Returns the address on the wire that belongs to the key `address` of the file.
   std::uint16_t address(MapReader& in, std::int64_t registers) {
     const std::int64_t base = map_.address_base;
     const std::int64_t number = in.integer("address", base, base + last_address);
@@ -111,7 +111,7 @@ class BoardReader {
     const std::string key = "is" + std::string(suffix_of(block.unit));
     const std::vector<double> electrical = in.numbers(key, 2, {-1000, 1000});
     block.scaling = {raw[0], electrical[0], raw[1], electrical[1]};
-    // What was refused already is not complained of twice.
+    // The scaling points of a block with an error are not compared.
     if (problems_.size() != before || !in.has("at_raw") || !in.has(key)) return;
     if (raw[0] == raw[1]) in.report("at_raw", "the two scaling points must differ");
     if (electrical[0] == electrical[1]) in.report(key, "the two scaling points must differ");
@@ -198,7 +198,7 @@ class BoardReader {
     map_.read_back = block;
   }
 
-  /// `heartbeat`: it may have a second value.
+  /// Reads one write. If `heartbeat` is true, the write may have a second value.
   drivers::FixedWrite fixed_write(const Node& node, const std::string& what, bool heartbeat = false) {
     MapReader in(document_, node, problems_, what);
     drivers::FixedWrite write;
@@ -216,7 +216,8 @@ class BoardReader {
     return write;
   }
 
-  /// A number, or the mask of the functions that feed the watchdog, so that it cannot disagree with them.
+  /// Reads a number, or calculates the mask of the functions that feed the watchdog from the name of their
+  /// group.
   std::uint16_t value_of(MapReader& in, std::int64_t largest) {
     const Node* const node = in.child("value", true);
     if (node == nullptr) return 0;
@@ -264,7 +265,7 @@ class BoardReader {
     drivers::BoardWatchdog& watchdog = map_.watchdog;
     const std::size_t before = problems_.size();
     if (in.choice("kind", {"communication_timeout", "none"}) == 1) return;
-    // A misspelt kind: the other keys say whether it was to be a watchdog.
+    // The kind is misspelt. The other keys show whether the map describes a watchdog.
     if (problems_.size() != before && in.keys().size() <= 1) return;
     watchdog.kind = drivers::BoardWatchdog::Kind::communication_timeout;
     watchdog.timeout_s = in.number("timeout_s", {0.001, 3600});
@@ -285,7 +286,7 @@ class BoardReader {
     if (const Node* count = in.child("clients", false)) watchdog.clients = client_count(*count);
   }
 
-  /// The daemon sends nothing but what an exchange needs: one of those functions must be there.
+  /// The daemon sends only the requests of an exchange, so one of their functions must feed the watchdog.
   void feeding_functions(MapReader& in) {
     std::vector<std::uint8_t>& functions = map_.watchdog.functions;
     for (const Node* item : in.sequence("functions", true)) {
@@ -293,14 +294,14 @@ class BoardReader {
       if (code.has_value()) functions.push_back(static_cast<std::uint8_t>(*code));
     }
     const std::uint8_t used = map_.has_fc23 ? std::uint8_t{23} : map_.outputs.registers.function;
-    if (used < fc_write_register) return;  // reported where it stands
+    if (used < fc_write_register) return;  // the error has been reported at the outputs
     if (std::find(functions.begin(), functions.end(), used) == functions.end()) {
       in.report("functions",
                 "the outputs are written by function " + std::to_string(used) + ", which does not feed it");
     }
   }
 
-  /// What belongs to outputs or inputs needs them.
+  /// Reports keys of outputs or inputs in a board that has none.
   void check_directions(MapReader& in) {
     const auto needs = [&](std::string_view key, const std::string& direction) {
       if (in.has(key) && !in.has(direction)) {
@@ -327,7 +328,7 @@ class BoardReader {
     }
   }
 
-  /// A number that two requests read may be half of one moment and half of the next.
+  /// A number must be read by one request. Two requests could return its halves from different moments.
   void check_max_registers(MapReader& in) {
     if (!in.good("max_registers")) return;
     std::uint16_t least = 1;

@@ -1,5 +1,5 @@
 #pragma once
-// Board files: YAML to BoardMap. Strict; all problems at once.
+// Board files: reads YAML into a BoardMap. Unknown keys are errors, and all problems are reported together.
 
 #include <optional>
 #include <string>
@@ -9,11 +9,12 @@
 
 namespace softgrip::rig {
 
-/// Reads a board map out of a parsed document. All errors are added to `problems`; nothing is returned then.
+/// Reads a board map from a parsed document. Adds all errors to `problems`; returns nothing if there is an
+/// error.
 [[nodiscard]] std::optional<drivers::BoardMap> read_board_map(const document::Document& document,
                                                               document::Problems& problems);
 
-/// parse_file() and read_board_map().
+/// Calls parse_file() and read_board_map().
 [[nodiscard]] std::optional<drivers::BoardMap> load_board_map(const std::string& path,
                                                               document::Problems& problems);
 

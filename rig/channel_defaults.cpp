@@ -11,7 +11,7 @@ namespace {
 using document::Location;
 using document::Node;
 
-/// The place is one of a list's items, however deep.
+/// Returns true if the place belongs to an item of a list in `node`, at any depth.
 bool has_item_at(const Node& node, Location at) {
   const auto entry_at = [&](const Node::Entry& entry) {
     return entry.key_at == at || entry.value.at == at || has_item_at(entry.value, at);
@@ -23,8 +23,9 @@ bool has_item_at(const Node& node, Location at) {
   return std::any_of(node.items.begin(), node.items.end(), item_at);
 }
 
-/// What stands at a place is not judged again. An unknown key may have been meant for one that is missing
-/// now, so its map counts as cut short. True if the place is in the map.
+/// Marks the node at a place as refused, so that no further problem is reported there. An unknown key may be
+/// a misspelt key that is now missing, so its map is marked as incomplete. Returns true if the place is in
+/// the map.
 bool settle_in(Node& map, Location at) {
   const auto unknown = std::find_if(map.entries.begin(), map.entries.end(),
                                     [&](const Node::Entry& entry) { return entry.key_at == at; });

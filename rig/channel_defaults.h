@@ -1,5 +1,6 @@
 #pragma once
-// What the channels of a rig file share: the map `channel_defaults`. Internal to rig_file*.cpp.
+// Reads the map `channel_defaults` of a rig file: the keys that all channels share. Internal to
+// rig_file*.cpp.
 
 #include <cstddef>
 
@@ -7,22 +8,22 @@
 
 namespace softgrip::rig {
 
-/// The keys that a channel leaves out are taken from `channel_defaults`, map by map: `valve: {output: 0}` of
-/// a channel gets the scaling that stands in the `valve` of the defaults. A list is taken whole. Nodes keep
-/// their places, so what is wrong with a default is told where it stands, and told once.
+/// Takes the keys that a channel omits from `channel_defaults`, map by map: a channel with `valve: {output:
+/// 0}` gets the scaling of `valve` in the defaults. A list is not merged. Nodes keep their places in the
+/// file, so an error in a default is reported once, at the default.
 class ChannelDefaults {
  public:
-  /// Reports what cannot be shared: a name, and what is shared at the top of the file already.
+  /// Reports keys that cannot be defaults: a name, and keys that are shared at the top of the file.
   ChannelDefaults(Context& context, MapReader& top);
 
-  /// A channel with what it leaves out.
+  /// Returns the channel with the defaults of all keys that it omits.
   [[nodiscard]] document::Node completed(const document::Node& channel);
 
-  /// Defaults in which the problems behind the first `before` stand are not judged again for the next
-  /// channel.
+  /// Marks the defaults that have a problem with index `before` or above, so that they are not reported again
+  /// for the next channel.
   void settle(std::size_t before);
 
-  /// Some default is wrong: what follows from a channel as a whole is not known.
+  /// Returns true if a default has an error. Checks of a complete channel are then not possible.
   [[nodiscard]] bool spoiled() const noexcept { return spoiled_; }
 
  private:

@@ -20,7 +20,7 @@ namespace softgrip::rig {
 
 namespace {
 
-/// Keys by which a kind of file is known. `name` stands in all of them and tells nothing.
+/// Keys that identify a kind of file. All kinds have `name`, so it is not listed.
 struct Signature {
   FileKind kind;
   std::vector<std::string> keys;
@@ -42,7 +42,7 @@ const std::array<Signature, 6>& signatures() {
   return all;
 }
 
-/// How many keys of the document belong to a kind; a misspelt one counts half.
+/// Scores a document against one kind of file: 2 points for each key of the kind, 1 point for a misspelt key.
 std::size_t score(const document::Document& document, const Signature& signature) {
   std::size_t points = 0;
   for (const document::Node::Entry& entry : document.root.entries) {
@@ -63,19 +63,19 @@ void report_unknown(const document::Document& document, document::Problems& prob
       "`steps`"));
 }
 
-/// A rig and the document in which its places are.
+/// A rig, and the document that gives the places of its keys.
 struct ReadRig {
   document::Document document;
   RigReading reading;
 };
 
-/// What is kept of the files to be fitted to each other.
+/// The rigs and sequences that are checked against each other after all files are read.
 struct Read {
   std::vector<ReadRig> rigs;
   std::vector<control::Sequence> sequences;
 };
 
-/// `parsed`: the document is all that its file says.
+/// `parsed`: the document has no syntax error, so it contains the complete file.
 void read_as(const document::Document& document, bool parsed, std::span<const control::Argument> arguments,
              CheckedFile& file, document::Problems& problems, Read& read) {
   const auto keep_name = [&](const auto& value) {
@@ -112,7 +112,7 @@ void read_as(const document::Document& document, bool parsed, std::span<const co
   }
 }
 
-/// In the place of a channel whose motion could not be read: everything fits it.
+/// Replaces a channel whose motion could not be read. Its limits are so wide that each sequence fits it.
 control::ChannelSettings anything(const control::ChannelSettings& known) {
   constexpr double wide = 1e6;
   control::ChannelSettings channel;
@@ -156,7 +156,7 @@ struct Candidate {
   bool from_folder = false;
 };
 
-/// The files of a folder and below it, in the order of their names.
+/// Returns the files of a folder and of its subfolders in alphabetical order.
 std::vector<Candidate> files_below(const std::string& folder) {
   namespace fs = std::filesystem;
   std::vector<Candidate> found;
@@ -176,7 +176,7 @@ std::vector<Candidate> files_below(const std::string& folder) {
   return found;
 }
 
-/// Each file once.
+/// Returns the files to check, without repetition.
 std::vector<Candidate> candidates_of(std::span<const std::string> paths, document::Problems& problems) {
   std::vector<Candidate> all;
   const auto add = [&](const Candidate& one) {
@@ -222,7 +222,7 @@ FileKind kind_of(const document::Document& document, document::Problems& problem
       best_points = points;
     }
   }
-  // What could not be read to the end has its problem already.
+  // An incomplete document has a syntax error, which has been reported.
   if (best == FileKind::unknown && document.complete) report_unknown(document, problems);
   return best;
 }
@@ -246,7 +246,7 @@ CheckReport check_files(std::span<const std::string> paths, std::span<const cont
   report.has_rig = !read.rigs.empty();
   fit_sequences(read, problems);
   compare(read, problems);
-  // A model that two rigs name, or that is checked itself too, was read more than once.
+  // A model was read more than once if two rigs name it, or if it is also an argument.
   report.problems = problems.without_repeats();
   for (CheckedFile& file : report.files) {
     file.errors = count_of(report.problems.list(), file.path);

@@ -1,5 +1,5 @@
 #pragma once
-// Reading configuration files of any kind only to say what is wrong with them: `softgrip check FILE...`.
+// Reads configuration files of any kind and reports their errors: `softgrip check FILE...`.
 
 #include <cstdint>
 #include <span>
@@ -13,40 +13,41 @@
 namespace softgrip::rig {
 
 enum class FileKind : std::uint8_t { unknown, rig, board_map, model, sequence, plc, web };
-/// "rig", "board map", "model", "sequence", "PLC gateway", "page"; "unknown"
+/// Returns "rig", "board map", "model", "sequence", "PLC gateway", "page" or "unknown".
 [[nodiscard]] std::string_view name_of(FileKind kind) noexcept;
 
-/// What a document is, by the keys at its top; misspelt ones count too, but less. A document without any is a
-/// problem.
+/// Finds the kind of a document by the keys at its top. A misspelt key counts half. A document without any
+/// known key is reported as a problem.
 [[nodiscard]] FileKind kind_of(const document::Document& document, document::Problems& problems);
 
 /// One file that was checked.
 struct CheckedFile {
   std::string path;
   FileKind kind = FileKind::unknown;
-  std::string name;        ///< what it calls itself, or empty
+  std::string name;        ///< the value of its key `name`, or empty
   std::size_t errors = 0;  ///< in this file, not in those that it names
   std::size_t warnings = 0;
-  bool passed_over = false;  ///< found in a folder and of no kind
+  bool passed_over = false;  ///< found in a folder, and of no known kind
 };
 
-/// What check_files() found.
+/// The result of check_files().
 struct CheckReport {
   std::vector<CheckedFile> files;
-  /// Of all files and of those that they name, each once; format() prints them.
+  /// Problems of all files and of the files that they name, each problem once. format() prints them.
   document::Problems problems;
-  bool has_rig = false;  ///< sequences were fitted to something
+  bool has_rig = false;  ///< a rig was given, so the sequences were compared with it
 
-  /// No errors: exit code 0, else 3.
+  /// Returns true if there are no errors: exit code 0. Otherwise the exit code is 3.
   [[nodiscard]] bool accepted() const noexcept { return problems.empty(); }
 };
 
-/// Reads every file as what it is. When rigs and sequences are among them, each sequence is also fitted to
-/// each rig: names of channels, targets within limits, with its parameters at their defaults and at the ends
-/// of their ranges; to a rig with errors as far as it could be read. What is allowed but cannot be meant is
-/// warned of (rig/rig_comparison.h). `arguments` take the place of defaults in every sequence; each sequence
-/// must have them. Of a folder every file *.yaml and *.yml below it is read; those that are of no kind are
-/// left out of the problems. Names that begin with a dot are passed over.
+/// Reads each file as the kind that its keys show. If the files include rigs and sequences, each sequence is
+/// compared with each rig: names of channels, and targets within limits. Parameters have their defaults and
+/// the ends of their ranges. A rig with errors takes part as far as it could be read. Values that are
+/// permitted but implausible cause warnings (rig/rig_comparison.h). `arguments` replace the defaults in each
+/// sequence, and each sequence must have these parameters. In a folder, all files *.yaml and *.yml at any
+/// depth are read. Files of no known kind in a folder are not reported, and names that begin with a dot are
+/// skipped.
 [[nodiscard]] CheckReport check_files(std::span<const std::string> paths,
                                       std::span<const control::Argument> arguments = {});
 

@@ -1,5 +1,5 @@
 #pragma once
-// How keys of rig files and board maps end that are in V, mA or kPa.
+// Suffixes of keys in rig files and board maps whose values are in V, mA or kPa.
 
 #include <array>
 #include <string_view>

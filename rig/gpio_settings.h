@@ -1,5 +1,5 @@
 #pragma once
-// The `gpio` map of a rig file: which digital lines there are and what they mean.
+// The `gpio` map of a rig file: the digital lines and their functions.
 
 #include <vector>
 
@@ -9,13 +9,15 @@
 namespace softgrip::rig {
 
 struct GpioSettings {
-  /// An input counts as changed when it has been steady for so long [s].
+  /// An input counts as changed after it has been steady for this time [s].
   double debounce_s = 0;
-  /// The lines count as lost, and the loop as hung, when nothing was heard of them for so long [s].
+  /// Time without a message from the lines or the loop after which the lines count as lost, or the loop as
+  /// stalled [s].
   double stale_after_s = 0;
-  /// Longest pause between two looks at the levels [s]: what a lost edge can cost.
+  /// Longest interval between two reads of the levels [s]. A missed edge is detected after this time at the
+  /// latest.
   double look_interval_s = 0.005;
-  /// What the enable output does while a fault other than the emergency stop is latched.
+  /// The enable output is switched off while a fault other than the emergency stop is latched.
   bool enable_drops_on_fault = true;
   std::vector<drivers::GpioLineSettings> lines;  ///< at most one per role
   std::vector<document::Problem> places;         ///< of each line in the rig file, without a message

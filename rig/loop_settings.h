@@ -9,41 +9,41 @@
 
 namespace softgrip::rig {
 
-/// The rate itself stands in control::RigSettings: one number for controller and loop.
+/// The rate is in control::RigSettings, because the controller and the loop share it.
 ///
 ///   tick k                        tick k+1
 ///   |-- loop computes --|         |
 ///   |<-- bus_offset -->|-- exchange --|
 ///
-/// The loop never wakes the bus thread (that would be a system call in a tick): each sleeps on its own
-/// absolute grid of the same period, the bus thread's `bus_offset` behind. A command therefore reaches the
-/// board bus_offset plus the outward half of an exchange after its tick, and a reading is period - bus_offset
-/// old when the next tick uses it.
+/// The loop never wakes the bus thread, because that would need a system call in a tick. Each thread has a
+/// periodic schedule of the same period with absolute times. The bus thread runs `bus_offset` later than the
+/// loop. A command therefore reaches the board bus_offset plus half an exchange after its tick. A reading has
+/// the age period - bus_offset when the next tick uses it.
 struct LoopSettings {
-  /// Fraction of the period by which the bus thread's grid lags the loop's, above 0 and below 1.
+  /// Delay of the bus thread's schedule after the loop's, as a fraction of the period; above 0 and below 1.
   double bus_offset_fraction = 0.25;
-  /// Longest duration of one exchange [s]; a slower board is a timeout and its session is rebuilt. It may be
-  /// longer than the period: an exchange that overruns its grid is a slip of the bus, the readings get older,
-  /// and the controller judges their age.
+  /// Longest duration of one exchange [s]. If the board is slower, the exchange times out and the session is
+  /// opened again. The duration may exceed the period: such an exchange is an overrun of the bus thread. The
+  /// readings are then older, and the controller checks their age.
   double exchange_deadline_s = 0.05;
-  /// Exchanges without a new command from the loop after which the bus thread writes the safe outputs by
-  /// itself.
+  /// Number of exchanges without a new command from the loop after which the bus thread writes the safe
+  /// outputs.
   std::uint32_t max_missed_commands = 10;
 };
 
-/// A gap between exchanges that comes so close to the time of the board's watchdog counts as one that has
-/// reached it: an exchange may take until its deadline to reach the board. At most half of the watchdog's
-/// time.
+/// Returns the margin below the board's watchdog time [ns]. A gap between exchanges that is longer than
+/// watchdog time minus margin counts as one that has tripped the watchdog, because a request may reach the
+/// board as late as its deadline. The margin is at most half of the watchdog time.
 [[nodiscard]] inline std::chrono::nanoseconds watchdog_margin(const LoopSettings& loop,
                                                               std::chrono::nanoseconds watchdog) noexcept {
   return std::min(std::chrono::nanoseconds(nanoseconds(loop.exchange_deadline_s)), watchdog / 2);
 }
 
-/// Rebuilding a lost session, in the bus thread.
+/// Timing of the attempts of the bus thread to open a lost session again.
 struct ReconnectSettings {
   std::chrono::nanoseconds connect_deadline = std::chrono::milliseconds(500);
   std::chrono::nanoseconds first_pause = std::chrono::milliseconds(100);
-  /// The pause doubles after each failed attempt up to this.
+  /// The pause doubles after each failed attempt, up to this value.
   std::chrono::nanoseconds longest_pause = std::chrono::seconds(5);
 };
 

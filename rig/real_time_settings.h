@@ -1,5 +1,5 @@
 #pragma once
-// What the operating system is asked for so that the loop wakes in time; the `real_time` map of a rig file.
+// Real-time settings that are requested from the operating system; the `real_time` map of a rig file.
 
 #include <cstddef>
 #include <optional>
@@ -8,21 +8,23 @@
 namespace softgrip::rig {
 
 struct RealTimeSettings {
-  /// Refuse to start (exit code 1) if any step asked for below cannot be verified. With false the daemon
-  /// starts, says which step failed, why, and what it costs.
+  /// If true, the daemon refuses to start (exit code 1) if a setting below cannot be verified. If false, it
+  /// starts and reports the setting that failed, the reason and the consequence.
   bool required = false;
-  /// SCHED_FIFO priority of the loop thread, 1 to 80 (above that live kernel threads that the loop itself
-  /// depends on); 0: ordinary scheduling. The bus thread runs one below.
+  /// SCHED_FIFO priority of the loop thread, 1 to 80; 0: ordinary scheduling. Kernel threads that the loop
+  /// depends on have priorities above 80. The priority of the bus thread is 1 lower.
   int priority = 70;
-  /// mlockall(current and future), no trimming of the heap, no mmap for large blocks.
+  /// Calls mlockall() for current and future pages. The heap is not trimmed and large blocks do not use
+  /// mmap().
   bool lock_memory = true;
-  /// Stack touched before the first tick, of every real-time thread [bytes].
+  /// Stack that each real-time thread writes to before the first tick [bytes].
   std::size_t prefault_stack_bytes = 256 * 1024;
-  /// Heap touched and given back to the allocator before the first tick [bytes].
+  /// Heap that is written to and freed before the first tick [bytes].
   std::size_t prefault_heap_bytes = 8 * 1024 * 1024;
-  /// Longest wake-up from a processor's sleep state, written to /dev/cpu_dma_latency [us]; absent: not asked.
+  /// Longest wake-up latency from a sleep state of the processor, written to /dev/cpu_dma_latency [us];
+  /// absent: not set.
   std::optional<int> cpu_dma_latency_us = 0;
-  /// Processors the loop and bus threads may run on; empty: any.
+  /// Processors on which the loop and bus threads may run; empty: all.
   std::vector<int> cpus;
 };
 

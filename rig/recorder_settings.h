@@ -1,5 +1,5 @@
 #pragma once
-// What is recorded, where, and how often it reaches the disk; the `recorder` map of a rig file.
+// Contents, folder and write intervals of recordings; the `recorder` map of a rig file.
 
 #include <cstdint>
 #include <string>
@@ -15,13 +15,16 @@ struct RecorderSettings {
   Mode mode = Mode::sequences;
   /// Folder in which run folders are created.
   std::string directory = "/var/lib/softgrip/runs";
-  /// Every how many ticks a row is recorded, at least 1.
+  /// A row is recorded every `decimation` ticks, at least 1.
   std::uint32_t decimation = 1;
-  /// Rows reach the kernel (write) at least this often: what `kill -9` can lose. Above 0, at most 0.5 s.
+  /// Longest interval between writes to the kernel [s], above 0 and at most 0.5. `kill -9` loses the rows of
+  /// this time.
   double flush_interval_s = 0.1;
-  /// Rows reach the disk (fdatasync) this often: what a power failure can lose. 0: left to the kernel.
+  /// Interval between writes to the disk (fdatasync) [s]. A power failure loses the rows of this time. 0:
+  /// kernel decides.
   double sync_interval_s = 5;
-  /// Rows kept in memory before a recording starts, so that a fault has its last second attached [s].
+  /// Duration of the rows in memory before a recording starts [s]. They are added to the recording of a
+  /// fault.
   double history_s = 1;
 };
 

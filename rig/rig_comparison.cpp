@@ -17,9 +17,9 @@ namespace {
 using document::Location;
 using document::Node;
 
-/// A part squeezed hard needs more pressure than the free finger within its range, but not so much more.
+/// Gripping a part needs more pressure than the free finger within its range, but at most this factor more.
 constexpr double most_times_too_far = 2;
-/// A finger that loses its part springs faster than its valve moves it, but not so much faster.
+/// A finger that loses its part moves faster than its valve alone would move it, but at most by this factor.
 constexpr double most_times_too_fast = 10;
 
 const Node* channel_node(const document::Document& document, std::size_t channel) {
@@ -27,7 +27,7 @@ const Node* channel_node(const document::Document& document, std::size_t channel
   return channels != nullptr && channel < channels->items.size() ? &channels->items[channel] : nullptr;
 }
 
-/// Where a key of a channel stands: in the channel, or in what all channels share.
+/// Returns the place of a channel's key: in the channel, in `channel_defaults`, or at the top of the file.
 Location place_of(const document::Document& document, std::size_t channel, std::string_view map,
                   std::string_view key) {
   const Node* const own = channel_node(document, channel);
@@ -39,7 +39,7 @@ Location place_of(const document::Document& document, std::size_t channel, std::
   return own != nullptr ? own->at : document.root.at;
 }
 
-/// Two digits are enough of what is only suggested.
+/// Writes a suggested value with 2 significant digits.
 std::string about(double value) {
   if (value == 0) return "0";
   const double unit = std::pow(10, std::floor(std::log10(std::abs(value))) - 1);
@@ -87,7 +87,7 @@ void compare_speed(const document::Document& document, const control::ChannelSet
                                      " leaves room for a finger that loses its part"));
 }
 
-/// What would make a burst line seen.
+/// Returns the change of the rig file or of the wiring that makes a burst line detectable.
 std::string remedy(const RigFile& rig, std::size_t channel) {
   if (!rig.settings.channels[channel].pressure_measured) {
     return "wire the valve's monitor output, or a pressure sensor, and give the channel a `pressure_monitor`";

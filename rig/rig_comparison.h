@@ -1,5 +1,5 @@
 #pragma once
-// What in a rig file is allowed, and yet cannot be meant: limits compared with each other and with the model.
+// Warns of values in a rig file that are permitted but implausible, by comparing limits and model.
 
 #include <cstddef>
 
@@ -9,18 +9,19 @@
 
 namespace softgrip::rig {
 
-/// Warns, at the key that should be another and with what to write there, of
-/// - a highest pressure at which the model's free finger goes twice as far as it may;
-/// - a speed of a believable reading that is ten times what the model's finger can do within its slew limits;
-/// - a finger whose burst line nobody would see: no pressure monitor, or one that is not compared.
-/// Steps the models for some seconds of their time. `document` is the one that `rig` was read from.
+/// Adds a warning with a proposed value, at the key that should change, in these cases:
+/// - the highest pressure moves the model's free finger to at least twice its displacement limit;
+/// - a plausible reading may have at least ten times the speed of the model within its slew limits;
+/// - a burst line would not be detected: no pressure monitor, or no comparison of pressure and command.
+///
+/// Simulates each model for several seconds of model time. `document` is the source of `rig`.
 void compare_limits(const document::Document& document, const RigFile& rig, document::Problems& problems);
 
-/// True if a burst line or a lost supply on this channel would be a fault.
+/// Returns true if a burst line or a lost supply on this channel would be a fault.
 [[nodiscard]] bool sees_burst_line(const RigFile& rig, std::size_t channel);
 
-/// Warns, at its step, of a grip that answers HOLDING by the displacement of a finger whose burst line nobody
-/// would see. Once for a sequence.
+/// Adds a warning at the first grip step that would report HOLDING by displacement although a burst line of
+/// the finger is not detectable. At most one warning per sequence.
 void compare_grips(const control::Sequence& sequence, const RigFile& rig, document::Problems& problems);
 
 }  // namespace softgrip::rig

@@ -16,7 +16,7 @@ namespace softgrip::rig {
 
 namespace {
 
-/// The file in the same folder whose name is nearest to a path that does not exist.
+/// Returns the file in the same folder whose name is most similar to a path that does not exist.
 std::string nearest_file(const std::string& named, const std::string& path) {
   const std::filesystem::path wanted(path);
   std::error_code error;
@@ -30,14 +30,14 @@ std::string nearest_file(const std::string& named, const std::string& path) {
   return near.empty() ? std::string{} : std::filesystem::path(named).replace_filename(near).string();
 }
 
-/// Why a file cannot be read, as errno; 0: it can.
+/// Returns the errno of an attempt to read a file; 0 if it is readable.
 int reading_error(const std::string& path) {
   if (::access(path.c_str(), R_OK) != 0) return errno;
   std::error_code error;
   return std::filesystem::is_directory(path, error) ? EISDIR : 0;
 }
 
-/// The text of a file that was stored, or null.
+/// Returns the text of a stored file, or null.
 const std::string* stored_text(const std::vector<InputFile>& stored, const std::string& path) {
   const auto found =
       std::find_if(stored.begin(), stored.end(), [&](const InputFile& file) { return file.path == path; });
@@ -55,7 +55,8 @@ void remember(Context& context, InputFile::Role role, const document::Document& 
 struct BoardKind {
   const char* key;
   void (*read)(Context& context, const document::Node& node);
-  bool after_channels;  ///< the simulated one needs them; of the others they need the terminals
+  bool after_channels;  ///< the simulated board needs the channels; channels of other boards need the board's
+                        ///< terminals
 };
 constexpr std::array<BoardKind, 4> board_kinds{
     BoardKind{"simulated", read_simulated_board, true}, BoardKind{"modbus_tcp", read_modbus_tcp, false},
@@ -94,7 +95,7 @@ void read_board_and_channels(Context& context, MapReader& top) {
   if (kind != nullptr && kind->after_channels) read_board();
 }
 
-/// Reads a map of the file; says whether it is there and without an error.
+/// Reads a map of the file. Returns true if the map is present and has no error.
 bool reads_well(Context& context, MapReader& top, std::string_view key,
                 void (*read)(Context& context, MapReader& top)) {
   const std::size_t before = context.problems.size();
@@ -102,7 +103,7 @@ bool reads_well(Context& context, MapReader& top, std::string_view key,
   return top.good(key) && context.problems.size() == before;
 }
 
-/// All channels have names by which a sequence can call them.
+/// Returns true if all channels have names, so that sequences can refer to them.
 bool all_named(const Context& context) {
   const auto& channels = context.rig.settings.channels;
   return !channels.empty() && context.names.size() == channels.size();

@@ -1,4 +1,4 @@
-// What only the whole rig shows.
+// Checks that need the complete rig.
 
 #include <algorithm>
 #include <chrono>
@@ -12,7 +12,8 @@ namespace softgrip::rig {
 
 namespace {
 
-/// Modbus: what the watchdog of the board makes a channel's valve control; nothing if it has none.
+/// Modbus: returns the pressure of a channel's valve after the watchdog of the board has tripped; nothing
+/// without a watchdog.
 std::optional<double> safe_value_kpa(const drivers::OutputWiring& valve, const ValveFacts& facts,
                                      const drivers::ModbusSettings& board) {
   if (valve.module >= board.modules.size()) return std::nullopt;
@@ -23,8 +24,8 @@ std::optional<double> safe_value_kpa(const drivers::OutputWiring& valve, const V
   return std::clamp(asked_kpa, facts.range_min_kpa, facts.range_max_kpa);
 }
 
-/// Modbus: why not every channel goes to its rest pressure by itself; nothing: each does. Empty: the board
-/// has no watchdog.
+/// Modbus: returns the reason why the watchdog does not put each channel to its rest pressure; nothing if it
+/// does. The reason is empty if a board has no watchdog.
 std::optional<std::string> stays_away(const Context& context, const drivers::ModbusSettings& board) {
   for (std::size_t i = 0; i < context.wiring.size(); ++i) {
     const std::optional<double> safe_kpa =
@@ -38,7 +39,8 @@ std::optional<std::string> stays_away(const Context& context, const drivers::Mod
   return std::nullopt;
 }
 
-/// Converters: the circuit behind the heartbeat takes the supply of the valves away.
+/// Converters: returns true if all channels reach rest when the circuit behind the heartbeat switches off the
+/// valves.
 bool heartbeat_vents(const Context& context, const drivers::IioSettings& board) {
   for (std::size_t i = 0; i < context.wiring.size(); ++i) {
     const ValveFacts& valve = context.rig.valves[i];
@@ -64,7 +66,8 @@ void check_watchdog(Context& context, MapReader& top) {
       "to accept it, write under `safety`: accept_no_watchdog: \"" + std::string(no_watchdog_words) + "\"");
 }
 
-/// When the first output in use is put to its safe value by a board that nobody talks to [s]; 0: never.
+/// Returns the time without messages after which the board sets the first used output to its safe value [s];
+/// 0: never.
 double watchdog_time_s(const Context& context) {
   if (const auto* modbus = std::get_if<drivers::ModbusSettings>(&context.rig.board)) {
     return seconds(drivers::ModbusBoard(*modbus).watchdog_time().count());
@@ -75,8 +78,9 @@ double watchdog_time_s(const Context& context) {
   return simulated != nullptr ? simulated->watchdog_timeout_s : 0;
 }
 
-/// As long as a gap of the bus is no fault, the sequence goes on behind it: from where the outputs no longer
-/// are, if the board has vented meanwhile.
+/// A sequence continues after a gap of the bus that is too short for a fault. If the board has vented in the
+/// gap, the sequence would continue from outputs that no longer exist. So the fault must come before the
+/// watchdog.
 void check_watchdog_time(Context& context, MapReader& top) {
   const double timeout_s = watchdog_time_s(context);
   const std::chrono::nanoseconds timeout(nanoseconds(timeout_s));
@@ -95,8 +99,8 @@ void check_watchdog_time(Context& context, MapReader& top) {
   }
 }
 
-/// The round trip of a network is an assumption until it is measured: whoever knows better says so. The time
-/// of bytes on a serial line is not: a deadline shorter than that is never met.
+/// The round trip of a network is an estimate, so a user with better knowledge may accept the rate. The
+/// transmission time on a serial line is exact, so a shorter deadline is never met.
 void check_budget(Context& context, MapReader& top) {
   const auto* const settings = std::get_if<drivers::ModbusSettings>(&context.rig.board);
   if (settings == nullptr) return;
@@ -115,7 +119,7 @@ void check_budget(Context& context, MapReader& top) {
           context.board_key + "`");
 }
 
-/// True if the board can be made as it is wired.
+/// Returns true if the board can be created with this wiring.
 bool check_wiring(Context& context, MapReader& top) {
   const std::size_t before = context.problems.size();
   if (auto* const modbus = std::get_if<drivers::ModbusSettings>(&context.rig.board)) {

@@ -14,7 +14,7 @@ using drivers::GpioBias;
 using drivers::GpioLineSettings;
 using drivers::GpioRole;
 
-/// The kernel's names of lines have room for 31 bytes.
+/// The kernel's names of lines have at most 31 bytes.
 constexpr std::size_t longest_name = 31;
 
 std::string read_line_name(MapReader& reader) {
@@ -24,8 +24,8 @@ std::string read_line_name(MapReader& reader) {
   return text.value_or("");
 }
 
-/// A word that fits two chips of this computer would let their order decide. One that fits none may be right
-/// on the computer of the rig.
+/// Reports a word that matches two chips of this computer, because their order would decide. A word that
+/// matches no chip is accepted: it may be right on the computer of the rig.
 std::string read_chip(MapReader& reader, const std::vector<ComputerDevice>& there) {
   std::string chip = reader.text("chip");
   const auto found = only_device(there, chip, "GPIO chip");
@@ -47,7 +47,7 @@ void read_which_line(MapReader& reader, GpioLineSettings& line, const std::vecto
   }
 }
 
-/// A wire that breaks leaves the input to the chip's resistor: then it must not look as if all were well.
+/// If a wire breaks, the chip's resistor sets the level of the input. This level must not be the safe one.
 void check_broken_wire(MapReader& reader, const GpioLineSettings& line) {
   if (line.bias != GpioBias::pull_up && line.bias != GpioBias::pull_down) return;
   const bool open_is_active = (line.bias == GpioBias::pull_up) != line.active_low;
@@ -59,7 +59,7 @@ void check_broken_wire(MapReader& reader, const GpioLineSettings& line) {
               "with this `active`, use the other pull, and a contact that is closed while all is well");
 }
 
-/// `there`: the chips of this computer.
+/// `there` contains the chips of this computer.
 void read_line(Context& context, MapReader& gpio, const std::vector<ComputerDevice>& there, GpioRole role) {
   const std::string name(drivers::name_of(role));
   const Node* const node = gpio.child(name, false);
@@ -101,7 +101,7 @@ void read_gpio(Context& context, MapReader& top) {
   if (const auto interval = reader.optional_number("look_interval_s", {0.001, 0.1})) {
     settings.look_interval_s = *interval;
   }
-  // A stored rig is read where it may not be driven.
+  // A stored rig may be read on a computer without the rig's devices.
   const auto there = context.stored == nullptr ? drivers::chips_in() : std::vector<ComputerDevice>{};
   for (std::size_t i = 0; i < drivers::gpio_role_count; ++i)
     read_line(context, reader, there, static_cast<GpioRole>(i));

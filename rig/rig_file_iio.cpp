@@ -1,4 +1,4 @@
-// The board of a rig file that is made of converters on this computer (industrial I/O).
+// Reads the board of a rig file that consists of converters of this computer (industrial I/O).
 
 #include <cmath>
 
@@ -13,7 +13,7 @@ using document::Node;
 
 constexpr std::int64_t largest_raw = (std::int64_t{1} << 24) - 1;
 
-/// Reads the terminals; each is another channel or another converter.
+/// Reads the terminals. Each must be a different channel of a converter.
 class TerminalsReader {
  public:
   TerminalsReader(Context& context, const std::vector<ComputerDevice>& there)
@@ -38,7 +38,7 @@ class TerminalsReader {
     return terminals;
   }
 
-  /// After outputs(): it is none of them.
+  /// Called after outputs(), because the heartbeat must not be one of the outputs.
   std::optional<drivers::IioHeartbeat> heartbeat(MapReader& iio) {
     const Node* const node = iio.child("heartbeat", false);
     if (node == nullptr) return std::nullopt;
@@ -79,8 +79,8 @@ class TerminalsReader {
                       "_voltage0_raw is voltage0");
   }
 
-  /// A word that fits two converters of this computer would let their order decide. One that fits none may be
-  /// right on the computer of the rig.
+  /// Reports a word that matches two converters of this computer, because their order would decide. A word
+  /// that matches no converter is accepted: it may be right on the computer of the rig.
   void check_device(MapReader& reader, const drivers::IioTerminal& terminal, Known& known) const {
     if (!reader.good("device") || !reader.good("channel")) return;
     const auto device = only_device(there_, terminal.device, "converter");
@@ -109,7 +109,7 @@ void read_iio(Context& context, const Node& node) {
   MapReader reader(context.document, node, context.problems, "iio");
   drivers::IioSettings settings;
   settings.root = reader.optional_text("root").value_or(settings.root);
-  // A stored rig is read where it may not be driven.
+  // A stored rig may be read on a computer without the rig's devices.
   const auto there =
       context.stored == nullptr ? drivers::converters_in(settings.root) : std::vector<ComputerDevice>{};
   TerminalsReader terminals(context, there);

@@ -1,4 +1,4 @@
-// The board of a rig file on Modbus: modules at network hosts, or on a serial line.
+// Reads a Modbus board of a rig file: modules at network hosts, or on a serial line.
 
 #include <arpa/inet.h>
 
@@ -22,12 +22,13 @@ using drivers::ModbusModuleSettings;
 using drivers::ModbusSettings;
 
 constexpr int largest_tcp_unit = 255;
-// 0 is the broadcast, which nobody answers; 248 to 255 are reserved (Modbus over Serial Line V1.02, 2.2).
+// 0 is the broadcast address, to which no module responds; 248 to 255 are reserved (Modbus over Serial Line
+// V1.02, 2.2).
 constexpr int largest_rtu_unit = 247;
-/// An adapter that holds answers back longer than this is told of.
+/// An adapter that delays responses by more than this time causes a warning [s].
 constexpr double usual_latency_s = 0.0015;
 
-/// A numeric address: names would have to be resolved, which takes as long as it takes.
+/// Reads a numeric address. The time to resolve a name would not be bounded.
 std::string read_host(MapReader& reader) {
   std::string host = reader.text("host");
   std::array<unsigned char, sizeof(in6_addr)> address{};
@@ -49,7 +50,8 @@ std::optional<drivers::BoardMap> read_map(Context& context, MapReader& reader) {
   return map;
 }
 
-/// Reads the settings of the session beyond the specification. The deadlines are read later.
+/// Reads the settings of the session beyond the specification. They are compared with the deadlines after
+/// those are read.
 drivers::LinkHabits read_habits(Context& context, MapReader& reader) {
   drivers::LinkHabits habits;
   habits.settle_s = reader.optional_number("settle_s", {0, 30}).value_or(0);
@@ -80,7 +82,7 @@ void check_waits(Context& context) {
   }
 }
 
-/// Reads the acceptance of answers without a transaction id. The user must state the risk.
+/// Reads the acceptance of responses without a transaction id. The user must state the risk.
 void read_numbering(MapReader& reader, drivers::TcpAddress& address) {
   constexpr std::string_view key = "accept_no_transaction_id";
   constexpr std::string_view words = "a late answer may pass for the answer to a later request";
@@ -98,8 +100,8 @@ void read_framing(MapReader& reader, drivers::TcpAddress& address) {
   address.silence_s = reader.optional_number("silence_s", {0, 1}).value_or(address.silence_s);
 }
 
-/// The modules of a board: `map` and `unit` (on a network `host` and `port` too) beside the other keys for a
-/// single one, or a list under `modules`, each with a name.
+/// Reads the modules of a board. A single one has `map` and `unit` beside the other keys, on a network also
+/// `host` and `port`. Several are in a list under `modules`, each with a name.
 class ModulesReader {
  public:
   ModulesReader(Context& context, ModbusSettings& settings, bool serial)
@@ -160,7 +162,7 @@ class ModulesReader {
     return address;
   }
 
-  /// Modules behind one address share a session, and so what the session needs.
+  /// Modules at one host and port share a session, so they must state the same settings of the session.
   std::size_t link_of(MapReader& reader, const drivers::TcpAddress& address) {
     auto& links = settings_.links;
     for (std::size_t link = 0; link < links.size(); ++link) {
@@ -190,22 +192,22 @@ void read_format(MapReader& reader, drivers::SerialLine& line) {
   (void)drivers::set_format(texts[reader.choice("format", texts)], line);
 }
 
-/// Names that the kernel gives in the order of plugging in.
+/// Warns of device names that the kernel assigns in the order in which adapters are connected.
 void advise_on_name(MapReader& reader, const std::string& device) {
   if (device.rfind("/dev/ttyUSB", 0) != 0 && device.rfind("/dev/ttyACM", 0) != 0) return;
   reader.warn("device", document::in_backticks(device) + " may be another adapter after the next start",
               "use the adapter's own name, see: ls -l /dev/serial/by-id");
 }
 
-/// A name of two adapters would let the one that came last decide. A name that is not there may be right on
-/// the computer of the rig.
+/// Reports a name that two adapters have, because the adapter connected last would be used. A missing name is
+/// accepted: it may be right on the computer of the rig.
 void check_device(MapReader& reader, const std::string& device) {
   if (!reader.good("device")) return;
   const auto unclear = drivers::unclear_serial_device(device);
   if (unclear && unclear->several) reader.report("device", unclear->message, unclear->hint);
 }
 
-/// What the file says, else what the kernel says of the adapter that is plugged in now.
+/// Uses the latency in the file; without it, the latency that the kernel reports for the connected adapter.
 void read_adapter_latency(MapReader& reader, drivers::SerialLine& line) {
   const auto stated = reader.optional_number("adapter_latency_s", {0, 1});
   const auto found = drivers::adapter_latency(line.device);
@@ -224,7 +226,7 @@ drivers::SerialLine read_line(Context& context, MapReader& reader) {
     reader.report("device",
                   "`device` must be an absolute path, found `" + document::shown(line.device) + "`");
   }
-  // A stored rig is read where it may not be driven.
+  // A stored rig may be read on a computer without the rig's devices.
   if (context.stored == nullptr) check_device(reader, line.device);
   line.baud = static_cast<std::uint32_t>(reader.integer("baud", baud_rates.front(), baud_rates.back()));
   if (reader.good("baud") && std::find(baud_rates.begin(), baud_rates.end(), line.baud) == baud_rates.end()) {

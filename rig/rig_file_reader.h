@@ -1,5 +1,5 @@
 #pragma once
-// The parts that read_rig() is made of; each reads one map of a rig file. Internal to rig_file*.cpp.
+// Functions that read_rig() calls. Each reads one map of a rig file. Internal to rig_file*.cpp.
 
 #include <map>
 #include <optional>
@@ -14,32 +14,32 @@ namespace softgrip::rig {
 
 using document::MapReader;
 
-/// A module of the board, as far as it could be read.
+/// The readable part of a module of the board.
 struct KnownModule {
   std::string name;
   std::optional<drivers::ModuleTerminals> terminals;
 };
-/// A terminal of a module.
+/// Places of the terminals that are in use, by module and number.
 using UsedTerminals = std::map<std::pair<std::size_t, std::size_t>, document::Location>;
 
-/// What is carried along while a rig file is read.
+/// State that the functions share while they read a rig file.
 struct Context {
   const document::Document& document;
   document::Problems& problems;
   RigFile& rig;
-  std::string board_key;                            ///< which kind of board it is
-  std::vector<KnownModule> modules;                 ///< of a board with terminals
+  std::string board_key;                            ///< the kind of board
+  std::vector<KnownModule> modules;                 ///< modules of a board with terminals
   std::vector<drivers::ChannelWiring> wiring;       ///< one per channel
-  std::map<std::string, document::Location> names;  ///< of channels, and where each stands
+  std::map<std::string, document::Location> names;  ///< names of channels, and their places in the file
   UsedTerminals inputs;
-  UsedTerminals thermometers;  ///< those of the inputs that channels may share
+  UsedTerminals thermometers;  ///< inputs that several channels may share
   UsedTerminals outputs;
-  std::map<std::string, std::optional<model::Model>> models;  ///< by path: each file is read once
+  std::map<std::string, std::optional<model::Model>> models;  ///< by path, so that each file is read once
 
-  bool rate_known = false;  ///< rate_hz was good: what is compared with a cycle can be
+  bool rate_known = false;  ///< rate_hz has no error, so values can be compared with a cycle
 
-  /// Which parts of the file are there and without an error: what compares several is done where all of them
-  /// are.
+  /// The parts of the file that are present without an error. A check of several parts runs only if all of
+  /// them are.
   struct Sound {
     bool loop = false;
     bool faults = false;
@@ -50,12 +50,12 @@ struct Context {
     bool rest = false;
   };
   Sound sound;
-  /// One per channel: model, feedforward, gains and limits are known.
+  /// One per channel: true if model, feedforward, gains and limits are known.
   std::vector<bool> motion_known;
-  /// Where the files that the rig names come from; null: from the disk.
+  /// Texts of the files that the rig names; null: they are read from the disk.
   const std::vector<InputFile>* stored = nullptr;
 
-  /// A time of the session with a Modbus board that must be below a deadline, which is read later.
+  /// A time of the session with a Modbus board that must be below a deadline. The deadline is read later.
   struct Wait {
     document::Location at;
     std::string_view key;
@@ -67,28 +67,28 @@ struct Context {
   [[nodiscard]] double period_s() const { return 1 / rig.settings.rate_hz; }
 };
 
-/// A path of the rig file as seen from the working directory.
+/// Returns a path in the rig file relative to the working directory.
 [[nodiscard]] std::string resolved(const Context& context, const std::string& path);
-/// The document in the file that `key` names; a file that cannot be read is reported at the key.
+/// Reads the document in the file that `key` names. A file that cannot be read is reported at the key.
 [[nodiscard]] std::optional<document::Document> named_document(Context& context, MapReader& reader,
                                                                std::string_view key, InputFile::Role role);
-/// The model in the file that `key` names.
+/// Reads the model in the file that `key` names.
 [[nodiscard]] std::optional<model::Model> named_model(Context& context, MapReader& reader,
                                                       std::string_view key, InputFile::Role role);
 
-/// A name that is good for folders, metrics and messages: letters, digits, `-` and `_`.
+/// Reads a name that can be used in folders, metrics and messages: letters, digits, `-` and `_`.
 [[nodiscard]] std::string read_name(MapReader& reader, std::string_view key);
-/// "12:5"
+/// Returns a place as text, for example "12:5".
 [[nodiscard]] std::string place(document::Location at);
-/// "`key` is already ... at 12:5"
+/// Reports "`key` is already ... at 12:5".
 void report_repeated(MapReader& reader, std::string_view key, const std::string& what,
                      document::Location first);
 
-/// The maps at the top of the file.
+/// The following functions read the maps at the top of the file.
 void read_modbus_tcp(Context& context, const document::Node& node);
 void read_modbus_rtu(Context& context, const document::Node& node);
 void read_iio(Context& context, const document::Node& node);
-/// Of a board that takes its time: how long exchanges may take, how a lost session is made anew.
+/// Reads the deadlines of connecting and exchanging, and the pauses between attempts to connect.
 void read_timing(Context& context, MapReader& board);
 void read_channels(Context& context, MapReader& top);
 void read_simulated_board(Context& context, const document::Node& node);
@@ -102,16 +102,17 @@ void read_recorder(Context& context, MapReader& top);
 void read_socket(Context& context, MapReader& top);
 void read_gpio(Context& context, MapReader& top);
 
-/// Maps that may stand at the top, for all channels, or in a channel, for itself.
+/// Reads maps that are either at the top of the file, for all channels, or in a channel.
 [[nodiscard]] control::PlausibilitySettings read_plausibility(Context& context, const document::Node& node);
 [[nodiscard]] control::ModelHealthSettings read_model_health(Context& context, const document::Node& node);
 
-/// Returns 0 kPa if the limits only keep a channel from it at rest; else the rest pressure.
+/// Returns 0 kPa if only the limits keep a resting channel from 0 kPa; otherwise the rest pressure.
 [[nodiscard]] double vented_kpa(const control::LimitSettings& limits);
-/// True if a pressure is the rest pressure, within 1 % of the range, or between it and vented_kpa().
+/// Returns true if a pressure is within 1 % of the range of the rest pressure, or between the rest pressure
+/// and vented_kpa().
 [[nodiscard]] bool is_rest(const control::LimitSettings& limits, double pressure_kpa);
 
-/// How a channel is wired. `rest_stated`: the file gives the channel's `rest_kpa`.
+/// Reads the wiring of a channel. `rest_stated`: the file gives the channel's `rest_kpa`.
 [[nodiscard]] drivers::OutputWiring read_valve(Context& context, const document::Node& node,
                                                const std::string& who, const control::LimitSettings& limits,
                                                bool rest_stated, ValveFacts& facts);
@@ -119,14 +120,14 @@ void read_gpio(Context& context, MapReader& top);
                                                const std::string& who, const control::LimitSettings& limits);
 [[nodiscard]] drivers::InputWiring read_pressure_monitor(Context& context, const document::Node& node,
                                                          const std::string& who);
-/// Channels may share one.
+/// Several channels may share one temperature sensor.
 [[nodiscard]] drivers::InputWiring read_temperature_sensor(Context& context, const document::Node& node,
                                                            const std::string& who);
 
-/// What only several parts of a rig show: the wiring, the watchdog, what control makes of the settings, the
-/// bus budget; each as soon as the parts that it takes are sound.
+/// Checks the wiring, the watchdog, the settings of the control and the bus budget. Each check runs only if
+/// the parts that it needs have no error.
 void check_whole(Context& context, MapReader& top);
-/// Whether the board puts every channel to its rest pressure by itself.
+/// Returns true if the board puts each channel to its rest pressure when messages stop.
 [[nodiscard]] bool board_vents_when_silent(const Context& context);
 
 }  // namespace softgrip::rig

@@ -1,4 +1,4 @@
-// The maps of a rig file that concern the whole rig.
+// Reads the maps of a rig file that apply to the complete rig.
 
 #include <array>
 #include <charconv>
@@ -30,7 +30,7 @@ std::uint32_t cycles(MapReader& reader, std::string_view key, std::int64_t lower
   return static_cast<std::uint32_t>(reader.integer(key, lower, 100'000));
 }
 
-/// Processor numbers, each once.
+/// Reads processor numbers without repetition.
 std::vector<int> read_cpus(Context& context, MapReader& reader) {
   std::vector<int> cpus;
   for (const Node* item : reader.sequence("cpus", true)) {
@@ -47,7 +47,7 @@ std::vector<int> read_cpus(Context& context, MapReader& reader) {
   return cpus;
 }
 
-/// Permissions as ls writes them: `rw-rw----`.
+/// Reads permissions in the form of ls: `rw-rw----`.
 std::optional<unsigned> in_letters(std::string_view text) {
   constexpr std::string_view letters = "rwxrwxrwx";
   if (text.size() != letters.size()) return std::nullopt;
@@ -59,7 +59,7 @@ std::optional<unsigned> in_letters(std::string_view text) {
   return mode;
 }
 
-/// Permissions as chmod writes them: three octal digits, perhaps after a 0.
+/// Reads permissions in the form of chmod: three octal digits, with an optional leading 0.
 std::optional<unsigned> octal(std::string_view text) {
   if (text.size() == 4 && text[0] == '0') text.remove_prefix(1);
   unsigned mode = 0;
@@ -70,7 +70,7 @@ std::optional<unsigned> octal(std::string_view text) {
   return mode;
 }
 
-/// `moves`: who connects may move the gripper.
+/// `moves`: clients of this socket may move the gripper.
 void read_socket_mode(MapReader& reader, SocketFile& socket, bool moves) {
   const std::string text = reader.text("mode");
   if (text.empty()) return;
@@ -94,7 +94,7 @@ void read_socket_mode(MapReader& reader, SocketFile& socket, bool moves) {
 
 void read_socket_file(Context& context, MapReader& reader, SocketFile& socket, bool moves) {
   socket.path = resolved(context, reader.text("path"));
-  // sockaddr_un has room for 108 bytes, one of them the final NUL.
+  // sockaddr_un has 108 bytes for the path, including the final NUL.
   if (socket.path.size() > 107) {
     reader.report("path", "the path of the socket is longer than 107 bytes, the most that Linux allows");
   }
@@ -120,7 +120,7 @@ void read_safety(Context& context, MapReader& top) {
   }
 }
 
-/// All three or none.
+/// Reads the three keys of the pressure fault. They must be given together.
 void read_pressure_fault(Context& context, MapReader& reader) {
   control::FaultSettings& faults = context.rig.settings.faults;
   const auto wanted = reader.optional_integer("pressure_cycles", 0, 100000);

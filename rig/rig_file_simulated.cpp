@@ -1,4 +1,4 @@
-// The board of a rig file that is simulated in process.
+// Reads the simulated board of a rig file.
 
 #include <algorithm>
 #include <array>
@@ -13,7 +13,8 @@ namespace {
 
 using document::Node;
 
-/// Distinct seeds per channel from one number, by a step of SplitMix64 (Steele, Lea, Flood 2014).
+/// Derives a different seed for each channel from one number by a step of SplitMix64 (Steele, Lea, Flood
+/// 2014).
 std::uint64_t seed_of(std::uint64_t seed, std::uint64_t channel) {
   return scattered(seed + channel * 0x9e3779b97f4a7c15U);
 }
@@ -73,7 +74,7 @@ void read_object_event(Context& context, MapReader& reader, Event& event) {
   event.object = simulation::read_object(context.document, *node, context.problems);
 }
 
-/// One of these keys says what happens.
+/// Each event has exactly one of these keys.
 constexpr std::array<std::string_view, 5> happenings{"object", "line", "sensor", "bus", "writes"};
 
 Event read_event(Context& context, const Node& node) {

@@ -1,4 +1,4 @@
-// How long exchanges with a board may take, and what becomes of a session that is lost.
+// Reads the deadline of exchanges with a board, and the timing of attempts to open a lost session again.
 
 #include "base/numbers.h"
 #include "document/number.h"

@@ -1,4 +1,4 @@
-// How a channel of a rig file is wired: valve, sensor, pressure monitor, temperature sensor.
+// Reads the wiring of a channel of a rig file: valve, sensor, pressure monitor, temperature sensor.
 
 #include <algorithm>
 #include <array>
@@ -16,13 +16,13 @@ namespace {
 using document::Node;
 using drivers::ElectricalUnit;
 
-/// V and mA of any board there is, and the pressures of the sensors that measure kilopascals; tighter limits
-/// come from the board map.
+/// V and mA of all supported boards, and pressures of sensors that measure kPa. The limits of the board map
+/// are narrower.
 constexpr document::Range range_of(ElectricalUnit unit) {
   return unit == ElectricalUnit::kilopascal ? document::Range{-200, 10'000} : document::Range{-100, 100};
 }
 
-/// Which of `stem_v` and `stem_ma` stands in the map decides the unit.
+/// The map contains either `stem_v` or `stem_ma`. The suffix decides the unit.
 struct ElectricalKey {
   std::string name;
   ElectricalUnit unit = ElectricalUnit::volt;
@@ -43,7 +43,7 @@ ElectricalKey electrical_key(MapReader& reader, const std::string& stem) {
   return found.value_or(ElectricalKey{stem + "_v", ElectricalUnit::volt});
 }
 
-/// `at_v: [0, 10], is_kpa: [0, 100]`
+/// Reads `at_v: [0, 10], is_kpa: [0, 100]`.
 drivers::TwoPoints read_scaling(MapReader& reader, const ElectricalKey& at_key, std::string_view is_key,
                                 document::Range is_range) {
   const auto at = reader.numbers(at_key.name, 2, range_of(at_key.unit));
@@ -62,8 +62,7 @@ drivers::TwoPoints read_scaling(MapReader& reader, const ElectricalKey& at_key, 
   return {at[0], is[0], at[1], is[1]};
 }
 
-/// Which module of the board a terminal belongs to: said by `module`, or the only one that has such
-/// terminals.
+/// Returns the module of a terminal: the one that `module` names, or the only one that has such terminals.
 std::size_t read_module(const Context& context, MapReader& reader, std::string_view key) {
   if (context.modules.size() <= 1) return 0;
   std::vector<std::string> names;
@@ -80,7 +79,7 @@ std::size_t read_module(const Context& context, MapReader& reader, std::string_v
   return reader.good("module") ? chosen : context.modules.size();
 }
 
-/// The terminal in the module's words, if the module could be read and has it.
+/// Returns the terminal of a module; null if the module could not be read or has no such terminal.
 const drivers::Terminal* terminal_of(const Context& context, std::string_view key, std::size_t module,
                                      std::size_t index) {
   if (module >= context.modules.size() || !context.modules[module].terminals) return nullptr;
@@ -89,8 +88,8 @@ const drivers::Terminal* terminal_of(const Context& context, std::string_view ke
   return index < terminals.size() ? &terminals[index] : nullptr;
 }
 
-/// A terminal of the board, used once, and there. @param shared  those of `used` that may be used again;
-/// null: none.
+/// Reads a terminal, which must exist and may be used once. @param shared  terminals of `used` that may be
+/// used again; null: none.
 std::size_t read_terminal(Context& context, MapReader& reader, std::string_view key, std::size_t module,
                           UsedTerminals& used, UsedTerminals* shared = nullptr) {
   const auto terminal = static_cast<std::size_t>(reader.integer(key, 0, 255));
@@ -117,7 +116,7 @@ void check_unit(MapReader& reader, const ElectricalKey& key, const drivers::Term
                               " but `" + key.name + "` is in " + std::string(drivers::name_of(key.unit)));
 }
 
-/// What of the electrical range counts as a reading.
+/// Reads the part of the electrical range that is valid for readings.
 void read_validity(MapReader& reader, const std::string& valid_key, drivers::InputWiring& wiring) {
   const auto valid = reader.numbers(valid_key, 2, range_of(wiring.unit));
   if (reader.good(valid_key) && valid[0] >= valid[1]) {
@@ -127,7 +126,7 @@ void read_validity(MapReader& reader, const std::string& valid_key, drivers::Inp
   wiring.valid_max = valid[1];
 }
 
-/// `error_codes: [{at_ma: 3.75, tolerance_ma: 0.05}]`
+/// Reads `error_codes: [{at_ma: 3.75, tolerance_ma: 0.05}]`.
 void read_error_codes(Context& context, MapReader& reader, const std::string& who,
                       drivers::InputWiring& wiring) {
   const std::string suffix(suffix_of(wiring.unit));
@@ -154,7 +153,7 @@ drivers::InputWiring read_input(Context& context, MapReader& reader, const std::
   return wiring;
 }
 
-/// Whether the limits can be commanded and what they use of the valve.
+/// Checks that the valve can control the limits, and that the limits use enough of the valve's range.
 void check_valve(Context& context, MapReader& reader, const ElectricalKey& at,
                  const drivers::OutputWiring& wiring, const control::LimitSettings& limits,
                  const ValveFacts& facts) {
@@ -176,7 +175,7 @@ void check_valve(Context& context, MapReader& reader, const ElectricalKey& at,
   }
   const drivers::Terminal* const terminal = terminal_of(context, "output", wiring.module, wiring.output);
   if (terminal == nullptr) return;
-  // Full scale is often one count beyond the largest raw number.
+  // The full scale of many boards is one count above the largest raw number.
   const double slack = (terminal->highest - terminal->lowest) * 1e-3;
   for (const double pressure : {limits.pressure_min_kpa, limits.pressure_max_kpa}) {
     const double needed = wiring.scaling.x_at(pressure);
@@ -190,7 +189,7 @@ void check_valve(Context& context, MapReader& reader, const ElectricalKey& at,
   }
 }
 
-/// Software does nothing for a rig without power: the valve alone decides where its finger goes.
+/// Without power, software has no effect: the valve alone determines the pressure of its finger.
 void check_power_loss(MapReader& reader, const std::string& who, const control::LimitSettings& limits,
                       bool rest_stated, const ValveFacts& facts) {
   const bool holds = facts.on_power_loss == PowerLoss::holds;

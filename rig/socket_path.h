@@ -1,5 +1,5 @@
 #pragma once
-// Where the daemon of a rig listens, for who wants to talk to it.
+// Finds the socket of a rig's daemon, for its clients.
 
 #include <optional>
 #include <string>
@@ -8,8 +8,9 @@
 
 namespace softgrip::rig {
 
-/// `socket: path:` of a rig file, as seen from the working directory. Nothing else of the file is judged: a
-/// daemon may run with what it was before. A file that cannot be read, or has no path, is a problem.
+/// Returns `socket: path:` of a rig file, relative to the working directory. The rest of the file is not
+/// checked, because the daemon may run with an earlier version. A file that cannot be read or has no path is
+/// reported.
 [[nodiscard]] std::optional<std::string> socket_path_of(const std::string& rig_path,
                                                         document::Problems& problems);
 

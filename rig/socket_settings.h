@@ -1,5 +1,5 @@
 #pragma once
-// The local socket through which status is read and requests are made; the `socket` map of a rig file.
+// The Unix domain sockets of the daemon; the `socket` map of a rig file.
 
 #include <cstddef>
 #include <string>
@@ -8,25 +8,26 @@ namespace softgrip::rig {
 
 /// A Unix domain stream socket in the file system.
 struct SocketFile {
-  std::string path;  ///< empty: none
+  std::string path;  ///< empty: no socket
   /// Permissions of its file.
   unsigned mode = 0660;
   /// Group of its file; empty: the daemon's.
   std::string group;
 };
 
-/// The file is the socket of those who may operate: who may connect may move the gripper.
+/// The socket of the operators. Each client of this socket may move the gripper.
 struct SocketSettings : SocketFile {
   SocketSettings() { path = "/run/softgrip/softgripd.sock"; }
-  /// Who connects here may only look.
+  /// Socket of read-only clients.
   SocketFile look;
-  /// Of each of the two.
+  /// Largest number of clients of each socket.
   std::size_t max_clients = 16;
-  /// Longest line a client may send [bytes]; a longer one is answered and the client dropped.
+  /// Longest line of a client [bytes]. After a longer line, the daemon sends an error and disconnects the
+  /// client.
   std::size_t max_line_bytes = 64 * 1024;
-  /// Replies waiting for a client that does not read [bytes]; beyond it the client is dropped.
+  /// Largest amount of replies that a client has not read [bytes]. Above it the client is disconnected.
   std::size_t max_queue_bytes = 1024 * 1024;
-  /// Folder in which `start` looks for sequences named by a client.
+  /// Folder that contains the sequences of the request `start`.
   std::string sequence_directory = "/etc/softgrip/sequences";
 };
 

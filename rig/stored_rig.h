@@ -1,5 +1,5 @@
 #pragma once
-// A rig out of the files as they were read before, without a look at the disk.
+// Reads a rig from stored texts of its files, without access to the disk.
 
 #include <optional>
 #include <vector>
@@ -8,8 +8,8 @@
 
 namespace softgrip::rig {
 
-/// Reads a rig again from the files that it was read from (RigFile::inputs). Does not look at the disk.
-/// Problems are those of load_rig().
+/// Reads a rig from the texts of its files (RigFile::inputs), without access to the disk. Reports the same
+/// problems as load_rig().
 [[nodiscard]] std::optional<RigFile> read_stored_rig(const std::vector<InputFile>& inputs,
                                                      document::Problems& problems);
 

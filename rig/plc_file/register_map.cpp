@@ -46,7 +46,7 @@ constexpr std::array<RegisterInfo, name_count> table{{
 constexpr std::int64_t last_address = 0xffff;
 constexpr std::int64_t most_fingers = 16;
 
-/// The number of "0.01 kPa", if the unit is the one that is meant.
+/// Returns 0.01 for "0.01 kPa" if `unit` is "kPa"; 0 if the text has another form or another unit.
 double resolution_of(const std::string& text, std::string_view unit) {
   double value = 0;
   const auto read = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -72,7 +72,8 @@ class Reader {
     }
   }
 
-  /// Nothing stands at two addresses. `from`: the first of a finger.
+  /// Reports an address above the last one or used twice. For a finger, `address` is that of its first
+  /// register.
   void claim(document::Location at, std::int64_t address, std::string_view what) {
     const auto [taken, is_free] = claimed_.emplace(address, what);
     if (is_free && address <= last_address) return;

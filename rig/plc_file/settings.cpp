@@ -75,7 +75,7 @@ class SettingsReader {
     settings_.recipes.push_back(std::move(recipe));
   }
 
-  /// Its unit is that of the register.
+  /// The suffix of the parameter's name must be the unit of the register.
   static std::string parameter(MapReader& reader, std::string_view key, std::string_view ending) {
     std::string name = reader.optional_text(key).value_or("");
     if (!name.empty() && !name.ends_with(ending)) {

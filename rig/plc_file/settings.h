@@ -1,5 +1,5 @@
 #pragma once
-// What softgrip-plc must know: config/plc.yaml as plain values. docs/reference/plc-map.md is the manual.
+// Settings of softgrip-plc: config/plc.yaml as plain values. docs/reference/plc-map.md describes the file.
 
 #include <cstddef>
 #include <cstdint>
@@ -13,35 +13,35 @@
 
 namespace softgrip::plc {
 
-/// What a number of the recipe register starts.
+/// The sequence and the parameters that belong to a number in the recipe register.
 struct Recipe {
   std::uint16_t number = 0;  ///< from 1
   std::string sequence;
-  std::string squeeze;  ///< the parameter of the sequence that the register sets; empty: none
+  std::string squeeze;  ///< parameter of the sequence that the register sets; empty: none
   std::string speed;
   std::string displacement;
 };
 
-/// What is done when the master falls silent.
+/// Action of the gateway when the PLC stops responding.
 enum class Reaction : std::uint8_t { nothing, stop, vent, release };
 
 struct Settings {
   std::string name;
-  std::string socket;   ///< of softgripd
+  std::string socket;   ///< socket of softgripd
   std::string address;  ///< numeric
   std::uint16_t port = 502;
-  std::vector<std::string> allow;  ///< numeric addresses of masters
+  std::vector<std::string> allow;  ///< numeric addresses of the permitted Modbus clients (PLCs)
   std::size_t max_masters = 4;
-  double idle_s = 60;  ///< a master that asks nothing for so long is disconnected
+  double idle_s = 60;  ///< a client that sends no request for this time is disconnected
   double silence_s = 2;
   Reaction when_silent = Reaction::stop;
   std::vector<Recipe> recipes;
   RegisterMap registers;
 };
 
-/// Reads a document, adding its problems.
+/// Reads a document and adds its problems to `problems`.
 [[nodiscard]] Settings read_settings(const document::Document& document, document::Problems& problems);
-/// Reads the file; nothing if there are problems, which are all added.
+/// Reads the file and adds all its problems to `problems`. Returns nothing if there is a problem.
 [[nodiscard]] std::optional<Settings> load_settings(const std::string& path, document::Problems& problems);
 
 }  // namespace softgrip::plc

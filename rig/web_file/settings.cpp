@@ -42,7 +42,7 @@ void read_access(const document::Document& document, const Node& node, document:
   settings.without_token = static_cast<Role>(reader.choice("without_token", {"none", "look", "operate"}));
   settings.session_idle_s = reader.optional_number("session_idle_s", {1, 86400}).value_or(1800);
   settings.session_s = reader.optional_number("session_s", {1, 604800}).value_or(43200);
-  // What was wrong with the address was told there.
+  // A wrong address has been reported by read_listen().
   if (!modbus::is_numeric(settings.address) || modbus::is_loopback(settings.address)) return;
   if (reader.good("without_token") && settings.without_token != Role::none) {
     reader.report("without_token", "beyond this machine nobody may see anything without a token",

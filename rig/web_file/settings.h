@@ -1,5 +1,5 @@
 #pragma once
-// What softgrip-web must know: config/web.yaml as plain values. docs/how-to/operator-page.md describes it.
+// Settings of softgrip-web: config/web.yaml as plain values. docs/how-to/operator-page.md describes the file.
 
 #include <cstddef>
 #include <cstdint>
@@ -12,27 +12,28 @@
 
 namespace softgrip::web {
 
-/// What somebody may do, in growing order.
+/// Permissions of a client in increasing order.
 enum class Role : std::uint8_t { none, look, operate };
 
 struct Settings {
   std::string name;
-  std::string look_socket;     ///< of softgripd: what is shown comes from it
-  std::string operate_socket;  ///< what is commanded goes to it; empty: nothing can be
+  std::string look_socket;     ///< socket of softgripd from which the page reads
+  std::string operate_socket;  ///< socket for commands; empty: the page has no commands
   std::string address;         ///< numeric
   std::uint16_t port = 0;
   std::size_t max_connections = 64;
-  std::vector<std::string> hosts;  ///< names besides `localhost` under which a browser may reach the page
-  std::string tokens;              ///< path of the tokens' file; empty: there are none
+  std::vector<std::string>
+      hosts;           ///< host names, in addition to `localhost`, under which browsers may open the page
+  std::string tokens;  ///< path of the file of tokens; empty: no tokens
   Role without_token = Role::look;
-  double session_idle_s = 1800;  ///< a session without requests and without an open page ends
-  double session_s = 43200;      ///< any session ends
+  double session_idle_s = 1800;  ///< a session without requests and without an open page ends after this time
+  double session_s = 43200;      ///< each session ends after this time
   std::string recordings;        ///< folder of the daemon's recordings; empty: they are not shown
 };
 
-/// Reads a document, adding its problems.
+/// Reads a document and adds its problems to `problems`.
 [[nodiscard]] Settings read_settings(const document::Document& document, document::Problems& problems);
-/// Reads the file; nothing if there are problems, which are all added.
+/// Reads the file and adds all its problems to `problems`. Returns nothing if there is a problem.
 [[nodiscard]] std::optional<Settings> load_settings(const std::string& path, document::Problems& problems);
 
 }  // namespace softgrip::web
