@@ -1,6 +1,5 @@
 #pragma once
-// Where everything that keeps time takes it from, and sleeps by: the machine's clock since it was booted, or
-// one that only its owner moves.
+// Clocks: all time in the project comes from CLOCK_BOOTTIME of the machine or from a virtual clock of a test.
 
 #include <algorithm>
 
@@ -17,22 +16,22 @@ class Clock {
   Clock& operator=(Clock&&) = delete;
   virtual ~Clock() = default;
   [[nodiscard]] virtual Nanoseconds now() const noexcept = 0;
-  /// Returns at `due` or later, never before.
+  /// Returns at `due` or later, never earlier.
   virtual void sleep_until(Nanoseconds due) const noexcept = 0;
 };
 
-/// CLOCK_BOOTTIME: never set, and, unlike CLOCK_MONOTONIC, it goes on while the machine sleeps. To a board,
-/// whose watchdog vents meanwhile, a lid that was closed is a pause like any other.
+/// Returns CLOCK_BOOTTIME. It cannot be set and, unlike CLOCK_MONOTONIC, it counts while the machine is
+/// suspended. The board's watchdog also counts during that time, so the daemon must see the pause.
 [[nodiscard]] Nanoseconds monotonic_now() noexcept;
 
-/// monotonic_now() for whoever may be given another clock.
+/// The clock monotonic_now() for functions that also accept another clock.
 class MonotonicClock final : public Clock {
  public:
   [[nodiscard]] Nanoseconds now() const noexcept override;
   void sleep_until(Nanoseconds due) const noexcept override;
 };
 
-/// Stands still until it is set; who sleeps by it sets it.
+/// A clock that changes only when it is set. sleep_until() sets it to the end of the sleep.
 class VirtualClock final : public Clock {
  public:
   [[nodiscard]] Nanoseconds now() const noexcept override { return now_; }
@@ -44,8 +43,8 @@ class VirtualClock final : public Clock {
   mutable Nanoseconds now_ = 0;
 };
 
-/// How far MonotonicClock is ahead of CLOCK_MONOTONIC, by which the kernel stamps edges: for how long the
-/// machine has slept, in whole milliseconds.
+/// Returns the time by which CLOCK_BOOTTIME is ahead of CLOCK_MONOTONIC, in whole milliseconds [ns]: the
+/// total time in suspend. The kernel stamps edges with CLOCK_MONOTONIC.
 [[nodiscard]] Nanoseconds time_asleep() noexcept;
 
 }  // namespace softgrip

@@ -1,5 +1,6 @@
 #pragma once
-// Which device of this computer a file names: one rule for converters, GPIO chips and serial adapters.
+// Finds the device of this computer that a file names. Converters, GPIO chips and serial adapters share this
+// rule.
 
 #include <filesystem>
 #include <string>
@@ -10,48 +11,48 @@
 
 namespace softgrip {
 
-/// A word by which a file may name a device.
+/// A word with which a file can name a device.
 struct DeviceWord {
   std::string kind;  ///< "label", "name", "serial number", "address"
   std::string text;
 };
 
 struct ComputerDevice {
-  std::string node;               ///< the kernel's name, which may change at every start: iio:device0
-  std::filesystem::path folder;   ///< in sysfs, without symbolic links; empty: not known
-  std::vector<DeviceWord> words;  ///< those that stay when the node changes
+  std::string node;               ///< name in the kernel, which may change at every start: iio:device0
+  std::filesystem::path folder;   ///< folder in sysfs, without symbolic links; empty: unknown
+  std::vector<DeviceWord> words;  ///< words that remain when the name in the kernel changes
 
-  /// Adds a word, if there is one.
+  /// Adds a word if `text` is not empty.
   void add(std::string_view kind, std::string text);
   [[nodiscard]] bool has(std::string_view kind, std::string_view text) const;
-  /// Its first word of a kind; empty: it has none.
+  /// Returns the first word of a kind; empty if there is none.
   [[nodiscard]] std::string word(std::string_view kind) const;
 };
-/// "iio:device0 (name `mcp4725`, address `1-0060`)"
+/// Returns, for example, "iio:device0 (name `mcp4725`, address `1-0060`)".
 [[nodiscard]] std::string text_of(const ComputerDevice& device);
 
-/// Returns the device behind an entry of a bus in sysfs (/sys/bus/iio/devices/iio:device0) with its address
-/// on its bus (1-0060, spi0.1) and the serial number of the USB device that it is part of. An entry that is
-/// no symbolic link has neither.
+/// Returns the device of an entry of a bus in sysfs (/sys/bus/iio/devices/iio:device0). The device has its
+/// address on the bus (1-0060, spi0.1) and the serial number of its USB device. It has neither if the entry
+/// is not a symbolic link.
 [[nodiscard]] ComputerDevice device_at(const std::filesystem::path& entry);
-/// Returns the devices behind all entries whose name begins with `prefix`, in the order of their names.
+/// Returns the devices of all entries whose name begins with `prefix`, in alphabetical order.
 [[nodiscard]] std::vector<ComputerDevice> devices_in(const std::filesystem::path& bus,
                                                      std::string_view prefix);
-/// Returns the first line of a file without the blanks at its end; empty if there is none.
+/// Returns the first line of a file without trailing white space; empty if there is none.
 [[nodiscard]] std::string first_line(const std::filesystem::path& file);
 
-/// Why a word means no device.
+/// The reason why a word does not identify one device.
 struct UnclearDevice {
-  bool several = false;  ///< false: it fits none
-  std::string message;   ///< with all devices that it fits
-  std::string hint;      ///< what to write instead
+  bool several = false;  ///< true: the word matches several devices; false: it matches none
+  std::string message;   ///< with all devices that match
+  std::string hint;      ///< a word to write instead
 };
 
-/// Returns the only device that `word` fits: its node, one of its words, or the path of a folder in sysfs in
-/// which it is. `kind`: "converter", "GPIO chip", "serial device", for the messages.
+/// Returns the only device that `word` matches: by its node, one of its words, or the path of a folder in
+/// sysfs that contains it. `kind` is used in messages: "converter", "GPIO chip", "serial device".
 [[nodiscard]] tl::expected<ComputerDevice, UnclearDevice> only_device(
     const std::vector<ComputerDevice>& devices, const std::string& word, std::string_view kind);
-/// Returns the refusal of a word that fits all of `found`, of which `devices` are all there are.
+/// Returns the error for a word that matches all devices in `found`. `devices` contains all devices.
 [[nodiscard]] UnclearDevice several_devices(const std::vector<ComputerDevice>& devices,
                                             const std::vector<ComputerDevice>& found, const std::string& word,
                                             std::string_view kind);

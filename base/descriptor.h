@@ -1,5 +1,5 @@
 #pragma once
-// A file descriptor that closes itself.
+// Owns a file descriptor and closes it.
 
 #include <unistd.h>
 
@@ -25,7 +25,7 @@ class Descriptor {
     if (number_ >= 0) ::close(number_);
     number_ = -1;
   }
-  /// Gives the number away: who takes it closes it.
+  /// Releases the ownership. The caller must close the descriptor.
   [[nodiscard]] int release() noexcept { return std::exchange(number_, -1); }
   [[nodiscard]] explicit operator bool() const noexcept { return number_ >= 0; }
 

@@ -1,5 +1,5 @@
 #pragma once
-// Waiting for a descriptor until a point in time.
+// Waits for a descriptor until a point in time.
 
 #include <cstdint>
 
@@ -8,13 +8,13 @@
 namespace softgrip {
 
 enum class Waited : std::uint8_t {
-  ready,      ///< or an error or a hang-up, which the call that follows names
-  timed_out,  ///< the deadline passed
-  failed,     ///< errno says why
+  ready,      ///< also after an error or a hang-up, which the next call reports
+  timed_out,  ///< the deadline has passed
+  failed,     ///< errno contains the reason
 };
 
-/// Waits for poll events until `deadline` on CLOCK_BOOTTIME. poll, not select: descriptors of 1024 and above
-/// are as good as any other.
+/// Waits for events of poll() until `deadline` on CLOCK_BOOTTIME. select() would not accept descriptors above
+/// 1023.
 [[nodiscard]] Waited wait_for(int descriptor, short events, Nanoseconds deadline) noexcept;
 
 }  // namespace softgrip

@@ -1,20 +1,21 @@
 #pragma once
-// The signal that asked this process to end, kept until everything is in order.
+// Stores the signal that requested the end of this process until the process has cleaned up.
 //
-// A shell ends its loop only if the program died by the signal. A program that answers Ctrl-C with an exit
+// A shell ends its loop only if the program died by the signal. If a program answers Ctrl-C with an ordinary
+// exit code, the loop starts the next program.
 // code of its own lets the loop start the next program.
 
 #include <string>
 
 namespace softgrip {
 
-/// Records the signal by which the process shall end. The first one is kept. Safe in any thread.
+/// Stores the signal by which the process must end. Only the first signal is stored. Safe in any thread.
 void note_ending_signal(int signal) noexcept;
 
-/// Returns the recorded signal, or 0.
+/// Returns the stored signal, or 0.
 [[nodiscard]] int ending_signal() noexcept;
 
-/// "SIGINT", or "signal 35" of one without a name.
+/// Returns "SIGINT", or for example "signal 35" if the signal has no name.
 [[nodiscard]] std::string name_of_signal(int signal);
 
 /// Flushes the standard streams and ends the process by `signal` with its default disposition. Call it when

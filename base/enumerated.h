@@ -1,5 +1,5 @@
 #pragma once
-// Several texts as one, for people.
+// Joins several texts into one, for messages.
 
 #include <cstddef>
 #include <functional>
@@ -9,8 +9,9 @@
 
 namespace softgrip {
 
-/// "a, b and c" with " and " before the last: the texts of `items` in their order; "" of none. `text_of`
-/// makes a std::string or a view of one out of an item, or is the member that holds it.
+/// Returns "a, b and c" if `before_last` is " and ": the texts of `items` in their order; "" without items.
+/// `text_of` returns a std::string or std::string_view for an item, or is a pointer to the member that
+/// contains it.
 template <typename Items, typename TextOf = std::identity>
 [[nodiscard]] std::string enumerated(const Items& items, std::string_view before_last, TextOf text_of = {}) {
   std::string text;
@@ -23,7 +24,7 @@ template <typename Items, typename TextOf = std::identity>
   return text;
 }
 
-/// "a, b, c".
+/// Returns "a, b, c".
 template <typename Items, typename TextOf = std::identity>
 [[nodiscard]] std::string with_commas(const Items& items, TextOf text_of = {}) {
   return enumerated(items, ", ", text_of);

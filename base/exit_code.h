@@ -1,5 +1,5 @@
 #pragma once
-// Exit codes of every program of the project.
+// Exit codes of all programs of the project.
 
 namespace softgrip {
 
@@ -9,8 +9,8 @@ enum class ExitCode : int {
   usage = 2,
   input_refused = 3,   ///< configuration, model, log or sequence
   io = 4,              ///< a file, the daemon's socket, a network address
-  state_refused = 5,   ///< the daemon's state does not allow it
-  not_acceptable = 6,  ///< finished, but the result is not what was asked for
+  state_refused = 5,   ///< the state of the daemon does not permit it
+  not_acceptable = 6,  ///< finished, but the result does not meet the requirement
 };
 
 }  // namespace softgrip

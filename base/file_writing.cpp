@@ -1,4 +1,4 @@
-// The one place that creates files; base/files.h has the contract.
+// The only functions that create files. base/files.h has the contract.
 
 #include <fcntl.h>
 #include <sys/random.h>
@@ -20,10 +20,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// 0, or the errno of a call that failed.
+/// 0, or the errno of the failed call
 using Error = int;
 
-constexpr mode_t new_file_mode = 0666;  // less what the umask takes
+constexpr mode_t new_file_mode = 0666;  // the umask removes permissions
 constexpr mode_t private_mode = 0600;
 constexpr mode_t permissions = 0777;
 
@@ -31,30 +31,30 @@ Error error_of(int result) {
   return result == 0 ? 0 : errno;
 }
 
-/// A name in the folder of `target` that no other process has and none can guess.
+/// Returns a name in the folder of `target` that no other process uses and that cannot be guessed.
 std::string temporary_name(const fs::path& target) {
   std::uint64_t number = 0;
-  // Where the kernel gives none, O_EXCL still keeps two writers apart.
+  // Without random numbers from the kernel, O_EXCL still prevents two writers from using one file.
   if (::getrandom(&number, sizeof number, GRND_NONBLOCK) < 0) number = static_cast<std::uint64_t>(::getpid());
   char name[48];
   (void)std::snprintf(name, sizeof name, ".softgrip-%016llx.part", static_cast<unsigned long long>(number));
   return (target.parent_path() / name).string();
 }
 
-/// Who owns a file, and what may be done with it.
+/// Owner, group and permissions of a file.
 struct Rights {
   uid_t owner = 0;
   gid_t group = 0;
   mode_t mode = 0;
 };
 
-/// A user who may not give the file away stays its owner.
+/// A user without the permission to change the owner remains the owner.
 Error give_rights(int file, const Rights& rights) {
   [[maybe_unused]] const int given = ::fchown(file, rights.owner, rights.group);
   return error_of(::fchmod(file, rights.mode));
 }
 
-/// A new file with all of `contents`. Without `rights` it is an ordinary new file of this process.
+/// Creates a file with `contents`. Without `rights` it has the default permissions of this process.
 Error write_new(int folder, const std::string& name, std::string_view contents,
                 const std::optional<Rights>& rights, Sync sync) {
   Descriptor file(::openat(folder, name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC,
@@ -63,21 +63,21 @@ Error write_new(int folder, const std::string& name, std::string_view contents,
   Error error = write_all(file.get(), contents);
   if (error == 0 && rights) error = give_rights(file.get(), *rights);
   if (error == 0 && sync == Sync::disk) error = error_of(::fsync(file.get()));
-  // A network file system can report here that it has no space.
+  // A network file system may report a full disk only here.
   const Error closed = error_of(::close(file.release()));
   return error != 0 ? error : closed;
 }
 
-/// Renames to a name that must not exist yet; else EEXIST.
+/// Renames a file. If the new name exists already, the error is EEXIST.
 Error rename_to_new(int folder, const char* from, const char* to) {
   const Error error = error_of(::renameat2(folder, from, folder, to, RENAME_NOREPLACE));
   if (error != EINVAL) return error;
-  // NFS: a second name does the same, if the first is removed.
+  // NFS does not support RENAME_NOREPLACE. A hard link with the new name has the same effect.
   const Error linked = error_of(::linkat(folder, from, folder, to, 0));
   return linked != 0 ? linked : error_of(::unlinkat(folder, from, 0));
 }
 
-/// Makes the name itself survive a power failure, as far as the file system promises.
+/// Writes the folder entry to the disk, so that the name survives a power failure.
 void sync_folder(const fs::path& folder) {
   const Descriptor opened(::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   if (opened) ::fsync(opened.get());
@@ -85,7 +85,7 @@ void sync_folder(const fs::path& folder) {
 
 enum class Existing { replaced, refused };
 
-/// The only place where a file of a program comes to be. `target` is relative to `folder`, which can be
+/// Creates or replaces a file. No other function does. `target` is relative to `folder`, which may be
 /// AT_FDCWD.
 Error put(int folder, const fs::path& target, std::string_view contents, Existing existing,
           const std::optional<Rights>& rights, Sync sync) {
@@ -100,7 +100,7 @@ Error put(int folder, const fs::path& target, std::string_view contents, Existin
   return error;
 }
 
-/// put() for a path: a file that it replaces passes on its owner and permissions.
+/// Calls put() for a path. A replaced file keeps its owner and permissions.
 Error put_at_path(const fs::path& target, std::string_view contents, Existing existing, Sync sync) {
   struct ::stat old {};
   std::optional<Rights> rights;

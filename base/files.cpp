@@ -35,7 +35,7 @@ Failure not_regular(mode_t mode) {
 /// `folder` may be AT_FDCWD.
 tl::expected<RegularFile, std::string> open_at(int folder, const std::string& name, bool through_links) {
   struct ::stat about {};
-  // Look before opening: the opening alone starts some devices, such as a watchdog timer.
+  // Check the type before opening, because opening alone starts some devices, such as a watchdog timer.
   if (::fstatat(folder, name.c_str(), &about, through_links ? 0 : AT_SYMLINK_NOFOLLOW) != 0)
     return reason(errno);
   if (!S_ISREG(about.st_mode)) return not_regular(about.st_mode);
@@ -43,13 +43,13 @@ tl::expected<RegularFile, std::string> open_at(int folder, const std::string& na
   RegularFile file{
       Descriptor(::openat(folder, name.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC | links)), 0};
   if (!file.descriptor || ::fstat(file.descriptor.get(), &about) != 0) return reason(errno);
-  // Another process may have replaced it in between.
+  // Another process may have replaced the file since the check.
   if (!S_ISREG(about.st_mode)) return not_regular(about.st_mode);
   file.size = static_cast<std::size_t>(about.st_size);
   return file;
 }
 
-/// The number of bytes, 0 at the end; -1: errno says why.
+/// Returns the number of bytes that were read, 0 at the end; -1 after an error, which is in errno.
 ssize_t read_some(int descriptor, char* bytes, std::size_t size) {
   ssize_t count = 0;
   do {
@@ -69,7 +69,7 @@ tl::expected<RegularFile, std::string> open_regular_in(const Descriptor& folder,
 }
 
 tl::expected<std::string, std::string> read_start(const RegularFile& file, std::size_t most) {
-  // The size is only a hint: a file can grow meanwhile, and those of /proc have size 0.
+  // The size is only a hint: a file can grow during the read, and files in /proc have size 0.
   std::string contents;
   contents.reserve(std::min(file.size, most));
   std::string chunk(std::size_t{1} << 16, '\0');

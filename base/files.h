@@ -1,5 +1,5 @@
 #pragma once
-// Files: regular ones, read with a bound, and written so that a reader never finds half of one.
+// Reads regular files up to a bound, and writes files so that a reader never sees an incomplete file.
 
 #include <cstddef>
 #include <string>
@@ -27,43 +27,43 @@ struct RegularFile {
 [[nodiscard]] tl::expected<RegularFile, std::string> open_regular_in(const Descriptor& folder,
                                                                      const std::string& name);
 
-/// Returns the next `most` bytes of the file, or fewer where it ends. The error is the reason.
+/// Returns the next `most` bytes of the file, or fewer at its end. The error is the reason.
 [[nodiscard]] tl::expected<std::string, std::string> read_start(const RegularFile& file, std::size_t most);
 
-/// The bytes of a regular file of at most `bound` bytes, or a sentence that says why not.
+/// Returns the contents of a regular file of at most `bound` bytes. The error is a sentence with the reason.
 [[nodiscard]] tl::expected<std::string, std::string> read_file(const std::string& path, std::size_t bound);
 
-/// True if there is a file or folder of this path, through links. Unlike those of std::filesystem these two
-/// do not throw: an unreadable folder or an impossible name is no file.
+/// Returns true if the path leads to a file or a folder, through links. These two functions do not throw,
+/// unlike those of std::filesystem: for an unreadable folder or an impossible name they return false.
 [[nodiscard]] bool is_there(const std::string& path) noexcept;
 [[nodiscard]] bool is_folder(const std::string& path) noexcept;
 
-/// True if both paths lead to one file: same device and inode, through symbolic and hard links.
+/// Returns true if both paths lead to the same file (device and inode), through symbolic and hard links.
 [[nodiscard]] bool same_file(const std::string& one, const std::string& other) noexcept;
 
-/// The writing of a file. Each function below leaves `path` as it was unless it returns a value: a reader, a
-/// full disk, a signal and a power failure find the old file or the new one, never a part. The new file is
-/// written under another name in the same folder and takes the old one's place by a rename. A new name of a
-/// killed process, `.softgrip-*.part`, can stay behind. Errors are sentences.
+/// Functions that write a file. Each of them leaves `path` unchanged unless it returns a value. After a full
+/// disk, a signal or a power failure, `path` contains the old file or the new one, never a part. The new file
+/// is written under another name in the same folder and then renamed. A killed process can leave a file
+/// `.softgrip-*.part`. Errors are sentences.
 enum class Sync {
-  none,  ///< the kernel writes it when it likes: after a power failure the file can be empty
-  disk,  ///< the file has reached the disk before it gets its name
+  none,  ///< the kernel decides when to write: after a power failure the file can be empty
+  disk,  ///< the file is on the disk before it gets its name
 };
 
-/// Writes a result. Creates missing folders. A file that exists is replaced and keeps its owner and
-/// permissions; a symbolic link is replaced by the file.
+/// Writes a result and creates missing folders. An existing file is replaced; its owner and permissions
+/// remain. A symbolic link is replaced by the file.
 [[nodiscard]] tl::expected<void, std::string> write_file(const std::string& path, std::string_view contents,
                                                          Sync sync = Sync::disk);
 
-/// Replaces the contents of a file that must exist. A symbolic link stays one.
+/// Replaces the contents of a file that must exist. A symbolic link remains a link.
 [[nodiscard]] tl::expected<void, std::string> replace_file(const std::string& path,
                                                            std::string_view contents);
 
-/// Writes a file that must not exist yet.
+/// Writes a file. If it exists already, this is an error.
 [[nodiscard]] tl::expected<void, std::string> create_file(const std::string& path, std::string_view contents);
 
-/// Writes the file `name` of an open folder, for its owner alone: mode 0600. It is not forced to the disk,
-/// because such files end with the machine.
+/// Writes the file `name` of an open folder with mode 0600. It is not synchronised to the disk, because such
+/// files are not needed after a restart of the machine.
 [[nodiscard]] tl::expected<void, std::string> write_private_file(const Descriptor& folder,
                                                                  const std::string& name,
                                                                  std::string_view contents);

@@ -1,5 +1,5 @@
 #pragma once
-// Numbers to text and back, never by locale.
+// Converts numbers to text and back, independent of the locale.
 
 #include <optional>
 #include <string>
@@ -7,15 +7,16 @@
 
 namespace softgrip {
 
-/// The fewest digits that read back to the same double ("nan", "inf" as such).
+/// Returns the shortest text that reads back as the same double ("nan" and "inf" included).
 [[nodiscard]] std::string shortest(double value);
-/// The same without an exponent where that is short: for messages that say what a file may hold.
+/// Returns shortest(), but without an exponent if that is short. Used in messages about values in files.
 [[nodiscard]] std::string written(double value);
-/// `digits` significant ones, for people; no trailing zeros, no exponent from 1e-4 to 1e7; "-" of NaN, inf.
+/// Returns `digits` significant digits without trailing zeros, and without an exponent from 1e-4 to 1e7; "-"
+/// for NaN or infinity.
 [[nodiscard]] std::string significant(double value, int digits = 4);
-/// `decimals` digits after the point; "-" of NaN, inf.
+/// Returns `decimals` digits after the point; "-" for NaN or infinity.
 [[nodiscard]] std::string fixed(double value, int decimals);
-/// A number that fills the whole text (blanks around it allowed).
+/// Reads a number. The text must contain nothing else except blanks around it.
 [[nodiscard]] std::optional<double> to_number(std::string_view text);
 
 }  // namespace softgrip

@@ -1,5 +1,5 @@
 #pragma once
-// The same work for many items, on a few threads.
+// Runs a function for many items on several threads.
 
 #include <algorithm>
 #include <atomic>
@@ -16,10 +16,10 @@
 
 namespace softgrip {
 
-/// Calls work(i) for i in [0, count), in any order, on at most `threads` threads (0: as many as there are
-/// cores), of which it takes those that the thread's budget has idle. The first exception is passed on when
-/// all are done. If the budget's work shall end early, no further item begins, and WorkCancelled is thrown.
-/// Results belong into slot i of something prepared.
+/// Calls work(i) for i in [0, count), in any order, on at most `threads` threads (0: one per core) of those
+/// that are idle in the thread budget. If calls throw, the first exception is thrown again after all have
+/// ended. After a request to end early, no further item begins, and WorkCancelled is thrown. work(i) should
+/// write its result into slot i of a prepared array.
 template <class Work>
 void parallel_for(std::size_t count, unsigned threads, Work&& work) {
   ThreadBudget own(threads);
@@ -53,7 +53,7 @@ void parallel_for(std::size_t count, unsigned threads, Work&& work) {
       });
     }
     run();
-    // Those who still compute may have this one's place.
+    // While this thread waits, the threads that still compute may start one more.
     budget.give_back(1);
     others.clear();
     budget.go_on();
@@ -61,8 +61,8 @@ void parallel_for(std::size_t count, unsigned threads, Work&& work) {
   if (failure) std::rethrow_exception(failure);
 }
 
-/// The same on those threads of the thread's budget that are idle; without a budget, on the calling one
-/// alone.
+/// Calls work(i) as parallel_for() does, on the idle threads of the current budget; without a budget, on the
+/// calling thread alone.
 template <class Work>
 void parallel_for_idle(std::size_t count, Work&& work) {
   parallel_for(count, ThreadBudget::current() != nullptr ? 0 : 1, std::forward<Work>(work));

@@ -1,5 +1,5 @@
 #pragma once
-// Random numbers by counting: the n-th number of a seed, without state, the same on every machine.
+// Random numbers as a function of seed and index: without state, and equal on each machine.
 
 #include <cmath>
 #include <cstdint>
@@ -7,7 +7,7 @@
 
 namespace softgrip {
 
-/// The finaliser of SplitMix64 (Steele, Lea, Flood, OOPSLA 2014): a bijection that scatters its input.
+/// The finaliser of SplitMix64 (Steele, Lea, Flood, OOPSLA 2014): a bijection that randomises its input.
 [[nodiscard]] constexpr std::uint64_t scattered(std::uint64_t x) noexcept {
   x += 0x9e3779b97f4a7c15ULL;
   x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9ULL;
@@ -15,17 +15,17 @@ namespace softgrip {
   return x ^ (x >> 31);
 }
 
-/// A seed for part `part` of something seeded with `seed`.
+/// Returns the seed of part `part` of an object with the seed `seed`.
 [[nodiscard]] constexpr std::uint64_t derived_seed(std::uint64_t seed, std::uint64_t part) noexcept {
   return scattered(scattered(seed) ^ (part * 0xd1342543de82ef95ULL + 1));
 }
 
-/// The n-th uniform number of a seed, in (0, 1).
+/// Returns the n-th uniform number of a seed, in (0, 1).
 [[nodiscard]] constexpr double uniform_at(std::uint64_t seed, std::uint64_t n) noexcept {
   return (static_cast<double>(scattered(seed ^ scattered(n)) >> 11) + 0.5) * 0x1.0p-53;
 }
 
-/// The n-th standard normal number of a seed (Box-Muller).
+/// Returns the n-th standard normal number of a seed (Box-Muller).
 [[nodiscard]] inline double normal_at(std::uint64_t seed, std::uint64_t n) noexcept {
   const double radius = std::sqrt(-2.0 * std::log(uniform_at(seed, 2 * n)));
   return radius * std::cos(2.0 * std::numbers::pi * uniform_at(seed, 2 * n + 1));

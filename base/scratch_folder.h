@@ -1,11 +1,11 @@
 #pragma once
-// A folder for what nobody is to keep.
+// A temporary folder.
 
 #include <string>
 
 namespace softgrip {
 
-/// A new folder among the temporary files, gone with this object. Its path is empty where none could be made.
+/// A new folder for temporary files. The destructor removes it. Its path is empty if it could not be created.
 class ScratchFolder {
  public:
   ScratchFolder();

@@ -1,13 +1,13 @@
 #pragma once
-// Words of a command line that a shell reads.
+// Quotes words of a shell command line.
 
 #include <string>
 #include <string_view>
 
 namespace softgrip {
 
-/// `text` as a POSIX shell takes it for one word: as it is where nothing in it means more, else in single
-/// quotes.
+/// Returns `text` so that a POSIX shell reads it as one word: unchanged if no character is special, otherwise
+/// in single quotes.
 [[nodiscard]] std::string shell_word(std::string_view text);
 
 }  // namespace softgrip

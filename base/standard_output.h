@@ -1,13 +1,13 @@
 #pragma once
-// Results on the standard output.
+// Checks that the results have reached the standard output.
 
 #include "base/exit_code.h"
 
 namespace softgrip {
 
-/// To be called at the end of a program: hands over all that was printed. Returns `code`; or, if the standard
-/// output did not take all of it (a full disk, a closed pipe), a sentence goes to the standard error, and
-/// done becomes io.
+/// Flushes the standard output at the end of a program. Returns `code` if all output was written. Otherwise
+/// (a full disk, a closed pipe) it prints a message to the standard error and returns `io` in place of
+/// `done`.
 [[nodiscard]] ExitCode with_output_checked(ExitCode code, const char* program) noexcept;
 
 }  // namespace softgrip

@@ -1,5 +1,5 @@
 #pragma once
-// Statistics that several rooms need.
+// Statistics that several folders use.
 
 #include <algorithm>
 #include <cmath>
@@ -12,8 +12,8 @@ namespace softgrip {
   return x * x;
 }
 
-/// The value that half of the others do not exceed; of an even count the upper of the two in the middle. 0 of
-/// none. Brings `values` into another order.
+/// Returns the median; of an even number of values the upper of the two in the middle; 0 without values.
+/// Changes the order of `values`.
 template <class T>
 [[nodiscard]] T median_of(std::span<T> values) {
   if (values.empty()) return T{};
@@ -22,12 +22,12 @@ template <class T>
   return *middle;
 }
 
-/// Sample-to-sample noise of a series: the median size of its third differences, as a standard deviation.
-/// Smooth courses and single steps do not count. 0 of fewer than 4 values.
+/// Returns the standard deviation of the noise between samples, estimated by the median magnitude of third
+/// differences. Smooth signals and single steps have almost no effect. 0 for fewer than 4 values.
 [[nodiscard]] double third_difference_noise(std::span<const double> values);
 
-/// What a straight line through pairs of values needs, gathered pair by pair; those that are not finite are
-/// passed over. Variances and covariance are times the count squared.
+/// Sums for a straight line through pairs of values. Pairs with a value that is not finite are skipped.
+/// Variances and covariance are multiplied by the square of the count.
 struct PairSums {
   double count = 0, x = 0, y = 0, xx = 0, yy = 0, xy = 0;
 
@@ -42,17 +42,17 @@ struct PairSums {
   }
   [[nodiscard]] double variance_x() const { return count * xx - x * x; }
   [[nodiscard]] double covariance() const { return count * xy - x * y; }
-  /// Of y over x, by least squares; meaningless where x does not vary.
+  /// Returns the slope of y over x by least squares; meaningless if x does not vary.
   [[nodiscard]] double slope() const { return covariance() / variance_x(); }
-  /// 0 where either does not vary.
+  /// Returns the correlation coefficient; 0 if x or y does not vary.
   [[nodiscard]] double correlation() const {
     const double product = variance_x() * (count * yy - y * y);
     return product > 0 ? covariance() / std::sqrt(product) : 0;
   }
 };
 
-/// Quantile of Student's t for a two-sided 95 % interval, by Cornish's and Fisher's expansion (Abramowitz and
-/// Stegun 26.7.5); the error at 3 degrees of freedom is below 1 %.
+/// Returns the quantile of Student's t for a two-sided 95 % interval by the Cornish-Fisher expansion
+/// (Abramowitz and Stegun 26.7.5). The error at 3 degrees of freedom is below 1 %.
 [[nodiscard]] double t_quantile(double degrees_of_freedom);
 
 }  // namespace softgrip

@@ -1,5 +1,5 @@
 #pragma once
-// How many threads may compute at a time for one piece of work, wherever in it they are needed.
+// Limits the number of threads that compute at the same time for one task.
 
 #include <algorithm>
 #include <atomic>
@@ -10,15 +10,15 @@
 
 namespace softgrip {
 
-/// Threads that a piece of work may use. What parallel_for() starts below the thread that made it shares it:
-/// where the last items of an outer loop leave threads idle, the loops within them take these. The answer of
-/// a work that puts its results into slots of their own does not depend on who computed them.
+/// Threads that a task may use. All calls of parallel_for() in the task and in its threads share the budget:
+/// if the last items of an outer loop leave threads idle, the inner loops use them. The result does not
+/// depend on the threads if each item writes to its own slot.
 class ThreadBudget {
  public:
-  /// From here to its end, for the calling thread and for those that are started below it: `threads` at a
-  /// time (0: as many as there are cores), the calling one among them. Changes nothing where the thread has a
-  /// budget.
-  /// @param stop  requests an early end of the work (base/cancellation.h).
+  /// Sets the budget of the calling thread, and of the threads started from it, until the destructor:
+  /// `threads` at a time (0: one per core), including the calling thread. Has no effect if the thread has a
+  /// budget already.
+  /// @param stop  requests an early end of the task (base/cancellation.h).
   explicit ThreadBudget(unsigned threads, std::stop_token stop = {}) noexcept : stop_(std::move(stop)) {
     if (current_ != nullptr) return;
     const std::size_t all = threads != 0 ? threads : std::max(1U, std::thread::hardware_concurrency());
@@ -31,13 +31,13 @@ class ThreadBudget {
   ThreadBudget(const ThreadBudget&) = delete;
   ThreadBudget& operator=(const ThreadBudget&) = delete;
 
-  /// The calling thread's; nullptr: it has none.
+  /// Returns the budget of the calling thread; nullptr if it has none.
   [[nodiscard]] static ThreadBudget* current() noexcept { return current_; }
 
-  /// True if the work shall end early.
+  /// Returns true if the task must end early.
   [[nodiscard]] bool stop_requested() const noexcept { return stop_.stop_requested(); }
 
-  /// At most `wanted` more threads; how many there are.
+  /// Reserves at most `wanted` more threads and returns the number of reserved threads.
   [[nodiscard]] std::size_t take(std::size_t wanted) noexcept {
     std::ptrdiff_t idle = idle_.load(std::memory_order_relaxed);
     while (idle > 0) {
@@ -47,10 +47,10 @@ class ThreadBudget {
     return 0;
   }
   void give_back(std::size_t threads) noexcept { idle_ += static_cast<std::ptrdiff_t>(threads); }
-  /// Of one that waited and goes on: for a moment more may compute than there are threads.
+  /// Called by a thread that continues after it waited. For a moment, one thread too many may compute.
   void go_on() noexcept { --idle_; }
 
-  /// Makes a budget that of the calling thread, which was started for it, until it ends.
+  /// Sets the budget of the calling thread, which was started for it, until that thread ends.
   static void share(ThreadBudget& budget) noexcept { current_ = &budget; }
 
  private:

@@ -5,8 +5,8 @@
 
 namespace softgrip {
 
-/// "0.1.0+1a2b3c4": the project's version and what `git describe` called the sources, "-dirty" if they
-/// differ.
+/// Returns, for example, "0.1.0+1a2b3c4": the project's version and the result of `git describe`, with
+/// "-dirty" if the sources have changes that are not committed.
 [[nodiscard]] std::string_view software_version() noexcept;
 
 }  // namespace softgrip
