@@ -7,7 +7,7 @@ namespace softgrip::document {
 
 namespace {
 
-/// Walks through a text line by line and keeps what is open.
+/// Reads a text line by line and keeps the open brackets.
 class Scan {
  public:
   void line(std::string_view text, int number) {
@@ -31,7 +31,7 @@ class Scan {
   [[nodiscard]] std::vector<Bracket> open() const { return open_; }
 
  private:
-  /// Returns how many characters beyond this one were read.
+  /// Returns the number of characters after this one that were also read.
   std::size_t step(std::string_view text, std::size_t i, int number) {
     const char c = text[i];
     if (quote_ != 0) {
@@ -57,7 +57,7 @@ class Scan {
   std::vector<Bracket> open_;
   char quote_ = 0;
   bool begins_value_ = true;
-  bool folded_ = false;  // within `|` or `>` of a line that is indented by ...
+  bool folded_ = false;  // inside a text with `|` or `>` whose line has the indentation below
   std::size_t folded_indent_ = 0;
 };
 

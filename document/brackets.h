@@ -1,5 +1,5 @@
 #pragma once
-// Which brackets of a text are open at a place: for messages about those that are never closed.
+// Finds the brackets that are open at a place of a text, for messages about brackets that are never closed.
 
 #include <cstddef>
 #include <string_view>
@@ -15,8 +15,9 @@ struct Bracket {
   Location at;
 };
 
-/// Those that are open before `place`, the innermost last. Brackets in quotes, comments, folded texts and in
-/// the middle of plain texts open nothing. One that is closed by the other kind counts as open.
+/// Returns the brackets that are open before `place`, the innermost last. Brackets in quotes, comments,
+/// folded texts and in the middle of plain texts do not count. A bracket that is closed by the other kind
+/// counts as open.
 [[nodiscard]] std::vector<Bracket> open_brackets(std::string_view text, Location place);
 
 }  // namespace softgrip::document

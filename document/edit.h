@@ -1,5 +1,5 @@
 #pragma once
-// Changes in a document's text that leave its comments and its layout as they are.
+// Changes a document's text without changing its comments and layout.
 
 #include <cstddef>
 #include <optional>
@@ -11,30 +11,30 @@
 
 namespace softgrip::document {
 
-/// The entry of a map under a key, or nullptr: also where `node` is nullptr or no map.
+/// Returns the entry of a map under a key; nullptr if there is none, or if `node` is nullptr or not a map.
 [[nodiscard]] const Node::Entry* entry_of(const Node* node, std::string_view key) noexcept;
-/// The node below `node` along `path`, or nullptr.
+/// Returns the node below `node` along `path`, or nullptr.
 [[nodiscard]] const Node* below(const Node* node, const std::vector<std::string_view>& path) noexcept;
 
-/// Returns the byte offset of a location in the text; empty beyond its end.
+/// Returns the byte offset of a location in the text; nothing beyond the end of the text.
 [[nodiscard]] std::optional<std::size_t> offset_of(std::string_view text, Location at) noexcept;
 
-/// Collects changes and makes them at once. Every function returns false, and changes nothing, where the text
-/// is not written in a way that it understands.
+/// Collects changes and applies them together. Each function returns false, and adds no change, if it cannot
+/// edit the layout of the text.
 class Edit {
  public:
   explicit Edit(const Document& document) : document_(document) {}
 
-  /// Replaces the numbers of a list, each in place.
+  /// Replaces the numbers of a list one by one.
   bool replace_numbers(const Node& list, const std::vector<std::string>& numbers);
-  /// One more key at the end of a map: behind its last entry in a flow map, on a line of its own in a block
-  /// map. The last entry must be a plain word, a number or a list of them in brackets.
+  /// Adds a key at the end of a map: in a flow map after the last entry, in a block map on its own line. The
+  /// last entry must be a plain word, a number or a list of them in brackets.
   bool add_key(const Node& map, std::string_view key, std::string_view value);
-  /// A comment on a line of its own above the line on which `entry` begins, in the place of one there that
-  /// begins with `mark`. False where the entry does not begin its line.
+  /// Adds a comment on its own line above the line of `entry`. Replaces a comment there that begins with
+  /// `mark`. Returns false if the entry does not begin its line.
   bool comment_above(const Node::Entry& entry, std::string_view mark, std::string_view comment);
 
-  /// The text with all changes.
+  /// Returns the text with all changes.
   [[nodiscard]] std::string text() const;
 
  private:

@@ -12,7 +12,7 @@ namespace softgrip::document {
 
 namespace {
 
-/// A unit as keys write it; `to_base` converts into the unit of its quantity that the project uses.
+/// A unit as keys write it. `to_base` converts to the unit that the project uses for the quantity.
 struct Unit {
   std::string_view name;
   std::string_view quantity;
@@ -48,7 +48,7 @@ std::vector<std::string_view> words_of(std::string_view key) {
   }
 }
 
-/// A number for a hint: a product such as 130 * 0.001 without its rounding error.
+/// Writes a number for a hint. A product such as 130 * 0.001 appears without its rounding error.
 std::string rounded(double number) {
   std::array<char, 32> buffer{};
   const auto end =
@@ -56,8 +56,8 @@ std::string rounded(double number) {
   return {buffer.data(), end};
 }
 
-/// `delay` for `delay_s`: every word that `candidate` has beyond `key` is one of the project's units or
-/// `per`.
+/// Returns true if `key` lacks only the unit, as `delay` for `delay_s`: all words that `candidate` has in
+/// addition are units of the project or `per`.
 bool lacks_unit(std::string_view key, std::string_view candidate) {
   if (candidate.size() <= key.size() + 1 || candidate.substr(0, key.size()) != key ||
       candidate[key.size()] != '_') {
@@ -70,7 +70,7 @@ bool lacks_unit(std::string_view key, std::string_view candidate) {
   });
 }
 
-/// One word of two keys differs, and both are units of one quantity.
+/// Two keys that differ in one word, where both words are units of one quantity.
 struct OtherUnit {
   const Unit* used;
   const Unit* wanted;
@@ -150,7 +150,7 @@ std::string_view unit_at_end(std::string_view key) {
 std::string hint_for_range(std::string_view key, double value, double lower, double upper) {
   const Unit* const wanted = unit_named(words_of(key).back());
   if (wanted == nullptr || key.find("_per_") != std::string_view::npos || value == 0) return {};
-  // Units that people use side by side; not every unit that exists.
+  // Units that are often confused with the unit of the key. Other units are not suggested.
   constexpr std::array<std::string_view, 4> usual{"ms", "bar", "m", "ua"};
   for (const std::string_view name : usual) {
     const Unit* const other = unit_named(name);

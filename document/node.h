@@ -1,5 +1,5 @@
 #pragma once
-// A parsed YAML document as plain located values. Parsing is strict: see parse().
+// A parsed YAML document as plain values with their locations. Parsing is strict: see parse().
 
 #include <cstddef>
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace softgrip::document {
 
-/// Bounds on what a document may be; beyond them it is refused before it can cost anything.
+/// Bounds of a document. A document beyond them is refused before it needs much time or memory.
 struct Bounds {
   std::size_t bytes = 256 * 1024;
   std::size_t nodes = 20'000;
@@ -24,11 +24,13 @@ struct Node {
   Kind kind = Kind::null;
   Location at;
   std::string scalar;          ///< the text of a scalar, unquoted
-  bool quoted = false;         ///< the scalar was quoted: a string, never a number
-  std::string stands_for;      ///< `$name` if the file has it in place of the number of the scalar; or empty
-  bool refused = false;        ///< already reported or truncated: present, not to be checked again
-  std::vector<Node> items;     ///< of a sequence
-  std::vector<Entry> entries;  ///< of a map, in the order of the text, keys unique
+  bool quoted = false;         ///< the scalar was quoted, so it is a text, never a number
+  std::string stands_for;      ///< `$name` if the file contains this parameter in place of the number; or
+                               ///< empty
+  bool refused = false;        ///< already reported or truncated: the node is present but is not checked
+                               ///< again
+  std::vector<Node> items;     ///< items of a sequence
+  std::vector<Entry> entries;  ///< entries of a map in the order of the text, with unique keys
 };
 struct Node::Entry {
   std::string key;
@@ -36,28 +38,28 @@ struct Node::Entry {
   Node value;
 };
 
-/// A document: its name for messages, its text, its root.
+/// A document: its name for messages, its text and its root node.
 struct Document {
   std::string file;
   std::string text;
   Node root;
-  /// False if parsing stopped before the end. A missing key may then be further down, so readers do not
-  /// report it.
+  /// False if parsing stopped before the end. A missing key may then be in the rest of the text, so readers
+  /// do not report it.
   bool complete = true;
 
-  /// A problem at `at`, with the line's text filled in.
+  /// Returns a problem at `at`, with the text of the line.
   [[nodiscard]] Problem problem(Location at, std::string message, std::string hint = {}) const;
 };
 
-/// Parses one YAML document. Refused, each with its place: anchors, aliases, tags, merge keys, duplicate
-/// keys, keys that are no plain word, directives, more than one document, anything beyond `bounds`, bytes
-/// that are not UTF-8, control characters, tabs as indentation, syntax errors. Problems are added to
-/// `problems`; the document is returned all the same, with what could be read: of a duplicate key the first,
-/// of a refused alias nothing.
+/// Parses one YAML document. Refuses, each with its place: anchors, aliases, tags, merge keys, duplicate
+/// keys, keys that are not a plain word, directives, several documents, anything beyond `bounds`, bytes that
+/// are not UTF-8, control characters, tabs as indentation and syntax errors. Adds the problems to `problems`,
+/// and returns the readable part of the document: the first of duplicate keys, and no value for a refused
+/// alias.
 [[nodiscard]] Document parse(std::string file, std::string text, Problems& problems,
                              const Bounds& bounds = {});
 
-/// Reads a whole file of at most `bounds.bytes` and parses it. A file that cannot be read is a problem at
+/// Reads a complete file of at most `bounds.bytes` and parses it. A file that cannot be read is a problem at
 /// 1:1.
 [[nodiscard]] Document parse_file(const std::string& path, Problems& problems, const Bounds& bounds = {});
 

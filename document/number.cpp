@@ -12,9 +12,9 @@ bool is_digit(char c) {
   return c >= '0' && c <= '9';
 }
 
-/// The parts of a decimal; empty if the text is none.
+/// The parts of a decimal number; empty if the text is not one.
 struct Decimal {
-  std::string_view digits;  // what from_chars reads: without a leading +
+  std::string_view digits;  // input of from_chars: without a leading +
   std::string_view whole;   // the digits before the point
   bool fraction = false;
   bool exponent = false;
@@ -27,7 +27,7 @@ std::size_t count_digits(std::string_view text) {
 
 std::optional<Decimal> split(std::string_view text) {
   Decimal decimal;
-  // from_chars knows no leading plus.
+  // from_chars does not accept a leading plus sign.
   decimal.digits = text.starts_with('+') ? text.substr(1) : text;
   if (text.starts_with('+') || text.starts_with('-')) text.remove_prefix(1);
   const std::size_t whole = count_digits(text);
@@ -66,7 +66,8 @@ bool one_of(std::string_view word, std::initializer_list<std::string_view> words
   return std::find(words.begin(), words.end(), word) != words.end();
 }
 
-/// Drops what separates digits or replaces the point; empty if the rest is no number.
+/// Removes the separators of digits or replaces the decimal mark. Returns an empty text if the rest is not a
+/// number.
 std::string repaired(std::string_view text, char from, std::string_view to) {
   if (text.find(from) == std::string_view::npos) return {};
   std::string out;
@@ -108,7 +109,7 @@ Parsed<T> refused(std::string message, std::string hint) {
   return {std::nullopt, std::move(message), std::move(hint)};
 }
 
-/// The decimal in a node, or a message in `out`.
+/// Returns the decimal number in a node, or a message in `out`.
 template <class T>
 std::optional<Decimal> decimal_of(const Node& node, std::string_view wanted, Parsed<T>& out) {
   const std::string must = "must be " + std::string(wanted) + ", found ";

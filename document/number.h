@@ -1,5 +1,6 @@
 #pragma once
-// Texts to numbers: plain decimal only, independent of the locale, and what to say of anything else.
+// Converts texts to numbers: plain decimals only, independent of the locale. Explains why a text is not a
+// number.
 
 #include <cstdint>
 #include <optional>
@@ -10,23 +11,23 @@
 
 namespace softgrip::document {
 
-/// A number, or why the text is none. Exactly one of `value` and `message` is there.
+/// A number, or the reason why the text is not one. Exactly one of `value` and `message` is present.
 template <class T>
 struct Parsed {
   std::optional<T> value;
-  std::string message;  ///< goes on after "`key` ": "must be a number, found `fast`"
+  std::string message;  ///< follows after "`key` ": "must be a number, found `fast`"
   std::string hint;
 };
 
-/// [+-]digits[.digits][e[+-]digits], at least one digit before the exponent, no leading zeros.
+/// Reads [+-]digits[.digits][e[+-]digits] with at least one digit before the exponent and no leading zeros.
 [[nodiscard]] Parsed<double> parse_number(const Node& node);
-/// [+-]digits, no leading zeros.
+/// Reads [+-]digits without leading zeros.
 [[nodiscard]] Parsed<std::int64_t> parse_integer(const Node& node);
-/// `true` or `false`.
+/// Reads `true` or `false`.
 [[nodiscard]] Parsed<bool> parse_boolean(const Node& node);
 
 /// Returns "the decimal mark is a point: 0.5" if a comma between two nodes of one line was probably a decimal
-/// mark, as in `[0,5]` and `{hold_s: 0,5}`; or empty. `after` is the location behind the comma.
+/// mark, as in `[0,5]` and `{hold_s: 0,5}`; otherwise an empty text. `after` is the location after the comma.
 [[nodiscard]] std::string hint_for_comma(const Node& before, Location after, std::string_view text_after);
 
 /// Returns the kind of a node, for "found ...": "a list", "a map", "nothing", "`text`".

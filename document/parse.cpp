@@ -16,15 +16,15 @@ namespace softgrip::document {
 
 namespace {
 
-/// Thrown through the parser when a bound is reached. Leaving from the first event beyond the bound also
-/// bounds the parser's own recursion, which announces every level before it descends.
+/// Thrown through the parser when a bound is reached. The first event beyond the bound ends the parser, which
+/// bounds its recursion, because it reports each level before it descends.
 struct Abandoned {};
 
 Location location_of(const YAML::Mark& mark) {
   return {mark.line + 1, mark.column + 1};
 }
 
-/// Builds the tree from the parser's events. Aliases arrive as one event each and are never followed.
+/// Builds the tree from the parser's events. Each alias is one event and is not followed.
 class TreeBuilder final : public YAML::EventHandler {
  public:
   TreeBuilder(Document& document, Problems& problems, const Bounds& bounds)
@@ -84,7 +84,7 @@ class TreeBuilder final : public YAML::EventHandler {
   }
   void OnMapEnd() override { close(); }
 
-  /// The innermost map or sequence that is still open, or nullptr.
+  /// Returns the innermost map or sequence that is still open, or nullptr.
   [[nodiscard]] const Node* open_node() const { return frames_.empty() ? nullptr : &frames_.back().node; }
 
   /// Moves the open nodes of the stack into the tree, after the parser stopped early.
@@ -102,7 +102,7 @@ class TreeBuilder final : public YAML::EventHandler {
     }
   }
 
-  /// Before a key that is none the parser took the key's words for more of the last value.
+  /// Marks the last value as refused. The parser may have read the words of an invalid key as a part of it.
   void distrust_last_value() {
     if (frames_.empty() || frames_.back().node.entries.empty()) return;
     frames_.back().node.entries.back().value.refused = true;
@@ -113,12 +113,12 @@ class TreeBuilder final : public YAML::EventHandler {
  private:
   struct Frame {
     Node node;
-    bool flow = false;       // of a sequence: `[...]`
-    bool has_key = false;    // of a map: the key was read, its value comes next
-    bool key_wanted = true;  // of a map: the key was not refused
+    bool flow = false;       // for a sequence: written as `[...]`
+    bool has_key = false;    // for a map: the key was read and its value comes next
+    bool key_wanted = true;  // for a map: the key was not refused
     std::string key;
     Location key_at;
-    std::map<std::string, std::size_t> index;  // of a map: key to entry
+    std::map<std::string, std::size_t> index;  // for a map: index of the entry by key
   };
 
   void refuse(Location at, std::string message, std::string hint) {
@@ -126,7 +126,7 @@ class TreeBuilder final : public YAML::EventHandler {
     if (problems_.full()) throw Abandoned{};
   }
 
-  /// Every node passes here: counts it, refuses its tag and anchor.
+  /// Called for each node: counts it and refuses its tag and anchor.
   Location begin(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor) {
     const Location at = location_of(mark);
     last_at_ = at;
@@ -135,7 +135,8 @@ class TreeBuilder final : public YAML::EventHandler {
       throw Abandoned{};
     }
     if (anchor != 0) refuse(at, "an anchor (`&name`) is not accepted here", "remove it");
-    // The parser says "?" of a plain node and "!" of a quoted one; a written `!` looks like the latter.
+    // The parser reports the tag "?" for a plain node and "!" for a quoted one. A `!` in the text is also
+    // reported as "!".
     const auto position = static_cast<std::size_t>(std::max(mark.pos, 0));
     const bool written = position < document_.text.size() && document_.text[position] == '!';
     if ((!tag.empty() && tag != "?" && tag != "!") || (tag == "!" && written)) {
@@ -144,8 +145,8 @@ class TreeBuilder final : public YAML::EventHandler {
     return at;
   }
 
-  /// False if a quoted text starts at `mark` and goes on to the end of the file, which the parser accepts
-  /// after a line break.
+  /// Returns false if a quoted text starts at `mark` and is not closed before the end of the file. After a
+  /// line break the parser accepts such a text.
   [[nodiscard]] bool is_closed(const YAML::Mark& mark) const {
     const std::string& text = document_.text;
     auto position = static_cast<std::size_t>(std::max(mark.pos, 0));
@@ -162,8 +163,8 @@ class TreeBuilder final : public YAML::EventHandler {
     return false;
   }
 
-  /// For a missing value, the parser gives the location of the next token, perhaps lines below. Returns the
-  /// end of the preceding text instead.
+  /// Returns the end of the text before a missing value. The parser reports the location of the next token,
+  /// which may be several lines below.
   [[nodiscard]] Location empty_value_at(const YAML::Mark& mark) const {
     const std::string& text = document_.text;
     auto position = std::min(static_cast<std::size_t>(std::max(mark.pos, 0)), text.size());
@@ -195,7 +196,7 @@ class TreeBuilder final : public YAML::EventHandler {
     place(std::move(node));
   }
 
-  /// Puts a finished node where it belongs: the root, an item, a key, a value.
+  /// Adds a finished node to the tree: as root, item, key or value.
   void place(Node&& node) {
     if (frames_.empty()) {
       document_.root = std::move(node);
@@ -251,7 +252,7 @@ class TreeBuilder final : public YAML::EventHandler {
   Location last_at_;
 };
 
-/// The place that the parser names, or where it last was.
+/// Returns the place that the parser names, or its last place.
 Location place_of(const YAML::ParserException& error, const TreeBuilder& builder) {
   return error.mark.is_null() ? builder.last_at() : location_of(error.mark);
 }
@@ -298,7 +299,8 @@ Document parse_file(const std::string& path, Problems& problems, const Bounds& b
   document.file = path;
   document.complete = false;
   const auto file = open_regular(path);
-  // One byte more than allowed: the check of the text refuses it then, without reading all of it.
+  // Reads one byte more than allowed, so that the check of the text can refuse the file without reading all
+  // of it.
   auto text = file ? read_start(*file, bounds.bytes + 1) : tl::unexpected(file.error());
   if (!text) {
     problems.add({path, {}, {}, "the file cannot be read: " + text.error(), {}});

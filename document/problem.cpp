@@ -9,10 +9,10 @@ namespace softgrip::document {
 
 namespace {
 
-// Beyond this many bytes a line is shown only around the column.
+// A longer line is shown only around the column [bytes].
 constexpr std::size_t line_bytes = 100;
 
-/// The stretch of `line` to show: all of it, or a window around `column` (from 0) at character boundaries.
+/// The part of `line` to show: all of it, or a window around `column` (from 0) at boundaries of characters.
 struct Window {
   std::size_t begin;
   std::size_t end;
@@ -26,13 +26,13 @@ Window window_of(std::string_view line, std::size_t column) {
   std::size_t begin = column < line_bytes / 2 ? 0 : std::min(column, line.size()) - line_bytes / 2;
   begin = std::min(begin, line.size() - line_bytes);
   std::size_t end = begin + line_bytes;
-  // At most three steps each: text that is not UTF-8 has no boundaries to find.
+  // At most three steps, because a text that is not UTF-8 has no boundaries of characters.
   for (int i = 0; i < 3 && inside_character(begin); ++i) ++begin;
   for (int i = 0; i < 3 && inside_character(end); ++i) ++end;
   return {begin, end};
 }
 
-/// The line and a caret under the column.
+/// Appends the line and a caret under the column.
 void append_line(std::string& out, const Problem& problem) {
   const std::string_view line = problem.line_text;
   const std::size_t column = static_cast<std::size_t>(std::max(problem.at.column, 1)) - 1;
@@ -138,7 +138,8 @@ std::string Problems::format() const {
 
 std::string nearest(std::string_view word, const std::vector<std::string>& candidates) {
   std::string best;
-  // A third of the letters may be wrong, and at least one: more is no slip of the finger.
+  // A third of the letters, and at least one, may differ. With more differences, a typing error is
+  // improbable.
   std::size_t best_distance = std::max<std::size_t>(1, word.size() / 3) + 1;
   for (const std::string& candidate : candidates) {
     const std::size_t longer = std::max(word.size(), candidate.size());

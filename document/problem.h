@@ -1,5 +1,5 @@
 #pragma once
-// Problems found in a text document, each with its place, so that a user sees all of them at once.
+// Problems of a text document with their places. A user sees all of them together.
 
 #include <cstddef>
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace softgrip::document {
 
-/// A place in a text. Both count from 1; column counts bytes.
+/// A place in a text. Line and column count from 1; the column counts bytes.
 struct Location {
   int line = 1;
   int column = 1;
@@ -17,20 +17,20 @@ struct Location {
   bool operator==(const Location&) const = default;
 };
 
-/// One thing that is wrong with a document.
+/// A problem of a document.
 struct Problem {
   std::string file;       ///< as the user named it
-  Location at;            ///< where
-  std::string line_text;  ///< the line itself, without its line break (empty where there is none)
-  std::string message;    ///< what is wrong, one sentence
-  std::string hint;       ///< what was probably meant, or empty
+  Location at;            ///< place in the file
+  std::string line_text;  ///< text of the line, without its line break; may be empty
+  std::string message;    ///< the problem in one sentence
+  std::string hint;       ///< the probable intention, or empty
 
   bool operator==(const Problem&) const = default;
 };
 
-/// All problems of one or several documents, in the order in which they were found. Errors and warnings are
-/// kept apart: a document with an error is refused, one with warnings is accepted and they are shown.
-/// Of each, the first `most` are kept and the others counted.
+/// All problems of one or several documents, in the order in which they were found. A document with an error
+/// is refused. A document that has only warnings is accepted, and the warnings are shown. The first `most`
+/// errors and the first `most` warnings are stored, the others only counted.
 class Problems {
  public:
   static constexpr std::size_t most = 200;
@@ -38,20 +38,20 @@ class Problems {
   void add(Problem problem);
   void warn(Problem problem);
 
-  /// Of the errors alone, those that are only counted included.
+  /// The next two functions count errors only, including those that are not stored.
   [[nodiscard]] bool empty() const noexcept { return error_count_ == 0; }
   [[nodiscard]] std::size_t size() const noexcept { return error_count_; }
-  /// True when further errors are only counted: looking for more is wasted.
+  /// Returns true if further errors are only counted, so a further search is useless.
   [[nodiscard]] bool full() const noexcept { return error_count_ >= most; }
   [[nodiscard]] const std::vector<Problem>& list() const noexcept { return errors_; }
   [[nodiscard]] const std::vector<Problem>& warnings() const noexcept { return warnings_; }
 
-  /// One block per problem: `file:line:col: message` (`file:line:col: warning: message`), the line, a caret
-  /// under the column, the hint. Files in the order of their first problem, each by line. Ends with a line
-  /// break unless there is nothing to say.
+  /// Returns a block per problem: `file:line:col: message` (`file:line:col: warning: message`), the line, a
+  /// caret under the column, and the hint. Files are in the order of their first problem, and problems of a
+  /// file in the order of lines. The text ends with a line break unless it is empty.
   [[nodiscard]] std::string format() const;
 
-  /// Returns the problems without repetitions: a file that was read more than once repeats its problems.
+  /// Returns the problems without repetitions. Problems repeat if a file was read more than once.
   [[nodiscard]] Problems without_repeats() const;
 
  private:
@@ -61,13 +61,13 @@ class Problems {
   std::size_t warning_count_ = 0;
 };
 
-/// The candidate nearest to `word` by edit distance, or empty when none is near enough to suggest.
+/// Returns the candidate with the smallest edit distance to `word`, or an empty text if none is similar.
 [[nodiscard]] std::string nearest(std::string_view word, const std::vector<std::string>& candidates);
 
-/// `text` for a terminal: control characters and bytes that are not UTF-8 as \n, \t, \xNN; after `most` bytes
-/// of it comes "...".
+/// Returns `text` in a form that is safe for a terminal: control characters and bytes that are not UTF-8
+/// become \n, \t or \xNN. "..." replaces the part after `most` bytes.
 [[nodiscard]] std::string shown(std::string_view text, std::size_t most = 60);
-/// A name or a value as messages set it off: `so`.
+/// Returns a name or a value in backticks, as messages show it.
 [[nodiscard]] std::string in_backticks(std::string_view word);
 
 }  // namespace softgrip::document

@@ -40,7 +40,7 @@ SyntaxMessage misplaced(const Document& document, const Node* open, Location at,
   return result;
 }
 
-/// A key that starts in another column than the keys of its map, or nothing.
+/// Returns a message if a key starts in another column than the keys of its map; otherwise nothing.
 std::optional<SyntaxMessage> misaligned(const Document& document, const Node* open, Location at) {
   if (open == nullptr || open->kind != Node::Kind::map || at.line <= open->at.line) return std::nullopt;
   const std::string_view first = line_of(document.text, open->at.line);
@@ -57,7 +57,7 @@ std::string place(Location at) {
   return std::to_string(at.line) + ":" + std::to_string(at.column);
 }
 
-/// Returns the message on a bracket that closes another kind, or that follows the end.
+/// Returns the message for a bracket that closes the other kind, or that has no opening bracket.
 SyntaxMessage wrong_end(const Document& document, Location at) {
   const std::vector<Bracket> open = open_brackets(document.text, at);
   if (open.empty()) return {"a closing bracket stands here without an opening one", ""};
@@ -142,7 +142,7 @@ SyntaxMessage translated(const Document& document, std::string_view said, const 
 
 SyntaxMessage syntax_message(const Document& document, std::string_view said, const Node* open, Location at) {
   SyntaxMessage result = translated(document, said, open, at);
-  // A bracket that was forgotten shows itself lines below, as something else.
+  // A missing closing bracket often causes another message several lines below.
   const std::vector<Bracket> brackets = open_brackets(document.text, at);
   if (!result.hint.empty() || brackets.empty()) return result;
   if (result.message.find(" is not closed") != std::string::npos) return result;

@@ -13,13 +13,14 @@ struct SyntaxMessage {
   std::string hint;
 };
 
+/// Returns the message and the hint for a syntax error.
 /// @param said  the parser's own message
-/// @param open  the innermost map or sequence that was being read, or nullptr
+/// @param open  the innermost map or sequence that is not complete, or nullptr
 /// @param at    where the parser stopped
 [[nodiscard]] SyntaxMessage syntax_message(const Document& document, std::string_view said, const Node* open,
                                            Location at);
 
-/// The line with the number `line` (from 1) of a text, without its line break; empty beyond its end.
+/// Returns line number `line` (from 1) of a text, without its line break; empty beyond the end of the text.
 [[nodiscard]] std::string_view line_of(std::string_view text, int line);
 
 }  // namespace softgrip::document

@@ -9,7 +9,7 @@ namespace softgrip::document {
 
 namespace {
 
-/// The first place of a kind of trouble and how often it occurs.
+/// The first place of one kind of problem, and the number of its occurrences.
 struct Trouble {
   std::optional<Location> first;
   std::string what;
@@ -68,7 +68,7 @@ void for_each_line(std::string_view text, See&& see) {
   }
 }
 
-/// Directives precede the document: `%YAML 1.2`.
+/// Finds a directive, such as `%YAML 1.2`. Directives precede the document.
 std::optional<Location> find_directive(std::string_view text) {
   std::optional<Location> found;
   for_each_line(text, [&](std::string_view line, int number) {
