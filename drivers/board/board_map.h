@@ -1,7 +1,7 @@
 #pragma once
-// What a board file (config/boards/*.yaml) says: where the registers of an I/O board are and what they mean.
-// Plain values; read by load_board_map() in rig/board_map_file.h, used by the Modbus board and by the
-// emulator. docs/reference/board-map.md is the manual of the file.
+// The contents of a board file (config/boards/*.yaml): the registers of an I/O board and their meaning, as
+// plain values. load_board_map() in rig/board_map_file.h reads them; the Modbus board and the emulator use
+// them. docs/reference/board-map.md describes the file.
 
 #include <algorithm>
 #include <cstddef>
@@ -15,60 +15,62 @@
 
 namespace softgrip::drivers {
 
-/// What one number looks like in registers.
+/// The representation of one number in registers.
 enum class RegisterKind : std::uint8_t { uint16, int16, uint32, int32, float32 };
-/// Which word of a number of two registers comes first (the lower address), and whether the two bytes of
-/// every register are swapped.
+/// The word of a two-register number at the lower address, and whether the two bytes of each register are
+/// swapped.
 enum class WordOrder : std::uint8_t {
   high_first,
   low_first,
   high_first_bytes_swapped,
   low_first_bytes_swapped,
 };
-/// As the board file writes them.
+/// Returns the name in the board file.
 [[nodiscard]] std::string_view name_of(WordOrder order) noexcept;
-/// What a terminal carries. A pressure generator's "terminal" is its air port: it is told kilopascals.
+/// The unit at a terminal. The "terminal" of a pressure generator is its air port; its unit is kPa.
 enum class ElectricalUnit : std::uint8_t { volt, milliampere, kilopascal };
 
-/// Registers that a number of this kind takes: 1 or 2.
+/// Returns the number of registers of a number of this kind: 1 or 2.
 [[nodiscard]] constexpr std::uint16_t words_of(RegisterKind kind) noexcept {
   return kind == RegisterKind::uint16 || kind == RegisterKind::int16 ? 1 : 2;
 }
-/// "uint16" ... "float32", as the board file writes them.
+/// Returns the name in the board file: "uint16" ... "float32".
 [[nodiscard]] std::string_view name_of(RegisterKind kind) noexcept;
-/// "V", "mA", "kPa"
+/// Returns "V", "mA" or "kPa".
 [[nodiscard]] std::string_view name_of(ElectricalUnit unit) noexcept;
 
-/// Consecutive numbers of one kind. `address` is what goes over the wire (counted from 0): the loader has
-/// subtracted the file's address_base.
+/// Consecutive numbers of one kind. `address` is the address on the wire (from 0): the loader has subtracted
+/// the file's address_base.
 struct RegisterBlock {
-  std::uint8_t function = 0;  ///< function code that reads it (1-4) or writes it (5, 6, 16)
+  std::uint8_t function = 0;  ///< function code for reading (1-4) or writing (5, 6, 16)
   std::uint16_t address = 0;
-  std::uint16_t count = 0;  ///< numbers, not registers
+  std::uint16_t count = 0;  ///< number of numbers, not of registers
   RegisterKind kind = RegisterKind::uint16;
 
   [[nodiscard]] constexpr std::uint16_t registers() const noexcept {
     return static_cast<std::uint16_t>(count * words_of(kind));
   }
-  /// Address of the number `index`. Beyond 65535 no board has it, and it does not continue at 0.
+  /// Returns the address of the number `index`. It may exceed 65535; such an address does not exist and does
+  /// not wrap.
   [[nodiscard]] constexpr std::uint32_t address_of(std::size_t index) const noexcept {
     return static_cast<std::uint32_t>(address + index * words_of(kind));
   }
 };
 
-/// Terminals of one direction: their registers and what the raw numbers mean at the terminal. A module that
-/// has none of this direction has a count of 0.
+/// Terminals of one direction: their registers and the scaling of the raw numbers. The count is 0 if a module
+/// has no terminals of this direction.
 struct TerminalBlock {
   RegisterBlock registers;
   ElectricalUnit unit = ElectricalUnit::volt;
   TwoPoints scaling;   ///< x: raw, y: in `unit`
-  double raw_min = 0;  ///< what the converter can deliver or accept; outside, a write is refused
+  double raw_min = 0;  ///< lower end of the converter's range; a write beyond an end is refused
   double raw_max = 0;
-  int bits = 0;                    ///< of the converter over [raw_min, raw_max]; 0: not quantised (float)
-  std::vector<double> error_raws;  ///< raw numbers that are not values but error codes (inputs)
+  int bits = 0;                    ///< resolution of the converter over [raw_min, raw_max]; 0: not quantised
+                                   ///< (float)
+  std::vector<double> error_raws;  ///< raw numbers that are error codes instead of values (inputs)
 };
 
-/// Status register of each input: what its numbers mean. Any other number is a sensor error.
+/// Status registers of the inputs and the meaning of their numbers. All other numbers are sensor errors.
 struct StatusBlock {
   RegisterBlock registers;
   std::vector<std::uint16_t> ok;
@@ -76,11 +78,12 @@ struct StatusBlock {
   std::vector<std::uint16_t> under;
 };
 
-/// Where the board says what it outputs.
+/// Registers in which the board reports its outputs.
 struct ReadBack {
   RegisterBlock registers;   ///< same kind and scaling as the outputs
   double tolerance_raw = 0;  ///< a larger difference means that the write was refused
-  /// So many exchanges the board may need until it shows what was written: earlier ones are accepted too.
+  /// Number of exchanges after which the board shows a written value at the latest. Earlier values are
+  /// accepted too.
   std::uint32_t lag_exchanges = 0;
 };
 
@@ -88,46 +91,48 @@ struct ReadBack {
 struct FixedWrite {
   std::uint8_t function = 0;  ///< 5, 6 or 16
   std::uint16_t address = 0;
-  std::uint16_t value = 0;  ///< of a coil: 0 or 1
-  /// Of a heartbeat: every second write has this value, since the board wants to see a change.
+  std::uint16_t value = 0;  ///< for a coil: 0 or 1
+  /// For a heartbeat: value of each second write, because the board waits for a change.
   std::optional<std::uint16_t> alternate{};
 };
 
-/// The watchdog of the board itself, which acts when the daemon no longer does.
+/// The watchdog of the board, which acts when the daemon sends no requests.
 struct BoardWatchdog {
   enum class Kind : std::uint8_t {
-    none,                   ///< outputs keep their last value for ever
-    communication_timeout,  ///< outputs go to the safe value when the board was not fed for timeout_s
+    none,                   ///< outputs keep their last value without a limit of time
+    communication_timeout,  ///< outputs go to the safe value after timeout_s without a feeding request
   };
   enum class Feed : std::uint8_t {
-    any_request,  ///< whatever the board receives
+    any_request,  ///< each message that the board receives
     functions,    ///< only requests with one of `functions`
-    feed_write,   ///< only the write `feed_write`, sent in every exchange
+    feed_write,   ///< only the write `feed_write`, which each exchange contains
   };
   struct Tripped {
     std::uint8_t function = 0;  ///< 1 or 2 (a coil, an input) or 3, 4 (a register)
     std::uint16_t address = 0;
     std::uint16_t mask = 0xffff;  ///< tripped if (number & mask) is not 0 ...
-    std::uint16_t count = 1;      ///< ... in any of so many (one per output)
+    std::uint16_t count = 1;      ///< ... in any of `count` numbers (one per output)
   };
 
-  /// A register.
+  /// The register that contains the number of clients.
   struct ClientCount {
     std::uint8_t function = 0;  ///< 3 or 4
     std::uint16_t address = 0;
   };
 
   Kind kind = Kind::none;
-  double timeout_s = 0;                 ///< as set in the board (by `setup` or by its own utility)
-  std::vector<double> safe_electrical;  ///< what each output goes to, in the outputs' unit
+  double timeout_s = 0;                 ///< as configured in the board (by `setup` or by the manufacturer's
+                                        ///< tool)
+  std::vector<double> safe_electrical;  ///< safe value of each output, in the outputs' unit
   Feed feed = Feed::any_request;
   std::vector<std::uint8_t> functions;
   std::optional<FixedWrite> feed_write;
-  std::optional<Tripped> tripped;      ///< where the board says that it tripped
-  std::vector<FixedWrite> clear;       ///< what ends the tripped state, in this order; empty: any write does
-  std::optional<ClientCount> clients;  ///< where the board counts its clients, this program included
+  std::optional<Tripped> tripped;      ///< where the board reports that it tripped
+  std::vector<FixedWrite> clear;       ///< writes that end the tripped state, in this order; empty: any write
+                                       ///< does
+  std::optional<ClientCount> clients;  ///< where the board counts its clients, including this program
 
-  /// True if requests of a client that only reads feed it, too.
+  /// Returns true if requests of a client that only reads also feed the watchdog.
   [[nodiscard]] bool fed_by_reading() const noexcept {
     constexpr std::uint8_t last_that_reads = 4;
     const bool reads = std::any_of(functions.begin(), functions.end(),
@@ -136,25 +141,26 @@ struct BoardWatchdog {
   }
 };
 
-/// A board file.
+/// The contents of a board file.
 struct BoardMap {
   std::string name;
-  std::string source;    ///< where its numbers come from, one line
-  int address_base = 0;  ///< what the file calls the first register; for messages only
+  std::string source;    ///< source of its numbers, one line
+  int address_base = 0;  ///< number of the first register in the file; for messages only
   WordOrder word_order = WordOrder::high_first;
   TerminalBlock inputs;
   TerminalBlock outputs;
-  /// Most registers in one request; 125 is what the specification allows a read.
+  /// Largest number of registers in one request. The specification allows 125 for a read.
   std::uint16_t max_registers = 125;
   /// Function code 23 writes the outputs and reads the inputs in one transaction.
   bool has_fc23 = false;
-  /// Registers between two blocks that may be read along to save a transaction; the board must serve them.
+  /// Largest gap of registers between two blocks that one request may read; the board must support these
+  /// reads.
   std::uint16_t readable_gap = 0;
   std::optional<StatusBlock> input_status;
   std::optional<ReadBack> read_back;
   BoardWatchdog watchdog;
-  /// Written, in this order, whenever a session was opened; to a board whose watchdog has tripped only after
-  /// that was cleared.
+  /// Written in this order after a session was opened. If the board's watchdog has tripped, it is cleared
+  /// first.
   std::vector<FixedWrite> setup;
 
   [[nodiscard]] bool has_inputs() const noexcept { return inputs.registers.count > 0; }

@@ -1,5 +1,5 @@
 #pragma once
-// From the raw number of an input to millimetres or kilopascals, and whether they can be believed.
+// Converts the raw number of an input to mm or kPa and determines its validity.
 
 #include <cstdint>
 #include <limits>
@@ -18,13 +18,13 @@ struct JudgedInput {
   model::Validity validity = model::Validity::none_yet;
 };
 
-/// Judges one input. An error code is named before a range, since sensors place their codes outside it:
-/// first the board's error codes and status register (`status`, if the map has one), then the sensor's
-/// error codes, then the electrical range.
+/// Determines the value and validity of one input. Error codes are checked before the range, because sensors
+/// place their codes outside the range. The order is: the board's error codes and status register (`status`,
+/// if the map has one), the sensor's error codes, the electrical range.
 [[nodiscard]] JudgedInput judge(const BoardMap& map, const InputWiring& wiring, double raw,
                                 std::optional<std::uint16_t> status) noexcept;
 
-/// Judges a value in V or mA that the board itself holds to be good.
+/// Determines the validity of a value in V or mA that the board reports as good.
 [[nodiscard]] JudgedInput judge(const InputWiring& wiring, double electrical) noexcept;
 
 }  // namespace softgrip::drivers

@@ -1,4 +1,4 @@
-// Names of the drivers' enumerations, as board files, events and messages write them.
+// Names of the drivers' enumerations in board files, events and messages.
 
 #include "drivers/board/board.h"
 #include "drivers/board/board_map.h"

@@ -1,5 +1,5 @@
 #pragma once
-// Whether what a board says of its outputs is something it was told, now or a little earlier.
+// Compares the outputs that a board reports with those written now or in a few earlier exchanges.
 
 #include <cmath>
 #include <cstddef>
@@ -11,7 +11,7 @@
 namespace softgrip::drivers {
 
 /// The raw numbers written in the last exchanges of a session, as many as the board's read-back may lag.
-/// Allocates when made, never later.
+/// Allocates only in the constructor.
 class ReadBackHistory {
  public:
   ReadBackHistory(const ReadBack& rules, std::size_t channels)
@@ -20,17 +20,17 @@ class ReadBackHistory {
         channels_(channels),
         written_(depth_ * channels) {}
 
-  /// A new session: what was written before it is unknown.
+  /// Begins a new session, in which the earlier writes are unknown.
   void forget() noexcept { exchanges_ = 0; }
 
-  /// One exchange wrote these, one per channel.
+  /// Stores the raw numbers that one exchange wrote, one per channel.
   void note(std::span<const double> raws) noexcept {
     const std::size_t at = exchanges_++ % depth_ * channels_;
     for (std::size_t i = 0; i < channels_; ++i) written_[at + i] = raws[i];
   }
 
-  /// True if `raw` is near one of the numbers that the board may show now. Until as many exchanges were
-  /// noted as it may lag, it may still show something from before. NaN is never accepted.
+  /// Returns true if `raw` is within the tolerance of a number that the board may show now. At the beginning
+  /// of a session the board may show earlier numbers, so all numbers are accepted. NaN is never accepted.
   [[nodiscard]] bool accepts(std::size_t channel, double raw) const noexcept {
     if (exchanges_ < depth_) return !std::isnan(raw);
     for (std::size_t i = 0; i < depth_; ++i) {

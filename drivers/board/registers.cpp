@@ -12,7 +12,8 @@ bool is_high_first(WordOrder order) noexcept {
   return order == WordOrder::high_first || order == WordOrder::high_first_bytes_swapped;
 }
 
-/// A register as this machine counts it, or as the board carries it: the same either way.
+/// Converts a register between the byte order of this machine and that of the board. Both directions are
+/// equal.
 std::uint16_t ordered(std::uint16_t word, WordOrder order) noexcept {
   const bool swapped =
       order == WordOrder::high_first_bytes_swapped || order == WordOrder::low_first_bytes_swapped;

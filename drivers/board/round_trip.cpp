@@ -10,8 +10,8 @@
 namespace softgrip::drivers {
 namespace {
 
-// Upper ends of what is usual: loopback 0.02-0.15 ms (measured), a switched network 1-10 ms (a common figure,
-// not measured here).
+// Upper ends of the usual ranges: loopback 0.02-0.15 ms (measured), a switched network 1-10 ms (common
+// figure, not measured).
 constexpr double assumed_loopback_s = 0.15e-3;
 constexpr double assumed_network_s = 10e-3;
 

@@ -1,5 +1,5 @@
 #pragma once
-// How long one question and its answer take, and what that makes of an exchange.
+// Measures the round trip of a request, and calculates the duration of an exchange from it.
 
 #include <array>
 #include <cstddef>
@@ -10,7 +10,7 @@
 
 namespace softgrip::drivers {
 
-/// Round trips measured when the session was opened; the first few are kept.
+/// Round trips measured when the session was opened. The first ones are kept.
 class RoundTrip {
  public:
   void reset() noexcept { count_ = 0; }
@@ -18,7 +18,7 @@ class RoundTrip {
     if (count_ < durations_.size()) durations_[count_++] = duration;
   }
   [[nodiscard]] std::size_t count() const noexcept { return count_; }
-  /// Both 0 without a measurement.
+  /// The next two functions return 0 without a measurement.
   [[nodiscard]] double median_s() const noexcept;
   [[nodiscard]] double slowest_s() const noexcept;
 
@@ -27,16 +27,17 @@ class RoundTrip {
   std::size_t count_ = 0;
 };
 
-/// What `transactions` round trips take, one after the other, at the median that was measured (one of few may
-/// have met a busy moment of this machine; the slowest is told besides); without a measurement at an assumed
-/// one, and the text says that it is assumed.
+/// Returns the duration of `transactions` consecutive round trips. It uses the measured median, because a
+/// single round trip may be delayed by other load of this machine; the text also states the slowest one.
+/// Without a measurement it uses an assumed round trip, and the text says so.
 [[nodiscard]] Board::Budget tcp_cost(std::size_t transactions, const std::string& plan,
                                      const std::string& host, const RoundTrip& measured);
 
-/// "9.7 ms"
+/// Returns, for example, "9.7 ms".
 [[nodiscard]] std::string milliseconds(double seconds);
 
-/// Costs of links that are used one after the other: their sum, their texts, and the rate they allow.
+/// Returns the sum of the costs of links that are used one after the other, with their texts and the possible
+/// rate.
 [[nodiscard]] Board::Budget sum_of(std::span<const Board::Budget> costs);
 
 }  // namespace softgrip::drivers

@@ -1,10 +1,10 @@
 #pragma once
-// A straight line through two calibration points: the only kind of scaling there is. Either slope sign.
+// A straight line through two calibration points, the only kind of scaling. The slope may have either sign.
 
 namespace softgrip::drivers {
 
-/// y over x through (x0, y0) and (x1, y1). A laser on 4-20 mA that is highest at the near end is simply
-/// {4, 85, 20, 15}. Usable if x0 != x1 (and y0 != y1 for the way back); loaders check that.
+/// y over x through (x0, y0) and (x1, y1). A sensor with 4-20 mA whose reading decreases with the current is
+/// {4, 85, 20, 15}. Requires x0 != x1, and y0 != y1 for x_at(); loaders check this.
 struct TwoPoints {
   double x0 = 0;
   double y0 = 0;

@@ -1,5 +1,5 @@
-// The GPIO character device through libgpiod. Debian 12 has the API of 1.6, Debian 13 the one of 2.x, which
-// shares its names but nothing else: what differs stands in libgpiod_1.h and libgpiod_2.h.
+// The GPIO character device through libgpiod. Debian 12 has the API of version 1.6, Debian 13 that of 2.x.
+// libgpiod_1.h and libgpiod_2.h contain the code that differs.
 
 #include <gpiod.h>
 #include <poll.h>
@@ -34,7 +34,7 @@ Failure refused(std::string message, std::string hint = {}) {
   return {Failure::Kind::refused, 0, std::move(message), std::move(hint)};
 }
 
-/// What an errno of opening or requesting means to who wrote the rig file.
+/// Explains an errno of opening or requesting to the author of the rig file.
 Failure failed(const std::string& what, int error) {
   Failure failure{Failure::Kind::failed, 0, what + ": " + std::strerror(error), ""};
   if (error == EACCES || error == EPERM) {
@@ -45,7 +45,7 @@ Failure failed(const std::string& what, int error) {
   return failure;
 }
 
-/// The files of chips and the links to them, in the order of their names.
+/// Returns the files of chips and the links to them, in alphabetical order.
 std::vector<std::filesystem::path> chip_paths(const std::filesystem::path& devices) {
   std::vector<std::filesystem::path> paths;
   std::error_code error;
@@ -56,7 +56,7 @@ std::vector<std::filesystem::path> chip_paths(const std::filesystem::path& devic
   return paths;
 }
 
-/// `denied`: errno of the last chip that could not be opened.
+/// Sets `denied` to the errno of the last chip that could not be opened.
 std::vector<ComputerDevice> look_at_chips(const std::filesystem::path& devices,
                                           const std::filesystem::path& sys, int& denied) {
   std::vector<ComputerDevice> chips;
@@ -95,7 +95,7 @@ tl::expected<Chip, Failure> open_chip(const std::filesystem::path& devices, cons
   return chip;
 }
 
-/// The offsets of the lines of a chip that have this name.
+/// Returns the offsets of a chip's lines with this name.
 std::vector<std::uint32_t> offsets_of(gpiod_chip* chip, const std::string& name) {
   std::vector<std::uint32_t> offsets;
   for (std::uint32_t offset = 0; offset < libgpiod::lines_of(chip); ++offset) {
@@ -146,11 +146,12 @@ tl::expected<LineFacts, Failure> find_line(gpiod_chip* chip, const GpioLineSetti
   return *facts;
 }
 
-/// EINVAL, ENOTSUPP ... of a request: the chip cannot do that with this line.
+/// Explains a failed request: with EINVAL, ENOTSUPP and similar errors the chip does not support these
+/// settings.
 Failure request_failure(const GpioLineSettings& settings, int error) {
   if (error == EBUSY) return failed("the line is in use", error);
   if (error == EACCES) return failed("the line cannot be requested", error);
-  constexpr int not_supported = 524;  // ENOTSUPP of the kernel, which libc does not know
+  constexpr int not_supported = 524;  // ENOTSUPP of the kernel, which the C library does not define
   const bool unable = error == EINVAL || error == EOPNOTSUPP || error == not_supported || error == EPERM ||
                       error == EIO || error == ENXIO;
   if (!unable) return failed("the line cannot be requested", error);
@@ -171,7 +172,7 @@ class LibgpiodLines final : public GpioLines {
     bool edges = is_input(settings.role);
     auto line = std::make_unique<Line>(chip->get(), settings, facts->offset, edges);
     if (!line->requested() && edges && (errno == ENXIO || errno == EOPNOTSUPP || errno == EINVAL)) {
-      edges = false;  // a chip without interrupts: its levels are read all the same
+      edges = false;  // the chip has no interrupts, so only its levels are read
       line = std::make_unique<Line>(chip->get(), settings, facts->offset, edges);
     }
     if (!line->requested()) return tl::unexpected(request_failure(settings, errno));
@@ -194,7 +195,7 @@ class LibgpiodLines final : public GpioLines {
     std::size_t count = 0;
     for (std::size_t i = 0; ready > 0 && i < polled_count_; ++i) {
       if ((polled_[i].revents & POLLIN) == 0) {
-        if (polled_[i].revents != 0) return std::nullopt;  // the chip is gone
+        if (polled_[i].revents != 0) return std::nullopt;  // the chip was removed
         continue;
       }
       if (count == edges.size()) break;
@@ -222,7 +223,7 @@ class LibgpiodLines final : public GpioLines {
     return lines_[static_cast<std::size_t>(role)].get();
   }
 
-  std::vector<Chip> chips_;  // before the lines, which go first
+  std::vector<Chip> chips_;  // before the lines, because the lines must be destroyed first
   std::array<std::unique_ptr<Line>, gpio_role_count> lines_;
   std::array<pollfd, gpio_role_count> polled_{};
   std::array<GpioRole, gpio_role_count> polled_roles_{};

@@ -1,6 +1,6 @@
 #pragma once
-// What both APIs of libgpiod give of a chip and a line, under different names: common to libgpiod_1.h and
-// libgpiod_2.h, of which gpio_libgpiod.cpp includes the one that fits the installed library.
+// Properties of chips and lines that both APIs of libgpiod provide under different names. gpio_libgpiod.cpp
+// includes libgpiod_1.h or libgpiod_2.h, depending on the installed library.
 
 #include <gpiod.h>
 
@@ -14,11 +14,11 @@
 namespace softgrip::drivers::libgpiod {
 
 inline constexpr const char* consumer = "softgripd";
-/// Edges taken from one line at once; the kernel keeps 16 per line.
+/// Largest number of edges read from one line in one call. The kernel buffers 16 per line.
 inline constexpr std::size_t edges_at_once = 16;
 inline constexpr Nanoseconds ns_per_s = 1'000'000'000;
 
-/// What the kernel knows of a line.
+/// The kernel's information on a line.
 struct LineFacts {
   std::uint32_t offset = 0;
   bool used = false;
@@ -30,7 +30,7 @@ struct LineFacts {
 struct CloseChip {
   void operator()(gpiod_chip* chip) const noexcept { gpiod_chip_close(chip); }
 };
-/// Open as long as its handle lives.
+/// A chip that is open while its handle exists.
 using Chip = std::unique_ptr<gpiod_chip, CloseChip>;
 
 }  // namespace softgrip::drivers::libgpiod

@@ -52,7 +52,7 @@ inline int flags_of(const GpioLineSettings& settings) {
   return flags;
 }
 
-/// A line that was requested. 1.6: it belongs to its chip, which stays open as long.
+/// A line that was requested. In 1.6 it belongs to its chip, which must remain open.
 class Line {
  public:
   Line(gpiod_chip* chip, const GpioLineSettings& settings, std::uint32_t offset, bool edges) {
@@ -75,7 +75,7 @@ class Line {
   [[nodiscard]] bool set(bool active) const noexcept {
     return gpiod_line_set_value(line_.get(), active ? 1 : 0) == 0;
   }
-  /// Edges that wait; nothing on failure. Called when the descriptor is readable.
+  /// Reads the waiting edges; returns nothing on failure. Called when the descriptor is readable.
   [[nodiscard]] std::optional<std::size_t> edges(GpioRole role, std::span<GpioEdge> to) const noexcept {
     std::array<gpiod_line_event, edges_at_once> events{};
     const auto most = static_cast<unsigned>(std::min(to.size(), edges_at_once));

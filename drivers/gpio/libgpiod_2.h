@@ -64,7 +64,7 @@ inline gpiod_line_bias bias_of(GpioBias bias) {
   return GPIOD_LINE_BIAS_AS_IS;
 }
 
-/// A line that was requested. 2.x: a request of one line each, so that each has its own failure.
+/// A line that was requested. In 2.x each line has its own request, so that failures are separate.
 class Line {
  public:
   Line(gpiod_chip* chip, const GpioLineSettings& settings, std::uint32_t offset, bool edges)
@@ -97,7 +97,7 @@ class Line {
     return gpiod_line_request_set_value(request_.get(), offset_,
                                         active ? GPIOD_LINE_VALUE_ACTIVE : GPIOD_LINE_VALUE_INACTIVE) == 0;
   }
-  /// Edges that wait; nothing on failure. Called when the descriptor is readable.
+  /// Reads the waiting edges; returns nothing on failure. Called when the descriptor is readable.
   [[nodiscard]] std::optional<std::size_t> edges(GpioRole role, std::span<GpioEdge> to) const noexcept {
     const std::size_t most = std::min(to.size(), edges_at_once);
     const int count = gpiod_line_request_read_edge_events(request_.get(), buffer_.get(), most);

@@ -11,7 +11,7 @@
 namespace softgrip::drivers {
 namespace {
 
-// A number and its unit ("0.125 V" does not occur, but a driver may append a line break).
+// Space for a number. Some drivers append a line break.
 constexpr std::size_t longest_text = 64;
 
 }  // namespace
@@ -41,7 +41,7 @@ int IioAttribute::open(const std::string& path, bool writable) noexcept {
 
 std::optional<double> IioAttribute::read() const noexcept {
   std::array<char, longest_text> text{};
-  // From offset 0 sysfs asks the driver anew.
+  // sysfs reads from the driver again only at offset 0.
   const ssize_t count = ::pread(descriptor_, text.data(), text.size(), 0);
   if (count < 0) return std::nullopt;
   double value = 0;

@@ -1,12 +1,12 @@
 #pragma once
-// One attribute of an industrial I/O device: a small text file that is the device itself.
+// One attribute of an industrial I/O device: a text file through which the kernel accesses the device.
 
 #include <optional>
 #include <string>
 
 namespace softgrip::drivers {
 
-/// Keeps its descriptor open: reading and writing is one system call each, and allocates nothing.
+/// Keeps its descriptor open: reading and writing need one system call each and do not allocate.
 class IioAttribute {
  public:
   IioAttribute() = default;
@@ -16,14 +16,15 @@ class IioAttribute {
   IioAttribute& operator=(IioAttribute&& other) noexcept;
   ~IioAttribute();
 
-  /// Opens it for reading or for writing; errno, or 0.
+  /// Opens the attribute for reading or for writing. Returns errno, or 0.
   [[nodiscard]] int open(const std::string& path, bool writable) noexcept;
   void close() noexcept;
   [[nodiscard]] bool is_open() const noexcept { return descriptor_ >= 0; }
 
-  /// The number that it holds now. Nothing: errno says why, 0 if the text is no number.
+  /// Returns the present number; nothing after an error. Then errno has the reason, or is 0 if the text is
+  /// not a number.
   [[nodiscard]] std::optional<double> read() const noexcept;
-  /// Writes a whole number; errno, or 0.
+  /// Writes a whole number. Returns errno, or 0.
   [[nodiscard]] int write(long value) const noexcept;
 
  private:

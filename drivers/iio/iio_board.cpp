@@ -22,19 +22,20 @@ namespace {
 constexpr int probes = 5;
 constexpr const char* stays_off_text = "it stays 1 after 0 was written: the output is switched off";
 
-/// Voltages are in millivolts, currents in milliamperes, pressures in kilopascals.
+/// The kernel reports voltages in mV, currents in mA and pressures in kPa.
 double per_unit(std::string_view channel) noexcept {
   return unit_of_channel(channel) == ElectricalUnit::volt ? 1e-3 : 1;
 }
 
-/// The converter's name and place, which must not change while a rig runs; a label or a serial number is
-/// enough by itself.
+/// Returns the converter's name and place, which must not change while a rig runs; an empty text if the rig
+/// file uses a label or a serial number, which identify the converter.
 std::string identity_behind(const std::string& word, const ComputerDevice& device) {
   const bool says_which = device.has("label", word) || device.has("serial number", word);
   return says_which ? std::string{} : identity_of(device);
 }
 
-/// A number that one channel has for itself or shares with all of its kind; `otherwise` if neither.
+/// Returns a number of one channel, or the number that all channels of its kind share; `otherwise` if neither
+/// exists.
 double shared_number(const std::filesystem::path& folder, const std::string& direction,
                      const std::string& channel, const std::string& what, double otherwise) {
   for (const std::string& whose : {channel, type_of(channel)}) {
@@ -76,20 +77,20 @@ ModuleTerminals terminals_of(const IioSettings& settings) {
 }
 
 struct IioBoard::Parts {
-  /// One wired terminal: its raw number's attribute and what the number means.
+  /// One wired terminal: the attribute of its raw number, and the scaling.
   struct Converter {
-    std::string name;  // in messages
-    std::string path;  // of the attribute
+    std::string name;  // for messages
+    std::string path;  // path of the attribute
     std::string identity;
-    std::string first_identity;  // of the first session
+    std::string first_identity;  // identity in the first session
     IioAttribute raw;
-    double scale = 1;   // to V, mA or kPa
+    double scale = 1;   // factor to V, mA or kPa
     double offset = 0;  // added to the raw number
     std::string powerdown_path;
     IioAttribute powerdown;
     IioAttribute wake;  // the same attribute, to be written
     bool is_off = false;
-    bool stays_off = false;  // and did when it was switched on
+    bool stays_off = false;  // it did not switch on at an earlier attempt
   };
 
   explicit Parts(const IioSettings& given)
@@ -99,7 +100,7 @@ struct IioBoard::Parts {
   }
 
   IioSettings settings;
-  std::vector<IioTerminal> written;  // the outputs, and behind them the heartbeat
+  std::vector<IioTerminal> written;  // the outputs, followed by the heartbeat
   std::vector<Converter> inputs;
   std::vector<Converter> outputs;  // one per terminal of `written`
   bool beats_second = false;
@@ -111,7 +112,7 @@ struct IioBoard::Parts {
     std::snprintf(detail.data(), detail.size(), "%s: %s", what.c_str(), why);
     return status;
   }
-  /// A converter that fails for another reason than the number it was given is gone.
+  /// Ends the session: the converter has failed for a reason other than the written number.
   BusStatus lost(const Converter& converter, int error) noexcept {
     open = false;
     return say(BusStatus::disconnected, converter.name, error != 0 ? text_of_errno(error) : "no number");
@@ -155,13 +156,13 @@ BusStatus IioBoard::Parts::attach(const Devices& there, const IioTerminal& termi
   return open_number(folder, terminal.channel, output, converter);
 }
 
-/// Opens the attribute with the converter's number and reads what the number means.
+/// Opens the attribute of the converter's raw number and reads its scaling.
 BusStatus IioBoard::Parts::open_number(const std::filesystem::path& folder, const std::string& channel,
                                        bool output, Converter& converter) {
   const std::string stem = (output ? "out_" : "in_") + channel;
   converter.path = (folder / (stem + "_raw")).string();
   int error = converter.raw.open(converter.path, output);
-  // A driver may give the number in its unit alone.
+  // Some drivers provide only the number in its unit.
   const bool processed =
       error == ENOENT && !output && converter.raw.open((folder / (stem + "_input")).string(), false) == 0;
   if (error != 0 && !processed) return say(BusStatus::disconnected, converter.path, text_of_errno(error));
@@ -176,7 +177,7 @@ BusStatus IioBoard::Parts::open_number(const std::filesystem::path& folder, cons
   return BusStatus::ok;
 }
 
-/// An output that no channel is wired to is left as it is.
+/// Returns true if a channel is wired to the output. Other outputs are not changed.
 bool IioBoard::Parts::uses(std::size_t output) const {
   return output >= settings.outputs.size() ||
          std::any_of(settings.wiring.begin(), settings.wiring.end(),
@@ -229,7 +230,7 @@ BusStatus IioBoard::Parts::attach_all() {
   return status;
 }
 
-/// Reads every wired input a few times: what that takes is the budget.
+/// Reads each wired input several times and measures the duration for the budget.
 BusStatus IioBoard::Parts::probe(Nanoseconds deadline) noexcept {
   reads.reset();
   for (int i = 0; i < probes; ++i) {
@@ -254,7 +255,7 @@ BusStatus IioBoard::Parts::switch_on(Converter& converter) noexcept {
              error != 0 ? text_of_errno(error) : stays_off_text);
 }
 
-/// After all numbers were written: several outputs may share one switch.
+/// Called after all numbers were written, because several outputs may share one switch.
 BusStatus IioBoard::Parts::switch_all_on() noexcept {
   for (Converter& converter : outputs) {
     if (!converter.is_off) continue;
@@ -370,7 +371,7 @@ BusStatus IioBoard::exchange(std::span<const double> commands_kpa, std::span<Rea
   if (const BusStatus status = parts.beat(); status != BusStatus::ok) return status;
   if (written == BusStatus::ok) written = parts.switch_all_on();
   if (written == BusStatus::disconnected) return written;
-  // All readings change, or none.
+  // Either all readings change, or none.
   std::array<Reading, most_channels> fresh{};
   for (std::size_t i = 0; i < readings.size(); ++i) {
     fresh[i] = readings[i];
@@ -418,7 +419,7 @@ Board::Budget IioBoard::budget() const {
   for (const ChannelWiring& channel : parts.settings.wiring)
     reads += 1U + (channel.pressure.has_value() ? 1U : 0U) + (channel.temperature.has_value() ? 1U : 0U);
   const std::size_t writes = parts.settings.wiring.size() + (parts.settings.heartbeat ? 1U : 0U);
-  // A write is taken to be as long as a conversion: it cannot be measured without moving something.
+  // A write is assumed to take as long as a conversion, because measuring it would change an output.
   const double each_s = parts.reads.median_s();
   Budget cost;
   cost.exchange_s = static_cast<double>(reads + writes) * each_s;

@@ -1,6 +1,6 @@
 #pragma once
-// A board made of converters on this computer, through the kernel's industrial I/O attributes in sysfs.
-// Documentation/ABI/testing/sysfs-bus-iio of the kernel.
+// A board that consists of converters of this computer, through the kernel's industrial I/O attributes in
+// sysfs. See Documentation/ABI/testing/sysfs-bus-iio of the kernel.
 
 #include <cstddef>
 #include <memory>
@@ -14,23 +14,23 @@
 
 namespace softgrip::drivers {
 
-/// One channel of a converter. "voltage0", "current2", differential ones "voltage0-voltage1".
+/// One channel of a converter: "voltage0", "current2", or a differential one, "voltage0-voltage1".
 struct IioTerminal {
-  std::string device;  ///< a word that fits one of converters_in()
+  std::string device;  ///< a word that matches one of converters_in()
   std::string channel;
-  long raw_max = 0;  ///< outputs: the largest raw number that the converter takes; the smallest is 0
+  long raw_max = 0;  ///< for outputs: the largest raw number of the converter; the smallest is 0
 };
 
-/// An output that changes with every exchange. A circuit behind it takes the valves' supply away if it has
-/// not changed for a time.
+/// An output that changes in each exchange. An external circuit switches off the supply of the valves if the
+/// output has not changed for `timeout_s`.
 struct IioHeartbeat {
   IioTerminal terminal;
   long first = 0;  ///< raw numbers
   long second = 0;
-  double timeout_s = 0;  ///< of the circuit
+  double timeout_s = 0;  ///< time-out of the circuit [s]
 };
 
-/// As many channels as control has.
+/// Largest number of channels, equal to that of the control.
 inline constexpr std::size_t most_channels = 16;
 
 struct IioSettings {
@@ -41,25 +41,27 @@ struct IioSettings {
   std::vector<ChannelWiring> wiring;
 };
 
-/// The unit that a channel's name means; nothing for a channel that is no voltage, current or pressure.
+/// Returns the unit of a channel by its name; nothing if it is not a voltage, current or pressure.
 [[nodiscard]] std::optional<ElectricalUnit> unit_of_channel(std::string_view channel) noexcept;
-/// What such a board offers: unit by unit, ranges only the converters know.
+/// Returns the terminals of such a board with their units. Only the converters know their ranges.
 [[nodiscard]] ModuleTerminals terminals_of(const IioSettings& settings);
 
-/// One exchange writes the raw numbers of all outputs, then reads those of all inputs, each by one system
-/// call on a descriptor that connect() opened; scales and offsets are read once. V = (raw + offset) * scale /
-/// 1000, mA and kPa = (raw + offset) * scale, and the way back. An input without a raw number gives its
-/// processed one: mV, mA or kPa.
+/// One exchange writes the raw numbers of all outputs, then reads those of all inputs. Each needs one system
+/// call on a descriptor that connect() opened. Scales and offsets are read once. V = (raw + offset) * scale /
+/// 1000; mA and kPa = (raw + offset) * scale. An input without a raw number has a processed one in mV, mA or
+/// kPa.
 ///
-/// A conversion happens inside the system call and cannot be cut short: the deadline is looked at after each.
-/// There is no watchdog but a heartbeat's circuit: the outputs keep their last value when nobody writes.
+/// A conversion happens inside a system call and cannot be interrupted, so the deadline is checked after each
+/// one. The only watchdog is the circuit of a heartbeat: without it, the outputs keep their last value when
+/// the daemon stops.
 ///
-/// An output whose `powerdown` is 1 is switched on by the first exchange, after its number was written: it
-/// would show an old one. connect() refuses it if that is not permitted, or did not help before.
+/// If the `powerdown` attribute of an output is 1, the first exchange writes the number and then switches the
+/// output on. In the opposite order, the output would have an old value for a moment. connect() fails if
+/// switching on is not permitted or had no effect before.
 ///
-/// connect() refuses a word that fits no converter or several, and two terminals that are one. After a
-/// session a word must mean the same converter again, unless it is a label or a serial number: another one of
-/// that name would get the commands of the one that is gone.
+/// connect() refuses a word that matches no converter or several, and two terminals that are the same. In
+/// later sessions a word must lead to the same converter, unless it is a label or a serial number. Otherwise
+/// another converter of that name could receive the commands.
 class IioBoard final : public Board {
  public:
   explicit IioBoard(const IioSettings& settings);

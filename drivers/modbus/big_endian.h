@@ -1,5 +1,6 @@
 #pragma once
-// Words in byte buffers, high byte first, as Modbus has them. The caller knows that `at + 1` is inside.
+// Reads and writes words in byte buffers, high byte first as in Modbus. The caller checks that `at + 1` is
+// inside.
 
 #include <cstddef>
 #include <cstdint>

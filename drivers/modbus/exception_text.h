@@ -3,7 +3,7 @@
 
 namespace softgrip::drivers {
 
-/// Text of a Modbus exception.
+/// Returns the text of a Modbus exception.
 [[nodiscard]] const char* text_of_exception(unsigned code) noexcept;
 
 }  // namespace softgrip::drivers

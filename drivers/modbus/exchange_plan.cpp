@@ -10,7 +10,7 @@
 namespace softgrip::drivers {
 namespace {
 
-/// Registers (or bits) [begin, end) that one function reads.
+/// Registers (or bits) [begin, end) that one function code reads.
 struct Range {
   std::uint8_t function = 0;
   std::uint32_t begin = 0;
@@ -25,8 +25,8 @@ std::uint32_t most_readable(const BoardMap& map, std::uint8_t function) {
   return is_bits(function) ? max_read_bits : std::min(max_read_registers, map.max_registers);
 }
 
-/// Adds the ranges that hold the numbers `indices` of a block: as few as the map allows, and no number torn.
-/// What lies between belongs to the block, so the board serves it.
+/// Adds the fewest ranges that contain the numbers `indices` of a block, without dividing a number. The
+/// registers between them belong to the block, so the board supports reading them.
 void cover(const BoardMap& map, const RegisterBlock& block, std::vector<std::size_t> indices,
            std::vector<Range>& ranges) {
   std::sort(indices.begin(), indices.end());
@@ -45,7 +45,8 @@ void cover(const BoardMap& map, const RegisterBlock& block, std::vector<std::siz
   if (open) ranges.push_back(*open);
 }
 
-/// Registers of [begin, end) that no block of the map declares as readable by `function`.
+/// Returns the number of registers in [begin, end) that no block of the map declares as readable by
+/// `function`.
 std::uint32_t undeclared(const BoardMap& map, std::uint8_t function, std::uint32_t begin, std::uint32_t end) {
   std::vector<RegisterBlock> blocks;
   if (map.has_inputs()) blocks.push_back(map.inputs.registers);
@@ -113,7 +114,8 @@ std::vector<std::size_t> wired_outputs(const std::vector<ChannelWiring>& wiring,
   return outputs;
 }
 
-/// What the module is asked for: its wired inputs, and of its outputs' state what the map knows.
+/// Returns the reads of one exchange: the wired inputs, and the registers of the map on the state of the
+/// outputs.
 std::vector<ReadStep> plan_reads(const BoardMap& map, const std::vector<std::size_t>& inputs,
                                  const std::vector<std::size_t>& outputs) {
   std::vector<Range> ranges;
@@ -136,7 +138,7 @@ std::vector<ReadStep> plan_reads(const BoardMap& map, const std::vector<std::siz
   return merged(map, std::move(ranges));
 }
 
-/// Runs of neighbouring outputs. Encoded outputs stand in the order of their terminals.
+/// Plans one write per group of adjacent outputs. The encoded outputs are in the order of their terminals.
 void plan_writes(const BoardMap& map, const std::vector<ChannelWiring>& wiring, std::size_t module,
                  ExchangePlan& plan) {
   std::vector<std::size_t> order;

@@ -1,6 +1,6 @@
 #pragma once
-// Which transactions one exchange takes, and where in their replies each channel's numbers stand. Worked out
-// once, from board map and wiring, so that the exchange itself only walks a list.
+// The transactions of one exchange, and the places of each channel's numbers in the replies. The plan is made
+// once from board map and wiring, so that an exchange only follows a list.
 
 #include <cstddef>
 #include <cstdint>
@@ -32,7 +32,7 @@ struct WriteStep {
   bool operator==(const WriteStep&) const = default;
 };
 
-/// Where a number stands in the replies: in which read, from which register (or bit) of it.
+/// The place of a number in the replies: index of the read, and of the register (or bit) in its reply.
 struct Slot {
   std::size_t step = 0;
   std::size_t offset = 0;
@@ -40,9 +40,9 @@ struct Slot {
   bool operator==(const Slot&) const = default;
 };
 
-/// Of one channel, as far as it is wired to the module.
+/// The places of one channel's numbers, as far as the channel is wired to the module.
 struct ChannelSlots {
-  std::optional<std::size_t> output_word;  ///< where the channel's output is encoded
+  std::optional<std::size_t> output_word;  ///< index of the channel's encoded output
   std::optional<Slot> displacement;
   std::optional<Slot> displacement_status;
   std::optional<Slot> pressure;
@@ -57,27 +57,27 @@ struct ExchangePlan {
   std::vector<WriteStep> writes;
   std::vector<ReadStep> reads;
   std::vector<ChannelSlots> channels;
-  std::optional<Slot> tripped;  ///< the first, if the watchdog has several
+  std::optional<Slot> tripped;  ///< the first register, if the watchdog has several
   std::optional<Slot> clients;
-  /// The read with which the first write is done in one transaction by function code 23.
+  /// The read that function code 23 combines with the first write in one transaction.
   std::optional<std::size_t> combined_read;
-  /// The read that carries the inputs: its moment is the readings' `sampled_at`. Without wired inputs the
-  /// first read, if there is one.
+  /// The read that contains the inputs. Its time is the readings' `sampled_at`. Without wired inputs it is
+  /// the first read, if there is one.
   std::size_t sampling_read = 0;
 
-  /// Round trips of one exchange, the watchdog's feeding write not counted.
+  /// Returns the round trips of one exchange without the write that feeds the watchdog.
   [[nodiscard]] std::size_t transactions() const noexcept {
     return writes.size() + reads.size() - (combined_read.has_value() ? 1 : 0);
   }
 };
 
-/// The plan with the fewest transactions that the map allows, for what is wired to `module`. Only wired
-/// outputs are ever written: between two wired ones that are not neighbours a write ends and another begins,
-/// since nobody knows what the terminal in between drives. Needs wiring_problems() to be empty.
+/// Returns the plan with the fewest transactions that the map allows for the channels of `module`. Only wired
+/// outputs are written: two wired outputs that are not adjacent need two writes, because the terminal between
+/// them may drive an unknown device. Requires wiring_problems() to be empty.
 [[nodiscard]] ExchangePlan plan_exchange(const BoardMap& map, const std::vector<ChannelWiring>& wiring,
                                          std::size_t module = 0);
 
-/// "FC16 writes 2 from 10, FC3 reads 4 from 0": the plan in the addresses of the wire.
+/// Describes the plan with the addresses on the wire: "FC16 writes 2 from 10, FC3 reads 4 from 0".
 [[nodiscard]] std::string describe(const ExchangePlan& plan);
 
 }  // namespace softgrip::drivers

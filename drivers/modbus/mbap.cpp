@@ -5,7 +5,7 @@
 namespace softgrip::drivers {
 namespace {
 
-/// The defect of the header, as far as `bytes` reach.
+/// Returns the defect of the header in the bytes received so far.
 ReplyDefect header_defect(std::span<const std::uint8_t> bytes, std::size_t pdu_size,
                           std::uint16_t transaction, std::uint8_t unit) noexcept {
   if (bytes.size() >= 2 && word_at(bytes, 0) != transaction) return ReplyDefect::transaction;
@@ -43,7 +43,7 @@ ModbusReply parse_reply(std::span<const std::uint8_t> bytes, const ModbusRequest
   if (defect != ReplyDefect::none) return defective(defect);
   if (bytes.size() <= mbap_size) return {};
 
-  // The header must state the length of what it stands before: of the answer, or of an exception.
+  // The header must state the length of the response or of an exception.
   const std::uint8_t function = bytes[mbap_size];
   const bool exception = function == (request.function | exception_bit);
   if (!exception && function != request.function) return defective(ReplyDefect::function);

@@ -1,6 +1,6 @@
 #pragma once
-// Framing on Modbus TCP: the header in front of questions and answers.
-// Format: MODBUS Messaging on TCP/IP Implementation Guide V1.0b, 3.1.3 (MBAP header).
+// Framing on Modbus TCP: the header before requests and responses. Format: MODBUS Messaging on TCP/IP
+// Implementation Guide V1.0b, 3.1.3 (MBAP header).
 
 #include <cstddef>
 #include <cstdint>
@@ -11,22 +11,22 @@
 
 namespace softgrip::drivers {
 
-/// Transaction id, protocol id, length (two bytes each), unit id.
+/// Size of transaction id, protocol id, length (two bytes each) and unit id.
 inline constexpr std::size_t mbap_size = 7;
 inline constexpr std::size_t mbap_unit = 6;  ///< index of the unit id
 
-/// Writes the header in front of the PDU of `pdu_size` bytes that begins at frame[mbap_size]; returns the
-/// size of the frame.
+/// Writes the header before the PDU of `pdu_size` bytes that begins at frame[mbap_size]. Returns the size of
+/// the frame.
 std::size_t put_mbap(std::span<std::uint8_t> frame, std::size_t pdu_size, std::uint16_t transaction,
                      std::uint8_t unit) noexcept;
 
-/// Writes the frame of a question; returns its size, or 0 for a request that reply_pdu_size() refuses.
+/// Writes the frame of a request. Returns its size, or 0 for a request that reply_pdu_size() refuses.
 [[nodiscard]] std::size_t build_request(const ModbusRequest& request, std::uint16_t transaction,
                                         std::uint8_t unit, Frame& frame) noexcept;
 
-/// Judges `bytes`, all that was received since the question was sent. `incomplete` means that they are a
-/// proper beginning of the answer. Every byte is judged as soon as it is there: a wrong header is not waited
-/// out.
+/// Checks `bytes`, the bytes received since the request was sent. `incomplete` means that they are a correct
+/// beginning of the response. Each byte is checked when it arrives, so a wrong header is detected before the
+/// rest arrives.
 [[nodiscard]] ModbusReply parse_reply(std::span<const std::uint8_t> bytes, const ModbusRequest& request,
                                       std::uint16_t transaction, std::uint8_t unit) noexcept;
 

@@ -1,5 +1,5 @@
 #pragma once
-// Where Modbus modules are: a host on a network, or a serial line that several may share.
+// The places of Modbus modules: a host on a network, or a serial line that several modules may share.
 
 #include <cstdint>
 #include <optional>
@@ -10,39 +10,39 @@ namespace softgrip::drivers {
 
 /// Settings of a session beyond the specification, for some boards and gateways.
 struct LinkHabits {
-  /// Time after the link is opened until the first request is sent: some boards ignore earlier ones.
+  /// Time from opening the link to the first request: some boards ignore earlier ones.
   double settle_s = 0;
-  /// Time after which a request without a byte of an answer is sent again, within the deadline; 0: never.
+  /// Time without a byte of a response after which a request is repeated, within the deadline; 0: never.
   double repeat_after_s = 0;
 
   bool operator==(const LinkHabits&) const = default;
 };
 
 struct TcpAddress {
-  std::string host;  ///< numeric address, IPv4 or IPv6; no name is resolved in the bus thread
+  std::string host;  ///< numeric address, IPv4 or IPv6: the bus thread resolves no names
   std::uint16_t port = 502;
   LinkHabits habits{};
-  bool numbered = true;        ///< answers carry the transaction id of their request
-  bool rtu_framing = false;    ///< RTU frames, as a serial server hands them on; nothing is numbered then
-  double silence_s = 1.75e-3;  ///< between two of those
+  bool numbered = true;        ///< responses contain the transaction id of their request
+  bool rtu_framing = false;    ///< RTU frames through a serial server; they have no transaction id
+  double silence_s = 1.75e-3;  ///< silence between two such frames
 
   bool operator==(const TcpAddress&) const = default;
 };
 
 enum class Parity : std::uint8_t { none, even, odd };
 
-/// A serial line with Modbus RTU. Bytes have 8 data bits: RTU knows no other.
+/// A serial line with Modbus RTU. Bytes have 8 data bits; RTU permits no other number.
 struct SerialLine {
-  std::string device;  ///< best a name that stays: /dev/serial/by-id/...
+  std::string device;  ///< preferably a permanent name: /dev/serial/by-id/...
   std::uint32_t baud = 9600;
   Parity parity = Parity::none;
   int stop_bits = 1;
-  /// Silence before and after a frame; absent: the specification's, 3.5 characters or, above 19200 baud,
-  /// 1.75 ms.
+  /// Silence before and after a frame; absent: that of the specification, which is 3.5 characters, or 1.75 ms
+  /// above 19200 baud.
   std::optional<double> silence_s;
-  double turnaround_s = 0;       ///< what a module needs to answer beyond the silence; for the budget
-  double adapter_latency_s = 0;  ///< what the adapter holds an answer back; for the budget
-  bool echo = false;             ///< the adapter hears itself: everything sent comes back first
+  double turnaround_s = 0;       ///< response time of a module beyond the silence; for the budget
+  double adapter_latency_s = 0;  ///< time for which the adapter delays a response; for the budget
+  bool echo = false;             ///< the adapter receives all bytes that it sends
   LinkHabits habits{};
 
   bool operator==(const SerialLine&) const = default;

@@ -42,7 +42,7 @@ struct ModbusBoard::Parts {
       return module.settings().link == link && module.drives_outputs();
     });
   }
-  /// As far as outputs go.
+  /// Returns true if all links to modules with outputs are open.
   [[nodiscard]] bool is_open() const noexcept {
     for (std::size_t link = 0; link < links.size(); ++link) {
       if (drives_outputs(link) && !links[link]->is_open()) return false;
@@ -53,7 +53,8 @@ struct ModbusBoard::Parts {
     std::snprintf(detail.data(), detail.size(), "%s", text);
     return status;
   }
-  /// What a module failed of; with several it is named. An end of one link is the end of all.
+  /// Stores the reason of a failure, with the module's name if there are several. A failure of one link
+  /// closes all links.
   BusStatus failed(BusStatus status, const ModbusModule& module) noexcept {
     if (modules.size() == 1) {
       say(status, module.detail());
@@ -73,10 +74,9 @@ struct ModbusBoard::Parts {
   void fill(std::span<Reading> readings) const noexcept;
 };
 
-/// Links settle together: each waits for what is left of its own time.
+/// Links settle at the same time: each waits for the rest of its own settle time.
 ///
-/// A link that leads to no outputs may stay closed: exchanges then give the outputs what is asked, and fail
-/// when they come to read.
+/// A link without outputs may remain closed. Exchanges then write the commands and fail when they read.
 BusStatus ModbusBoard::Parts::open(Nanoseconds deadline) noexcept {
   close();
   const auto each_link = [&](BusStatus (ModbusLink::*step)(Nanoseconds) noexcept) {
@@ -99,8 +99,8 @@ BusStatus ModbusBoard::Parts::open(Nanoseconds deadline) noexcept {
   return measured ? BusStatus::ok : probe(deadline);
 }
 
-/// Once. Later sessions begin with the outputs: questions that go before them would feed the board's watchdog
-/// while it still has the pressure of the moment in which the line failed.
+/// Measures the links in the first session only. Later sessions begin with the outputs: earlier requests
+/// would feed the board's watchdog while the outputs still have the pressure at which the line failed.
 BusStatus ModbusBoard::Parts::probe(Nanoseconds deadline) noexcept {
   for (const auto& link : links) link->forget_measurements();
   const Nanoseconds start = monotonic_now();
@@ -129,7 +129,7 @@ BusStatus ModbusBoard::Parts::encode(std::span<const double> commands_kpa) noexc
   return result;
 }
 
-/// Reading before writing, of the modules that want it so in this exchange.
+/// Reads before writing, for the modules that require it in this exchange.
 BusStatus ModbusBoard::Parts::look_first(Nanoseconds deadline) noexcept {
   for (ModbusModule& module : modules) {
     module.begin_exchange();
@@ -204,7 +204,7 @@ BusStatus ModbusBoard::exchange(std::span<const double> commands_kpa, std::span<
   if (commands_kpa.size() != channels() || readings.size() != channels()) {
     return parts.say(BusStatus::write_refused, "not one command and one reading per channel");
   }
-  // What ended the session stays the detail: it is the better answer to "why".
+  // The reason why the session ended remains in `detail`, because it is more useful than "disconnected".
   if (!parts.is_open()) return BusStatus::disconnected;
   for (std::size_t i = 0; i < commands_kpa.size(); ++i) {
     if (std::isfinite(commands_kpa[i])) continue;

@@ -13,26 +13,26 @@ namespace softgrip::drivers {
 struct ModbusSettings {
   std::vector<ModbusAddress> links;
   std::vector<ModbusModuleSettings> modules;
-  std::vector<ChannelWiring> wiring;  ///< one per channel; problems_of() finds nothing
-  /// Most reads of each link made by connect() to measure it for budget(), all in at most a quarter of its
-  /// deadline; 0: none, the budget is assumed.
+  std::vector<ChannelWiring> wiring;  ///< one per channel; problems_of() must be empty
+  /// Largest number of reads per link with which connect() measures it for budget(), within a quarter of its
+  /// deadline; 0: no measurement, the budget is assumed.
   int probes = 9;
 };
 
-/// What does not fit together; see wiring_problems().
+/// Returns the errors of the settings; see wiring_problems().
 [[nodiscard]] std::vector<std::string> problems_of(const ModbusSettings& settings);
 
-/// One exchange is: the outputs of all modules, each in one write where it can be (or FC23), then the inputs,
-/// and with them what the maps have of status, read-back and watchdog registers, in as few reads as the maps
-/// allow. Outputs come first, so that a module without outputs that fails does not keep the others' from
-/// them.
+/// One exchange writes the outputs of all modules, each in one write if possible (or FC23). Then it reads the
+/// inputs and the status, read-back and watchdog registers of the maps in the fewest reads. Outputs come
+/// first, so that the failure of a module without outputs does not prevent writing the others.
 ///
-/// `deadline` spans the whole exchange on CLOCK_BOOTTIME; a reply that comes in drips does not extend it.
-/// Any error but a Modbus exception closes the links, so that a late or duplicated reply can never be taken
-/// for the answer to a later question: exchange() then returns `disconnected` until connect() made new ones.
+/// `deadline` limits the complete exchange on CLOCK_BOOTTIME; a reply that arrives in parts does not extend
+/// it. All errors except a Modbus exception close the links, so that a late or duplicated reply cannot be
+/// taken for the response to a later request. exchange() then returns `disconnected` until connect() has
+/// opened new links.
 ///
-/// A tripped watchdog is cleared only after connect(): the first exchange then writes the commands, clears,
-/// writes the commands again and reads. Until then every exchange returns `watchdog_tripped`.
+/// A tripped watchdog is cleared only after connect(): the first exchange writes the commands, clears the
+/// watchdog, writes the commands again and reads. Before that, each exchange returns `watchdog_tripped`.
 class ModbusBoard final : public Board {
  public:
   explicit ModbusBoard(const ModbusSettings& settings);
@@ -46,7 +46,7 @@ class ModbusBoard final : public Board {
   [[nodiscard]] double found_kpa(std::size_t channel) const noexcept override;
   [[nodiscard]] std::string describe() const override;
   [[nodiscard]] Budget budget() const override;
-  /// True if every module that drives outputs has one.
+  /// Returns true if each module with outputs has a watchdog.
   [[nodiscard]] bool has_watchdog() const noexcept override;
   [[nodiscard]] std::chrono::nanoseconds watchdog_time() const noexcept override;
   [[nodiscard]] bool fed_by_readers() const noexcept override;

@@ -25,8 +25,8 @@ namespace {
 
 static_assert(MODBUS_MAX_ADU_LENGTH <= max_frame);
 
-// When a reply breaks off libmodbus does not tell how much of it came. What is still filler behind the last
-// byte that is not did not come, or cannot be told from it: of a wrong beginning less is judged then.
+// After an incomplete reply, libmodbus does not report the number of received bytes. So the buffer is filled
+// with this value before, and trailing bytes with this value count as not received.
 constexpr std::uint8_t filler = 0xff;
 
 Descriptor selectable_descriptor() noexcept {
@@ -39,7 +39,7 @@ std::span<const std::uint8_t> without_filler(std::span<const std::uint8_t> bytes
   return bytes;
 }
 
-/// With a byte time-out of 0 libmodbus' response time-out ends the whole reply.
+/// libmodbus' byte time-out is 0, so its response time-out limits the complete reply.
 void set_deadline(modbus_t* context, Nanoseconds left) noexcept {
   const auto microseconds = static_cast<std::uint64_t>((left + 999) / 1000);
   ::modbus_set_response_timeout(context, static_cast<std::uint32_t>(microseconds / 1'000'000),
@@ -84,7 +84,7 @@ BusStatus ModbusLink::settle(Nanoseconds deadline) noexcept {
   return drain(opened_at_ + settle_, deadline, "waiting until the board has settled");
 }
 
-/// Discards received bytes until a point in time. Fails at once if the link is ended meanwhile.
+/// Discards received bytes until a point in time. Returns at once if the link is closed meanwhile.
 BusStatus ModbusLink::drain(Nanoseconds until, Nanoseconds deadline, const char* what) noexcept {
   while (monotonic_now() < until) {
     if (monotonic_now() >= deadline) return fail(BusStatus::timed_out, what, "the deadline passed");
@@ -98,7 +98,8 @@ BusStatus ModbusLink::drain(Nanoseconds until, Nanoseconds deadline, const char*
   return BusStatus::ok;
 }
 
-/// A board that serves no further client may accept the connection first. Cable and address are right then.
+/// A board at its limit of clients may accept a connection and close it. Cable and address are right in this
+/// case.
 BusStatus ModbusLink::ended(const char* what) noexcept {
   if (!on_network_) return fail(BusStatus::disconnected, what, "the device is gone");
   if (answered_) return fail(BusStatus::disconnected, what, "the other end is gone");
@@ -173,7 +174,7 @@ BusStatus ModbusLink::ask(std::uint8_t unit, const ModbusRequest& request, Nanos
   return conclude(reply, error, unit, request);
 }
 
-/// Sends the request, and again while no byte of an answer comes.
+/// Sends the request, and repeats it while no byte of a response arrives.
 BusStatus ModbusLink::send_until_heard(std::span<const std::uint8_t> frame, Nanoseconds deadline) noexcept {
   first_asked_at_ = monotonic_now();
   for (repeats_ = 0;; ++repeats_) {
@@ -191,8 +192,9 @@ BusStatus ModbusLink::send_until_heard(std::span<const std::uint8_t> frame, Nano
   }
 }
 
-/// Each repetition of a request may get an answer of its own. A numbered answer is recognised when it comes.
-/// Any other could pass for the answer to the next request, so that request waits until it has come.
+/// Each repetition of a request may get its own response. A response with a transaction id is recognised when
+/// it arrives. A response without one could be taken for that of the next request, so the next request waits
+/// for it.
 void ModbusLink::expect_more_answers() noexcept {
   stale_ = repeats_;
   const bool quiet = repeats_ > 0 && !numbers_answers();
@@ -216,7 +218,7 @@ ModbusLink::Received ModbusLink::hear(std::span<std::uint8_t> buffer, std::uint8
   return {judge(bytes, unit, request, asked), error, bytes};
 }
 
-/// Returns the judged answer; `error` gives the reason if it is less than a frame.
+/// Returns the checked response. `error` contains the reason if it is not a complete frame.
 ModbusReply ModbusLink::receive(std::uint8_t unit, const ModbusRequest& request,
                                 std::span<const std::uint8_t> asked, Nanoseconds deadline,
                                 int& error) noexcept {
@@ -228,12 +230,12 @@ ModbusReply ModbusLink::receive(std::uint8_t unit, const ModbusRequest& request,
     if (old) --stale_;
   }
   error = heard.error;
-  // Behind a repeated request what waits may be the second answer.
+  // After a repeated request, further bytes may be the second response.
   const bool alone = repeats_ > 0 || !is_answer(heard.reply) || drop_strays();
   return alone ? heard.reply : defective(ReplyDefect::trailing);
 }
 
-/// False: what follows the answer may be another one.
+/// Discards bytes after the response. Returns false if they may be another response.
 bool ModbusLink::drop_strays() noexcept {
   int waiting = 0;
   if (::ioctl(descriptor(), FIONREAD, &waiting) != 0 || waiting <= 0) return true;
@@ -243,7 +245,7 @@ bool ModbusLink::drop_strays() noexcept {
          ::read(descriptor(), strays.data(), count) == static_cast<ssize_t>(count);
 }
 
-/// A reply that broke off.
+/// Determines the failure after an incomplete reply.
 BusStatus ModbusLink::name_failure(int error) noexcept {
   const bool began = !without_filler(incoming_).empty();
   const char* const what = began ? "waiting for the rest of the reply" : "waiting for the reply";

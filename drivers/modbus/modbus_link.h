@@ -1,5 +1,5 @@
 #pragma once
-// A wire with Modbus modules at its other end: one question at a time, and an end at any doubt.
+// A link to Modbus modules. It sends one request at a time, and closes after any unclear response.
 
 #include <array>
 #include <cstddef>
@@ -19,16 +19,16 @@ struct _modbus;  // NOLINT(bugprone-reserved-identifier): so is libmodbus' modbu
 
 namespace softgrip::drivers {
 
-/// On the network libmodbus receives; on a serial line it opens and sends. Around it: every wait
-/// ends at a point in time on CLOCK_BOOTTIME [ns], never by the time between two bytes; a raw frame is
-/// judged by our own pure check before anything in it is used; bytes behind it are looked for.
-/// docs/explanation/libraries.md says what libmodbus leaves to us and why.
+/// On a network, libmodbus receives; on a serial line, it opens and sends. This class adds three properties.
+/// Each wait ends at a time of CLOCK_BOOTTIME [ns], not after a pause between two bytes. A received frame is
+/// checked by own functions before its contents are used. Bytes after a frame are detected.
+/// docs/explanation/libraries.md gives the reasons.
 ///
-/// A repeated request is the same frame: a late repetition writes the same output values. It is sent within
-/// the deadline of its exchange, and does not extend that deadline.
+/// A repeated request is the same frame, so a late repetition writes the same output values. It is sent
+/// within the deadline of its exchange and does not extend that deadline.
 ///
-/// Nothing but the constructors, open() of a serial line, cost() and describe() allocates; nothing throws,
-/// resolves names of hosts, or retries but where LinkHabits says so.
+/// Only the constructors, open() of a serial line, cost() and describe() allocate. No function throws or
+/// resolves names. Requests are repeated only as LinkHabits states.
 class ModbusLink {
  public:
   ModbusLink(const ModbusLink&) = delete;
@@ -37,45 +37,47 @@ class ModbusLink {
   ModbusLink& operator=(ModbusLink&&) = delete;
   virtual ~ModbusLink();
 
-  /// Opens the link, after closing the one there was.
+  /// Closes the link if it is open, and opens it.
   [[nodiscard]] BusStatus open(Nanoseconds deadline) noexcept;
-  /// Waits until the settle time after open() is over. Bytes that come meanwhile are discarded.
+  /// Waits for the end of the settle time after open(). Bytes that arrive in this time are discarded.
   [[nodiscard]] BusStatus settle(Nanoseconds deadline) noexcept;
   void close() noexcept;
   [[nodiscard]] bool is_open() const noexcept { return descriptor() >= 0; }
 
-  /// Asks, and waits for the answer. On `ok` and on `exception` the link stands; on anything else it was
-  /// closed, so that a late or duplicated reply cannot be taken for the answer to a later question.
+  /// Sends a request and waits for the response. After `ok` and `exception` the link remains open. After any
+  /// other result it is closed, so that a late or duplicated reply cannot be taken for the response to a
+  /// later request.
   [[nodiscard]] BusStatus ask(std::uint8_t unit, const ModbusRequest& request, Nanoseconds deadline) noexcept;
-  /// What the last successful ask() read: bits or registers, high byte first. Valid until the next ask().
+  /// Returns the data of the last successful ask(): bits or registers, high byte first. Valid until the next
+  /// ask().
   [[nodiscard]] std::span<const std::uint8_t> data() const noexcept { return data_; }
-  /// The exception code, if the last ask() ended in `exception`; else 0.
+  /// Returns the exception code if the last ask() ended in `exception`; else 0.
   [[nodiscard]] unsigned exception_code() const noexcept { return exception_code_; }
-  /// What the last failure was.
+  /// Returns the reason of the last failure.
   [[nodiscard]] const char* detail() const noexcept { return detail_.data(); }
 
-  /// Measurements for cost(): none from now on; the last ask() was one.
+  /// Measurements for cost(): the first function deletes them, the second one adds the last ask().
   void forget_measurements() noexcept { measured_.reset(); }
   void keep_measurement() noexcept { measured_.add(answer_time(last_round_trip_)); }
-  /// What these transactions take, one after the other, and how it adds up. `plan` says in words what they
-  /// are.
+  /// Returns the duration of these consecutive transactions and its calculation. `plan` describes the
+  /// transactions.
   [[nodiscard]] virtual Board::Budget cost(std::span<const TransactionSize> transactions,
                                            const std::string& plan) const = 0;
-  /// "127.0.0.1:502", "/dev/ttyUSB0 (115200 8N1)"
+  /// Returns, for example, "127.0.0.1:502" or "/dev/ttyUSB0 (115200 8N1)".
   [[nodiscard]] virtual std::string describe() const = 0;
 
  protected:
-  /// Takes over a context of libmodbus; without one open() fails.
+  /// Takes the ownership of a libmodbus context. If it is null, open() fails.
   ModbusLink(_modbus* context, const LinkHabits& habits, bool on_network) noexcept;
 
   [[nodiscard]] _modbus* context() const noexcept { return context_; }
   [[nodiscard]] int descriptor() const noexcept;
-  /// Says why a link does not open.
+  /// Stores the reason why a link cannot be opened.
   BusStatus refuse(BusStatus status, const char* what, const char* why) noexcept;
-  /// Closes the link and says why.
+  /// Closes the link and stores the reason.
   BusStatus fail(BusStatus status, const char* what, const char* why) noexcept;
   BusStatus wait_until_ready(short events, Nanoseconds deadline, const char* what) noexcept;
-  /// Reads what the link holds after it was found ready.
+  /// Reads the available bytes of a link that is ready.
   BusStatus read_some(std::span<std::uint8_t> bytes, const char* what, std::size_t& got) noexcept;
   /// Closes the link after the other end has closed it.
   BusStatus ended(const char* what) noexcept;
@@ -84,7 +86,7 @@ class ModbusLink {
   /// The reason why bytes between two requests end a session.
   static constexpr const char* unasked = "bytes came that nobody asked for, a late or repeated reply";
 
-  /// The judged answer; `error` is whole_frame, or the errno that made it less than a frame.
+  /// The checked response. `error` is whole_frame, or the errno for which the frame is incomplete.
   struct Received {
     ModbusReply reply;
     int error = 0;
@@ -92,36 +94,36 @@ class ModbusLink {
   };
   static constexpr int whole_frame = 0;
 
-  Descriptor held_;               ///< given back when the link closes
-  Nanoseconds heard_at_ = 0;      ///< when the last bytes came
-  bool answer_may_come_ = false;  ///< the last session ended while one was due
+  Descriptor held_;               ///< closed with the link
+  Nanoseconds heard_at_ = 0;      ///< time of the last received bytes
+  bool answer_may_come_ = false;  ///< the last session ended while a response was due
 
  private:
   virtual BusStatus connect(Nanoseconds deadline) noexcept = 0;
-  /// Writes the frame of a question; returns its size, or 0 for one that reply_pdu_size() refuses.
+  /// Writes the frame of a request. Returns its size, or 0 for a request that reply_pdu_size() refuses.
   virtual std::size_t build(std::uint8_t unit, const ModbusRequest& request, Frame& frame) noexcept = 0;
-  /// Waits until a question may be sent.
+  /// Waits until a request may be sent.
   virtual BusStatus before_asking(Nanoseconds) noexcept { return BusStatus::ok; }
   virtual BusStatus send(std::span<const std::uint8_t> frame, Nanoseconds deadline) noexcept = 0;
-  /// The pure reply check over all that came since the question `asked` was sent.
+  /// Checks all bytes received since the request `asked` was sent.
   [[nodiscard]] virtual ModbusReply judge(std::span<const std::uint8_t> bytes, std::uint8_t unit,
                                           const ModbusRequest& request,
                                           std::span<const std::uint8_t> asked) const noexcept = 0;
-  /// Receives with libmodbus into `buffer`, which is full of filler.
+  /// Receives with libmodbus into `buffer`, which contains only the filler value before.
   virtual Received hear(std::span<std::uint8_t> buffer, std::uint8_t unit, const ModbusRequest& request,
                         std::span<const std::uint8_t> asked, Nanoseconds deadline) noexcept;
   /// Time to transmit a frame of this number of bytes after send().
   [[nodiscard]] virtual Nanoseconds sending_time(std::size_t) const noexcept { return 0; }
-  /// numbers_answers(): true if an answer carries the number of its request. answers_previous(): true if
-  /// these bytes carry the number of the previous request.
+  /// numbers_answers() returns true if a response contains the number of its request. answers_previous()
+  /// returns true if these bytes contain the number of the previous request.
   [[nodiscard]] virtual bool numbers_answers() const noexcept { return false; }
   [[nodiscard]] virtual bool answers_previous(std::span<const std::uint8_t>) const noexcept { return false; }
-  /// Largest number of bytes before or behind an answer that is discarded. It is below the size of the
-  /// shortest answer, so the bytes cannot be an answer to another request.
+  /// Returns the largest number of bytes before or after a response that are discarded. It is below the size
+  /// of the shortest response, so the bytes cannot be the response to another request.
   [[nodiscard]] virtual std::size_t most_stray() const noexcept { return 0; }
-  /// Index of the unit id in a frame.
+  /// Returns the index of the unit id in a frame.
   [[nodiscard]] virtual std::size_t unit_place() const noexcept = 0;
-  /// What of a round trip is kept as a measurement.
+  /// Returns the part of a round trip that is stored as a measurement.
   [[nodiscard]] virtual Nanoseconds answer_time(Nanoseconds round_trip) const noexcept { return round_trip; }
 
   BusStatus send_until_heard(std::span<const std::uint8_t> frame, Nanoseconds deadline) noexcept;
@@ -140,14 +142,15 @@ class ModbusLink {
   Nanoseconds settle_;
   Nanoseconds repeat_after_;
   Nanoseconds opened_at_ = 0;
-  bool answered_ = false;  ///< the other end has answered since the link was opened
+  bool answered_ = false;  ///< the other end has responded since the link was opened
   Nanoseconds first_asked_at_ = 0;
   Nanoseconds asked_at_ = 0;
-  unsigned repeats_ = 0;         ///< of the last request
-  unsigned stale_ = 0;           ///< numbered answers to the previous request that may still come
-  Nanoseconds quiet_until_ = 0;  ///< end of the time in which other answers to it may still come
-  /// libmodbus waits by select(), which knows no descriptor above 1023: the place of one is kept from the
-  /// start.
+  unsigned repeats_ = 0;         ///< repetitions of the last request
+  unsigned stale_ = 0;           ///< responses with a transaction id to the previous request that may still
+                                 ///< arrive
+  Nanoseconds quiet_until_ = 0;  ///< end of the time in which other responses to it may still arrive
+  /// libmodbus waits with select(), which accepts no descriptor above 1023. This object reserves a lower one
+  /// from the start.
   Descriptor place_;
   Frame outgoing_{};
   Frame incoming_{};

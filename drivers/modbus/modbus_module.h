@@ -1,5 +1,5 @@
 #pragma once
-// One Modbus module on a link: what an exchange asks it, and what its answers mean.
+// One Modbus module on a link: the requests of an exchange and the evaluation of the responses.
 
 #include <array>
 #include <cstdint>
@@ -19,54 +19,59 @@
 namespace softgrip::drivers {
 
 struct ModbusModuleSettings {
-  std::string name;  ///< in messages, when a board has several; else the map's
+  std::string name;  ///< name in messages if a board has several modules; otherwise the map's name is used
   BoardMap map;
-  std::uint8_t unit = 1;  ///< unit id; replies with another one are refused
-  std::size_t link = 0;   ///< which of the board's links leads to it
+  std::uint8_t unit = 1;  ///< unit id; responses with another one are refused
+  std::size_t link = 0;   ///< index of the board's link to the module
 };
 
-/// Holds what one exchange wrote and read. Nothing but the constructor and the texts allocates.
+/// Stores the values that one exchange wrote and read. Only the constructor and the texts allocate.
 class ModbusModule {
  public:
-  /// `link` outlives the module; `index` is what the wiring calls it.
+  /// `link` must outlive the module. `index` is the module's number in the wiring.
   ModbusModule(ModbusModuleSettings settings, std::size_t index, const std::vector<ChannelWiring>& wiring,
                ModbusLink& link);
 
   [[nodiscard]] const ModbusModuleSettings& settings() const noexcept { return settings_; }
   [[nodiscard]] const ExchangePlan& plan() const noexcept { return plan_; }
   [[nodiscard]] bool drives_outputs() const noexcept { return !plan_.writes.empty(); }
-  /// Number of clients in the last read; 0: the module does not count them.
+  /// Returns the number of clients in the last read; 0 if the module does not count them.
   [[nodiscard]] unsigned clients() const noexcept;
 
-  /// After the link was opened: the map's setup, unless a tripped watchdog comes first.
+  /// Called after the link was opened. Writes the map's setup, or delays it until a tripped watchdog has been
+  /// cleared.
   [[nodiscard]] BusStatus set_up(Nanoseconds deadline) noexcept;
-  /// One question that changes nothing, to measure the link; `ok` at once if the plan has none.
+  /// Sends one request that changes nothing, to measure the link. Returns `ok` at once if the plan has no
+  /// read.
   [[nodiscard]] BusStatus probe(Nanoseconds deadline) noexcept;
 
-  /// Fails with `write_refused` where a command is beyond the range of its output; its end is encoded.
+  /// Encodes the commands. Returns `write_refused` if a command is outside the range of its output, and
+  /// limits it.
   [[nodiscard]] BusStatus encode(std::span<const double> commands_kpa) noexcept;
-  /// The outputs; once per session what clears a tripped watchdog; what feeds it.
+  /// Writes the outputs and feeds the watchdog. Once per session, it also clears a tripped watchdog.
   [[nodiscard]] BusStatus write(Nanoseconds deadline) noexcept;
-  /// Now and then an exchange begins with the reading, so that what somebody else has written since the last
-  /// one is seen before it is overwritten: begin_exchange() decides that for the exchange that it begins.
-  /// Only after one whose read-back was as written: an output that did not follow differs by itself.
+  /// Every few exchanges, an exchange reads before it writes. It then detects values that another client has
+  /// written since the last exchange, before it overwrites them. begin_exchange() makes this decision. The
+  /// exchange before must have confirmed the outputs, because an output that did not follow differs without
+  /// another client.
   void begin_exchange() noexcept;
   [[nodiscard]] bool reads_first() const noexcept { return reads_first_; }
 
-  /// What write() has not read yet.
+  /// Performs the reads that write() has not done.
   [[nodiscard]] BusStatus read(Nanoseconds deadline) noexcept;
-  /// What the board says of its outputs; `overwritten` is said only where the reading was first.
-  /// With `write_refused`, found_kpa() returns what the outputs were instead.
+  /// Checks the outputs that the board reports. Returns `overwritten` only if the exchange read first. After
+  /// `write_refused`, found_kpa() returns the actual outputs.
   [[nodiscard]] BusStatus check() noexcept;
-  /// NaN where the channel is not wired to the module, or where the last check() found what was written.
+  /// Returns the actual output [kPa]. NaN if the channel is not wired to the module, or if the output is as
+  /// written.
   [[nodiscard]] double found_kpa(std::size_t channel) const noexcept { return found_kpa_[channel]; }
   void forget_found() noexcept;
-  /// Puts what the module knows of a channel into its reading.
+  /// Copies the module's values of a channel into its reading.
   void fill(std::size_t channel, Reading& reading) const noexcept;
 
-  /// What went wrong last.
+  /// Returns the reason of the last failure.
   [[nodiscard]] const char* detail() const noexcept { return detail_; }
-  /// All questions of one exchange, in their order.
+  /// Returns all requests of one exchange in their order.
   [[nodiscard]] std::vector<TransactionSize> transactions() const;
 
  private:
@@ -94,17 +99,17 @@ class ModbusModule {
   ExchangePlan plan_;
   ModbusLink& link_;
   std::vector<std::uint16_t> output_words_;
-  std::vector<double> requested_raws_;  ///< what each output was told, after rounding and clamping
+  std::vector<double> requested_raws_;  ///< written value of each output, after rounding and limiting
   ReadBackHistory accepted_;
   std::vector<double> found_kpa_;
   std::vector<std::vector<std::uint16_t>> replies_;  ///< one per read of the plan; bits as 0 or 1
   Nanoseconds sampled_at_ = 0;
-  std::uint32_t unlooked_ = 0;  ///< exchanges since one began with the reading
-  bool confirmed_ = false;      ///< the last exchange read back what it had written
+  std::uint32_t unlooked_ = 0;  ///< exchanges since the last one that read first
+  bool confirmed_ = false;      ///< the last exchange read back the values that it had written
   bool reads_first_ = false;
   bool alternate_due_ = false;  ///< the last write of the heartbeat had its first value
-  bool clear_due_ = false;      ///< a session is new: a tripped watchdog may be cleared
-  bool setup_due_ = false;      ///< it was tripped when the session was opened
+  bool clear_due_ = false;      ///< the session is new: a tripped watchdog may be cleared
+  bool setup_due_ = false;      ///< the watchdog was tripped when the session was opened, so the setup is due
   std::array<char, 200> own_detail_{};
   const char* detail_ = "";
 };

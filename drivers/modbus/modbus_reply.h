@@ -1,7 +1,6 @@
 #pragma once
-// Answers in Modbus: whether the bytes from the function code on are the answer to the question that was
-// asked. Pure functions over bytes that nobody can trust; the framing around them is judged in mbap.h and
-// rtu_frame.h.
+// Checks Modbus responses: whether the bytes from the function code on are the response to a request. Pure
+// functions over bytes from an untrusted source. mbap.h and rtu_frame.h check the framing.
 
 #include <cstddef>
 #include <cstdint>
@@ -11,24 +10,25 @@
 
 namespace softgrip::drivers {
 
-/// Why bytes are not the answer.
+/// The reason why bytes are not the expected response.
 enum class ReplyDefect : std::uint8_t {
   none,
-  transaction,  ///< answers another question: a late or a duplicated reply
+  transaction,  ///< response to another request: a late or a duplicated reply
   protocol,     ///< not Modbus
-  length,       ///< the header's length is not that of the answer
-  unit,         ///< another unit answered
-  function,     ///< another function
-  byte_count,   ///< the count of data bytes contradicts the question
-  echo,         ///< a write is confirmed with another address or value
-  trailing,     ///< more bytes than the answer has
-  checksum,     ///< the bytes were changed on the way (serial lines)
-  own_echo,     ///< what came back is the question itself (serial lines)
+  length,       ///< the length in the header does not match the response
+  unit,         ///< response of another unit
+  function,     ///< another function code
+  byte_count,   ///< the number of data bytes does not match the request
+  echo,         ///< the write is confirmed with another address or value
+  trailing,     ///< more bytes than the response has
+  checksum,     ///< the bytes were changed in transmission (serial lines)
+  own_echo,     ///< the received bytes are the request itself (serial lines)
 };
-/// A sentence for the event log.
+/// Returns a sentence for the event log.
 [[nodiscard]] const char* text_of(ReplyDefect defect) noexcept;
 
-/// In the function code of an answer that refuses; such an answer is so long, from the function code on.
+/// The bit in the function code of an exception, and the size of an exception from the function code on
+/// [bytes].
 inline constexpr std::uint8_t exception_bit = 0x80;
 inline constexpr std::size_t exception_pdu_size = 2;
 
@@ -37,17 +37,17 @@ struct ModbusReply {
   State state = State::incomplete;
   ReplyDefect defect = ReplyDefect::none;
   std::uint8_t exception_code = 0;
-  /// Of a complete reply: what was read (bits or registers, high byte first); empty for writes. Points into
-  /// the bytes that were given.
+  /// For a complete reply: the data that was read (bits or registers, high byte first); empty for writes.
+  /// Points into the given bytes.
   std::span<const std::uint8_t> data = {};
 };
 
-/// Judges the beginning of a reply, from the function code on. `incomplete` means that it is a proper
-/// beginning of the answer; every byte is judged as soon as it is there. Bytes behind the answer are for the
-/// framing to judge: `complete` and `exception` look at the first pdu_size_of(reply, request) bytes.
+/// Checks the beginning of a reply from the function code on. `incomplete` means that it is a correct
+/// beginning of the response. Each byte is checked when it arrives. `complete` and `exception` apply to the
+/// first pdu_size_of(reply, request) bytes; the framing checks the bytes after them.
 [[nodiscard]] ModbusReply parse_pdu(std::span<const std::uint8_t> pdu, const ModbusRequest& request) noexcept;
 
-/// Bytes of a reply that is complete or an exception.
+/// Returns the size of a reply that is complete or an exception [bytes].
 [[nodiscard]] std::size_t pdu_size_of(const ModbusReply& reply, const ModbusRequest& request) noexcept;
 
 [[nodiscard]] inline bool is_answer(const ModbusReply& reply) noexcept {

@@ -7,7 +7,7 @@
 namespace softgrip::drivers {
 namespace {
 
-/// Appends to a buffer; the caller has checked that everything fits.
+/// Appends to a buffer. The caller has checked its size.
 class Writer {
  public:
   explicit Writer(std::span<std::uint8_t> bytes) : bytes_(bytes) {}

@@ -15,8 +15,8 @@
 
 namespace softgrip::drivers {
 
-/// Lets pass what still belongs to the session before: a module may be about to answer, and its answer may be
-/// as long as a frame can be. Ends with silence.
+/// Discards bytes of the session before: a module may still be responding, with at most the longest frame.
+/// Returns after a silence.
 BusStatus ModbusRtuFraming::listen(Nanoseconds usual, Nanoseconds deadline) noexcept {
   heard_at_ = monotonic_now();
   if (!answer_may_come_) return BusStatus::ok;
@@ -60,7 +60,7 @@ BusStatus ModbusRtuFraming::before_asking(Nanoseconds deadline) noexcept {
   }
 }
 
-/// Reads at most the missing bytes of the answer that began first.
+/// Reads at most the missing bytes of the response that began first.
 ModbusLink::Received ModbusRtuFraming::hear(std::span<std::uint8_t> buffer, std::uint8_t unit,
                                             const ModbusRequest& request, std::span<const std::uint8_t> asked,
                                             Nanoseconds deadline) noexcept {

@@ -9,22 +9,22 @@
 
 namespace softgrip::drivers {
 
-/// RTU has no transaction id: an answer belongs to the question before it, and nothing in it proves that. So
-/// a question is only sent into a line that was silent for as long as the specification asks; bytes that come
-/// while nothing was asked end the link, unless they are fewer than any answer has; and after anything went
-/// wrong, a new link listens for as long as an answer that was under way could still take. libmodbus does
-/// none of this, and finds no answer behind stray bytes: here it does not receive.
+/// RTU has no transaction id: a response belongs to the request before it, and its bytes do not prove this.
+/// Therefore a request is sent only after the silence of the specification. Bytes without a request end the
+/// link, unless they are fewer than the shortest response. After a failure, a new link first listens as long
+/// as a response may still take. libmodbus does none of this and does not find a response after stray bytes,
+/// so it is not used for receiving here.
 class ModbusRtuFraming : public ModbusLink {
  protected:
   ModbusRtuFraming(_modbus* context, const LinkHabits& habits, bool on_network, Nanoseconds character,
                    Nanoseconds silence) noexcept
       : ModbusLink(context, habits, on_network), character_(character), silence_(silence) {}
 
-  /// Called once a link is open. `usual`: response time of a module, beside bytes and silence.
+  /// Called once a link is open. `usual`: response time of a module without bytes and silence.
   BusStatus listen(Nanoseconds usual, Nanoseconds deadline) noexcept;
   [[nodiscard]] Nanoseconds character() const noexcept { return character_; }
   [[nodiscard]] Nanoseconds silence() const noexcept { return silence_; }
-  /// Sizes of the last request and its answer.
+  /// Returns the sizes of the last request and its response.
   [[nodiscard]] const TransactionSize& last_size() const noexcept { return last_size_; }
 
  private:

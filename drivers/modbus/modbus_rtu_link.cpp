@@ -48,7 +48,7 @@ BusStatus ModbusRtuLink::connect(Nanoseconds deadline) noexcept {
 }
 
 BusStatus ModbusRtuLink::send(std::span<const std::uint8_t> frame, Nanoseconds deadline) noexcept {
-  // libmodbus puts the checksum behind.
+  // libmodbus appends the checksum.
   const auto unchecked = static_cast<int>(frame.size()) - 2;
   if (::modbus_send_raw_request(context(), frame.data(), unchecked) != static_cast<int>(frame.size())) {
     return fail(BusStatus::disconnected, "sending", text_of_errno(errno < MODBUS_ENOBASE ? errno : ENOBUFS));
@@ -71,8 +71,8 @@ BusStatus ModbusRtuLink::take_echo(std::span<const std::uint8_t> frame, Nanoseco
   return BusStatus::ok;
 }
 
-/// What modules and adapter needed beside bytes and silence. A module answers after a silence of its own, by
-/// which it knows that the question is over.
+/// Returns the response time of module and adapter without the time of bytes and silence. A module responds
+/// after a silence, which shows it the end of the request.
 Nanoseconds ModbusRtuLink::answer_time(Nanoseconds round_trip) const noexcept {
   const auto bytes = static_cast<Nanoseconds>(last_size().request + last_size().reply + 2 * rtu_overhead);
   return std::max<Nanoseconds>(0, round_trip - bytes * character() - silence());

@@ -1,5 +1,5 @@
 #pragma once
-// A serial line with Modbus RTU modules on it, one question at a time.
+// A serial line with Modbus RTU modules and one request at a time.
 
 #include <array>
 #include <cstdint>
@@ -11,8 +11,8 @@
 
 namespace softgrip::drivers {
 
-/// open() opens the device by its name, so that an adapter that was pulled out and put back is found again.
-/// It allocates to look the name up, and refuses one that udev gave to several adapters.
+/// open() opens the device by its name, so an adapter that was unplugged and connected again is found. It
+/// allocates to find the name, and refuses a name that udev gave to several adapters.
 class ModbusRtuLink final : public ModbusRtuFraming {
  public:
   explicit ModbusRtuLink(SerialLine line);

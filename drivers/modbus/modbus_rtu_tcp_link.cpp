@@ -11,12 +11,12 @@
 namespace softgrip::drivers {
 namespace {
 
-/// The rate of the line behind the server is unknown. This is the duration of a character at 9600 baud.
+/// The baud rate behind the server is unknown. This is the duration of a character at 9600 baud [ns].
 constexpr Nanoseconds slow_character = 1'041'667;
 
 }  // namespace
 
-// libmodbus is handed an open socket: the device of its context is never opened.
+// libmodbus gets an open socket: the device of its context is never opened.
 ModbusRtuTcpLink::ModbusRtuTcpLink(TcpAddress address)
     : ModbusRtuFraming(::modbus_new_rtu("/dev/null", 9600, 'N', 8, 1), address.habits, true, slow_character,
                        nanoseconds(address.silence_s)),

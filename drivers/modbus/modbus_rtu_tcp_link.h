@@ -8,11 +8,11 @@
 
 namespace softgrip::drivers {
 
-/// A serial server may deliver a late answer into the next connection. A connection after a failure therefore
-/// listens first, as on a serial line.
+/// A serial server may deliver a late response into the next connection. After a failure, a new connection
+/// therefore listens first, as on a serial line.
 class ModbusRtuTcpLink final : public ModbusRtuFraming {
  public:
-  /// With a host that is no numeric address open() says so and fails.
+  /// If the host is not a numeric address, open() reports it and fails.
   explicit ModbusRtuTcpLink(TcpAddress address);
   ~ModbusRtuTcpLink() override = default;
 

@@ -12,7 +12,7 @@
 
 namespace softgrip::drivers {
 
-// libmodbus is handed an open socket: the address of its context stands for none.
+// libmodbus gets an open socket: the address of its context is not used.
 ModbusTcpLink::ModbusTcpLink(TcpAddress address)
     : ModbusLink(::modbus_new_tcp("127.0.0.1", 1), address.habits, true), address_(std::move(address)) {}
 
@@ -27,7 +27,7 @@ std::size_t ModbusTcpLink::build(std::uint8_t unit, const ModbusRequest& request
   return build_request(request, ++transaction_, unit, frame);
 }
 
-/// Without numbers a late answer can be recognised only before the next request.
+/// Without transaction ids, a late response can be detected only before the next request.
 BusStatus ModbusTcpLink::before_asking(Nanoseconds) noexcept {
   pollfd socket{.fd = descriptor(), .events = POLLIN, .revents = 0};
   if (address_.numbered || ::poll(&socket, 1, 0) == 0) return BusStatus::ok;

@@ -10,13 +10,14 @@
 
 namespace softgrip::drivers {
 
-/// What libmodbus cannot do here is ours: to connect within a deadline to an IPv4 or IPv6 address, and to
-/// number a question. Its raw request of version 3.1.6 always carries transaction id 0, by which a repeated
-/// reply would pass for the answer to the next question. Where a gateway does not return the number
-/// (TcpAddress::numbered) that danger is back: only an answer that comes before the next question is known.
+/// This class connects within a deadline to an IPv4 or IPv6 address and numbers its requests, which libmodbus
+/// cannot do: raw requests of its version 3.1.6 always have the transaction id 0. With one id, a repeated
+/// reply could be taken for the response to the next request. If a gateway does not return the id
+/// (TcpAddress::numbered is false), this risk exists: a late response is detected only if it arrives before
+/// the next request.
 class ModbusTcpLink final : public ModbusLink {
  public:
-  /// With a host that is no numeric address open() says so and fails.
+  /// If the host is not a numeric address, open() reports it and fails.
   explicit ModbusTcpLink(TcpAddress address);
   ~ModbusTcpLink() override = default;
 
@@ -37,7 +38,7 @@ class ModbusTcpLink final : public ModbusLink {
   [[nodiscard]] std::size_t unit_place() const noexcept override { return mbap_unit; }
 
   TcpAddress address_;
-  /// Counts on across sessions: a gateway that delivers an old reply into a new session is found out too.
+  /// Continues across sessions, so that an old reply that a gateway delivers into a new session is detected.
   std::uint16_t transaction_ = 0;
 };
 

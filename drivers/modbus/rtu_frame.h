@@ -1,5 +1,5 @@
 #pragma once
-// Framing on serial lines (Modbus RTU): unit id in front, CRC behind; a frame ends with silence.
+// Framing on serial lines (Modbus RTU): the unit id before and the CRC after the PDU. A silence ends a frame.
 // MODBUS over Serial Line, Specification and Implementation Guide V1.02, 2.5.1.
 
 #include <cstddef>
@@ -13,28 +13,29 @@ namespace softgrip::drivers {
 
 /// Longest frame on a serial line [bytes].
 inline constexpr std::size_t max_rtu_frame = 1 + max_pdu + 2;
-/// What a frame has beside the question or answer: unit id and CRC [bytes].
+/// Size of the framing: unit id and CRC [bytes].
 inline constexpr std::size_t rtu_overhead = 3;
 
-/// One byte less than the shortest answer, an exception [bytes].
+/// One byte less than the shortest response, an exception [bytes].
 inline constexpr std::size_t max_stray_bytes = rtu_overhead + exception_pdu_size - 1;
 
-/// CRC-16 of the specification: polynomial 0xA001 (reflected), starting from 0xFFFF. Sent low byte first.
+/// Returns the CRC-16 of the specification: polynomial 0xA001 (reflected), start value 0xFFFF. Sent low byte
+/// first.
 [[nodiscard]] std::uint16_t crc16(std::span<const std::uint8_t> bytes) noexcept;
 
-/// Writes unit id and CRC around the PDU of `pdu_size` bytes that begins at frame[1]; returns the size of the
+/// Writes unit id and CRC around the PDU of `pdu_size` bytes that begins at frame[1]. Returns the size of the
 /// frame.
 std::size_t put_rtu_ends(std::span<std::uint8_t> frame, std::size_t pdu_size, std::uint8_t unit) noexcept;
 
-/// Whether a frame ends with the CRC of what is before it.
+/// Returns true if a frame ends with the CRC of its other bytes.
 [[nodiscard]] bool crc_holds(std::span<const std::uint8_t> frame) noexcept;
 
-/// Writes the frame of a question; returns its size, or 0 for a request that reply_pdu_size() refuses.
+/// Writes the frame of a request. Returns its size, or 0 for a request that reply_pdu_size() refuses.
 [[nodiscard]] std::size_t build_rtu_request(const ModbusRequest& request, std::uint8_t unit,
                                             Frame& frame) noexcept;
 
-/// Judges `bytes`, all that was received since the question (`asked`, the frame that was sent) went out. As
-/// parse_reply(): `incomplete` is a proper beginning, a wrong beginning is not waited out.
+/// Checks `bytes`, the bytes received since the frame `asked` was sent. As in parse_reply(), `incomplete` is
+/// a correct beginning, and a wrong beginning is detected before the rest arrives.
 [[nodiscard]] ModbusReply parse_rtu_reply(std::span<const std::uint8_t> bytes, const ModbusRequest& request,
                                           std::uint8_t unit, std::span<const std::uint8_t> asked) noexcept;
 

@@ -10,7 +10,8 @@ namespace fs = std::filesystem;
 
 constexpr const char* serial_device = "serial device";
 
-/// The names of the files in a folder of `root`, in their order; those that begin with a dot are no devices.
+/// Returns the names of the files in a folder of `root` in alphabetical order, without names that begin with
+/// a dot.
 std::vector<std::string> names_in(const fs::path& root, const std::string& folder) {
   std::vector<std::string> names;
   std::error_code error;
@@ -22,7 +23,7 @@ std::vector<std::string> names_in(const fs::path& root, const std::string& folde
   return names;
 }
 
-/// As udev_node_escape_path() of systemd names the folder of a link under /run/udev/links.
+/// Returns the folder name of a link under /run/udev/links, as udev_node_escape_path() of systemd forms it.
 std::string escaped(const std::string& link) {
   std::string text;
   for (const char c : link) {
@@ -37,7 +38,7 @@ std::string escaped(const std::string& link) {
   return text;
 }
 
-/// A device with the names of its port as words.
+/// Returns a device with the names of its port as words.
 ComputerDevice on_port(const fs::path& root, const std::string& node) {
   ComputerDevice device{node, {}, {}};
   std::error_code error;
@@ -49,7 +50,7 @@ ComputerDevice on_port(const fs::path& root, const std::string& node) {
   return device;
 }
 
-/// The devices to which udev gave the link: each is an entry, "c188:0", that points at
+/// Returns the devices to which udev gave the link. Each has an entry, such as "c188:0", that contains
 /// "PRIORITY:/dev/ttyUSB0".
 std::vector<ComputerDevice> claimants(const fs::path& root, const std::string& link) {
   const std::string folder = "run/udev/links/" + escaped(link);

@@ -1,5 +1,5 @@
 #pragma once
-// Which serial device of this computer a path means.
+// Finds the serial device of this computer that a path names.
 
 #include <filesystem>
 #include <optional>
@@ -9,9 +9,10 @@
 
 namespace softgrip::drivers {
 
-/// Returns why a path is not the name of one serial device: it is not there, or udev gave it to several
-/// devices (two adapters of one type without a serial number), of which the link in /dev follows the one that
-/// came last. Only names in /dev are judged. `root`: the folder in which /dev and /run are.
+/// Returns the reason why a path is not the name of one serial device: it does not exist, or udev gave it to
+/// several devices (two adapters of one type without a serial number). In that case the link in /dev leads to
+/// the device that was connected last. Only names in /dev are checked. `root` is the folder that contains
+/// /dev and /run.
 [[nodiscard]] std::optional<UnclearDevice> unclear_serial_device(const std::string& path,
                                                                  const std::filesystem::path& root = "/");
 

@@ -18,13 +18,13 @@
 namespace softgrip::drivers {
 namespace {
 
-// MODBUS over Serial Line V1.02, 2.5.1.1: 3.5 characters, and above 19200 baud a fixed time.
+// MODBUS over Serial Line V1.02, 2.5.1.1: 3.5 characters, or a fixed time above 19200 baud.
 constexpr double silent_characters = 3.5;
 constexpr double fixed_silence_s = 1.75e-3;
 constexpr std::uint32_t fixed_above_baud = 19200;
 
 bool is_pseudo_terminal(int descriptor) noexcept {
-  // Documentation/admin-guide/devices.txt of the kernel: Unix98 slaves.
+  // Major numbers of Unix98 pseudo-terminals: Documentation/admin-guide/devices.txt of the kernel.
   constexpr unsigned first_slave_major = 136;
   constexpr unsigned last_slave_major = 143;
   struct stat about {};
@@ -41,7 +41,7 @@ tcflag_t line_flags(const SerialLine& line) noexcept {
   return flags;
 }
 
-/// What the driver made of the settings.
+/// Returns true if the device has the rate and the format of the line.
 bool keeps_to(int descriptor, const SerialLine& line) noexcept {
   termios2 settings{};  // with the rate as a number
   if (::ioctl(descriptor, TCGETS2, &settings) != 0) return false;

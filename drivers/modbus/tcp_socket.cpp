@@ -15,19 +15,19 @@
 namespace softgrip::drivers {
 namespace {
 
-// A dead peer is noticed by the exchange's own deadline; these only keep the kernel from holding on to a
-// connection whose other end is gone while no request is sent.
+// The deadline of an exchange detects a dead peer. These options only make the kernel close a connection
+// whose other end is gone while no request is sent.
 constexpr int keepalive_idle_s = 2;
 constexpr int keepalive_interval_s = 1;
 constexpr int keepalive_probes = 3;
 constexpr unsigned user_timeout_ms = 3000;
 
 void set_option(int socket, int level, int name, int value) noexcept {
-  // Best effort: a session without these options is slower or later noticed dead, not wrong.
+  // Without these options a session is slower or a dead peer is detected later, so an error is ignored.
   (void)::setsockopt(socket, level, name, &value, sizeof value);
 }
 
-/// The size of the address, or 0 if the host is no numeric one.
+/// Returns the size of the address, or 0 if the host is not numeric.
 socklen_t parse_address(const TcpAddress& from, sockaddr_storage& address) noexcept {
   sockaddr_in v4{.sin_family = AF_INET, .sin_port = htons(from.port), .sin_addr = {}, .sin_zero = {}};
   sockaddr_in6 v6{};
@@ -42,8 +42,8 @@ socklen_t parse_address(const TcpAddress& from, sockaddr_storage& address) noexc
   return sizeof v6;
 }
 
-/// A connection attempt to a port of this machine without a listener can be answered by its own socket,
-/// when the kernel happens to pick that port as the local one.
+/// Returns true if a socket is connected to itself. This can happen if no program listens on a port of this
+/// machine and the kernel chooses the same port as the local one.
 bool talks_to_itself(int socket) noexcept {
   sockaddr_storage local{};
   sockaddr_storage peer{};
@@ -92,7 +92,7 @@ TcpConnection connect_tcp(const TcpAddress& to, Nanoseconds deadline) noexcept {
 }
 
 int send_whole(int socket, std::span<const std::uint8_t> frame) noexcept {
-  // One question is under way at a time: a socket that does not take 260 bytes is stuck.
+  // Only one request is sent at a time, so a socket that does not accept 260 bytes is blocked.
   const ssize_t sent = ::send(socket, frame.data(), frame.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
   if (sent == static_cast<ssize_t>(frame.size())) return 0;
   return sent < 0 ? errno : ENOBUFS;

@@ -1,5 +1,5 @@
 #pragma once
-// Connecting to a host within a deadline, and sending to it without waiting. Neither allocates.
+// Connects to a host within a deadline, and sends to it without waiting. Neither function allocates.
 
 #include <cstdint>
 #include <span>
@@ -10,19 +10,19 @@
 
 namespace softgrip::drivers {
 
-/// A connection, or why there is none.
+/// A connection, or the reason why there is none.
 struct TcpConnection {
   Descriptor socket;
   BusStatus status = BusStatus::disconnected;
   const char* why = "";
 };
 
-/// To an IPv4 or IPv6 address, until `deadline` on CLOCK_BOOTTIME [ns].
+/// Connects to an IPv4 or IPv6 address until `deadline` on CLOCK_BOOTTIME [ns].
 [[nodiscard]] TcpConnection connect_tcp(const TcpAddress& to, Nanoseconds deadline) noexcept;
 
-/// Returns 0, or why the frame was not sent as a whole: an errno.
+/// Returns 0, or the errno if the frame was not sent completely.
 [[nodiscard]] int send_whole(int socket, std::span<const std::uint8_t> frame) noexcept;
-/// True for an errno that says that the other end has closed the connection.
+/// Returns true if an errno means that the other end has closed the connection.
 [[nodiscard]] bool is_closed(int error) noexcept;
 
 }  // namespace softgrip::drivers

@@ -9,7 +9,7 @@
 namespace softgrip::modbus {
 namespace {
 
-// A client that does not read its replies is cut off before they pile up.
+// A client that does not read its replies is disconnected at this amount [bytes].
 constexpr std::size_t max_outgoing = 1024;
 
 bool would_block(int error) {
@@ -49,8 +49,8 @@ bool Connection::broken() const {
 }
 
 void Connection::queue(const Request& request, const Reply& reply, Clock::time_point now) {
-  // On a line without bits of its own the question is there before its bytes could be, and so would the
-  // answer.
+  // A pseudo-terminal transmits at once. The reply is delayed by the transmission time of request and reply
+  // on a line.
   constexpr std::size_t unit_and_checksum = 3;
   std::size_t bytes = request.pdu.size() + unit_and_checksum;
   for (const Piece& piece : reply.pieces) bytes += piece.bytes.size();

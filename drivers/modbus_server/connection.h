@@ -1,5 +1,5 @@
 #pragma once
-// One Modbus client: requests in, pieces of replies out when they are due. Never blocks.
+// One Modbus client: receives requests, and sends pieces of replies when they are due. Never blocks.
 
 #include <chrono>
 #include <functional>
@@ -13,11 +13,11 @@
 
 namespace softgrip::modbus {
 
-/// What bytes take on a serial line that a pseudo-terminal hands over at once.
+/// The times of a real serial line, which a pseudo-terminal does not have.
 struct WireTime {
   std::chrono::nanoseconds character{0};
-  std::chrono::nanoseconds silence{0};     ///< by which a module knows that the question is over
-  std::chrono::nanoseconds turnaround{0};  ///< what it then needs
+  std::chrono::nanoseconds silence{0};     ///< shows a module the end of a request
+  std::chrono::nanoseconds turnaround{0};  ///< response time of a module after the silence
 };
 
 class Connection {
@@ -26,19 +26,19 @@ class Connection {
 
   /// A client on the network.
   explicit Connection(Descriptor socket) : descriptor_(std::move(socket)) {}
-  /// The master on a serial line.
+  /// The Modbus client on a serial line.
   Connection(Descriptor line, WireTime wire_time)
       : descriptor_(std::move(line)), stream_(RtuRequestStream{}), wire_time_(wire_time) {}
 
-  /// Takes what came in and answers every complete request through `serve`. False: close the connection.
+  /// Reads the received bytes and passes each complete request to `serve`. False: close the connection.
   [[nodiscard]] bool receive(const Serve& serve);
   /// Sends all pieces that are due. False: close the connection.
   [[nodiscard]] bool send_due(Clock::time_point now);
-  /// When the next piece is due, or nothing.
+  /// Returns the time at which the next piece is due, or nothing.
   [[nodiscard]] std::optional<Clock::time_point> next_due() const;
-  /// A piece is due and the descriptor did not take it yet.
+  /// Returns true if a piece is due and the descriptor has not accepted it yet.
   [[nodiscard]] bool blocked() const noexcept { return blocked_; }
-  /// A client on the network has sent a part of a request and not yet its rest.
+  /// Returns true if a client on the network has sent only a part of a request.
   [[nodiscard]] bool half() const {
     const auto* const network = std::get_if<RequestStream>(&stream_);
     return network != nullptr && network->half();
@@ -59,7 +59,7 @@ class Connection {
   Descriptor descriptor_;
   std::variant<RequestStream, RtuRequestStream> stream_;
   WireTime wire_time_;
-  std::vector<Outgoing> outgoing_;  // by due time; equal ones in the order in which they were queued
+  std::vector<Outgoing> outgoing_;  // by due time; pieces with equal times in the order of queueing
   bool closing_ = false;
   bool blocked_ = false;
 };

@@ -16,7 +16,8 @@
 namespace softgrip::modbus {
 namespace {
 
-// When it is full, the kernel drops a client's first packet, and the client waits 1 s before it tries again.
+// If the queue is full, the kernel drops a client's first packet, and the client waits 1 s before it tries
+// again.
 constexpr int backlog = 128;
 
 tl::unexpected<std::string> failure(const std::string& what) {
@@ -25,7 +26,7 @@ tl::unexpected<std::string> failure(const std::string& what) {
 
 using AddressList = std::unique_ptr<addrinfo, decltype(&::freeaddrinfo)>;
 
-/// The one address that a numeric text stands for, or null.
+/// Returns the address of a numeric text, or null.
 AddressList numeric(const std::string& address, const std::string& port) {
   addrinfo hints{};
   hints.ai_family = AF_UNSPEC;
@@ -94,7 +95,7 @@ tl::expected<Descriptor, std::string> listen_unix(const std::string& path) {
 Descriptor accept_client(const Descriptor& listener) {
   Descriptor client{::accept4(listener.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC)};
   if (client) {
-    // Small replies leave at once. Has no effect on a Unix socket.
+    // Sends small replies without delay. Has no effect on a Unix socket.
     const int on = 1;
     ::setsockopt(client.get(), IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
   }

@@ -1,6 +1,6 @@
 #pragma once
-// The registers of a Modbus board and what it answers to a request, as a plain value without a wire.
-// Semantics: MODBUS Application Protocol Specification V1.1b3, sections 6.3, 6.4, 6.6, 6.12, 6.17 and 7.
+// The registers of a Modbus board and its responses to requests, without a wire. Semantics: MODBUS
+// Application Protocol Specification V1.1b3, sections 6.3, 6.4, 6.6, 6.12, 6.17 and 7.
 
 #include <cstdint>
 #include <map>
@@ -12,12 +12,12 @@
 
 namespace softgrip::modbus {
 
-/// The reply that reports an exception.
+/// Returns the reply that reports an exception.
 [[nodiscard]] Bytes exception_reply(std::uint8_t function, std::uint8_t code);
 
-/// A bank of registers. An address that was not defined is answered with an exception, never with a zero:
-/// a client that asks for the wrong address must not believe that the board is alive. Like the ADAM-6000, it
-/// reads an address that only one of the two tables has (holding, input) with either function code.
+/// A set of registers. An undefined address causes an exception, never the value 0: a client with a wrong
+/// address must detect its error. Like the ADAM-6000, it accepts both function codes for an address that only
+/// one of the two tables (holding, input) has.
 class Registers {
  public:
   enum class Access : std::uint8_t { read_only, read_write };
@@ -26,7 +26,7 @@ class Registers {
   void define_input(std::uint16_t address, std::uint16_t value = 0);
   void define_coil(std::uint16_t address, bool value = false);
   void define_discrete_input(std::uint16_t address, bool value = false);
-  /// A function code that the board knows; all others are answered with illegal_function.
+  /// Adds a function code. All other codes cause the exception illegal_function.
   void allow(std::uint8_t function) { functions_.insert(function); }
 
   [[nodiscard]] std::uint16_t holding(std::uint16_t address) const { return holding_.at(address).value; }
@@ -43,7 +43,8 @@ class Registers {
     Bytes pdu;
     bool wrote = false;  ///< the request changed registers or wrote the same values again
   };
-  /// The answer to one request PDU (at least one byte). A request is carried out whole or not at all.
+  /// Returns the response to one request PDU (at least one byte). A request is executed completely or not at
+  /// all.
   Answer answer(std::span<const std::uint8_t> pdu);
 
  private:
@@ -60,7 +61,7 @@ class Registers {
   Answer read_write(std::span<const std::uint8_t> pdu);
   [[nodiscard]] std::optional<std::uint16_t> value_of(std::size_t address, bool holding) const;
   [[nodiscard]] bool writable(std::uint16_t first, std::size_t count) const;
-  /// Appends values; false if one of the addresses is not there.
+  /// Appends values; returns false if one of the addresses does not exist.
   bool append_values(Bytes& pdu, std::uint16_t first, std::size_t count, bool holding) const;
   void store(std::uint16_t first, std::span<const std::uint8_t> data);
 

@@ -1,5 +1,5 @@
 #pragma once
-// What goes back to a client, and when: the unit in which wire faults are expressed.
+// The bytes that a client receives and their times. Faults of the wire are expressed in these types.
 
 #include <chrono>
 #include <vector>
@@ -8,16 +8,16 @@
 
 namespace softgrip::modbus {
 
-/// Bytes that leave `after` their request came in.
+/// Bytes that are sent `after` the arrival of their request.
 struct Piece {
   std::chrono::nanoseconds after{0};
   Bytes bytes;
 };
 
-/// The whole reaction to one request. No piece at all is a board that does not answer.
+/// The complete reaction to one request. A board without a reaction has no pieces.
 struct Reply {
   std::vector<Piece> pieces;
-  bool disconnect = false;  ///< close the connection once all pieces are out
+  bool disconnect = false;  ///< close the connection after all pieces are sent
 };
 
 }  // namespace softgrip::modbus

@@ -13,14 +13,14 @@ namespace {
 using drivers::mbap_size;
 using drivers::rtu_overhead;
 
-// What a client may send before its first complete frame is cut off. Requests are cut as they arrive, so
-// more than two frames never wait.
+// Largest amount of bytes without a complete frame; beyond it the client is disconnected. Complete requests
+// are removed as they arrive, so more than two frames never wait.
 constexpr std::size_t max_pending = 16 * drivers::max_frame;
 
 constexpr std::chrono::milliseconds no_lump{100};
 
-/// Bytes of the serial frame that begins here; 0 while that cannot be known. Of a function that no board here
-/// has, all there are: it wants an answer too, an exception.
+/// Returns the size of the serial frame that begins here; 0 if it is still unknown. For a function that no
+/// board here has, returns all bytes, so that the server can respond with an exception.
 std::size_t rtu_request_size(std::span<const std::uint8_t> bytes) {
   if (bytes.size() < 2) return 0;
   constexpr std::size_t crc_size = 2;
@@ -48,7 +48,7 @@ std::size_t rtu_request_size(std::span<const std::uint8_t> bytes) {
   }
 }
 
-/// Takes the first `frame` bytes out; what lies between `begin` and `end` of them is the PDU.
+/// Removes the first `frame` bytes. The bytes from `begin` to `end` are the PDU.
 Request taken_from(Bytes& pending, std::size_t frame, std::size_t begin, std::size_t end) {
   const auto at = [&](std::size_t index) { return pending.begin() + static_cast<std::ptrdiff_t>(index); };
   Request request{0, pending[begin - 1], Bytes(at(begin), at(end))};
@@ -68,7 +68,7 @@ std::optional<Request> RequestStream::next() {
   if (broken_ || pending_.size() < mbap_size) return std::nullopt;
   const std::uint16_t transaction = word_at(pending_, 0);
   const std::uint16_t protocol = word_at(pending_, 2);
-  const std::size_t length = word_at(pending_, 4);  // of the unit id and the PDU
+  const std::size_t length = word_at(pending_, 4);  // length of the unit id and the PDU
   if (protocol != 0 || length < 2 || length > max_pdu + 1) {
     broken_ = true;
     return std::nullopt;

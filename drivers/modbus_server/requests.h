@@ -1,5 +1,5 @@
 #pragma once
-// Requests out of the bytes of a connection or a line, and replies into frames. No descriptors, no registers.
+// Divides the bytes of a connection or a serial line into requests, and puts replies into frames.
 
 #include <chrono>
 #include <cstddef>
@@ -18,24 +18,24 @@ using Clock = std::chrono::steady_clock;
 using drivers::max_pdu;
 using drivers::word_at;
 
-/// The two wires that Modbus goes over here.
+/// The two kinds of wire.
 enum class Wire : std::uint8_t { tcp, rtu };
 
 struct Request {
-  std::uint16_t transaction = 0;  ///< 0 on a serial line, which has none
+  std::uint16_t transaction = 0;  ///< 0 on a serial line, which has no transaction ids
   std::uint8_t unit = 0;
   Bytes pdu;  ///< function code and data, 1 to max_pdu bytes
 };
 
-/// Cuts the bytes of one connection into requests.
+/// Divides the bytes of one connection into requests.
 class RequestStream {
  public:
   void append(std::span<const std::uint8_t> bytes);
-  /// The next complete request, or nothing. Throws away what it returned.
+  /// Removes and returns the next complete request, or nothing.
   [[nodiscard]] std::optional<Request> next();
-  /// True once a header made no sense. The stream cannot be brought into step again: close the connection.
+  /// Returns true after an invalid header. The stream cannot be synchronised again: close the connection.
   [[nodiscard]] bool broken() const noexcept { return broken_; }
-  /// A request has begun to arrive, and its rest has not.
+  /// Returns true if a part of a request has arrived.
   [[nodiscard]] bool half() const noexcept { return !pending_.empty(); }
 
  private:
@@ -43,14 +43,14 @@ class RequestStream {
   bool broken_ = false;
 };
 
-/// Cuts the bytes of a serial line into requests. The specification ends a frame by 3.5 characters of
-/// silence; on a busy machine bytes arrive in lumps, so the length that each function has ends it here, and
-/// only a silence that no lump explains throws away what was begun.
+/// Divides the bytes of a serial line into requests. In the specification, 3.5 characters of silence end a
+/// frame. On a busy machine bytes arrive in groups, so the length of each function ends a frame here. Only a
+/// silence of 100 ms discards an incomplete frame.
 class RtuRequestStream {
  public:
   void append(std::span<const std::uint8_t> bytes, Clock::time_point now);
-  /// The next complete request. What carries a wrong checksum is thrown away with all that came with it, as
-  /// a board does that stays silent.
+  /// Returns the next complete request. A frame with a wrong checksum is discarded with all bytes that
+  /// arrived with it, as by a board that does not respond.
   [[nodiscard]] std::optional<Request> next();
 
  private:
@@ -58,7 +58,7 @@ class RtuRequestStream {
   Clock::time_point last_byte_;
 };
 
-/// A whole frame around a reply. A serial line has no transaction ids.
+/// Returns a complete frame with a reply. A serial line has no transaction ids.
 [[nodiscard]] Bytes frame_on(Wire wire, std::uint16_t transaction, std::uint8_t unit,
                              std::span<const std::uint8_t> pdu);
 
