@@ -1,5 +1,5 @@
 #pragma once
-// Faults: what latches. Codes are stable; they appear in events, recordings, metrics and the manual.
+// Faults, which latch. Their codes are stable; they appear in events, recordings, metrics and the manual.
 
 #include <cstdint>
 #include <span>
@@ -12,24 +12,24 @@ namespace softgrip::control {
 enum class FaultCode : std::uint16_t {
   none = 0,
   bus_down = 101,              ///< no session, or no good exchange for too many cycles
-  bus_timed_out = 102,         ///< the board does not answer in time
-  bus_bad_reply = 103,         ///< replies that do not belong to the question
-  bus_exception = 104,         ///< the board refuses the function or the address
-  reading_stale = 201,         ///< readings stopped coming
+  bus_timed_out = 102,         ///< the board does not respond in time
+  bus_bad_reply = 103,         ///< responses do not match the request
+  bus_exception = 104,         ///< the board rejects the function or the address
+  reading_stale = 201,         ///< no new readings arrive
   reading_out_of_range = 202,  ///< outside the sensor's electrical range
   sensor_error = 203,          ///< the sensor's or the board's own error code
-  reading_jumped = 204,        ///< moved faster than a finger can
-  reading_frozen = 205,        ///< did not change while the command moved
+  reading_jumped = 204,        ///< changed faster than a finger can move
+  reading_frozen = 205,        ///< did not change while the command changed
   displacement_beyond_limits = 206,
   pressure_not_followed = 207,  ///< the measured pressure differs from the command
-  readback_mismatch = 301,      ///< the board's output is not what was written
+  readback_mismatch = 301,      ///< the board's output differs from the written value
   write_refused = 302,          ///< the board rejected the write
   board_watchdog_tripped = 303,
   outputs_overwritten = 304,  ///< another Modbus client writes to the board
   model_unfit = 401,
   emergency_stop = 501,
   inputs_lost = 502,  ///< the digital inputs cannot be read
-  cycles_lost = 901,  ///< the loop lost more cycles at once than allowed
+  cycles_lost = 901,  ///< the loop missed more consecutive cycles than allowed
   not_finite = 902,   ///< a command was not a finite number
 };
 
@@ -39,9 +39,9 @@ struct FaultInfo {
   std::string_view id;       ///< "F101"
   std::string_view name;     ///< "bus_down"
   std::string_view meaning;  ///< one sentence
-  std::string_view cause;    ///< what it usually is
-  std::string_view remedy;   ///< what to do before acknowledging
-  std::string_view bound;    ///< within how many cycles it latches, in words of the rig file's keys
+  std::string_view cause;    ///< usual cause
+  std::string_view remedy;   ///< action before acknowledging
+  std::string_view bound;    ///< number of cycles until it latches, as keys of the rig file
 };
 
 /// All faults in the order of their codes, without `none`.
@@ -56,7 +56,7 @@ struct FaultInfo {
          code == FaultCode::write_refused || code == FaultCode::outputs_overwritten;
 }
 
-/// Why a request was refused.
+/// The reason why a request was refused.
 enum class RefusalCode : std::uint16_t {
   none = 0,
   faulted = 1,   ///< a fault is latched
@@ -72,7 +72,7 @@ enum class RefusalCode : std::uint16_t {
   nothing_to_release = 11,       ///< no sequence runs, and every channel is at its rest pressure
   named_start_not_running = 12,  ///< a stop of one start, which does not run
 };
-/// "R01" ... and a name in snake_case.
+/// Returns "R01" ...; name_of() returns a name in snake_case.
 [[nodiscard]] std::string_view id_of(RefusalCode code) noexcept;
 [[nodiscard]] std::string_view name_of(RefusalCode code) noexcept;
 

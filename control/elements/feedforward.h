@@ -1,5 +1,5 @@
 #pragma once
-// The pressure that the model says a reference needs.
+// Settings of the feedforward: the pressure that a reference needs according to the model.
 
 #include <array>
 #include <cstdint>
@@ -13,11 +13,11 @@ enum class FeedforwardKind : std::uint8_t {
   none,      ///< PID alone
   bouc_wen,  ///< inverse of the Bouc-Wen element alone, in parallel with the PID (Zhang et al. 2025, section
              ///< 5)
-  full_model,  ///< inverse of the whole chain: implicit solve, lead for lag, preview for delay
+  full_model,  ///< inverse of the complete chain: implicit solution, lead for lag, preview for delay
   planned,     ///< computed before the run by least squares over the reference; needs no inverse
 };
 
-/// How rig files and options write the kinds, in their order. One is named after the block that it undoes.
+/// Names of the kinds in rig files and options. `bouc_wen` is the name of the block that it inverts.
 inline constexpr std::array<std::string_view, 4> feedforward_names{"none", model::BoucWen<double>::info.id,
                                                                    "full_model", "planned"};
 [[nodiscard]] constexpr std::string_view name_of(FeedforwardKind kind) {
@@ -26,8 +26,8 @@ inline constexpr std::array<std::string_view, 4> feedforward_names{"none", model
 
 struct FeedforwardSettings {
   FeedforwardKind kind = FeedforwardKind::none;
-  /// Time from the computation of a command until the board puts it out, beyond what the model's own valve
-  /// blocks say: the bus exchange, the board's conversion. full_model looks further ahead by it. 0 to 1.
+  /// Time from the computation of a command to the board's output, in addition to the model's valve blocks:
+  /// the bus exchange and the conversion of the board [s]. full_model adds it to its preview. 0 to 1.
   double extra_latency_s = 0;
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// A finger that moves less than its model: is it held by something, or has it changed?
+// Decides if a finger that moves less than its model is held by an object, or has changed.
 
 #include <cmath>
 
@@ -10,8 +10,8 @@ namespace softgrip::control {
 /// moved far enough to decide, a finger counts as held.
 class FollowWatch {
  public:
-  static constexpr double tells_from_mm = 1;  ///< of the model's motion since the touch
-  static constexpr double least_share = 0.5;  ///< of it that a finger goes which nothing holds
+  static constexpr double tells_from_mm = 1;  ///< the model's motion needed for a decision
+  static constexpr double least_share = 0.5;  ///< of that motion, if nothing holds the finger
 
   void reset() noexcept { touching_ = held_ = false; }
 

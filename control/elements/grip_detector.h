@@ -1,7 +1,7 @@
 #pragma once
-// Is there something between the fingers? One evidence for approach by pressure and by displacement: how
-// much less the finger moved than the free model, run on the commands that were really sent, says it would
-// have. Hysteresis and creep are in that model, so the evidence holds while the pressure changes and creeps.
+// Detects an object between the fingers. The evidence is the same for grips by pressure and by displacement:
+// the displacement shortfall against the free model, which runs on the commands that were written. The model
+// contains hysteresis and creep, so the evidence is valid while the pressure changes and creeps.
 
 #include <cstdint>
 #include <limits>
@@ -28,16 +28,17 @@ class EvidenceWindow {
  public:
   enum class Verdict : std::uint8_t { pending, verified, refuted };
   void start(double time_s, double window_s) noexcept;
-  /// The evidence held for the whole window: verified; held at no time of a whole window: refuted.
+  /// Returns verified if the evidence held for the complete window, refuted if it was absent for a complete
+  /// window.
   Verdict observe(double time_s, bool usable, bool evidence) noexcept;
-  /// Some sample of the last window said nothing: a verdict that is still pending then is pending for want of
-  /// sight.
+  /// Returns true if a sample in the last window was not usable. A pending verdict is then due to missing
+  /// readings.
   [[nodiscard]] bool blinded(double time_s) const noexcept { return time_s - unusable_s_ < window_s_; }
 
  private:
   double window_s_ = 0;
-  double since_s_ = 0;  ///< since when the evidence has been what it is
-  double unusable_s_ = -std::numeric_limits<double>::infinity();  ///< when a sample last said nothing
+  double since_s_ = 0;                                            ///< time at which the evidence last changed
+  double unusable_s_ = -std::numeric_limits<double>::infinity();  ///< last unusable sample
   bool any_ = false;
   bool evidence_ = false;
 };
@@ -48,7 +49,7 @@ class EvidenceWindow {
 class HoldWatch {
  public:
   void start(double time_s, double interval_s, double least) noexcept;
-  /// True once, when the interval that just ended says that it is lost.
+  /// Returns true once, at the end of the interval that shows the loss.
   bool observe(double time_s, bool usable, double evidence) noexcept;
 
  private:

@@ -8,7 +8,7 @@
 namespace softgrip::control {
 namespace {
 
-/// How much more than its model a free finger may move.
+/// Largest motion of a free finger in relation to its model.
 constexpr double more_than_model = 1.5;
 
 /// Returns the part of a motion that the model does not explain; the sign is the direction [mm].

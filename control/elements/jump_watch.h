@@ -1,6 +1,6 @@
 #pragma once
-// Does a sensor jump there and back? Single jumps are judged by plausibility.h and may be too short to be a
-// fault there; a sensor that keeps jumping is no sensor to grip by.
+// Detects a sensor that jumps back and forth. plausibility.h rejects single jumps, which may be too short for
+// a fault. A sensor that jumps repeatedly is not reliable enough for grip detection.
 
 #include <array>
 #include <cstddef>
@@ -15,19 +15,19 @@ namespace softgrip::control {
 /// is pushed in also makes the finger jump, but in one direction only.
 class JumpWatch {
  public:
-  static constexpr double window_s = 1;  ///< in which the jumps are counted
-  static constexpr double calm_s = 2;    ///< without a jump: steady again
+  static constexpr double window_s = 1;  ///< time in which the jumps are counted
+  static constexpr double calm_s = 2;    ///< time without a jump after which the sensor counts as steady
 
   explicit JumpWatch(const PlausibilitySettings& settings) noexcept;
 
   /// Forgets everything.
   void reset() noexcept;
-  /// A new reading that is electrically sound, and what the model says of that time [mm].
+  /// Processes a new reading that is electrically valid, and the model's displacement at the same time [mm].
   void observe(Nanoseconds sampled_at, double reading_mm, double expected_mm) noexcept;
 
-  /// It has jumped there and back `unsteady_jumps` times within a window, and was not calm since.
+  /// Returns true after `unsteady_jumps` reversing jumps within a window, until the sensor is steady again.
   [[nodiscard]] bool unsteady() const noexcept { return unsteady_; }
-  /// How far it jumped last [mm]; the sign is the direction.
+  /// Returns the last jump [mm]; the sign is the direction.
   [[nodiscard]] double last_jump_mm() const noexcept { return last_jump_mm_; }
 
  private:
@@ -36,13 +36,13 @@ class JumpWatch {
   double jump_mm_;
   std::uint32_t unsteady_jumps_;
   Nanoseconds longest_gap_;
-  bool known_ = false;  ///< there is a reading to jump from
+  bool known_ = false;  ///< there is an earlier reading to compare with
   Nanoseconds last_at_ = 0;
   double last_mm_ = 0;
   double last_expected_mm_ = 0;
   double last_jump_mm_ = 0;
   Nanoseconds last_jump_at_ = 0;
-  std::array<Nanoseconds, most_unsteady_jumps> turns_{};  ///< ring of the last jumps that turned back
+  std::array<Nanoseconds, most_unsteady_jumps> turns_{};  ///< ring of the times of the last reversing jumps
   std::size_t turn_at_ = 0;
   std::uint32_t turn_count_ = 0;
   bool unsteady_ = false;

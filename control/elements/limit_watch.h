@@ -16,9 +16,9 @@ enum class BindingLimit : std::uint8_t {
   rig_slew_up,    ///< limits: slew_up_kpa_per_s of the rig file
   rig_slew_down,  ///< limits: slew_down_kpa_per_s of the rig file
 };
-/// "none", "rig_pressure", "step_pressure", "step_squeeze", "rig_slew_up", "rig_slew_down"
+/// Returns "none", "rig_pressure", "step_pressure", "step_squeeze", "rig_slew_up" or "rig_slew_down".
 [[nodiscard]] std::string_view name_of(BindingLimit limit) noexcept;
-/// "pressure_max_kpa of the rig keeps the pressure down"; empty of none.
+/// Returns the message, for example "pressure_max_kpa of the rig keeps the pressure down"; empty for none.
 [[nodiscard]] std::string_view words_of(BindingLimit limit) noexcept;
 
 /// Reports a limit after limits have restricted a command for `moment_s`. It also reports a different limit
@@ -37,8 +37,8 @@ class LimitWatch {
  private:
   BindingLimit reported_ = BindingLimit::none;
   BindingLimit now_ = BindingLimit::none;
-  double since_s_ = 0;   ///< one or another binds
-  double change_s_ = 0;  ///< the present one does
+  double since_s_ = 0;   ///< since when any limit is active
+  double change_s_ = 0;  ///< since when the present limit is active
   double last_s_ = 0;
 };
 

@@ -10,28 +10,29 @@
 
 namespace softgrip::control {
 
-/// Limits of one channel. There is no default that would do for a rig: every field comes from the rig file.
+/// Limits of one channel. The rig file must give each field except rest_kpa, because no default fits all
+/// rigs.
 struct LimitSettings {
   double pressure_min_kpa = 0;
   double pressure_max_kpa = 0;        ///< > pressure_min_kpa
-  double slew_up_kpa_per_s = 0;       ///< > 0; how fast the command may rise
-  double slew_down_kpa_per_s = 0;     ///< > 0; how fast it may fall
-  double displacement_min_mm = 0;     ///< references are kept at or above
-  double displacement_max_mm = 0;     ///< > displacement_min_mm; references are kept at or below
-  double displacement_margin_mm = 0;  ///< >= 0; a reading further out than this beyond the range is a fault
+  double slew_up_kpa_per_s = 0;       ///< > 0; largest rate of increase of the command
+  double slew_down_kpa_per_s = 0;     ///< > 0; largest rate of decrease
+  double displacement_min_mm = 0;     ///< lower limit of references
+  double displacement_max_mm = 0;     ///< > displacement_min_mm; upper limit of references
+  double displacement_margin_mm = 0;  ///< >= 0; a reading outside the range by more than this is a fault
   double rest_kpa = 0;  ///< the pressure of every safe state; use resting_kpa(), which is in range
 };
 
-/// A command within the limits, and what it took to get it there.
+/// A command within the limits, and the limits that changed it.
 struct LimitedCommand {
   double command_kpa = 0;
-  bool saturated = false;  ///< what was wanted lies outside the pressure range
-  bool slewing = false;    ///< what was wanted is further from the last command than the slew limits allow
-  bool invalid = false;    ///< what was wanted, or the ceiling, is not a number: the last command is held
-  bool capped = false;     ///< what was wanted is above the ceiling
+  bool saturated = false;  ///< the requested pressure is outside the pressure range
+  bool slewing = false;    ///< the request is further from the last command than the slew limits allow
+  bool invalid = false;    ///< the request or the ceiling is not a number: the last command is held
+  bool capped = false;     ///< the request is above the ceiling
 };
 
-/// A pressure within the range.
+/// Limits a pressure to the range.
 [[nodiscard]] double in_range(const LimitSettings& limits, double pressure_kpa) noexcept;
 
 /// Returns the pressure of every safe state: `rest_kpa`, or the end of the pressure range that is nearest to
@@ -48,20 +49,22 @@ struct LimitedCommand {
   return std::clamp(kpa, std::min(rest_kpa, bound_kpa), std::max(rest_kpa, bound_kpa));
 }
 
-/// Returns the end of the pressure range that is further from rest: where a channel with one side goes.
+/// Returns the end of the pressure range that is further from rest. A channel with one side moves to this
+/// end.
 [[nodiscard]] inline double far_end_kpa(const LimitSettings& limits) noexcept {
   const double rest_kpa = resting_kpa(limits);
   const bool above = limits.pressure_max_kpa - rest_kpa >= rest_kpa - limits.pressure_min_kpa;
   return above ? limits.pressure_max_kpa : limits.pressure_min_kpa;
 }
 
-/// True if a pressure is so far from rest that a channel under it counts as pressed.
+/// Returns true if a pressure differs from rest by more than 0.1 kPa, so that the channel counts as
+/// pressurised.
 [[nodiscard]] inline bool pressed(const LimitSettings& limits, double pressure_kpa) noexcept {
   constexpr double unpressed_kpa = 0.1;
   return std::abs(pressure_kpa - resting_kpa(limits)) > unpressed_kpa;
 }
 
-/// No ceiling but the pressure range's.
+/// No ceiling in addition to the pressure range.
 inline constexpr double no_ceiling = std::numeric_limits<double>::infinity();
 
 /// Returns the command for `wanted_kpa` if `last_kpa` was written `elapsed_s` (>= 0) ago. The result is
@@ -78,7 +81,7 @@ struct LimitedReference {
 };
 [[nodiscard]] LimitedReference limit_reference(const LimitSettings& limits, double reference_mm) noexcept;
 
-/// True if a reading is beyond the displacement range and its margin, or not a number.
+/// Returns true if a reading is outside the displacement range by more than the margin, or not a number.
 [[nodiscard]] bool displacement_beyond(const LimitSettings& limits, double displacement_mm) noexcept;
 
 }  // namespace softgrip::control

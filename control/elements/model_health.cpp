@@ -8,11 +8,12 @@
 namespace softgrip::control {
 namespace {
 
-/// An unfit model is fit again only well below the bound, so that the state does not flicker.
+/// An unfit model becomes fit only below this share of the limit, so that the state does not change
+/// repeatedly.
 constexpr double recovery_share = 0.7;
-/// After an alarm the CUSUM is kept from growing on, so that a model that fits again is healthy again soon.
+/// After an alarm the CUSUM is limited, so that a model that fits again is soon healthy again.
 constexpr double cap_share = 1.5;
-/// Siegmund's correction for the overshoot of the discrete walk over the threshold, one for each end.
+/// Siegmund's correction for the overshoot of the discrete random walk, once for each threshold.
 constexpr double overshoot = 1.166;
 
 }  // namespace
@@ -105,7 +106,7 @@ bool ModelHealth::skip() noexcept {
 
 bool ModelHealth::end_tick() noexcept {
   if (++ticks_ < ticks_per_interval_) return false;
-  // Half an interval of readings still stands for the whole; less does not.
+  // Half an interval of readings is sufficient for a decision; less is not.
   const bool enough = 2 * observed_ >= ticks_per_interval_;
   const bool changed = enough && judge_interval();
   if (!enough) whitener_.reset();

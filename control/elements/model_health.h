@@ -1,14 +1,14 @@
 #pragma once
-// Does the model still describe the finger? Watches the residual of the model that runs beside the finger.
+// Detects if the model no longer describes the finger, by the residual of the model that runs in parallel.
 //
-// The residual of a healthy model is not white: parameters that are off by a few percent give errors that
-// follow the motion. It is taken as the sum of a slow error (an Ornstein-Uhlenbeck process: standard
-// deviation model_error_mm, correlation exp(-t / correlation_time_s)) and white noise of the sensor. Readings
-// are averaged over interval_s; a Kalman filter of exactly that process turns the averages into innovations,
-// which are independent and of unit variance as long as the assumption holds; a two-sided CUSUM (Page,
-// Biometrika 41, 1954) adds them up. Its threshold comes from the wanted mean time between false alarms by
-// Siegmund's formula (Sequential Analysis, 1985, chapter 2), so the rate is stated, for residuals that are as
-// assumed; a model error that is larger or slower than assumed alarms more often, which is what it is for.
+// The residual of a healthy model is not white: parameter errors of a few percent cause errors that follow
+// the motion. It is modelled as the sum of a slow error and white noise of the sensor. The slow error is an
+// Ornstein-Uhlenbeck process with standard deviation model_error_mm and correlation
+// exp(-t / correlation_time_s). Readings are averaged over interval_s. A Kalman filter of this process turns
+// the averages into innovations. They are independent and have unit variance while the assumption holds. A
+// two-sided CUSUM (Page, Biometrika 41, 1954) accumulates them. Its threshold follows from the requested mean
+// time between false alarms by Siegmund's formula (Sequential Analysis, 1985, chapter 2). A model error that
+// is larger or slower than assumed causes more alarms, as intended.
 
 #include <array>
 #include <cstddef>
@@ -19,7 +19,7 @@ namespace softgrip::control {
 enum class HealthState : std::uint8_t {
   unknown,  ///< nothing was observed yet
   healthy,
-  suspect,  ///< the residual drifts more than a healthy model's: calibrate soon
+  suspect,  ///< the residual drifts more than that of a healthy model: calibrate soon
   unfit,    ///< the residual exceeds the tolerance of grip detection and feedforward
 };
 [[nodiscard]] const char* name_of(HealthState state) noexcept;
@@ -31,29 +31,30 @@ struct ModelHealthSettings {
   double model_error_mm = 0.4;      ///< > 0
   double correlation_time_s = 4.0;  ///< > 0
   double noise_mm = 0.05;           ///< > 0; of one reading
-  double interval_s = 1.0;          ///< > 0; the residual is averaged over this long before it is judged
-  double allowance_sigma = 0.5;     ///< > 0; half the shift to be found, in standard deviations per interval
-  /// > 0; mean time between false alarms of a healthy model. The decision threshold follows from it.
+  double interval_s = 1.0;          ///< > 0; time over which the residual is averaged before a decision
+  double allowance_sigma = 0.5;     ///< > 0; half of the shift to detect, in standard deviations per interval
+  /// > 0; mean time between false alarms of a healthy model. It determines the decision threshold.
   double false_alarm_interval_s = 3.6e6;
-  double unfit_mm = 1.5;      ///< > 0; root mean square over unfit_window_s beyond which it is unfit
+  double unfit_mm = 1.5;      ///< > 0; root mean square over unfit_window_s above which the model is unfit
   double unfit_window_s = 5;  ///< > 0
 };
 
-/// Mean number of independent standard normal values until a two-sided CUSUM with this allowance first
-/// reaches `threshold`, from zero. Siegmund's approximation: within a few percent from 50 on.
+/// Returns the mean number of independent standard normal values until a two-sided CUSUM with this allowance
+/// first reaches `threshold` from zero. Siegmund's approximation: the error is a few percent from 50 on.
 [[nodiscard]] double cusum_run_length(double allowance, double threshold) noexcept;
-/// The threshold whose cusum_run_length() is `run_length` (at least 2).
+/// Returns the threshold for which cusum_run_length() is `run_length` (at least 2).
 [[nodiscard]] double cusum_threshold(double allowance, double run_length) noexcept;
 
-/// Turns averages of a residual over intervals into independent standard normal innovations, if the residual
-/// is what the settings say: a Kalman filter with the process noise correlated to the observation's, since
-/// the average over an interval and the state at its end share their history.
+/// Turns averages of a residual over intervals into innovations, which are independent and standard normal if
+/// the residual is as the settings state. It is a Kalman filter whose process noise correlates with its
+/// observation noise, because the average over an interval and the state at its end depend on the same noise.
 class ResidualWhitener {
  public:
   explicit ResidualWhitener(const ModelHealthSettings& settings) noexcept;
-  /// After a gap: nothing is known of the slow error but its variance.
+  /// Restarts after a gap, when only the variance of the slow error is known.
   void reset() noexcept;
-  /// The innovation of one interval, in standard deviations; `count` readings were averaged.
+  /// Returns the innovation of one interval in standard deviations; `count` is the number of averaged
+  /// readings.
   [[nodiscard]] double next(double average_mm, double count) noexcept;
 
  private:
@@ -68,15 +69,15 @@ class ModelHealth {
  public:
   ModelHealth(const ModelHealthSettings& settings, double tick_s) noexcept;
 
-  /// Forgets what it saw.
+  /// Restarts without history.
   void reset() noexcept;
-  /// One tick with a valid reading in free motion. Returns true if the state changed.
+  /// Processes a tick with a valid reading in free motion. Returns true if the state changed.
   bool observe(double residual_mm) noexcept;
-  /// One tick without: the interval under way is dropped if too little of it is left.
+  /// Processes a tick without such a reading. An interval with too few readings is ignored.
   bool skip() noexcept;
 
   [[nodiscard]] HealthState state() const noexcept { return state_; }
-  /// Root mean square of the interval averages over about unfit_window_s [mm].
+  /// Returns the root mean square of the interval averages over about unfit_window_s [mm].
   [[nodiscard]] double rms_mm() const noexcept;
 
  private:
@@ -86,13 +87,13 @@ class ModelHealth {
   ModelHealthSettings settings_;
   ResidualWhitener whitener_;
   double threshold_ = 0;
-  double forget_ = 0;  ///< share of an interval in the mean square
+  double forget_ = 0;  ///< share of one interval in the mean square
   std::uint32_t ticks_per_interval_ = 1;
   std::uint32_t ticks_ = 0;
   std::uint32_t observed_ = 0;
   double sum_mm_ = 0;
   double up_ = 0;    ///< CUSUM of innovations above the allowance
-  double down_ = 0;  ///< of those below
+  double down_ = 0;  ///< CUSUM of innovations below the negative allowance
   double mean_square_mm2_ = 0;
   bool alarmed_ = false;
   HealthState state_ = HealthState::unknown;

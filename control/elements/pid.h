@@ -1,21 +1,22 @@
 #pragma once
-// PID in two degrees of freedom that knows which command really went out.
+// PID controller with two degrees of freedom that uses the command that was really sent.
 //
 //   request = feedforward + kp (b r - y) + I - kd d(y filtered)/dt,   dI/dt = ki (r - y)
 //
-// Discretisation: the integral by the trapezoidal rule; the derivative ramp-invariant, that is exact for a
-// measurement that goes straight from sample to sample (Åström and Wittenmark, Computer-Controlled Systems,
-// 3rd ed. 1997, chapters 8.2 and 8.5; Åström and Hägglund, Advanced PID Control, 2006, chapter 13).
+// Discretisation: trapezoidal rule for the integral; ramp-invariant for the derivative, which is exact if the
+// measurement is linear between samples (Åström and Wittenmark, Computer-Controlled Systems, 3rd ed. 1997,
+// chapters 8.2 and 8.5; Åström and Hägglund, Advanced PID Control, 2006, chapter 13).
 
 #include <cstdint>
 
 namespace softgrip::control {
 
-/// How the integrator is kept from winding up while the command cannot follow the request.
+/// Method that prevents integrator windup while the command cannot follow the request.
 enum class AntiWindup : std::uint8_t {
-  none,              ///< it integrates on: for comparison only
-  conditional,       ///< it stops while the request is cut off and the error pushes further into the cut
-  back_calculation,  ///< what was cut off drives it back within tracking_time_s
+  none,              ///< the integrator continues: for comparison only
+  conditional,       ///< the integrator stops while the request is limited and the error would increase it
+                     ///< further
+  back_calculation,  ///< the limited part drives the integrator back within tracking_time_s
 };
 
 struct PidSettings {
@@ -25,10 +26,10 @@ struct PidSettings {
   double derivative_filter_s = 0.02;  ///< time constant of the first-order filter of the derivative; >= 0
   double setpoint_weight = 1;         ///< b: share of the reference in the proportional part, 0 to 1
   AntiWindup anti_windup = AntiWindup::back_calculation;
-  double tracking_time_s = 0.5;  ///< of back_calculation; > 0
+  double tracking_time_s = 0.5;  ///< for back_calculation; > 0
 };
 
-/// One PID controller. Call order in a tick: step() for the request, the limits, sent() with what went out.
+/// One PID controller. Order of calls in a tick: step() for the request, the limits, sent() with the result.
 class Pid {
  public:
   Pid(const PidSettings& settings, double tick_s) noexcept;
@@ -38,8 +39,8 @@ class Pid {
   /// and a new feedforward.
   void align(double command_kpa) noexcept;
 
-  /// The feedback part of the request [kPa]; the request is feedforward_kpa plus it. `error_reference_mm` is
-  /// the reference at the time at which `measurement_mm` was sampled.
+  /// Returns the feedback part of the request [kPa]; the request is the sum of feedforward_kpa and this part.
+  /// `error_reference_mm` is the reference at the time at which `measurement_mm` was sampled.
   [[nodiscard]] double step(double error_reference_mm, double measurement_mm,
                             double feedforward_kpa) noexcept;
 
@@ -62,22 +63,22 @@ class Pid {
 
   PidSettings settings_;
   double tick_s_;
-  double filter_keep_;     ///< of the derivative, per tick
-  double tracking_share_;  ///< of the cut that back-calculation takes out per tick
+  double filter_keep_;     ///< share of the derivative filter's state that remains per tick
+  double tracking_share_;  ///< share of the limited part that back-calculation removes per tick
   double integral_kpa_ = 0;
   double rate_mm_per_s_ = 0;  ///< filtered derivative of the measurement
   double last_error_mm_ = 0;
   double last_measurement_mm_ = 0;
   double feedback_kpa_ = 0;
   double request_kpa_ = 0;
-  double increment_kpa_ = 0;  ///< what the integrator gained in the last step
+  double increment_kpa_ = 0;  ///< increase of the integral in the last step
   double align_to_kpa_ = 0;
   /// The state from which the next step() continues.
   enum class Memory : std::uint8_t {
-    none,           ///< the integral; there is no last measurement to differentiate or integrate from
+    none,           ///< only the integral; there is no earlier measurement for derivative or trapezoid
     measured,       ///< the last measurement
     aligning,       ///< the command of align()
-    aligned_ahead,  ///< the same, which hold() has taken up already
+    aligned_ahead,  ///< the command of align(), after a hold() that continued it
   };
   Memory memory_ = Memory::none;
 };

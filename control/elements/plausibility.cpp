@@ -38,7 +38,7 @@ void Plausibility::Travel::see(double value) noexcept {
   highest = std::max(highest, value);
 }
 
-/// A run that was unlike the sensor teaches nothing.
+/// Stores the length of a run, unless the run was implausible for this sensor.
 void Plausibility::learn(Nanoseconds run) noexcept {
   if (stands_still_) return;
   longest_run_ = std::max(longest_run_, run);

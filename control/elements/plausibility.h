@@ -1,5 +1,5 @@
 #pragma once
-// Judges readings that are electrically sound: fresh, not frozen, not faster than the finger can be.
+// Checks readings that are electrically valid: age, constant values, and speed of change.
 
 #include <cstddef>
 #include <cstdint>
@@ -9,32 +9,33 @@
 
 namespace softgrip::control {
 
-/// Most of PlausibilitySettings::unsteady_jumps.
+/// Upper limit of PlausibilitySettings::unsteady_jumps.
 inline constexpr std::size_t most_unsteady_jumps = 32;
 
 struct PlausibilitySettings {
   double max_age_s = 0.05;          ///< > 0; an older reading is stale
-  double max_speed_mm_per_s = 500;  ///< > 0; faster than the finger can ever move
-  double jump_margin_mm = 0.5;      ///< >= 0; allowed on top, for the sensor's noise
-  /// > 0; how long the reading may stand still while the command moves. Longer than the delay of the valve.
+  double max_speed_mm_per_s = 500;  ///< > 0; above the speed of any motion of the finger
+  double jump_margin_mm = 0.5;      ///< >= 0; added for the sensor's noise
+  /// > 0; time for which the reading may stay constant while the command changes. Longer than the valve's
+  /// delay.
   double frozen_after_s = 1.0;
-  double frozen_band_mm = 0;       ///< >= 0; changes up to this are standing still (a quantisation step)
-  double frozen_command_kpa = 10;  ///< > 0; the command must have travelled this far in that time
-  /// > 0; or the free finger this far, where the sensor is known to be lively (Plausibility::stands_still()).
+  double frozen_band_mm = 0;       ///< >= 0; smaller changes count as constant (a quantisation step)
+  double frozen_command_kpa = 10;  ///< > 0; change of the command that makes it implausible
+  /// > 0; or change of the free finger in that time, if the sensor's readings usually change
+  /// (stands_still()).
   double frozen_expected_mm = 2;
-  /// > 0; from one reading to the next, beyond what the model explains, is a jump
-  /// (control/elements/jump_watch.h).
+  /// > 0; a larger change between two readings that the model does not explain is a jump (jump_watch.h).
   double jump_mm = 2;
   /// From 2 to most_unsteady_jumps. This number of reversing jumps within 1 s makes the sensor unsteady.
   std::uint32_t unsteady_jumps = 4;
 };
 
-/// The judge of one channel.
+/// The check of one channel.
 class Plausibility {
  public:
   explicit Plausibility(const PlausibilitySettings& settings) noexcept;
 
-  /// Forgets everything: the next sound reading is taken as it is.
+  /// Forgets all earlier readings: the next valid reading is accepted.
   void reset() noexcept;
 
   /// Returns the validity of `reading` at `now`; `command_kpa` is the last command sent. An invalidity
@@ -44,9 +45,9 @@ class Plausibility {
   [[nodiscard]] model::Validity judge(const model::Reading& reading, Nanoseconds now, double command_kpa,
                                       double expected_mm = 0) noexcept;
 
-  /// The reading repeats itself for much longer than this sensor ever did before, whose last digits have
-  /// changed all the time: it may be the sensor that stands still, and not the finger. A sensor that repeats
-  /// itself anyway (coarse, slow, without noise) says nothing of the kind.
+  /// Returns true if the reading has been constant for much longer than ever before at this sensor, whose
+  /// last digits usually change. Then the sensor may be frozen, not the finger at rest. For a sensor with
+  /// often constant readings (coarse, slow, without noise) it returns false.
   [[nodiscard]] bool stands_still() const noexcept { return stands_still_; }
 
  private:
@@ -54,7 +55,7 @@ class Plausibility {
   [[nodiscard]] bool frozen(const model::Reading& reading, double command_kpa, double expected_mm) noexcept;
   void learn(Nanoseconds run) noexcept;
 
-  /// Extremes since the last change of the reading.
+  /// Smallest and largest value since the last change of the reading.
   struct Travel {
     double lowest = std::numeric_limits<double>::infinity();
     double highest = -std::numeric_limits<double>::infinity();
@@ -68,13 +69,13 @@ class Plausibility {
   bool known_ = false;  ///< there is a last valid reading
   double last_mm_ = 0;
   Nanoseconds last_sampled_at_ = 0;
-  bool watching_ = false;  ///< there is a displacement from which standing still is counted
+  bool watching_ = false;  ///< there is a displacement with which later readings are compared
   double still_mm_ = 0;
   Nanoseconds still_since_ = 0;
   Travel command_kpa_;
   Travel expected_mm_;
-  std::uint32_t changes_ = 0;    ///< that were seen, as far as they are counted
-  Nanoseconds longest_run_ = 0;  ///< between two of them
+  std::uint32_t changes_ = 0;    ///< changes of the reading, up to the largest number that is counted
+  Nanoseconds longest_run_ = 0;  ///< longest time between two changes
   bool stands_still_ = false;
 };
 

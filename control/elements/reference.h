@@ -1,6 +1,5 @@
 #pragma once
-// Defines the reference of a channel, known in advance: a short list of segments that can be evaluated at any
-// time.
+// Defines the reference of a channel in advance: a short list of segments that can be evaluated at any time.
 
 #include <array>
 #include <cstddef>
@@ -8,37 +7,37 @@
 
 namespace softgrip::control {
 
-/// A reference at one moment. The unit is the channel mode's: mm when a displacement is tracked, kPa when a
-/// pressure is.
+/// A reference at one time, in mm for a displacement or kPa for a pressure.
 struct ReferencePoint {
   double value = 0;
   double rate = 0;          ///< per s
   double acceleration = 0;  ///< per s^2
 };
 
-/// Segments one after another; before the first and after the last it holds. Value, rate and acceleration
-/// are continuous over ramps and holds (quintic, minimum jerk); a sine starts with its acceleration at once.
-/// Plain value, no allocation. Times are seconds on the caller's clock.
+/// A sequence of segments. Before the first and after the last segment, the reference is constant. Value,
+/// rate and acceleration are continuous over ramps and holds (quintic, minimum jerk). The acceleration of a
+/// sine begins with a step. Plain value without allocation. Times are seconds on the caller's clock.
 class Reference {
  public:
   static constexpr std::size_t capacity = 8;
 
   /// Holds 0 from time 0.
   Reference() noexcept = default;
-  /// Forgets everything and holds `value` from `time_s` on. To start from where the finger is: its reading.
+  /// Discards all segments and holds `value` from `time_s` on, for example the present reading of the finger.
   void start(double time_s, double value) noexcept;
   /// Starts in motion: the first appended segment continues its rate and acceleration.
   void start(double time_s, const ReferencePoint& point) noexcept;
 
-  // Each of the next appends behind end_s() and returns false, changing nothing, when `capacity` segments
-  // lie in the future of the last forget_before().
+  // Each of the next functions appends a segment after end_s(). If `capacity` segments are still stored after
+  // the last forget_before(), it changes nothing and returns false.
 
-  /// Minimum-jerk ramp whose peak speed is `speed` (> 0, per s). After a cut() in motion it brakes first.
+  /// Appends a minimum-jerk ramp with the peak speed `speed` (> 0, per s). After a cut() in motion it brakes
+  /// first.
   bool ramp_to(double value, double speed) noexcept;
-  /// Minimum-jerk ramp that takes `duration_s` (> 0).
+  /// Appends a minimum-jerk ramp of the duration `duration_s` (> 0).
   bool ramp_for(double value, double duration_s) noexcept;
   bool hold_for(double duration_s) noexcept;
-  /// mean - amplitude cos(2 pi f t) for `cycles`; ramp to mean - amplitude before it.
+  /// Appends mean - amplitude cos(2 pi f t) for `cycles`. The reference should be at mean - amplitude before.
   bool sine(double mean, double amplitude, double frequency_hz, double cycles) noexcept;
 
   /// Removes everything after `time_s` and ends there (holding until then if it ended before). The next
@@ -46,14 +45,14 @@ class Reference {
   /// already used the reference up to its preview. Therefore cut at now + preview for a change without a
   /// step.
   void cut(double time_s) noexcept;
-  /// Makes room: segments that ended before `time_s` are dropped; earlier times then return the value where
-  /// the first one left starts.
+  /// Removes segments that ended before `time_s`, to make space. Earlier times then return the start value of
+  /// the first segment that remains.
   void forget_before(double time_s) noexcept;
 
   [[nodiscard]] ReferencePoint at(double time_s) const noexcept;
-  /// at(time_s).value, for less than half of the work.
+  /// Returns at(time_s).value in less than half of the time.
   [[nodiscard]] double value_at(double time_s) const noexcept;
-  /// When the last segment ends; from then on final_value() is held.
+  /// Returns the end of the last segment. From there on final_value() holds.
   [[nodiscard]] double end_s() const noexcept;
   [[nodiscard]] double final_value() const noexcept;
 
@@ -66,7 +65,7 @@ class Reference {
     /// quintic: coefficients of the powers of (t - start_s); sine: mean, amplitude, angular frequency
     std::array<double, 6> c{};
   };
-  /// Where a time falls: on a segment that moves, at the end of one that is over, or on none (nullptr).
+  /// The segment at a time: moving, at its end, or none (nullptr).
   struct Place {
     const Segment* segment = nullptr;
     double time_s = 0;
@@ -81,7 +80,7 @@ class Reference {
 
   std::array<Segment, capacity> segments_{};
   std::size_t count_ = 0;
-  double rest_from_s_ = 0;  ///< without segments: since when rest_ holds
+  double rest_from_s_ = 0;  ///< without segments: time from which rest_ holds
   ReferencePoint rest_{};
 };
 

@@ -9,10 +9,10 @@ namespace softgrip::control {
 
 struct RefusalText {
   std::string_view meaning;  ///< one sentence
-  std::string_view next;     ///< what to do now, with the command that does it
+  std::string_view next;     ///< next action, with its command
 };
 
-/// Of `none` and unknown numbers: that there is no reason, and nothing to do.
+/// Returns the texts for a code. For `none` and unknown numbers they state that there is no reason.
 [[nodiscard]] const RefusalText& text_of(RefusalCode code) noexcept;
 
 }  // namespace softgrip::control

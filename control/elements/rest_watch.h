@@ -1,5 +1,5 @@
 #pragma once
-// Has something come to rest? Its value stays within a band for a time.
+// Detects that a value has come to rest: it stays within a band for a time.
 
 #include <algorithm>
 #include <optional>
@@ -12,7 +12,7 @@ class RestWatch {
 
   void start() noexcept { seen_.reset(); }
 
-  /// True from the tick on in which `value` has been at rest for long enough; nothing: it is not known.
+  /// Returns true if `value` has been at rest for long enough. Pass nothing if the value is unknown.
   bool observe(double time_s, std::optional<double> value) noexcept {
     if (!value) {
       start();

@@ -9,8 +9,8 @@ namespace softgrip::control {
 namespace {
 
 constexpr double tolerance_mm = 1e-11;
-/// A Newton step this short is taken without looking again: with curvatures below 0.05 mm/kPa^2 the equation
-/// is then solved to 1e-11 mm.
+/// A Newton step this small is accepted without another evaluation: for curvatures below 0.05 mm/kPa^2, the
+/// error of the equation is then at most 1e-11 mm.
 constexpr double last_step_kpa = 2e-5;
 /// A body without sharp kinks needs a few Newton steps. An iteration that has not converged after this number
 /// oscillates between two kinks; bisection then ends it.
@@ -22,7 +22,7 @@ constexpr int most_iterations = 80;
 ActuatorInverse::ActuatorInverse(const model::Model& body, double tick_s)
     : tick_s_(tick_s), body_(body, {}, tick_s) {}
 
-// Whole, wherever else the same peek() is called: a call for each of the steps costs a third.
+// Inlines all calls here, because separate calls for each step would take a third more time.
 [[gnu::flatten]] ActuatorInverse::Solution ActuatorInverse::solve(double displacement_mm, double lower_kpa,
                                                                   double upper_kpa) const noexcept {
   using Number = model::Dual<double>;
@@ -38,12 +38,12 @@ ActuatorInverse::ActuatorInverse(const model::Model& body, double tick_s)
     (miss > 0 ? upper : lower) = x;
     lower_tried = lower_tried || x == lower_kpa;
     upper_tried = upper_tried || x == upper_kpa;
-    // Outside even at the bound, or a bracket without room: this is as near as it gets.
+    // A bound is reached or the bracket is empty: this is the nearest solution.
     if (x == upper_kpa && miss < 0) return {x, false};
     if (x == lower_kpa && miss > 0) return {x, false};
     const double next = x - miss / y.v;
     if (i >= newton_iterations || !(next > lower && next < upper)) {
-      // A bound that was not tried yet is tried first: it may be the answer.
+      // A bound that was not evaluated yet is tried first, because it may be the solution.
       const double bound = miss < 0 ? upper : lower;
       const bool untried = miss < 0 ? bound == upper_kpa && !upper_tried : bound == lower_kpa && !lower_tried;
       const double middle = 0.5 * (lower + upper);
@@ -51,7 +51,7 @@ ActuatorInverse::ActuatorInverse(const model::Model& body, double tick_s)
       x = untried ? bound : middle;
       continue;
     }
-    // The slope has a kink where the pressure turns, so a last step must not cross it.
+    // The slope has a kink where the pressure reverses, so a last step must not cross it.
     const bool same_side = (x - past_kpa_[0]) * (next - past_kpa_[0]) > 0;
     if (same_side && std::abs(next - x) <= last_step_kpa) return {next, true};
     if (next == x) return {x, true};

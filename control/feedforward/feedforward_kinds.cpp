@@ -13,7 +13,7 @@
 namespace softgrip::control {
 namespace {
 
-/// How long a difference between plan and reference takes to fade out at least.
+/// Shortest time in which a difference between plan and reference fades out [s].
 constexpr double fade_s = 0.5;
 /// Largest change of the reference's slope per tick [mm] that is not a jump. A corner between 50 mm/s up and
 /// 50 mm/s down at 200 Hz has this size.
@@ -21,12 +21,12 @@ constexpr double jump_mm = 0.5;
 /// Peak acceleration and peak speed of a minimum-jerk move of unit length in unit time.
 constexpr double peak_acceleration = 5.774;
 constexpr double peak_speed = 1.875;
-/// A plan that differs from what the reference needs by more than this is called out of reach.
+/// A plan that differs from the required pressure by more than this is reported as out of reach.
 constexpr double late_kpa = 1e-6;
-/// A plan whose model is further from the reference than this is called out of reach.
+/// A plan whose model differs from the reference by more than this is reported as out of reach.
 constexpr double missed_mm = 0.2;
-/// A reference that begins further from where its plan begins than this is not what was planned for: a plan
-/// moves at the speed of another way, and is worse then than none.
+/// Largest difference between the start of a reference and the start of its plan. Beyond it, the plan is for
+/// another motion and would be worse than no plan.
 constexpr double off_plan_mm = 1;
 /// Largest rounding difference between two equal clocks.
 constexpr double clock_rounding_s = 1e-6;
@@ -34,13 +34,13 @@ constexpr double clock_rounding_s = 1e-6;
 constexpr double plan_fade_s = 3;
 
 model::Model bouc_wen_of(const model::Model& model) {
-  // Its asymmetry is a part of it.
+  // The asymmetry belongs to the hysteresis element.
   return model::only(model, [](const model::BlockInfo& info) {
     return model::is<model::BoucWen, model::AsymmetricBoucWen, model::DuhemHysteresis>(info);
   });
 }
 
-/// Where the element is wanted at `time_s`: the reference within the limits, without the offset [mm].
+/// Returns the target of the element at `time_s`: the reference within the limits, without the offset [mm].
 double wanted_mm(const LimitSettings& limits, const FeedforwardQuery& query, double time_s) noexcept {
   return limit_reference(limits, query.reference->value_at(time_s)).reference_mm - query.offset_mm;
 }
@@ -94,7 +94,7 @@ double FullModelFeedforward::command_toward(double wanted_kpa) noexcept {
   double next = wanted_kpa;
   const double time_constant_s = valve_.time_constant_s(now, wanted_kpa);
   if (time_constant_s > 0) {
-    // The way that is left when the pressure has moved along with what it is wanted to be.
+    // The remaining difference if the pressure changes as the target does.
     const double along = std::clamp(wanted_kpa - last_wanted_kpa_, -limits_.slew_down_kpa_per_s * tick_s_,
                                     limits_.slew_up_kpa_per_s * tick_s_);
     const double left = wanted_kpa - now - along;
@@ -114,7 +114,7 @@ void FullModelFeedforward::enter(const RunningModel& running, const FeedforwardQ
   valve_.take_over(running.valve());
   command_kpa_ = command_kpa;
   last_wanted_kpa_ = running.pressure_kpa();
-  // Left alone, the pressure goes on toward the command; where the model then is, the fade begins.
+  // The fade begins from the model's position after the pressure has moved towards the present command.
   const double before_mm = inverse_.displacement_mm();
   ValveInverse alone = valve_;
   const double alone_kpa = std::min(alone.advance(running.pressure_kpa(), command_kpa), ceiling_kpa_);
@@ -129,7 +129,7 @@ void FullModelFeedforward::fade_from(double displacement_mm, double speed_mm_per
                                      double then_s) noexcept {
   const double difference_mm = displacement_mm - to.value;
   const double distance_mm = std::abs(difference_mm);
-  // Either is enough: an element that follows at once, or one that creeps.
+  // Either limit is sufficient: for an element that responds immediately, or for one that creeps.
   const double by_speed_s = peak_speed * distance_mm / easy_mm_per_s_;
   const double by_acceleration_s = std::sqrt(peak_acceleration * distance_mm / easy_mm_per_s2_);
   fade_.start(then_s, {difference_mm, speed_mm_per_s - to.rate, 0});
@@ -176,7 +176,7 @@ void PlannedFeedforward::enter(const RunningModel&, const FeedforwardQuery&, dou
 double PlannedFeedforward::unplanned_mm(const FeedforwardQuery& query, double wanted_mm,
                                         double then_s) const noexcept {
   double least_mm = std::numeric_limits<double>::max();
-  // Where the reference jumps, the two clocks must not differ by a rounding.
+  // At a jump of the reference, the clocks must not differ by a rounding error.
   for (const double aside_s : {0.0, -clock_rounding_s, clock_rounding_s}) {
     const double on_plan_s = then_s - query.plan_origin_s + aside_s;
     const double planned_mm =

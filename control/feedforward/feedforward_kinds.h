@@ -1,5 +1,5 @@
 #pragma once
-// The feedforwards themselves; their settings are in control/elements/feedforward.h.
+// The feedforward classes. Their settings are in control/elements/feedforward.h.
 
 #include <array>
 #include <variant>
@@ -18,7 +18,7 @@ namespace softgrip::control {
 /// Result of a feedforward in one tick.
 struct FeedforwardStep {
   double pressure_kpa = 0;
-  bool out_of_reach = false;  ///< the reference needs more than the limits allow; it goes as far as they do
+  bool out_of_reach = false;  ///< the reference exceeds the limits; the pressure goes as far as they allow
 };
 
 /// Inputs of a feedforward. The reference is in mm of the finger. `offset_mm` is the reading minus the model.
@@ -26,13 +26,13 @@ struct FeedforwardQuery {
   const Reference* reference = nullptr;
   double time_s = 0;  ///< now, on the reference's clock
   double offset_mm = 0;
-  const PressurePlan* plan = nullptr;  ///< of `planned`
-  double plan_origin_s = 0;            ///< of the plan's clock on the reference's
+  const PressurePlan* plan = nullptr;  ///< for `planned`
+  double plan_origin_s = 0;            ///< origin of the plan's clock on the reference's clock
 };
 
-// Each kind has: enter() when tracking begins, with what is out there; step() once per tick from then on;
-// preview_s(), how far ahead it asks the reference. A further kind is one more class and one more line in
-// Feedforward.
+// Each kind has three functions. enter() is called with the present outputs when tracking begins. step() is
+// called once per tick after that. preview_s() is the time by which the kind reads the reference ahead. A new
+// kind needs a class and a line in Feedforward.
 
 class NoFeedforward {
  public:
@@ -41,8 +41,8 @@ class NoFeedforward {
   [[nodiscard]] double preview_s() const noexcept { return 0; }
 };
 
-/// The published scheme: the pressure at which the Bouc-Wen element alone would give the reference. The rest
-/// of the finger, the valve and all delays are left to the PID.
+/// The published scheme: the pressure at which the Bouc-Wen element alone would follow the reference. The PID
+/// corrects the rest of the finger, the valve and all delays.
 class BoucWenFeedforward {
  public:
   BoucWenFeedforward(const model::Model& model, const LimitSettings& limits, double tick_s);
@@ -55,15 +55,15 @@ class BoucWenFeedforward {
   ActuatorInverse inverse_;
 };
 
-/// The whole chain undone from right to left. The pressure at the actuator is planned ahead: each tick adds
-/// the pressure at which everything behind the valve reaches the reference one tick plus all dead time from
-/// now, the plan so far being the truth. From the plan follows the command (ValveInverse).
+/// Inverse of the complete chain from right to left. The pressure at the actuator is planned ahead. Each tick
+/// adds the pressure at which the chain after the valve reaches the reference one tick plus all dead time
+/// from now, if the plan was followed so far. The command follows from the plan (ValveInverse).
 ///
-/// The derivative in the lead is one of the plan, which carries no sensor noise. The command stays inside the
-/// pressure range and the slew limits, and the plan is what such a command does, so it does not wind up:
-/// where the reference is out of reach the plan goes as far as it can, says so, and goes on from there.
-/// Behind a lag a command that must slew cannot stop the pressure at once; the plan then nears the reference
-/// no faster than it can brake (constant deceleration slew/tau), so that a jump is reached without ringing.
+/// The derivative of the lead is that of the plan, which has no sensor noise. The command stays inside the
+/// pressure range and the slew limits, and the plan is the effect of the limited command, so it does not wind
+/// up. If the reference is out of reach, the plan goes as far as the limits allow, reports it, and continues
+/// from there. Behind a lag, a slewing command cannot stop the pressure at once. The plan then approaches the
+/// reference no faster than it can brake (constant deceleration slew/tau), so a jump causes no ringing.
 class FullModelFeedforward {
  public:
   FullModelFeedforward(const model::Model& model, const FeedforwardSettings& settings,
@@ -82,17 +82,17 @@ class FullModelFeedforward {
 
   LimitSettings limits_;
   double tick_s_;
-  double ceiling_kpa_;  ///< highest pressure that the model's valve lets through
+  double ceiling_kpa_;  ///< highest pressure that passes the model's valve
   ValveInverse valve_;
   double preview_s_;
   ActuatorInverse inverse_;
-  double command_kpa_ = 0;                  ///< the last one
+  double command_kpa_ = 0;                  ///< of the last tick
   double last_wanted_kpa_ = 0;              ///< the pressure that the reference needed in the last tick
-  double easy_mm_per_s2_;                   ///< acceleration of the finger that the slew limits pass
-  double easy_mm_per_s_;                    ///< speed of the finger that they pass
+  double easy_mm_per_s2_;                   ///< acceleration of the finger within the slew limits
+  double easy_mm_per_s_;                    ///< speed of the finger within the slew limits
   std::array<double, 2> last_target_mm_{};  ///< newest first
-  double last_displacement_mm_ = 0;         ///< of the plan, one tick before
-  Reference fade_;  ///< of the difference after enter() or a jump, on the reference's clock
+  double last_displacement_mm_ = 0;         ///< of the plan, one tick earlier
+  Reference fade_;  ///< the difference after enter() or a jump, on the reference's clock
 };
 
 /// A plan from before the run (control/sequences/planner.h), read ahead by the total dead time and half a
@@ -106,7 +106,7 @@ class PlannedFeedforward {
                      const LimitSettings& limits, double tick_s);
   void enter(const RunningModel& running, const FeedforwardQuery& query, double command_kpa) noexcept;
   FeedforwardStep step(const FeedforwardQuery& query) noexcept;
-  /// More than the dead time: a plan acts before its reference does.
+  /// Returns more than the dead time, because a plan acts before its reference changes.
   [[nodiscard]] double preview_s() const noexcept { return ahead_s_ + plan_lead_s; }
 
  private:
@@ -121,16 +121,16 @@ class PlannedFeedforward {
   double origin_s_ = 0;
   bool on_plan_ = false;
   double last_kpa_ = 0;
-  double difference_kpa_ = 0;  ///< between where the pressure was and where the source began
-  double fade_left_s_ = 0;     ///< until it is gone
+  double difference_kpa_ = 0;  ///< between the previous pressure and the start of the source
+  double fade_left_s_ = 0;     ///< remaining time of the fade-out
   bool entering_ = true;
 };
 
-/// How far ahead of now a plan is read: all dead time and half a tick [s].
+/// Returns the time by which a plan is read ahead of now: all dead time and half a tick [s].
 [[nodiscard]] double plan_ahead_s(const model::Model& model, const FeedforwardSettings& settings,
                                   double tick_s);
 
-/// One of them.
+/// A feedforward of any kind.
 class Feedforward {
  public:
   Feedforward(const model::Model& model, const FeedforwardSettings& settings, const LimitSettings& limits,

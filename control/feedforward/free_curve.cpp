@@ -14,14 +14,15 @@ constexpr int levels = 32;
 constexpr std::size_t points = 65;
 constexpr double curve_step_s = 0.02;
 
-/// Where the finger rests under a command.
+/// The settled state of the finger under a command.
 struct Level {
   double command_kpa = 0;
   double pressure_kpa = 0;
   double displacement_mm = 0;
 };
 
-/// From the lowest command on, each reached from rest, each displacement above the one before.
+/// Returns the levels from the lowest command on, each reached from rest, in the order of increasing
+/// displacement.
 std::vector<Level> levels_of(const model::Model& model, const LimitSettings& limits) {
   model::Chain<double> valve(valve_of(model), {}, curve_step_s);
   model::Chain<double> body(body_of(model), {}, curve_step_s);

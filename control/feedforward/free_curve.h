@@ -9,19 +9,20 @@
 
 namespace softgrip::control {
 
-/// Where the free finger of a model comes to rest under a command, the first time away from rest: the
-/// displacement three seconds after a jump to it, when all but slow creep is over. Read the other way round
-/// it says which command a displacement needs. Beyond its ends it goes on with its mean slope. Construction
-/// steps the model a few thousand times; reading allocates nothing.
+/// The displacement of a model's free finger at each command on the first motion away from rest. The
+/// displacement is taken three seconds after a jump to the command, when only slow creep remains. The inverse
+/// gives the command for a displacement. Beyond its ends the curve continues with its mean slope. The
+/// constructor simulates a few thousand steps; reading does not allocate.
 class FreeCurve {
  public:
   FreeCurve(const model::Model& model, const LimitSettings& limits);
 
-  /// The command under which the free finger rests at `displacement_mm` (the model's, without offset) [kPa].
+  /// Returns the command under which the free finger rests at `displacement_mm` (of the model, without
+  /// offset) [kPa].
   [[nodiscard]] double command_kpa(double displacement_mm) const noexcept {
     return at(command_kpa_, displacement_mm);
   }
-  /// The pressure at the actuator then, behind the valve [kPa].
+  /// Returns the pressure at the actuator in that state, after the valve [kPa].
   [[nodiscard]] double pressure_kpa(double displacement_mm) const noexcept {
     return at(pressure_kpa_, displacement_mm);
   }
@@ -33,9 +34,9 @@ class FreeCurve {
   [[nodiscard]] double at(const std::vector<double>& table, double displacement_mm) const noexcept;
 
   double lowest_mm_ = 0;
-  double step_mm_ = 0;  ///< 0: the model does not move; everything is where it begins
+  double step_mm_ = 0;  ///< 0: the model does not move, so the curve is a point
   double slope_kpa_per_mm_ = 0;
-  std::vector<double> command_kpa_;  ///< from lowest_mm_ on, step_mm_ apart
+  std::vector<double> command_kpa_;  ///< from lowest_mm_ on, at distances of step_mm_
   std::vector<double> pressure_kpa_;
 };
 

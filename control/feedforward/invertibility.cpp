@@ -37,11 +37,11 @@ constexpr std::string_view creep_alone =
     ": creep alone moves the model there, nothing elastic does (a play with threshold 0, a spring)";
 constexpr std::string_view planned_needs_none = "feedforward `planned` needs none";
 
-/// Below this nothing follows the pressure at once: a Kelvin-Voigt spring that does nothing still gives way
-/// by 1e-9 mm/kPa.
+/// Below this gain, nothing responds immediately to the pressure: even a Kelvin-Voigt spring without effect
+/// has 1e-9 mm/kPa.
 constexpr double least_gain_mm_per_kpa = 1e-8;
 
-/// The smallest slope of displacement over pressure that was met, and where.
+/// The smallest slope of displacement over pressure that was found, and its pressure.
 struct Worst {
   double gain_mm_per_kpa = std::numeric_limits<double>::max();
   double pressure_kpa = 0;
@@ -118,7 +118,7 @@ tl::expected<void, Refusal> check_gain(const model::Model& model, const LimitSet
                                 backwards ? usual_cause : planned_needs_none});
 }
 
-/// The sensor does not move the finger and is left alone.
+/// The sensor does not move the finger, so it is not inverted.
 bool is_undone(const BlockInfo& info) {
   if (info.station == Station::sensor || info.inverse == Inverse::ignored) return true;
   if (info.inverse == Inverse::implicit) return true;
@@ -132,7 +132,7 @@ tl::expected<void, Refusal> check_bouc_wen(const model::Model& model, const Limi
                                            double tick_s) {
   const auto part = model::only(model, [](const BlockInfo& info) {
     return model::is<model::BoucWen, model::AsymmetricBoucWen, model::DuhemHysteresis>(
-        info);  // its asymmetry is a part of it
+        info);  // the asymmetry belongs to it
   });
   if (!model::position_of<model::BoucWen>(part)) {
     return tl::unexpected(
@@ -142,7 +142,8 @@ tl::expected<void, Refusal> check_bouc_wen(const model::Model& model, const Limi
   return check_gain(part, limits, tick_s, 0, "");
 }
 
-/// Any model can be planned for that moves the finger.
+/// Checks that the model can be planned for: it must have an element that moves the finger, and a positive
+/// gain.
 tl::expected<void, Refusal> check_planned(const model::Model& model, const LimitSettings& limits) {
   const auto elements = model::only(model, [](const BlockInfo& info) { return info.kind == Kind::element; });
   if (elements.blocks.empty())

@@ -13,22 +13,22 @@
 
 namespace softgrip::control {
 
-/// Why something is not done, in words for the user.
+/// The reason for a refusal, as a text for the user.
 struct Refusal {
   std::string text;
-  std::string_view advice = {};  ///< what to do about it; empty: the text says enough
+  std::string_view advice = {};  ///< proposed action; empty if the text is sufficient
 
   [[nodiscard]] std::string with_advice() const;
 };
 
-/// Checks that `settings.kind` can be computed for `model` over the working range (from 0 kPa to
-/// pressure_max_kpa, and to a pressure_min_kpa below 0; every hysteresis state reachable in it). A refusal
-/// names the block or the numbers.
+/// Checks that `settings.kind` can be computed for `model` over the working range: from 0 kPa to
+/// pressure_max_kpa, and to a pressure_min_kpa below 0, with each hysteresis state that can be reached. A
+/// refusal names the block or the numbers.
 [[nodiscard]] tl::expected<void, Refusal> check_feedforward(const model::Model& model,
                                                             const FeedforwardSettings& settings,
                                                             const LimitSettings& limits, double tick_s);
 
-/// Those among the blocks that full_model cannot undo: "`a`, `b`". Today it can undo all there are.
+/// Returns the blocks that full_model cannot invert as text: "`a`, `b`". At present it can invert all blocks.
 [[nodiscard]] std::string not_undone(std::span<const model::BlockInfo> blocks);
 
 }  // namespace softgrip::control

@@ -12,7 +12,7 @@ namespace softgrip::control {
 
 struct InvertiblePart {
   model::Model model;
-  std::vector<std::string> left_out;  ///< ids of the blocks that were taken out
+  std::vector<std::string> left_out;  ///< ids of the removed blocks
 };
 
 /// Returns the model without the blocks that prevent `full_model`. These are the blocks without an inverse.

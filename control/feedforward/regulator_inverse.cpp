@@ -9,7 +9,7 @@ namespace softgrip::control {
 namespace {
 
 constexpr double moves_kpa_per_s = 0.2;
-/// An error beyond the overlap that is smaller shows nothing of how much a port passes.
+/// A smaller error beyond the overlap gives no information on the flow of a port [kPa].
 constexpr double shows_kpa = 0.01;
 
 }  // namespace

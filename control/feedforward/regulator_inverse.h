@@ -1,5 +1,5 @@
 #pragma once
-// The command that makes a pressure regulator bring its pressure somewhere one tick from now.
+// Finds the command with which a pressure regulator reaches a pressure one tick from now.
 
 #include "model/regulated_pressure.h"
 
@@ -21,16 +21,16 @@ class RegulatorInverse {
   /// Copies the state of `regulated`, which must have the same parameters.
   void take_over(const model::RegulatedPressure<double>& regulated) noexcept;
 
-  /// The command under which the pressure is at `next_kpa` at the end of the tick; where no port opens far
-  /// enough, one under which it is open as far as it gets. Changes nothing.
+  /// Returns the command for which the pressure is `next_kpa` at the end of the tick. If no port opens far
+  /// enough, returns a command that opens it fully. Does not change the state.
   [[nodiscard]] double command_for(double next_kpa) const noexcept;
-  /// Moves on by one tick; the pressure at its end [kPa].
+  /// Advances by one tick and returns the pressure at its end [kPa].
   double advance(double command_kpa) noexcept;
 
  private:
   model::RegulatedPressure<double> regulated_;
   double tick_s_;
-  double filling_share_, venting_share_;  ///< of the error beyond the overlap that goes in a tick
+  double filling_share_, venting_share_;  ///< share of the error beyond the overlap that is removed in a tick
 };
 
 }  // namespace softgrip::control

@@ -59,7 +59,7 @@ void RunningModel::reset(double command_kpa) noexcept {
 }
 
 void RunningModel::advance(double command_kpa) noexcept {
-  // The board holds its output: a jump, then a tick without change. Behind a lag only the second moves.
+  // The board holds its output: a jump, then a tick without change. Behind a lag, only the second part moves.
   double at_once = command_kpa;
   double at_end = command_kpa;
   if (has_valve_) {

@@ -1,5 +1,5 @@
 #pragma once
-// The model of a channel run beside the finger on the command that was really sent.
+// The model of a channel that runs in parallel to the finger with the commands that were really sent.
 
 #include <cstddef>
 #include <vector>
@@ -12,33 +12,33 @@ namespace softgrip::control {
 /// Time at a constant command after which a finger is at rest: only slow creep remains [s].
 inline constexpr double rests_after_s = 3;
 
-/// Dead times commute with everything that does not change with time, so they are taken out of the chain: it
-/// runs without them, ahead of the finger, and the past is looked up. That makes a delay of any length one
-/// look-up, and gives the feedforward the state in which its plan begins.
+/// Dead times can be exchanged with all blocks that do not depend on time. So they are removed from the
+/// chain, which runs ahead of the finger, and a past value is read instead. A delay of any length then costs
+/// one look-up, and the feedforward gets the state at which its plan begins.
 class RunningModel {
  public:
   /// @param extra_latency_s  from the computation of a command to the board's output.
   /// @param longest_age_s  largest age of a reading; an older one gets the oldest stored prediction.
   RunningModel(const model::Model& model, double tick_s, double extra_latency_s, double longest_age_s);
 
-  /// At rest under `command_kpa`.
+  /// Sets the state of rest under `command_kpa`.
   void reset(double command_kpa) noexcept;
 
-  /// One tick of `command_kpa` held.
+  /// Advances by one tick with the constant `command_kpa`.
   void advance(double command_kpa) noexcept;
 
-  /// The reading that the model expects `age_s` ago [mm]. Straight between ticks.
+  /// Returns the reading that the model predicts for `age_s` ago [mm]. Linear between ticks.
   [[nodiscard]] double reading_mm(double age_s) const noexcept { return past(past_mm_, age_s); }
-  /// The pressure at the actuator under which it expected that [kPa].
+  /// Returns the pressure at the actuator for that prediction [kPa].
   [[nodiscard]] double pressure_kpa(double age_s) const noexcept { return past(past_kpa_, age_s); }
 
-  /// How far the chain runs ahead of the finger: dead times and extra latency [s].
+  /// Returns the time by which the chain is ahead of the finger: dead times and extra latency [s].
   [[nodiscard]] double ahead_s() const noexcept { return ahead_s_; }
-  /// Pressure at the actuator, ahead_s() from now [kPa].
+  /// Returns the pressure at the actuator ahead_s() from now [kPa].
   [[nodiscard]] double pressure_kpa() const noexcept { return pressure_kpa_; }
-  /// The valve without its dead times, ahead_s() from now.
+  /// Returns the valve without its dead times, ahead_s() from now.
   [[nodiscard]] const model::Chain<double>& valve() const noexcept { return valve_; }
-  /// Everything behind the valve, ahead_s() from now.
+  /// Returns the chain after the valve, ahead_s() from now.
   [[nodiscard]] const model::Chain<double>& body() const noexcept { return body_; }
 
  private:
@@ -51,15 +51,15 @@ class RunningModel {
   model::Chain<double> valve_;
   model::Chain<double> body_;
   double pressure_kpa_ = 0;
-  std::vector<double> past_mm_;   ///< a ring, one entry per tick, newest at newest_
-  std::vector<double> past_kpa_;  ///< another, beside it
+  std::vector<double> past_mm_;   ///< ring with one entry per tick; the newest is at newest_
+  std::vector<double> past_kpa_;  ///< ring of the pressures with the same indices
   std::size_t newest_ = 0;
 };
 
-/// The sum of the model's dead times [s].
+/// Returns the sum of the model's dead times [s].
 [[nodiscard]] double dead_time_s(const model::Model& model);
-/// The model without dead times and without what is only noise: what takes time to follow the command, and
-/// everything behind it.
+/// Return the two parts of the model without dead times and noise: valve_of() the blocks of the valve that
+/// need time to follow the command, body_of() all others.
 [[nodiscard]] model::Model valve_of(const model::Model& model);
 [[nodiscard]] model::Model body_of(const model::Model& model);
 

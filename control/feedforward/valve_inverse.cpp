@@ -18,7 +18,7 @@ bool lags(const model::BlockSpec& block) {
   return model::catalogue()[block.type].info.inverse == model::Inverse::lead;
 }
 
-/// The sum of the time constants of the lags in the valve, in the direction of this name [s].
+/// Returns the sum of the time constants of the valve's lags in one direction [s].
 double time_constants_s(const model::Model& valve, std::string_view direction) {
   double sum = 0;
   for (const model::BlockSpec& block : valve.blocks) {
@@ -30,7 +30,7 @@ double time_constants_s(const model::Model& valve, std::string_view direction) {
   return sum;
 }
 
-/// Half of the dead band that the command meets first [kPa].
+/// Returns half of the dead band before the first lag [kPa]; 0 without one.
 double half_band_kpa(const model::Model& valve) {
   const auto first = std::ranges::find_if(valve.blocks, [](const model::BlockSpec& block) {
     return lags(block) || model::is<model::ValveDeadband>(model::catalogue()[block.type].info);

@@ -1,5 +1,5 @@
 #pragma once
-// The command that makes a valve bring its pressure somewhere one tick from now.
+// Finds the command with which a valve reaches a pressure one tick from now.
 
 #include <optional>
 
@@ -9,28 +9,29 @@
 
 namespace softgrip::control {
 
-/// Of a valve whose command is held for a tick:
+/// Inverse of a valve whose command is held for a tick, with the period T:
 ///
-///   behind a lag:  u = p[k-1] + (p[k] - p[k-1]) / (1 - exp(-T/tau)): the exact inverse of a first-order lag
-///                  under a held input, so lead and the hold's half sample are one; tau is that of the
-///                  direction in which the pressure goes, and of several lags in series their sum;
-///   a regulator:   the command that takes its spool through the overlap, less what its integral does
-///                  already (RegulatorInverse), if the valve has no lag in addition;
-///   without one:   u = (p[k-1] + p[k]) / 2, the middle of the stretch, for the same half sample;
-///   a dead band before it: u and half the band in the direction of travel. One behind it is left alone.
+///   behind a lag:  u = p[k-1] + (p[k] - p[k-1]) / (1 - exp(-T/tau)), the exact inverse of a first-order lag
+///                  under a held input, which contains both the lead and half a sample of the hold. tau is
+///                  the value for the direction of the pressure; for several lags in series it is their sum;
+///   a regulator:   the command that moves its spool through the overlap, minus the effect of its integral
+///                  (RegulatorInverse), if the valve has no lag in addition;
+///   without a lag: u = (p[k-1] + p[k]) / 2, the middle of the change, for the same half sample;
+///   with a dead band before it: u plus half of the band in the direction of the change. A dead band after it
+///                  is ignored.
 class ValveInverse {
  public:
-  /// @param model  a whole one.
+  /// @param model  the complete model.
   /// @param tick_s  > 0.
   ValveInverse(const model::Model& model, double tick_s);
 
-  /// Takes over the state of the chain of valve_of() the same model.
+  /// Copies the state of the chain valve_of() of the same model.
   void take_over(const model::Chain<double>& valve) noexcept;
 
-  /// The command under which the pressure, now at `now_kpa`, is at `next_kpa` at the end of the tick; where
-  /// no port opens far enough, one under which it is open as far as it gets. Changes nothing.
+  /// Returns the command for which the pressure changes from `now_kpa` to `next_kpa` at the end of the tick.
+  /// If no port opens far enough, returns a command that opens it fully. Does not change the state.
   [[nodiscard]] double command_for(double now_kpa, double next_kpa) const noexcept;
-  /// Moves on by one tick from `now_kpa`; the pressure at its end [kPa].
+  /// Advances by one tick from `now_kpa` and returns the pressure at its end [kPa].
   double advance(double now_kpa, double command_kpa) noexcept;
 
   /// Returns the time constant of the lags, from `now_kpa` towards `pressure_kpa` [s]; 0 without a lag.
@@ -41,7 +42,7 @@ class ValveInverse {
  private:
   struct Lag {
     double time_constant_s = 0;
-    double share = 1;  ///< of the way to the command that it goes in a tick
+    double share = 1;  ///< share of the distance to the command that is covered in a tick
   };
   [[nodiscard]] const Lag& lag_towards(double now_kpa, double pressure_kpa) const noexcept {
     return pressure_kpa >= now_kpa ? filling_ : venting_;
@@ -49,9 +50,9 @@ class ValveInverse {
 
   double tick_s_;
   Lag filling_, venting_;
-  std::optional<RegulatorInverse> regulator_;  ///< in the place of the lag
+  std::optional<RegulatorInverse> regulator_;  ///< replaces the lag
   double half_band_kpa_ = 0;
-  double behind_band_kpa_ = 0;  ///< the command as it comes out of the dead band
+  double behind_band_kpa_ = 0;  ///< the command after the dead band
 };
 
 }  // namespace softgrip::control

@@ -13,9 +13,9 @@ namespace softgrip::control {
 /// Returns the problems of a sequence that is read with these values.
 using Judge = std::function<document::Problems(const std::vector<Parameter>& parameters)>;
 
-/// Adds what `judge` finds with these values, each at the line of the parameter whose value alone is enough
-/// for it, with the step's line in the message; at the step itself where it takes several, or where the
-/// defaults are no better. Nothing is added where `judge` finds nothing.
+/// Adds the problems that `judge` finds with these values. A problem is reported at the parameter if its
+/// value alone causes it, with the step's line in the message. It is reported at the step if several values
+/// cause it, or if the defaults have it too.
 void blame_values(const document::Document& document, const std::vector<Parameter>& parameters,
                   const Judge& judge, document::Problems& problems);
 

@@ -20,7 +20,7 @@ using document::Node;
 using document::Problems;
 
 constexpr std::size_t most_parameters = 16;
-/// No number of a sequence is larger.
+/// Upper limit of all numbers of a sequence.
 constexpr double largest = 1e6;
 constexpr std::array<std::string_view, 6> units{"kpa", "mm", "s", "hz", "kpa_per_s", "mm_per_s"};
 constexpr const char* unit_hint =
@@ -32,7 +32,7 @@ const Node::Entry* entry_of(const Node& map, std::string_view key) {
   return found == map.entries.end() ? nullptr : &*found;
 }
 
-/// "did you mean `squeeze_kpa`?", or which there are.
+/// Returns "did you mean `squeeze_kpa`?", or a list of the parameters.
 std::string hint_of(const std::string& name, const std::vector<Parameter>& parameters) {
   if (parameters.empty()) return "this sequence has no `parameters`";
   std::vector<std::string> names;
@@ -53,7 +53,7 @@ bool is_name(std::string_view name) {
          std::all_of(name.begin(), name.end(), allowed);
 }
 
-/// The unit that the name ends in or that `unit:` gives; both may say the same.
+/// Returns the unit at the end of the name or of `unit:`. Both may be given if they agree.
 std::string unit_of(MapReader& map, const std::string& name) {
   const std::string_view own = document::unit_at_end(name);
   const bool known = std::find(units.begin(), units.end(), own) != units.end();
@@ -99,7 +99,7 @@ Parameter read_parameter(const Document& document, const Node::Entry& entry, Pro
   return parameter;
 }
 
-/// Walks through the steps of a copy of a document.
+/// Replaces the parameters in the steps of a copy of a document.
 class Binder {
  public:
   Binder(const Document& document, const std::vector<Parameter>& parameters, Problems& problems)
@@ -217,7 +217,7 @@ Document with_values(const Document& document, const std::vector<Parameter>& par
   for (Node::Entry& entry : bound.root.entries) {
     if (entry.key == "steps") binder.bind(entry.value, {});
   }
-  // An unreadable part may have used the parameter.
+  // The part that could not be read may use the parameter.
   if (document.complete) binder.report_unused();
   return bound;
 }

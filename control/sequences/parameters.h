@@ -1,5 +1,5 @@
 #pragma once
-// `parameters:` of a sequence file: read, given their values, put into the steps.
+// Reads `parameters:` of a sequence file, assigns their values, and inserts these into the steps.
 
 #include <span>
 #include <vector>
@@ -19,8 +19,8 @@ namespace softgrip::control {
 void set_values(std::span<const Argument> arguments, const document::Document& document,
                 std::vector<Parameter>& parameters, document::Problems& problems);
 
-/// The document with every `$name` below `steps` replaced by the value of that parameter. Problems: a name
-/// that no parameter has, a key whose unit is another one, a parameter that no step uses.
+/// Returns the document with each `$name` below `steps` replaced by the value of that parameter. Problems: an
+/// unknown name, a key with another unit, and a parameter that no step uses.
 [[nodiscard]] document::Document with_values(const document::Document& document,
                                              const std::vector<Parameter>& parameters,
                                              document::Problems& problems);

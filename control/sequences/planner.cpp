@@ -15,28 +15,28 @@ namespace {
 using Vector = Eigen::VectorXd;
 using Matrix = Eigen::MatrixXd;
 
-/// Distance of the points of a plan.
+/// Shortest distance of the points of a plan [s].
 constexpr double finest_step_s = 0.025;
 /// Length of the decided part of a window, and of its preview. The effect of later references on the best
 /// command now decays with exp(-z t). Here z is the zero of the inverse response, 7/s for the published
 /// model.
 constexpr double decided_s = 4;
 constexpr double ahead_s = 1.5;
-/// Weight of the second difference of the command [mm/kPa]: far below what a plan must reach.
+/// Weight of the second difference of the command [mm/kPa], far below the required accuracy of a plan.
 constexpr double smooth_mm_per_kpa = 1e-3;
-/// Weight of what a command is outside its bounds [mm/kPa].
+/// Weight of the part of a command outside its bounds [mm/kPa].
 constexpr double bound_mm_per_kpa = 30;
-/// For the derivatives of the chain.
+/// Difference for the derivatives of the chain [kPa].
 constexpr double aside_kpa = 1e-6;
 /// Limits of the iterations of one search and of all searches of a window. They bound the time of planning.
 constexpr int most_iterations = 25;
 constexpr int most_iterations_of_window = 60;
-/// A window with a root mean square error below this needs no other start.
+/// A window with a smaller root mean square error needs no second initial guess.
 constexpr double good_mm = 0.01;
-/// A window is done when an iteration lowers its cost by less than this share.
+/// The search in a window ends when an iteration lowers its cost by less than this share.
 constexpr double done_share = 2e-3;
 
-/// One window: the chain where it begins, the command before it, what is wanted.
+/// One window: the state of the chain at its start, the command before it, and the target.
 class Window {
  public:
   Window(const model::Chain<double>& begin, std::array<double, 2> before_kpa, Vector wanted_mm,
@@ -49,7 +49,7 @@ class Window {
         rise_kpa_(limits.slew_up_kpa_per_s * step_s),
         fall_kpa_(limits.slew_down_kpa_per_s * step_s) {}
 
-  /// The command that is best, from a guess.
+  /// Returns the best command, found from an initial guess.
   Vector solve(Vector u) {
     double cost = cost_of(u);
     double damping = 1e-4;
@@ -74,14 +74,14 @@ class Window {
           damping *= 10;
         }
       }
-      // A short step under strong damping is no sign of the end.
+      // A short step under strong damping does not mean convergence.
       if (!better || (cost > (1 - done_share) * last && damping < 1e-3)) break;
     }
     return u;
   }
 
-  /// Of a guess, so that it reaches what is wanted on the whole: the settled gain is far above what a finger
-  /// that creeps for hours does within a window.
+  /// Returns the factor by which the response to a guess must be scaled to fit the target. Within a window, a
+  /// finger with slow creep has a much smaller gain than its settled gain.
   [[nodiscard]] double share_needed(const Vector& u) const {
     model::Chain<double> chain = begin_;
     double reached_wanted = 0, reached_reached = 0;
@@ -113,7 +113,8 @@ class Window {
     return i >= 0 ? u[i] : before_kpa_[static_cast<std::size_t>(-1 - i)];
   }
 
-  /// How far a command is outside the pressure range and the slew limits: the sign says on which side.
+  /// Returns the amount by which a command is outside the pressure range and the slew limits. The sign gives
+  /// the side.
   [[nodiscard]] double outside(double u) const {
     return std::max(0.0, u - limits_.pressure_max_kpa) + std::min(0.0, u - limits_.pressure_min_kpa);
   }
@@ -152,7 +153,7 @@ class Window {
     add_rows(u, normal, gradient);
   }
 
-  /// The smoothness and the bounds.
+  /// Adds the rows for smoothness and bounds.
   void add_rows(const Vector& u, Matrix& normal, Vector& gradient) const {
     constexpr double smooth = smooth_mm_per_kpa * smooth_mm_per_kpa;
     constexpr double bound = bound_mm_per_kpa * bound_mm_per_kpa;
@@ -192,8 +193,8 @@ class Window {
   int iterations_left_ = most_iterations_of_window;
 };
 
-/// The best command from several guesses, as long as what was found is not good: where the command turns the
-/// slope jumps, and a search may come to rest at such a corner.
+/// Returns the best command from several initial guesses, until one is good. The slope jumps where the
+/// command reverses, and a search may stop at such a corner.
 Vector best_of(Window& window, const Vector& guess, const Vector& proportional) {
   Vector best = window.solve(guess);
   double least = window.cost_of(best);
@@ -241,7 +242,7 @@ void Planner::drive(const std::function<double(double time_s)>& command_kpa, dou
   }
 }
 
-/// One more point: what the limits make of a command, and what the model does under it.
+/// Adds a point: the command after the limits, and the model's response to it.
 void Planner::add_point(double wanted_kpa, model::Chain<double>& chain, PressurePlan& plan) {
   const double command = limit(limits_, wanted_kpa, command_kpa(), step_s_).command_kpa;
   chain.step(step_s_, command);

@@ -1,5 +1,5 @@
 #pragma once
-// Computes a feedforward before the run: the command that makes the model follow a whole reference.
+// Computes a feedforward before the run: the command with which the model follows a complete reference.
 
 #include <cstddef>
 #include <functional>
@@ -22,28 +22,29 @@ namespace softgrip::control {
 ///
 ///   minimise  sum (y(t_i) - r(t_i))^2 + (w (u_{i+1} - 2 u_i + u_{i-1}))^2
 ///
-/// with y the response of the model without its dead time, which preview compensates, but with lag and
-/// saturation. No inverse is needed, so models with an inverse response can be planned too: the plan acts
-/// before the reference does, as far as its time allows.
+/// Here y is the response of the model with lag and saturation, but without its dead time, which preview
+/// compensates. No inverse is needed, so models with an inverse response can be planned too: the plan acts
+/// before the reference changes, as far as its time allows.
 ///
-/// Levenberg-Marquardt over windows of a few seconds that look a little further than they decide, so that the
-/// time grows with the length of the reference and not with its cube. The derivatives are those of the chain
-/// itself, one column per point of the command from there to the window's end. Bounds are put into the
-/// residuals as heavy one-sided rows and then kept exactly by limit().
+/// Levenberg-Marquardt over windows of a few seconds. Each window looks a little further ahead than it
+/// decides. So the time increases with the length of the reference, not with its cube. The derivatives are
+/// those of the chain: one column per point of the command, from this point to the end of the window. Bounds
+/// are heavy one-sided rows of the residuals; after that, limit() enforces them exactly.
 class Planner {
  public:
-  /// At rest under the lowest command. `tick_s` of the loop bounds how fine a plan is.
+  /// Starts at rest under the lowest command. `tick_s` of the loop limits how fine a plan is.
   Planner(const model::Model& model, const LimitSettings& limits, double tick_s);
 
-  /// The plan for a reference over [from_s, to_s]. The model goes on from where the plan before left it: a
-  /// Planner is the memory of a sequence. Asked to stop, it returns what it has.
+  /// Returns the plan for a reference over [from_s, to_s]. The model continues from the end of the last plan,
+  /// so one Planner is used for a complete sequence. After a stop request, it returns the plan so far.
   [[nodiscard]] PressurePlan plan(const Reference& reference, double from_s, double to_s,
                                   const std::stop_token& stop = {});
 
-  /// Something else moves the finger for a while: `command_kpa` of the time since then, within the limits.
+  /// Advances the model while other commands move the finger: `command_kpa` after the start, within the
+  /// limits.
   void drive(const std::function<double(double time_s)>& command_kpa, double duration_s);
 
-  /// The last command so far, and where it has brought the model.
+  /// Returns the last command; displacement_mm() is the model's displacement after it.
   [[nodiscard]] double command_kpa() const noexcept;
   [[nodiscard]] double displacement_mm() const;
 
@@ -55,7 +56,7 @@ class Planner {
   LimitSettings limits_;
   double step_s_;
   SettledLine settled_;
-  std::vector<double> past_kpa_;  ///< every command, from rest on
+  std::vector<double> past_kpa_;  ///< all commands since the start at rest
 };
 
 }  // namespace softgrip::control

@@ -18,7 +18,7 @@ namespace softgrip::control {
 namespace {
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
-/// More than the bare margin, so that noise does not take a part away again.
+/// Factor above the detection margin, so that noise does not hide a part again.
 constexpr double seen_from = 1.2;
 
 using document::Problems;
@@ -172,7 +172,7 @@ class Fitting {
     }
   }
 
-  /// A grip that may not press hard enough to see what it presses would never hold anything.
+  /// Reports a grip whose permitted pressure is too low to detect the part: it would never report HOLDING.
   void check_squeeze(const Step& step, const ChannelSettings& channel, std::size_t index) {
     std::optional<double>& least_kpa = least_squeeze_kpa_[index];
     if (!least_kpa) {
@@ -289,7 +289,7 @@ class Fitting {
            below ? "a lower pressure_max_kpa" : "pressure_max_kpa for a grip below the rest pressure");
   }
 
-  /// Detection, touch and squeeze compare a finger that goes away from rest upward with its free motion.
+  /// Detection, contact and squeeze compare a finger that moves upward from rest with its free motion.
   void check_side(const Step& step, const ChannelSettings& channel) {
     const double rest_kpa = resting_kpa(channel.limits);
     const bool detects = step.kind == StepKind::grip && step.verify.by == VerifyBy::detection;
@@ -306,7 +306,7 @@ class Fitting {
                : "on_contact: ignore");
   }
 
-  /// The highest pressure of a step. That of a displacement comes from the free curve.
+  /// Returns the highest pressure of a step. For a displacement it comes from the free curve.
   static double highest_kpa(const Step& step, const ChannelSettings& channel) {
     if (step.kind == StepKind::pressure) return range_of(step.profile).highest;
     const bool track = step.kind == StepKind::track;
@@ -358,7 +358,7 @@ class Fitting {
 class Variation {
  public:
   Variation(const Sequence& sequence, const RigSettings& settings) : settings_(settings) {
-    Problems told;  // it was read before
+    Problems told;  // the problems were reported when the sequence was read first
     document_ = document::parse(sequence.file, sequence.text, told);
   }
 

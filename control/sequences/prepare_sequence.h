@@ -17,8 +17,8 @@ namespace softgrip::control {
                                                       document::Problems& problems,
                                                       const std::stop_token& stop = {});
 
-/// Adds what does not fit the rig at the ends of the ranges of the sequence's parameters, one parameter after
-/// the other, each at the parameter. Nothing is planned.
+/// Checks the ends of the ranges of the sequence's parameters against the rig, one parameter at a time. Each
+/// problem is reported at the parameter. Nothing is planned.
 void check_ranges(const Sequence& sequence, const RigSettings& settings, document::Problems& problems);
 
 }  // namespace softgrip::control

@@ -38,7 +38,7 @@ std::vector<std::string> names(std::initializer_list<Enum> values) {
   return list;
 }
 
-/// Reads the parts of one file; each function adds what is wrong and goes on.
+/// Reads the parts of one file. Each function reports its problems and continues.
 class FileReader {
  public:
   FileReader(const Document& document, Problems& problems) : document_(document), problems_(problems) {}
@@ -161,7 +161,7 @@ class FileReader {
     }
   }
 
-  /// displacement_mm or pressure_kpa, and how to get there.
+  /// Reads displacement_mm or pressure_kpa, and the speed or duration.
   void target(MapReader& map, Target& target) {
     const bool displacement = map.has("displacement_mm");
     const bool pressure = map.has("pressure_kpa");
@@ -192,7 +192,7 @@ class FileReader {
     target.duration_s = by_duration.value_or(0);
   }
 
-  /// A move can only fail when it has a tolerance; then it says how.
+  /// A move can fail only if it has a tolerance. Then its action on failure is required.
   void tolerance(MapReader& map, Step& step) {
     step.tolerance_mm = map.optional_number("tolerance_mm", {0.01, 50});
     if (!step.tolerance_mm) return;
@@ -224,7 +224,7 @@ class FileReader {
     step.on_fail = on_fail(map);
   }
 
-  /// Without a bound of its own the finger never presses by more than it will in the end.
+  /// Without its own limit, the gripping pressure never exceeds its final value.
   static void squeeze(MapReader& map, Step& step) {
     const auto by = map.optional_number("squeeze_kpa", squeeze_kpa);
     if (!by) {
@@ -265,7 +265,7 @@ class FileReader {
     return result;
   }
 
-  /// A grip above rest needs at least its pressure, a grip below rest at most.
+  /// A grip above rest needs a lowest pressure, a grip below rest a highest pressure.
   void pressure_bound(MapReader& map, Verify& verify) {
     const auto most = map.optional_number("pressure_max_kpa", pressure_kpa);
     if (!most) {
@@ -296,7 +296,7 @@ class FileReader {
     return static_cast<std::uint32_t>(map.optional_integer("retries", 0, 10).value_or(0));
   }
 
-  /// Required: what happens when a step fails is never a hidden default.
+  /// Reads the required action after a failure. It has no default, because a default would be hidden.
   OnFail on_fail(MapReader& map) {
     return static_cast<OnFail>(map.choice(
         "on_fail", names({OnFail::vent, OnFail::hold, OnFail::abort, OnFail::release, OnFail::carry_on})));
@@ -335,7 +335,7 @@ class FileReader {
     }
   }
 
-  /// How many there may be is bounded by the values that a document may have.
+  /// The limit on the values of a document also limits the number of points.
   void points(MapReader& map, std::vector<Point>& points) {
     for (const Node* item : map.sequence("points", true)) {
       MapReader inner(document_, *item, problems_, "point");
@@ -355,7 +355,7 @@ class FileReader {
   Problems& problems_;
 };
 
-/// Parsing goes on after an error, so that what is left can look sound.
+/// Parsing continues after an error, so the readable part can look complete.
 bool refused(const Document& document, const Problems& problems) {
   return !document.complete ||
          std::any_of(problems.list().begin(), problems.list().end(),

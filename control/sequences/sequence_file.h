@@ -18,11 +18,12 @@ namespace softgrip::control {
                                                     document::Problems& problems,
                                                     std::span<const Argument> arguments = {});
 
-/// parse_file() and read_sequence().
+/// Calls parse_file() and read_sequence().
 [[nodiscard]] std::optional<Sequence> load_sequence(const std::string& path, document::Problems& problems,
                                                     std::span<const Argument> arguments = {});
 
-/// Reads it once more with other values of its parameters; what is wrong with it then is added to `problems`.
+/// Reads the sequence again with other values of its parameters. Adds the problems with these values to
+/// `problems`.
 [[nodiscard]] std::optional<Sequence> read_with(const document::Document& document,
                                                 const std::vector<Parameter>& parameters,
                                                 document::Problems& problems);

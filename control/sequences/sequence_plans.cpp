@@ -13,7 +13,7 @@
 namespace softgrip::control {
 namespace {
 
-/// How far into a hold a plan reaches: creep is all that is left to follow.
+/// Longest part of a hold that a plan covers, in which only creep must be followed [s].
 constexpr double longest_hold_s = 20;
 /// A plan that misses its reference by more than this is reported.
 constexpr double missed_mm = 0.2;
@@ -22,10 +22,10 @@ bool planned(const ChannelSettings& channel) {
   return channel.feedforward.kind == FeedforwardKind::planned;
 }
 
-/// One channel's way through a sequence, as it should go.
+/// The expected motion of one channel in a sequence.
 class Walk {
  public:
-  /// `plans`: computes the plans; otherwise only how long they would be.
+  /// `plans`: true to compute the plans, false to compute only their durations.
   Walk(const ChannelSettings& channel, double margin_mm, double tick_s, bool plans)
       : planned_(planned(channel)),
         rest_kpa_(resting_kpa(channel.limits)),
@@ -34,7 +34,7 @@ class Walk {
     if (planned_ && plans) planner_.emplace(channel.model, channel.limits, tick_s);
   }
 
-  /// Begins a step; returns when it has its answer.
+  /// Begins a step and returns the time of its result.
   double begin(PreparedStep& step, double time_s) {
     if (step.step.kind == StepKind::hold) {
       return time_s + (std::isfinite(step.step.hold_s) ? step.step.hold_s : longest_hold_s);
@@ -53,7 +53,7 @@ class Walk {
 
   [[nodiscard]] PreparedStep* step() const noexcept { return step_; }
 
-  /// How much of its step, were `time_s` the channel's next one, is to be planned.
+  /// Returns the time of its step to be planned, if the channel's next step began at `time_s`.
   [[nodiscard]] double planned_s(double time_s) const {
     if (!planned_ || step_ == nullptr) return 0;
     const ChannelDemand demand = player_.demand(since_s_);
@@ -81,7 +81,7 @@ class Walk {
   }
 
  private:
-  /// When a release begins to vent.
+  /// Returns the time at which a release begins to vent.
   [[nodiscard]] double vent_s() const {
     return step_->step.kind == StepKind::release ? player_.motion_end_s() : infinite;
   }
@@ -91,11 +91,11 @@ class Walk {
   double ahead_s_;
   ChannelPlayer player_;
   std::optional<Planner> planner_;
-  PreparedStep* step_ = nullptr;  ///< that is under way
+  PreparedStep* step_ = nullptr;  ///< the present step
   double since_s_ = 0;
 };
 
-/// Fingers that are alike and do alike have one plan.
+/// Returns true if two channels have equal settings and steps, so that they can share a plan.
 bool same_way(const RigSettings& settings, const PreparedSequence& sequence, std::size_t a, std::size_t b) {
   const ChannelSettings& one = settings.channels[a];
   const ChannelSettings& other = settings.channels[b];
@@ -168,7 +168,7 @@ class Planning {
   PreparedSequence& sequence_;
   bool plans_;
   const std::stop_token& stop_;
-  std::vector<std::size_t> like_;  ///< by channel: the first one that goes the same way
+  std::vector<std::size_t> like_;  ///< by channel: the first channel with the same motion
   std::vector<double> planned_s_;
   std::vector<std::unique_ptr<Walk>> walks_;
   std::vector<MissedPlan> missed_;

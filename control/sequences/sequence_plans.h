@@ -1,6 +1,6 @@
 #pragma once
-// The plans of a sequence: for every channel with feedforward `planned`, the command for each step that moves
-// it to a displacement, computed before the sequence starts.
+// Plans a sequence: for each channel with feedforward `planned`, computes the command for each step to a
+// displacement before the sequence starts.
 
 #include <stop_token>
 #include <vector>
@@ -10,7 +10,7 @@
 
 namespace softgrip::control {
 
-/// A plan that will be missed: its model cannot follow the reference within the limits.
+/// A plan with a large error: its model cannot follow the reference within the limits.
 struct MissedPlan {
   std::size_t step = 0;
   std::size_t channel = 0;
@@ -18,17 +18,16 @@ struct MissedPlan {
   double worst_mm = 0;
 };
 
-/// The longest motion of a channel that is planned for one sequence [s]. With it the time that planning takes
-/// has a bound.
+/// Longest planned motion of a channel in one sequence [s]. It limits the time of planning.
 inline constexpr double most_planned_s = 600;
 
-/// The sequence is walked through once as it should go: every channel begins at rest under its lowest
-/// command, no step fails, every settling time and every window takes what it must and nothing is waited for.
-/// The player of the loop makes the references, so the plans are for what will be followed. A plan reaches
-/// until the channel's next step, over a hold of any length for 20 s at most; after it the last command
-/// stays. PlannedFeedforward (control/feedforward/feedforward_kinds.h) handles every deviation from it. Fills
-/// PreparedStep::plans and PreparedSequence::planned_s; of a sequence with more than most_planned_s the
-/// latter only. Asked to stop it returns soon, and the sequence is not to be used.
+/// Computes the plans along the expected course of the sequence: each channel begins at rest under its lowest
+/// command, no step fails, and each settling time and window takes its shortest time. The references come
+/// from the player of the loop, so the plans are for the references that will be followed. A plan ends at the
+/// channel's next step; it covers at most 20 s of a hold, after which the last command remains.
+/// PlannedFeedforward (control/feedforward/feedforward_kinds.h) handles deviations. Fills PreparedStep::plans
+/// and PreparedSequence::planned_s; for a sequence longer than most_planned_s only the latter. After a stop
+/// request it returns soon, and the sequence must not be used.
 [[nodiscard]] std::vector<MissedPlan> plan_steps(PreparedSequence& sequence, const RigSettings& settings,
                                                  const std::stop_token& stop = {});
 

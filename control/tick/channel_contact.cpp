@@ -9,9 +9,9 @@
 namespace softgrip::control {
 
 namespace {
-/// How near a command must be to one that it falls to.
+/// Largest difference to a lower command that counts as reached [kPa].
 constexpr double taken_back_kpa = 0.05;
-/// How long a touch lasts before it is one: longer than what noise and a single bad reading do.
+/// Duration from which a contact is accepted: longer than noise and a single wrong reading [s].
 constexpr double contact_lasts_s = 0.02;
 using Mode = ChannelDemand::Mode;
 }  // namespace

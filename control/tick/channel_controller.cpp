@@ -13,20 +13,20 @@ namespace {
 using DemandMode = ChannelDemand::Mode;
 
 constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
-/// How fast the offset follows the finger while re-synchronising.
+/// Time constant with which the offset follows the finger during re-synchronisation [s].
 constexpr double follow_time_s = 0.1;
-/// How long the residual must have stayed within the noise to call it settled.
+/// Time for which the residual must stay within the noise to be settled [s].
 constexpr double settled_after_s = 0.2;
 /// The residual of a settled finger, in standard deviations of the sensor's noise.
 constexpr double settled_sigma = 4;
-/// How much of the reading's noise is kept from the command that the free finger needs.
+/// Time constant of the filter that removes the reading's noise from the command for the free finger [s].
 constexpr double need_filter_s = 0.03;
 /// A smaller reduction of the command by a limit is not reported [kPa].
 constexpr double unnoticed_kpa = 0.5;
 /// Largest number of ticks that the model catches up after a gap. After a longer gap, the channel starts from
 /// rest.
 constexpr std::int64_t most_ticks = 1000;
-/// Ticks that a plan is carried over at most; after that the feedforward starts again.
+/// Longest gap over which a plan is continued [ticks]. After a longer gap the feedforward starts again.
 constexpr std::int64_t most_planned_ticks = 10;
 
 FeedforwardSettings accepted(const ChannelSettings& settings, double tick_s) {
@@ -58,7 +58,7 @@ void ChannelController::start(double command_kpa, ChannelOutput& channel) noexce
   channel.command_kpa = limit(limits_, command_kpa, command_kpa, 0).command_kpa;
   channel.safe_kpa = channel.free_kpa = channel.command_kpa;
   channel.displacement_mm = channel.pressure_kpa = channel.temperature_c =
-      not_known;  // what was never read is not 0
+      not_known;  // a value that was never read is unknown, not 0
   running_.reset(channel.command_kpa);
   plausibility_.reset();
   jumps_.reset();
@@ -114,7 +114,7 @@ void ChannelController::send(const ChannelDemand& demand, double wanted_kpa,
                                                                  : BindingLimit::step_squeeze;
     return;
   }
-  // A vent is meant to go at the slew limit.
+  // A vent moves at the slew limit as intended.
   const double behind_kpa = in_range(limits_, wanted_kpa) - limited.command_kpa;
   const bool slewed = limited.slewing && demand.mode != DemandMode::vent;
   channel.bound_by = !slewed || std::abs(behind_kpa) <= unnoticed_kpa ? BindingLimit::none
@@ -122,7 +122,7 @@ void ChannelController::send(const ChannelDemand& demand, double wanted_kpa,
                                                                       : BindingLimit::rig_slew_down;
 }
 
-/// Returns how many ticks it is since the last one.
+/// Returns the number of ticks since the last call.
 std::int64_t ChannelController::advance(Nanoseconds now, double command_kpa) noexcept {
   std::int64_t ticks = 1;
   if (loop_ == Loop::stopped) {
@@ -140,7 +140,7 @@ std::int64_t ChannelController::advance(Nanoseconds now, double command_kpa) noe
   return ticks;
 }
 
-/// Returns what the model without offset expects of it [mm].
+/// Returns the reading that the model without offset predicts [mm].
 double ChannelController::take_reading(const ChannelInput& input, ChannelOutput& channel) noexcept {
   const model::Reading& reading = input.reading;
   const bool none_yet = reading.validity == model::Validity::none_yet;
@@ -199,7 +199,7 @@ void ChannelController::watch_model(const ChannelInput& input, double predicted_
   channel.health_rms_mm = health_.rms_mm();
 }
 
-/// The command that is wanted [kPa].
+/// Returns the requested command [kPa].
 double ChannelController::request(const ChannelDemand& demand, std::int64_t ticks,
                                   ChannelOutput& channel) noexcept {
   const bool tracks = demand.mode == DemandMode::displacement && demand.reference != nullptr;
@@ -243,7 +243,7 @@ double ChannelController::track(const ChannelDemand& demand, std::int64_t ticks,
   if (entering || released) pid_.align(channel.command_kpa);
   loop_ = demand.feedback_held ? Loop::held : Loop::closed;
   if (loop_ == Loop::closed && displacement_used_ && channel.validity == model::Validity::valid) {
-    // The error is taken where the reading was: against the reference of that time, not of now.
+    // The error is computed with the reference at the time of the reading.
     const double then_mm =
         limit_reference(limits_, demand.reference->value_at(demand.time_s - channel.age_s)).reference_mm;
     channel.feedback_kpa = pid_.step(then_mm, channel.displacement_mm, planned.pressure_kpa);

@@ -1,6 +1,6 @@
 #pragma once
-// One finger in one tick: reading and reference in, command out. Feedforward plus PID through the limits,
-// with the model running alongside on the command that was really sent.
+// Controls one finger for one tick: from reading and reference to the command. Feedforward and PID pass the
+// limits. The model runs in parallel with the commands that were really sent.
 
 #include <cstdint>
 #include <optional>
@@ -20,23 +20,23 @@
 namespace softgrip::control {
 
 struct ChannelInput {
-  Nanoseconds now = 0;     ///< the tick's place on the grid
-  model::Reading reading;  ///< as the driver gave it
-  ChannelDemand demand;    ///< what the player or the supervisor asks
-  /// Follow the finger to where it is: the difference between reading and model becomes the model's offset.
-  /// Only at rest, before motion starts; see ChannelOutput::synchronised.
+  Nanoseconds now = 0;     ///< scheduled time of the tick
+  model::Reading reading;  ///< as the driver returned it
+  ChannelDemand demand;    ///< demand of the player or the supervisor
+  /// Moves the model's offset to the difference between reading and model. Used only at rest, before motion
+  /// starts; see ChannelOutput::synchronised.
   bool resynchronise = false;
-  /// The finger moves without touching anything, as far as is known: only then is the residual the model's.
+  /// The finger moves without contact, as far as is known. Only then does the residual describe the model.
   bool free_motion = true;
 };
 
-/// Settings must hold what their headers say, and check_feedforward() (control/feedforward/invertibility.h)
-/// must have accepted model and feedforward; otherwise the feedforward is none.
+/// The settings must satisfy their headers, and check_feedforward() (control/feedforward/invertibility.h)
+/// must have accepted model and feedforward. Otherwise there is no feedforward.
 class ChannelController {
  public:
   ChannelController(const ChannelSettings& settings, double tick_s);
 
-  /// Starts from rest with `command_kpa` (clamped) at the board.
+  /// Starts from rest with `command_kpa` (limited) at the board.
   void start(double command_kpa, ChannelOutput& channel) noexcept;
 
   /// Runs one period. On entry, `channel` holds the result of start() or of the last tick. On return, it
@@ -44,8 +44,8 @@ class ChannelController {
   /// period apart (missed cycles), the model catches up.
   void tick(const ChannelInput& input, ChannelOutput& channel) noexcept;
 
-  /// How far ahead of now the feedforward asks the reference. A reference that changes its mind does so
-  /// without a step when it is cut at now + preview_s().
+  /// Returns the time by which the feedforward reads the reference ahead. A reference that is cut at now +
+  /// preview_s() changes without a step of the command.
   [[nodiscard]] double preview_s() const noexcept { return feedforward_.preview_s(); }
   [[nodiscard]] const LimitSettings& limits() const noexcept { return limits_; }
   /// Returns the offset that resynchronisation added to the model [mm].
@@ -55,9 +55,9 @@ class ChannelController {
   /// The source of the command.
   enum class Loop : std::uint8_t {
     stopped,  ///< no tick since start()
-    open,     ///< the demand by itself: hold, vent, pressure
+    open,     ///< the demand alone: hold, vent, pressure
     closed,   ///< feedforward and feedback
-    held,     ///< the same, with the feedback as it is
+    held,     ///< as closed, with constant feedback
   };
   [[nodiscard]] bool tracking() const noexcept { return loop_ == Loop::closed || loop_ == Loop::held; }
 
@@ -75,7 +75,7 @@ class ChannelController {
   double tick_s_;
   LimitSettings limits_;
   double noise_mm_;
-  double need_share_;  ///< of the way to a new ChannelOutput::free_kpa that it goes in a tick
+  double need_share_;  ///< share of the distance to a new ChannelOutput::free_kpa per tick
   bool displacement_used_;
   RunningModel running_;
   FreeCurve curve_;
@@ -89,7 +89,7 @@ class ChannelController {
   Nanoseconds last_now_ = 0;
   std::uint32_t sequence_ = 0;  ///< of the last reading
   double offset_mm_ = 0;
-  /// While following the finger: since how many ticks it is settled.
+  /// During re-synchronisation: number of ticks since the residual settled.
   std::optional<std::int64_t> settled_ticks_;
 };
 

@@ -9,20 +9,20 @@
 
 namespace softgrip::control {
 
-/// Modes can change from any to any at any tick; the command stays continuous.
+/// The mode may change in each tick; the command remains continuous.
 struct ChannelDemand {
   enum class Mode : std::uint8_t {
-    hold,          ///< the command stays where it is
+    hold,          ///< the command does not change
     vent,          ///< to the rest pressure, at the slew limit
     pressure,      ///< the command is `pressure_kpa`, within the limits; no feedback
     displacement,  ///< feedforward and feedback follow `reference`
   };
   Mode mode = Mode::hold;
-  double pressure_kpa = 0;               ///< of pressure
-  const Reference* reference = nullptr;  ///< of displacement [mm]; on the clock of `time_s`
+  double pressure_kpa = 0;               ///< for mode pressure
+  const Reference* reference = nullptr;  ///< for mode displacement [mm]; on the clock of `time_s`
   double time_s = 0;                     ///< now, on that clock
-  /// Of displacement with feedforward `planned`: the plan for the reference; nullptr where there is none. Its
-  /// clock is that of `time_s` less plan_origin_s.
+  /// For mode displacement with feedforward `planned`: the plan for the reference; nullptr without a plan.
+  /// Its clock is that of `time_s` minus plan_origin_s.
   const PressurePlan* plan = nullptr;
   double plan_origin_s = 0;
   /// In mode displacement: the finger is in contact with an object. The feedback keeps its value, so the
@@ -30,7 +30,7 @@ struct ChannelDemand {
   bool feedback_held = false;
   /// Bounds of the step in every mode. The command stays at or below both, regardless of the demand.
   double pressure_max_kpa = std::numeric_limits<double>::infinity();
-  /// Relative to the command that the free finger needs to rest at the present displacement
+  /// Relative to the command under which the free finger rests at the present displacement.
   double squeeze_max_kpa = std::numeric_limits<double>::infinity();
 };
 

@@ -7,11 +7,12 @@
 namespace softgrip::control {
 
 namespace {
-/// How much of the past reference is kept: feedback compares a reading with the reference of its time.
+/// Part of the past reference that is kept [s], because feedback compares a reading with the reference of its
+/// time.
 constexpr double kept_s = 1;
 using Mode = ChannelDemand::Mode;
 
-/// False when the reference is full.
+/// Returns false if the reference has no space.
 bool append_ramp(Reference& reference, const Target& target, double value) noexcept {
   if (target.speed > 0) return reference.ramp_to(value, target.speed);
   if (target.duration_s > 0) return reference.ramp_for(value, target.duration_s);
@@ -104,8 +105,8 @@ void ChannelPlayer::begin(const Step& step, const PressurePlan* plan, double tim
   }
 }
 
-/// Starts the ramp of a target. A displacement goes on from the reference that is followed, else from where
-/// the finger is; a pressure from the last command.
+/// Starts the ramp to a target. A displacement continues from the present reference, or without one from the
+/// position of the finger; a pressure continues from the last command.
 void ChannelPlayer::go_to(const Target& target, double value, double time_s,
                           const ChannelOutput& seen) noexcept {
   Reference& reference = target.quantity == Target::Quantity::displacement_mm ? displacement_ : pressure_;
@@ -125,7 +126,7 @@ void ChannelPlayer::go_to(const Target& target, double value, double time_s,
     mode_ = Mode::displacement;
   }
   if (!append_ramp(reference, target, value)) {
-    reference.forget_before(time_s);  // many short steps: give up the past
+    reference.forget_before(time_s);  // after many short steps, discard the past
     append_ramp(reference, target, value);
   }
   ramp_end_s_ = reference.end_s();
@@ -162,7 +163,7 @@ bool ChannelPlayer::idle(double time_s, const ChannelOutput& seen) noexcept {
 
 Progress ChannelPlayer::tick(double time_s, const ChannelOutput& seen) noexcept {
   take(seen);
-  // A sensor that stands still looks like a finger that does.
+  // A frozen sensor looks like a finger at rest.
   feel(seen, !seen.stands_still || step_->kind == StepKind::release);
   look_for_contact(time_s, seen);
   Progress progress = advance(time_s, seen);
@@ -208,7 +209,7 @@ Progress ChannelPlayer::advance(double time_s, const ChannelOutput& seen) noexce
     case Stage::done:
       break;
   }
-  // Without usable readings, the channel cannot confirm the hold.
+  // Without usable readings the channel cannot confirm the hold.
   return verified_ && !usable(step_->verify, seen) ? Progress::pending : Progress::passed;
 }
 

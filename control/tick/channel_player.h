@@ -1,5 +1,5 @@
 #pragma once
-// One channel's way through one step of a sequence.
+// Executes one step of a sequence for one channel.
 
 #include <cstdint>
 #include <optional>
@@ -14,44 +14,45 @@
 
 namespace softgrip::control {
 
-/// How far a channel is with its step.
+/// The progress of a channel in its step.
 enum class Progress : std::uint8_t { pending, passed, failed };
 
 /// Constant properties of a channel.
 struct ChannelTraits {
   double margin_mm = 0;           ///< of grip detection
   double rest_kpa = 0;            ///< the rest pressure
-  double preview_s = 0;           ///< how far ahead the feedforward uses the reference
+  double preview_s = 0;           ///< time by which the feedforward reads the reference ahead
   bool displacement_used = true;  ///< the channel uses its displacement
 };
 
-/// `seen` is everywhere what the last tick left behind.
+/// In all functions, `seen` is the output of the last tick.
 class ChannelPlayer {
  public:
   explicit ChannelPlayer(const ChannelTraits& traits) noexcept
       : traits_(traits), contact_(traits.margin_mm) {}
 
-  /// Before the first step: keeps its command, touches nothing, forgets the last answer.
+  /// Prepares the first step: keeps the command, assumes no contact, and clears the last result.
   void reset() noexcept;
-  /// The first or another attempt at a step. `step` and `plan` (nullptr: none) outlive it. A hold step goes
-  /// on with the plan of the step before.
+  /// Starts an attempt at a step. `step` and `plan` (nullptr: none) must outlive the attempt. A
+  /// hold step continues with the plan of the step before.
   void begin(const Step& step, const PressurePlan* plan, double time_s, const ChannelOutput& seen) noexcept;
-  /// Back to where the attempt started, as fast as it went.
+  /// Returns to the start of the attempt, at the same speed.
   void back_off(double time_s, const ChannelOutput& seen) noexcept;
-  /// One tick of the step, or of backing off (passed: there).
+  /// Executes a tick of the step, or of the return (passed: it is finished).
   Progress tick(double time_s, const ChannelOutput& seen) noexcept;
-  /// One tick outside a sequence: true once when what is held is lost.
+  /// Executes a tick outside a sequence. Returns true once if a held part is lost.
   bool idle(double time_s, const ChannelOutput& seen) noexcept;
 
   /// Returns the demand of the last tick; `reference` points into this object.
   [[nodiscard]] ChannelDemand demand(double time_s) const noexcept;
   /// Returns true if the finger is in contact.
   [[nodiscard]] bool touching() const noexcept { return contact_.touching(); }
-  /// It moves less than its model, and not because it has changed: something is in its way.
+  /// Returns true if the finger moves less than its model because an object is in its way.
   [[nodiscard]] bool held_back() const noexcept { return follow_.held(); }
-  /// Once per attempt, when the finger has met something on its way: what it does now.
+  /// Returns the action after contact in the motion; nothing without contact or after the first call of an
+  /// attempt.
   [[nodiscard]] std::optional<OnContact> take_contact() noexcept;
-  /// It stays with the pressure of its first touch.
+  /// Returns true if the finger stays at the pressure of its first contact.
   [[nodiscard]] bool stopped_by_contact() const noexcept { return stopped_by_contact_; }
   /// Returns the result if the step failed now: NO PART or ERROR.
   [[nodiscard]] GripResult failure() const noexcept { return failure_; }
@@ -59,19 +60,19 @@ class ChannelPlayer {
   [[nodiscard]] GripResult result() const noexcept { return result_; }
   [[nodiscard]] GripEvidence evidence() const noexcept { return evidence_; }
   void answer(GripResult result, GripEvidence evidence) noexcept;
-  /// A grip was verified: HOLDING, watched from now on with the step's criterion.
+  /// Sets HOLDING after a verified grip. The grip is then monitored with the step's criterion.
   void answer_holding(double time_s) noexcept;
-  /// On what a verification of this channel rests.
+  /// Returns the evidence of a verification of this channel.
   [[nodiscard]] GripEvidence evidence_of(VerifyBy by) const noexcept;
-  /// How much less than its free-motion envelope the finger moved, in the last tick; NaN: unknown [mm].
+  /// Returns the displacement shortfall against free motion in the last tick [mm]; NaN if unknown.
   [[nodiscard]] double shortfall_mm() const noexcept { return shortfall_mm_; }
 
-  /// Keeps the command where it is.
+  /// Keeps the present command.
   void freeze() noexcept {
     mode_ = ChannelDemand::Mode::hold;
     plan_ = nullptr;
   }
-  /// When the ramp or the profile of the present step ends.
+  /// Returns the time at which the ramp or the profile of the present step ends.
   [[nodiscard]] double motion_end_s() const noexcept {
     return stage_ == Stage::profile ? stage_end_s_ : ramp_end_s_;
   }
@@ -120,24 +121,24 @@ class ChannelPlayer {
   Stage stage_ = Stage::done;
   ChannelDemand::Mode mode_ = ChannelDemand::Mode::hold;
   Reference displacement_;  ///< of mode displacement [mm]
-  Reference pressure_;      ///< of mode pressure [kPa], but for profiles
+  Reference pressure_;      ///< for mode pressure [kPa], except for profiles
   const PressurePlan* plan_ = nullptr;
   double plan_origin_s_ = 0;
   double profile_start_s_ = 0;
   double pressure_kpa_ = 0;
-  double start_value_ = 0;  ///< where the attempt started, in the target's unit
+  double start_value_ = 0;  ///< start of the attempt, in the target's unit
   double ramp_end_s_ = 0;
   double stage_end_s_ = 0;
   double deadline_s_ = 0;
   double shortfall_mm_ = 0;
-  bool within_ = false;   ///< the tolerance
-  Bounds bounds_;         ///< of the step, or of the one before a hold
-  bool profile_ = false;  ///< the pressure is that of the step's profile
-  bool closing_ = false;  ///< the motion of the step goes up
-  /// Since when it touches something without a break, its command at or above rest.
+  bool within_ = false;   ///< the displacement is within the tolerance
+  Bounds bounds_;         ///< of the step, or for a hold of the step before
+  bool profile_ = false;  ///< the pressure follows the step's profile
+  bool closing_ = false;  ///< the motion of the step is upward
+  /// Start of the present uninterrupted contact with the command at or above rest.
   std::optional<double> touching_since_s_;
-  bool met_ = false;                      ///< something, in this attempt
-  std::optional<OnContact> contact_met_;  ///< not taken yet
+  bool met_ = false;                      ///< contact occurred in this attempt
+  std::optional<OnContact> contact_met_;  ///< not read by take_contact() yet
   bool stopped_by_contact_ = false;
   bool squeezing_ = false;       ///< the pressure stays above the free-motion pressure by a fixed amount
   double squeeze_from_kpa_ = 0;  ///< at squeeze_from_s_
@@ -147,7 +148,7 @@ class ChannelPlayer {
   EvidenceWindow window_;
   bool verified_ = false;  ///< in this attempt
   HoldWatch hold_;
-  Verify held_by_;  ///< criterion of what is held
+  Verify held_by_;  ///< criterion for the held part
   GripResult failure_ = GripResult::error;
   GripResult result_ = GripResult::none;
   GripEvidence evidence_ = GripEvidence::none;

@@ -24,9 +24,9 @@ struct ChannelSettings {
   ModelHealthSettings health;
   /// The channel has an input for the measured pressure (a monitor output of the valve).
   bool pressure_measured = false;
-  /// False: the displacement sensor is absent or blocked by the work. Its readings are recorded, but nothing
-  /// depends on them: no fault, no feedback, no detection; only pressure targets and verification by pressure
-  /// (the weaker kind) are possible.
+  /// False: the displacement sensor is absent, or the work blocks it. Its readings are recorded but not used:
+  /// no faults, feedback or detection. Only pressure targets and verification by pressure (weaker) are
+  /// possible.
   bool displacement_used = true;
 };
 

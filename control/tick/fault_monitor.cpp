@@ -27,7 +27,7 @@ FaultCode code_of(model::Validity validity) noexcept {
   return FaultCode::sensor_error;
 }
 
-/// The board itself says so: no need to wait for more of the same.
+/// Returns true if the board reports the fault itself, so that no repetition is required.
 bool said_by_board(FaultCode code) noexcept {
   return inhibits(code) && code != FaultCode::cycles_lost;
 }
@@ -37,7 +37,7 @@ std::size_t window_of(double delay_s, double rate_hz) {
   return static_cast<std::size_t>(std::ceil(delay_s * rate_hz)) + 2;
 }
 
-/// In windows: how long a finger may take to deflate that still had pressure when the daemon or the bus came.
+/// Time for a finger under pressure to deflate after the daemon or the bus starts [windows].
 constexpr std::size_t grace_windows = 4;
 
 }  // namespace
@@ -128,8 +128,8 @@ Fault FaultMonitor::channel(std::size_t index, const TickInput& input, const Cha
 Fault FaultMonitor::reading(Channel& channel, std::uint8_t index, const ChannelOutput& seen,
                             bool starting) const noexcept {
   const bool silent = seen.validity == model::Validity::none_yet || seen.validity == model::Validity::stale;
-  // While the bus is down, silence is its fault, and the reading is still old in the tick in which it is
-  // back.
+  // While the bus is down, missing readings are due to its fault. In the first tick after it, the reading is
+  // still old.
   const bool invalid = seen.validity != model::Validity::valid && !(silent && (starting || !bus_good()));
   channel.invalid_cycles = invalid ? channel.invalid_cycles + 1 : 0;
   channel.beyond_cycles = seen.displacement_beyond ? channel.beyond_cycles + 1 : 0;
@@ -142,9 +142,10 @@ Fault FaultMonitor::reading(Channel& channel, std::uint8_t index, const ChannelO
   return {};
 }
 
-/// A cycle without an exchange says nothing, neither for nor against: a wire that stutters must not hide a
-/// burst line. Without a measured pressure there is nothing to be off. While the daemon starts and after a
-/// gap that is a fault itself the finger may still have the pressure of before.
+/// Returns true if the pressure has differed for pressure_cycles cycles. A cycle without an exchange changes
+/// no count, so an unreliable line cannot hide a burst line. Without a measured pressure there is no
+/// difference. During start-up, and after a gap that is a fault itself, the finger may still have its earlier
+/// pressure.
 bool FaultMonitor::pressure_due(Channel& channel, double pressure_kpa, bool starting) const noexcept {
   if (settings_.pressure_cycles == 0) return false;
   if (starting || bus_cycles_ >= settings_.bus_down_cycles) {
@@ -160,7 +161,7 @@ bool FaultMonitor::pressure_due(Channel& channel, double pressure_kpa, bool star
   return channel.pressure_cycles >= settings_.pressure_cycles;
 }
 
-/// The newest command is the usual answer.
+/// Compares the newest command first, because it usually matches.
 bool FaultMonitor::off(const Channel& channel, double kpa, std::size_t window,
                        double tolerance_kpa) const noexcept {
   const std::vector<double>& sent = channel.sent_kpa;

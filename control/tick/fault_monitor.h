@@ -1,5 +1,6 @@
 #pragma once
-// Sees what is wrong in a tick and says when it has lasted long enough to be a fault. Latches nothing.
+// Detects fault conditions in a tick and decides when they have lasted long enough to be a fault. Latches
+// nothing.
 
 #include <array>
 #include <cstddef>
@@ -25,7 +26,7 @@ class FaultMonitor {
   /// Returns the most severe cause that is present in this tick and is a fault or may become one. While it is
   /// present, a reset would not last.
   [[nodiscard]] const Fault& cause() const noexcept { return cause_; }
-  /// No bus fault is there in this tick.
+  /// Returns true if this tick has no bus fault.
   [[nodiscard]] bool bus_good() const noexcept { return bus_cycles_ == 0; }
 
  private:
@@ -34,8 +35,8 @@ class FaultMonitor {
     std::uint32_t beyond_cycles = 0;
     std::uint32_t readback_cycles = 0;
     std::uint32_t pressure_cycles = 0;
-    std::uint32_t pressure_grace = 0;  ///< cycles for which the pressure may still be what it was before
-    std::vector<double> sent_kpa;      ///< ring of the past commands, as far back as anything looks
+    std::uint32_t pressure_grace = 0;  ///< cycles for which the pressure may still have an earlier value
+    std::vector<double> sent_kpa;      ///< ring of the past commands for the longest window
   };
   void remember(std::span<const ChannelOutput> seen) noexcept;
   void note_cause(const Fault& fault) noexcept;
@@ -44,7 +45,8 @@ class FaultMonitor {
   Fault reading(Channel& channel, std::uint8_t index, const ChannelOutput& seen,
                 bool starting) const noexcept;
   bool pressure_due(Channel& channel, double pressure_kpa, bool starting) const noexcept;
-  /// Farther than the tolerance from every command of the newest `window`.
+  /// Returns true if the pressure is outside the range of the newest `window` commands by more than the
+  /// tolerance.
   [[nodiscard]] bool off(const Channel& channel, double kpa, std::size_t window,
                          double tolerance_kpa) const noexcept;
 

@@ -1,5 +1,5 @@
 #pragma once
-// The parameters of a recipe: numbers in it that a start may choose.
+// The parameters of a sequence: numbers that a start may choose.
 
 #include <string>
 
@@ -11,12 +11,12 @@ namespace softgrip::control {
 struct Parameter {
   std::string name;
   std::string unit;  ///< as at the end of keys: "kpa", "mm_per_s"; empty for a plain number
-  double lower = 0;  ///< both ends are allowed
+  double lower = 0;  ///< both limits are allowed
   double upper = 0;
   double default_value = 0;
   std::string about;      ///< one sentence
-  document::Location at;  ///< of its name in the file
-  double value = 0;       ///< with which the sequence was read
+  document::Location at;  ///< place of its name in the file
+  double value = 0;       ///< value with which the sequence was read
 };
 
 /// An argument of a start: the name of a parameter and its value, in the parameter's unit.

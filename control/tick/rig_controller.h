@@ -17,12 +17,13 @@
 
 namespace softgrip::control {
 
-/// The rig's control. Construction may allocate and throws nothing that is not std::bad_alloc: settings were
-/// checked by settings_problems(). tick() allocates nothing, calls nothing of the system, cannot fail.
+/// The control of a rig. The constructor may allocate and throws only std::bad_alloc, because
+/// settings_problems() has checked the settings. tick() does not allocate, does not call the system, and
+/// cannot fail.
 class RigController {
  public:
   explicit RigController(const RigSettings& settings);
-  // The loop looks at its output in place.
+  // The loop reads the output in this object.
   RigController(const RigController&) = delete;
   RigController& operator=(const RigController&) = delete;
 
@@ -33,7 +34,7 @@ class RigController {
   [[nodiscard]] const TickOutput& output() const noexcept { return output_; }
 
  private:
-  /// One finger and what is particular of it.
+  /// The state of one channel.
   struct Channel {
     Channel(const RigSettings& rig, const ChannelSettings& settings);
     [[nodiscard]] double rest_kpa() const noexcept { return resting_kpa(controller.limits()); }
@@ -44,12 +45,12 @@ class RigController {
     ChannelController controller;
     RestWatch rest;
     LimitWatch limits;
-    Nanoseconds longest_age;  ///< of a reading
-    bool displacement_used;   ///< it uses its displacement
+    Nanoseconds longest_age;  ///< largest age of a reading
+    bool displacement_used;   ///< the channel uses its displacement
     bool valid_before = true;
     bool unsteady_before = false;
     bool resynchronise = false;
-    /// The reason that was found when rest was last looked for.
+    /// The reason found in the last check for rest.
     UnsettledReason unsettled = UnsettledReason::none;
   };
 
@@ -80,7 +81,7 @@ class RigController {
   double seeking_since_s_ = 0;
   Nanoseconds began_ = no_tick;
   Nanoseconds last_now_ = no_tick;
-  bool unheard_ = false;  ///< there was a gap, and the bus has reported no exchange since
+  bool unheard_ = false;  ///< there was a gap, and the bus has reported no exchange since then
 
   static constexpr Nanoseconds no_tick = -1;
 };

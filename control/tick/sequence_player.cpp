@@ -50,7 +50,7 @@ SequencePlayer::Outcome SequencePlayer::tick(double time_s, std::span<const Chan
     }
   });
   if (to_grip) return go_to_step(now().grip_step, time_s, seen, events);
-  // A lost part is acted on at once; every other answer waits for the other fingers.
+  // The sequence reacts to a lost part at once. All other results wait for the other fingers.
   if (done_ != now().channels && !(holds && refused_ != 0)) {
     return {};
   }
@@ -74,7 +74,7 @@ SequencePlayer::Outcome SequencePlayer::next_step(std::size_t index, double time
   return finished(OnFail::hold, events);
 }
 
-/// Ends the present step as it is: who takes no part in the one that follows stays where it is.
+/// Ends the present step and begins another one. Channels that are not in the new step keep their command.
 SequencePlayer::Outcome SequencePlayer::go_to_step(std::size_t index, double time_s,
                                                    std::span<const ChannelOutput> seen,
                                                    EventList& events) noexcept {
@@ -85,7 +85,7 @@ SequencePlayer::Outcome SequencePlayer::go_to_step(std::size_t index, double tim
   return next_step(index, time_s, seen, events);
 }
 
-/// True when the sequence is to go on with its next grip.
+/// Returns true if the sequence continues with its next grip.
 bool SequencePlayer::take_contact(std::size_t channel, const ChannelOutput& seen,
                                   EventList& events) noexcept {
   const std::optional<OnContact> met = channels_[channel].take_contact();
@@ -247,7 +247,7 @@ bool SequencePlayer::free_motion(std::size_t channel, bool at_rest) const noexce
   const ChannelPlayer& player = channels_[channel];
   if (player.result() == GripResult::holding) return false;
   if (player.stopped_by_contact()) return false;
-  // There nothing is expected in the way; what is, is a blocked line or a finger that has changed.
+  // These steps expect no contact. A difference means a blocked line or a changed finger.
   if (plays(StepKind::track) || plays(StepKind::pressure)) return true;
   const bool may_touch = plays(StepKind::grip) || plays(StepKind::hold) || plays(StepKind::release);
   return may_touch ? !player.touching() : at_rest || !player.held_back();

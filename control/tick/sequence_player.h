@@ -1,6 +1,6 @@
 #pragma once
-// Plays a prepared sequence: all channels of a step start it together and the next step starts when the last
-// of them has its answer. Allocates nothing after construction.
+// Executes a prepared sequence: all channels of a step start together, and the next step starts when the last
+// of them has a result. Does not allocate after construction.
 
 #include <cstddef>
 #include <cstdint>
@@ -17,7 +17,7 @@ class SequencePlayer {
  public:
   explicit SequencePlayer(std::vector<ChannelPlayer> channels = {}) : channels_(std::move(channels)) {}
 
-  /// From rest: clears the answers of the sequence's channels and begins the first step.
+  /// Starts from rest: clears the results of the sequence's channels and begins the first step.
   void start(const PreparedSequence& sequence, double time_s, std::span<const ChannelOutput> seen,
              EventList& events) noexcept;
 
@@ -25,9 +25,9 @@ class SequencePlayer {
   struct Outcome {
     bool finished = false;
     SequenceEnd end = SequenceEnd::done;
-    OnFail action = OnFail::hold;  ///< of a finished one: vent, hold or abort
+    OnFail action = OnFail::hold;  ///< of a finished sequence: vent, hold or abort
   };
-  /// One tick of the running sequence.
+  /// Executes a tick of the running sequence.
   Outcome tick(double time_s, std::span<const ChannelOutput> seen, EventList& events) noexcept;
 
   /// Handles a release request: continues with the next release step. Without one, the sequence is finished
@@ -37,7 +37,7 @@ class SequencePlayer {
   /// Ends the sequence from outside. Channels without a result get ERROR. So do channels that were HOLDING,
   /// if this is no longer certain: after a fault, or if they are half released and not `venting`.
   void interrupt(SequenceEnd end, std::uint32_t venting, EventList& events) noexcept;
-  /// No sequence runs: re-verifies what is still held.
+  /// Executes a tick without a sequence: verifies held parts again.
   void idle_tick(double time_s, std::span<const ChannelOutput> seen, EventList& events) noexcept;
   /// Records that a vent released these channels: HOLDING becomes RELEASED.
   void vented(std::uint32_t channels, EventList& events) noexcept;
@@ -45,7 +45,7 @@ class SequencePlayer {
   void refuse(std::uint32_t channels, EventList& events) noexcept;
   /// Returns true if any channel has NO PART, PART LOST, RELEASED or ERROR.
   [[nodiscard]] bool has_answers() const noexcept;
-  /// Clears these.
+  /// Clears these results.
   void acknowledge(std::uint32_t request, EventList& events) noexcept;
 
   [[nodiscard]] ChannelDemand demand(std::size_t channel, double time_s) const noexcept;
@@ -61,7 +61,7 @@ class SequencePlayer {
   template <class Do>
   void for_each_of_step(Do&& act) noexcept;
   [[nodiscard]] const PreparedStep& now() const noexcept { return sequence_->steps[step_]; }
-  /// A step of this kind is under way.
+  /// Returns true if a step of this kind is in progress.
   [[nodiscard]] bool plays(StepKind kind) const noexcept {
     return play_ != Play::nothing && now().step.kind == kind;
   }
@@ -83,8 +83,8 @@ class SequencePlayer {
 
   enum class Play : std::uint8_t {
     nothing,      ///< no sequence runs
-    step,         ///< an attempt at the present step is under way
-    backing_off,  ///< back to where the attempt started, for another one
+    step,         ///< an attempt at the present step is in progress
+    backing_off,  ///< the channels return to the start of the attempt, for another attempt
   };
 
   std::vector<ChannelPlayer> channels_;
@@ -92,9 +92,9 @@ class SequencePlayer {
   const PreparedSequence* sequence_ = nullptr;  ///< while one runs
   std::uint16_t step_ = 0;
   std::uint32_t attempts_ = 0;           ///< at the present step
-  SequenceEnd end_ = SequenceEnd::done;  ///< failed as soon as some step did
-  std::uint32_t done_ = 0;               ///< channels with an answer to the step
-  std::uint32_t refused_ = 0;            ///< those whose answer is a failure
+  SequenceEnd end_ = SequenceEnd::done;  ///< failed after the first failure of a step
+  std::uint32_t done_ = 0;               ///< channels with a result of the step
+  std::uint32_t refused_ = 0;            ///< channels whose result is a failure
 };
 
 }  // namespace softgrip::control

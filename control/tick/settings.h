@@ -13,7 +13,7 @@
 
 namespace softgrip::control {
 
-/// Most channels of one rig. A bound, so that snapshots and rows are plain values of fixed size.
+/// Largest number of channels of a rig, so that snapshots and rows have a fixed size.
 inline constexpr std::size_t max_channels = 16;
 
 /// The phase of a rig, which determines its safe output.
@@ -24,7 +24,7 @@ enum class Phase : std::uint8_t {
   releasing,  ///< a release step
 };
 inline constexpr std::size_t phase_count = 4;
-/// "idle", "closing", "holding", "releasing": the keys of `safe_action` in the rig file.
+/// Returns "idle", "closing", "holding" or "releasing": the keys of `safe_action` in the rig file.
 [[nodiscard]] std::string_view name_of(Phase phase) noexcept;
 
 /// The action of the outputs if motion must end.
@@ -32,12 +32,12 @@ enum class SafeAction : std::uint8_t {
   vent,  ///< to the rest pressure: at the slew limit while the loop runs, at once when it leaves
   hold,  ///< stay at the last command
 };
-/// "vent", "hold"
+/// Returns "vent" or "hold".
 [[nodiscard]] std::string_view name_of(SafeAction action) noexcept;
 
 /// Grip detection, for all channels.
 struct DetectionSettings {
-  /// A finger that moved less than the free model by at least this, at the same command, meets something.
+  /// A finger whose displacement shortfall is at least this is in contact with an object.
   double margin_mm = 0.6;
   /// RMSE of the models, if known (NaN: unknown). The margin must be at least three times as large.
   double model_rmse_mm = std::numeric_limits<double>::quiet_NaN();
@@ -61,25 +61,26 @@ struct FaultSettings {
   std::uint32_t bus_down_cycles = 5;         ///< cycles in a row without a good exchange
   std::uint32_t invalid_reading_cycles = 3;  ///< cycles in a row in which a channel's reading is not valid
   std::uint32_t displacement_cycles = 3;     ///< cycles in a row outside the limits' displacement range
-  std::uint32_t readback_cycles = 5;         ///< cycles in a row in which the read-back is off
-  double readback_tolerance_kpa = 1;         ///< off: farther than this from every command of the window
-  double readback_delay_s = 0.1;             ///< how far back that window of past commands reaches
-  std::uint32_t pressure_cycles = 0;  ///< cycles in a row in which the measured pressure is off; 0: unwatched
-  double pressure_tolerance_kpa = 5;  ///< off: farther than this from every command of the window
-  double pressure_delay_s = 0.5;      ///< how far back that window of past commands reaches
+  std::uint32_t readback_cycles = 5;         ///< consecutive cycles in which the read-back differs
+  double readback_tolerance_kpa = 1;         ///< differs: outside the window's commands by more than this
+  double readback_delay_s = 0.1;             ///< duration of the window of past commands
+  std::uint32_t pressure_cycles = 0;  ///< consecutive cycles in which the measured pressure differs; 0: not
+                                      ///< checked
+  double pressure_tolerance_kpa = 5;  ///< differs: outside the window's commands by more than this
+  double pressure_delay_s = 0.5;      ///< duration of the window of past commands
   bool model_unfit_is_fault = false;  ///< false: model health is only reported
-  bool unsteady_is_fault = false;     ///< a sensor that jumps there and back; false: it is only reported
+  bool unsteady_is_fault = false;     ///< a sensor that jumps back and forth; false: it is only reported
   std::uint32_t overrun_cycles = 0;   ///< this number of cycles missed at once is a fault; 0: only counted
 };
 
 /// All settings of a RigController.
 struct RigSettings {
-  double rate_hz = 200;                   ///< of tick()
+  double rate_hz = 200;                   ///< rate of tick()
   std::vector<ChannelSettings> channels;  ///< 1 to max_channels, names unique
   SafetySettings safety;
-  double rest_band_mm = 0.2;   ///< a finger is at rest when its readings stay within this band ...
+  double rest_band_mm = 0.2;   ///< a finger is at rest while its readings stay within this band ...
   double rest_time_s = 0.3;    ///< ... for this time; a sequence starts from there
-  double rest_timeout_s = 10;  ///< a start that finds no rest by then ends with ERROR
+  double rest_timeout_s = 10;  ///< a start without rest within this time ends with ERROR
   DetectionSettings detection;
   FaultSettings faults;
 };

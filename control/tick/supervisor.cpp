@@ -40,8 +40,7 @@ void Supervisor::latch(const SupervisorInputs& inputs, SupervisorOutputs& output
   told_ |= place;
   events.add(Event{Event::Kind::fault_latched, fault.channel, static_cast<std::uint16_t>(fault.code), 0,
                    fault.value, GripEvidence::none});
-  // Later faults find the rig idle, but what it holds it holds because of the phase in which the first one
-  // came.
+  // A later fault occurs while the rig is idle. The phase of the first fault determines which channels hold.
   const bool first = state_ != State::faulted;
   if (first) fault_phase_ = inputs.phase;
   if (action_for(fault.code, fault_phase_) == SafeAction::vent) venting_ = all_;
@@ -154,7 +153,7 @@ void Supervisor::answer_stop(const SupervisorInputs& inputs, const Request& requ
   }
 }
 
-/// Decided here and not where the client is: only the loop knows which start runs in this tick.
+/// Only the loop knows which start runs in this tick, so the decision is made here and not at the client.
 void Supervisor::answer_stop_of(const SupervisorInputs& inputs, const Request& request,
                                 SupervisorOutputs& outputs, EventList& events) noexcept {
   if (playing() && start_request_ == request.of_start) {
@@ -165,7 +164,7 @@ void Supervisor::answer_stop_of(const SupervisorInputs& inputs, const Request& r
   events.add(Event::Kind::request_refused, RefusalCode::named_start_not_running, request.id);
 }
 
-/// A stop passes the starts that wait, so the start that it names may be among them.
+/// Marks a start that may still wait in the queue: a stop overtakes waiting starts.
 void Supervisor::withdraw(const Request& stop) noexcept {
   const bool may_wait = stop.of_start > taken_ && stop.of_start < stop.id;
   if (!may_wait || withdrawn(stop.of_start)) return;
@@ -177,7 +176,7 @@ bool Supervisor::withdrawn(std::uint32_t start) const noexcept {
   return start != 0 && std::find(withdrawn_.begin(), withdrawn_.end(), start) != withdrawn_.end();
 }
 
-/// Everything to rest. Never refused: it is the way out of a hold, faulted or not.
+/// Vents all channels. Never refused, because it ends each hold, also after a fault.
 void Supervisor::answer_vent(const Request& request, SupervisorOutputs& outputs, EventList& events) noexcept {
   venting_ = all_;
   if (state_ == State::faulted || state_ == State::starting) {
@@ -191,8 +190,8 @@ void Supervisor::answer_vent(const Request& request, SupervisorOutputs& outputs,
   go(State::stopping, request.id, events);
 }
 
-/// The gentle way out of a hold: a sequence releases as it says itself; what stays pressed without one goes
-/// to rest at the slew limit.
+/// Ends a hold gently: a sequence continues with its release step. Without a sequence, pressurised channels
+/// go to rest at the slew limit.
 void Supervisor::answer_release(const SupervisorInputs& inputs, const Request& request,
                                 SupervisorOutputs& outputs, EventList& events) noexcept {
   const auto refuse = [&](RefusalCode code) { events.add(Event::Kind::request_refused, code, request.id); };

@@ -1,5 +1,5 @@
 #pragma once
-// The rig's states: who may move when. Latches faults, answers requests, decides what is safe.
+// The states of the rig. Latches faults, handles requests and decides the safe action.
 //
 //   starting -> idle -> resynchronising -> running -> idle
 //                             |               |
@@ -24,24 +24,24 @@ enum class Rest : std::uint8_t { pending, at_rest, timed_out };
 /// Inputs of the supervisor in addition to the tick input. Masks: bit i is channel i.
 struct SupervisorInputs {
   Fault fault;  ///< due now
-  Fault cause;  ///< what is there and is a fault or grows to one
+  Fault cause;  ///< present condition that is a fault or may become one
   bool bus_good = false;
-  std::uint32_t ready = 0;    ///< channels with a valid reading, or that use none
+  std::uint32_t ready = 0;    ///< channels with a valid reading, or without use of readings
   std::uint32_t at_rest = 0;  ///< channels whose command is the rest pressure
-  Phase phase = Phase::idle;  ///< of the player
+  Phase phase = Phase::idle;  ///< phase of the player
   bool answers = false;       ///< there are grip results to acknowledge
   Rest rest = Rest::pending;
 };
 
 /// Outputs of the supervisor for this tick.
 struct SupervisorOutputs {
-  std::optional<SequenceEnd> interrupt;          ///< the player stops, for this reason
-  std::optional<std::uint32_t> acknowledged_by;  ///< answers are cleared, because of this request
-  bool release = false;                          ///< the sequence that runs goes on with its release
+  std::optional<SequenceEnd> interrupt;          ///< the player must stop for this reason
+  std::optional<std::uint32_t> acknowledged_by;  ///< clear the grip results, because of this request
+  bool release = false;                          ///< the running sequence continues with its release step
   std::uint32_t vented = 0;                      ///< channels that a stop has vented
   std::uint32_t no_rest = 0;                     ///< channels that get ERROR: they did not come to rest
-  bool seek_rest = false;                        ///< a start was accepted: look for rest from now on
-  const PreparedSequence* begin = nullptr;       ///< at rest: play it
+  bool seek_rest = false;                        ///< a start was accepted: wait for rest
+  const PreparedSequence* begin = nullptr;       ///< all channels are at rest: start this sequence
 };
 
 class Supervisor {
@@ -49,14 +49,14 @@ class Supervisor {
   explicit Supervisor(const RigSettings& settings);
 
   SupervisorOutputs tick(const TickInput& input, const SupervisorInputs& inputs, EventList& events) noexcept;
-  /// The player came to the end of the sequence.
+  /// Called when the player has reached the end of the sequence.
   void sequence_ended(SequenceEnd end, OnFail action, Phase phase, EventList& events) noexcept;
 
   [[nodiscard]] State state() const noexcept { return state_; }
   [[nodiscard]] const Fault& first_fault() const noexcept { return first_fault_; }
-  /// Outside `running`: the channels that go to their rest pressure; the others stay where they are.
+  /// Outside `running`: channels that go to their rest pressure. The others keep their command.
   [[nodiscard]] std::uint32_t venting() const noexcept { return venting_; }
-  /// The channels that must be vented when the loop is left now, in the given phase of the player.
+  /// Returns the channels to vent if the loop ends now, for a phase of the player.
   [[nodiscard]] std::uint32_t venting_on_leaving(Phase phase) const noexcept;
   [[nodiscard]] const PreparedSequence* sequence() const noexcept { return sequence_; }
 
@@ -96,17 +96,17 @@ class Supervisor {
   std::uint64_t rig_;
   State state_ = State::starting;
   Fault first_fault_;
-  Phase fault_phase_ = Phase::idle;  ///< in which it came
+  Phase fault_phase_ = Phase::idle;  ///< phase of the player when the fault occurred
   std::uint32_t told_ = 0;           ///< faults reported since the latch, by their index in all_faults()
   std::uint32_t venting_ = 0;
   const PreparedSequence* sequence_ = nullptr;  ///< from the accepted start to its end
   std::uint32_t start_request_ = 0;
-  std::uint32_t halted_by_ = 0;  ///< the newest request to stop any sequence, or to vent
-  std::uint32_t taken_ = 0;      ///< the newest request of another kind: these come in the order of their ids
-  /// Starts that a stop has named before they came. No more can wait in the loop's lane.
+  std::uint32_t halted_by_ = 0;  ///< newest request to stop any sequence, or to vent
+  std::uint32_t taken_ = 0;      ///< newest request of another kind; these arrive in the order of their ids
+  /// Starts that a stop named before they arrived. No more can wait in the queue of the loop.
   static constexpr std::size_t most_withdrawn = 64;
   std::array<std::uint32_t, most_withdrawn> withdrawn_{};
-  std::size_t next_withdrawn_ = 0;  ///< its place
+  std::size_t next_withdrawn_ = 0;  ///< index of the next entry
 };
 
 }  // namespace softgrip::control

@@ -1,6 +1,6 @@
 #pragma once
-// The values of one tick: what goes into RigController (control/tick/rig_controller.h) and what comes out of
-// it. Plain values without memory of their own; they cross between threads as they are.
+// The inputs and outputs of RigController (control/tick/rig_controller.h) for one tick. Plain values without
+// allocated memory, which threads can copy.
 
 #include <array>
 #include <cstddef>
@@ -19,22 +19,22 @@ namespace softgrip::control {
 
 struct PreparedSequence;  // control/tick/sequence.h
 
-/// States of the supervisor, as status and recordings name them.
+/// States of the supervisor; status and recordings use these names.
 enum class State : std::uint8_t {
-  starting,         ///< no valid reading from every channel yet; commands at rest, or where a fault left them
+  starting,         ///< not all channels have a valid reading yet; commands at rest, or as a fault left them
   idle,             ///< ready; nothing moves
-  resynchronising,  ///< following the fingers to where they are before motion starts
+  resynchronising,  ///< the models follow the fingers before motion starts
   running,          ///< a sequence runs
-  stopping,         ///< a sequence was stopped; the stop action is being carried out
-  faulted,          ///< latched; outputs as the rig file says for the phase in which the fault came
+  stopping,         ///< a sequence was stopped; the stop action is in progress
+  faulted,          ///< a fault is latched; outputs as the rig file states for the phase in which it occurred
 };
 [[nodiscard]] std::string_view name_of(State state) noexcept;
-/// The rig moves because it was asked to: resynchronising, running or stopping.
+/// Returns true if the rig moves after a request: resynchronising, running or stopping.
 [[nodiscard]] constexpr bool moves(State state) noexcept {
   return state == State::resynchronising || state == State::running || state == State::stopping;
 }
 
-/// A pressure may move away from rest: a sequence was started, and nothing has ended it.
+/// Returns true if a pressure may move away from rest: a sequence was started and has not ended.
 [[nodiscard]] constexpr bool may_rise(State state) noexcept {
   return state == State::resynchronising || state == State::running;
 }
@@ -42,7 +42,7 @@ enum class State : std::uint8_t {
 /// Reason why a finger has not settled although a start needs it at rest: it moves, or it is off its model.
 enum class UnsettledReason : std::uint8_t { none, moves, off_model };
 
-/// How a sequence ended.
+/// The reason why a sequence ended.
 enum class SequenceEnd : std::uint8_t { done, failed, stopped, faulted };
 [[nodiscard]] std::string_view name_of(SequenceEnd end) noexcept;
 
@@ -51,26 +51,26 @@ struct Request {
   enum class Kind : std::uint8_t {
     none,
     start,
-    check,  ///< answered as a start would be now; nothing else comes of it
+    check,  ///< answered as a start would be now, without another effect
     stop,
     vent,
     acknowledge,
     release,
   };
   Kind kind = Kind::none;
-  std::uint32_t id = 0;                        ///< echoed in the events that answer it
-  const PreparedSequence* sequence = nullptr;  ///< for start, whose run it outlives, and check
+  std::uint32_t id = 0;                        ///< repeated in the events that answer it
+  const PreparedSequence* sequence = nullptr;  ///< for start and check; must outlive the run
   std::uint32_t of_start = 0;                  ///< for stop: the only start that it stops; 0: any
 };
 
 /// State of the bus since the last tick.
 struct BusHealth {
-  bool connected = false;             ///< a session is up
-  FaultCode fault = FaultCode::none;  ///< what the last failed exchange means; none after a good one
+  bool connected = false;             ///< a session is open
+  FaultCode fault = FaultCode::none;  ///< cause of the last failed exchange; none after a successful one
   std::uint32_t consecutive_failures = 0;
-  /// Counts how often the bus has stopped obeying: since then it writes nothing further from rest than
-  /// TickInput::outputs_kpa,
-  /// and `fault` says why, until commands come from a tick that knew this number.
+  /// Number of times that the bus thread has stopped applying the commands. After an increase, it writes
+  /// nothing further from rest than TickInput::outputs_kpa, and `fault` gives the reason. This ends with
+  /// commands of a tick that has read the new number.
   std::uint32_t inhibit = 0;
 };
 
@@ -78,7 +78,7 @@ struct TickInput {
   Nanoseconds now = 0;
   std::span<const model::Reading> readings;  ///< one per channel
   BusHealth bus;
-  /// One per channel: the pressure at the board's output, or one nearer to rest; empty: not known.
+  /// One per channel: the pressure at the board's output, or one nearer to rest; empty: unknown.
   std::span<const double> outputs_kpa;
   Request request;
   bool emergency_stop = false;       ///< the level of the input, true = stop
@@ -87,23 +87,23 @@ struct TickInput {
   std::uint32_t overrun_cycles = 0;  ///< cycles that the loop missed just before this tick
 };
 
-/// One channel in one tick. It is written in place: what the tick before left here is what this tick's
-/// decisions are made from. Commands, a row of the recording and the status are taken from it.
+/// One channel in one tick. It is changed in place: the values of the last tick are the basis of the
+/// decisions of this tick. Commands, rows of the recording and the status are copied from it.
 struct ChannelOutput {
-  double command_kpa = 0;      ///< what goes to the board: clamped and slew-limited
-  double safe_kpa = 0;         ///< what to write instead when the loop sends no more, by the phase it is in
-  double reference_mm = 0;     ///< clamped, for now; NaN while nothing is tracked
-  double displacement_mm = 0;  ///< the reading used: the last valid one; NaN before the first
+  double command_kpa = 0;      ///< command for the board: within the range and the slew limits
+  double safe_kpa = 0;         ///< command if the loop stops now; it depends on the phase
+  double reference_mm = 0;     ///< limited reference for now; NaN without tracking
+  double displacement_mm = 0;  ///< last valid reading; NaN before the first one
   double pressure_kpa = 0;     ///< measured, or NaN
-  double temperature_c = 0;    ///< measured, or NaN; nothing depends on it
-  double feedforward_kpa = 0;  ///< 0 while nothing is tracked
-  double feedback_kpa = 0;     ///< 0 while nothing is tracked
-  double residual_mm = 0;      ///< reading minus (model + offset), both at the time the reading was sampled;
-                               ///< NaN while there is no valid reading
-  double shortfall_mm = 0;     ///< how much less than its free-motion envelope the finger moved; NaN without
-                               ///< sight and until the second valid reading in a row
-  double free_kpa = 0;  ///< the command that the free finger needs to rest at this displacement; of the
-                        ///< last valid reading
+  double temperature_c = 0;    ///< measured, or NaN; only recorded
+  double feedforward_kpa = 0;  ///< 0 without tracking
+  double feedback_kpa = 0;     ///< 0 without tracking
+  double residual_mm = 0;      ///< reading minus (model + offset) at the time of the reading; NaN without a
+                               ///< valid reading
+  double shortfall_mm = 0;     ///< displacement shortfall against free motion; NaN without displacement
+                               ///< feedback and until the second consecutive valid reading
+  double free_kpa = 0;  ///< command under which the free finger rests at the displacement of the last valid
+                        ///< reading
   /// gripping pressure that corresponds to the displacement shortfall; NaN without displacement feedback
   double squeeze_kpa = 0;
   double age_s = 0;          ///< of the reading
@@ -111,24 +111,25 @@ struct ChannelOutput {
   std::uint16_t step = 0;    ///< index in the sequence
   model::Validity validity = model::Validity::none_yet;
   GripResult result = GripResult::none;
-  GripEvidence evidence = GripEvidence::none;  ///< on what the result rests
+  GripEvidence evidence = GripEvidence::none;  ///< evidence for the result
   HealthState health = HealthState::unknown;   ///< of the model
   bool health_changed = false;
-  BindingLimit bound_by = BindingLimit::none;  ///< what kept the command noticeably from the request
-  BindingLimit limit = BindingLimit::none;     ///< the same, when it has done so for longer than a moment
+  BindingLimit bound_by = BindingLimit::none;  ///< limit that keeps the command noticeably from the request
+  BindingLimit limit = BindingLimit::none;     ///< the same limit, after it has been active for longer than a
+                                               ///< moment
   bool saturated = false;                      ///< the request was outside the pressure range
   bool slewing = false;                        ///< the request was further away than the slew limits allow
   bool request_invalid = false;                ///< the request was not a number: the command was held
   bool reference_clamped = false;              ///< the reference was outside the displacement range
   bool out_of_reach = false;         ///< the feedforward cannot reach the reference within the limits
-  bool stands_still = false;         ///< the reading repeats itself as this sensor never does
-  bool unsteady = false;             ///< the reading jumps there and back, again and again
-  double jump_mm = 0;                ///< how far it jumped last
+  bool stands_still = false;         ///< the reading is constant for an implausible time for this sensor
+  bool unsteady = false;             ///< the reading jumps back and forth repeatedly
+  double jump_mm = 0;                ///< last jump
   bool displacement_beyond = false;  ///< the reading is beyond the displacement range and its margin
-  bool synchronised = false;         ///< resynchronising was asked and residual_mm has settled
+  bool synchronised = false;         ///< resynchronisation was requested and residual_mm has settled
 };
 
-/// `Event::channel` of what concerns the whole rig.
+/// `Event::channel` of events that concern the complete rig.
 inline constexpr std::uint8_t whole_rig = 0xff;
 
 /// A fault and its channel.
@@ -152,27 +153,28 @@ struct Event {
     model_health_changed,
     reading_invalid,
     reading_valid,
-    contact,           ///< a finger has touched something in a motion
-    limit_binds,       ///< a limit has kept a command from what is wanted for longer than a moment
-    limit_free,        ///< it does not any more
-    release_asked,     ///< on with the release step
-    reading_unsteady,  ///< the reading jumps there and back, again and again
-    reading_steady,    ///< it has been calm for a while
+    contact,           ///< a finger has come into contact during a motion
+    limit_binds,       ///< a limit has kept a command from its request for longer than a moment
+    limit_free,        ///< the limit is no longer active
+    release_asked,     ///< the sequence continues with the release step
+    reading_unsteady,  ///< the reading jumps back and forth repeatedly
+    reading_steady,    ///< the reading has been without jumps for a time
     start_checked,     ///< a start would be accepted now
-    not_at_rest,  ///< why a start found no rest. detail: UnsettledReason; value: model offset at rest [mm]
+    not_at_rest,  ///< reason why a start found no rest. detail: UnsettledReason; value: model offset at rest
+                  ///< [mm]
   };
   Kind kind = Kind::state_changed;
   std::uint8_t channel = whole_rig;
   /// State, FaultCode, GripResult, step, RefusalCode, HealthState, Validity, SequenceEnd, OnContact,
   /// BindingLimit or UnsettledReason, by kind.
   std::uint16_t detail = 0;
-  std::uint32_t request = 0;  ///< the id of the request it answers, or 0
+  std::uint32_t request = 0;  ///< id of the request that it answers, or 0
   /// value that belongs to it (a displacement shortfall, an age, a contact position), or 0
   double value = 0;
-  GripEvidence evidence = GripEvidence::none;  ///< of grip_result: its basis
+  GripEvidence evidence = GripEvidence::none;  ///< of grip_result: its evidence
 };
 
-/// The events of one tick. Those that do not fit are counted.
+/// The events of one tick. Events beyond the capacity are counted.
 class EventList {
  public:
   void add(const Event& event) noexcept {
@@ -208,9 +210,9 @@ class EventList {
 struct TickOutput {
   State state = State::starting;
   Fault first_fault;  ///< the first that latched
-  Fault cause;        ///< what is there in this tick and is a fault or grows to one
-  /// Channels whose command stays away from rest although nothing moves: behind a sequence that ended in
-  /// a hold, after a stop or a fault that holds. Bit i is channel i.
+  Fault cause;        ///< present condition that is a fault or may become one
+  /// Channels under pressure without motion: after a sequence that ended in a hold, or after a stop or a
+  /// fault with the action hold. Bit i is channel i.
   std::uint32_t under_pressure = 0;
   std::size_t channel_count = 0;
   std::array<ChannelOutput, max_channels> channels{};

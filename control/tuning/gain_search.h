@@ -14,22 +14,23 @@ using GainPoint = std::array<double, 3>;
 
 /// Nelder and Mead's simplex (Computer Journal 7, 1965).
 struct Simplex {
-  GainPoint edges{0.4, 0.4, 0.02};  ///< from the start to the other corners
+  GainPoint edges{0.4, 0.4, 0.02};  ///< distances from the start to the other corners
   int iterations = 60;              ///< each costs one or two evaluations
-  double done_share = 0;            ///< it ends when the corners' costs differ by less than this share
+  double done_share = 0;            ///< the search ends when the corners' costs differ by less than this
+                                    ///< share
 };
-/// The best corner at the end.
+/// Returns the best corner at the end.
 [[nodiscard]] GainPoint nelder_mead(const std::function<double(const GainPoint&)>& cost,
                                     const GainPoint& start, double cost_at_start, const Simplex& simplex);
 
 struct GainSearch {
-  int iterations = 60;  ///< of the simplex after the grid
-  /// Every how many points of the grid's 5 x 6 in kp and ki: 1 is all.
+  int iterations = 60;  ///< of the simplex after the grid search
+  /// Step of the 5 x 6 grid in kp and ki: 1 uses all points.
   int coarseness = 1;
 };
 
-/// The gains with the smallest `cost`: a coarse grid of kp and ki, then the simplex on ln kp, ln ki and
-/// kd from its best. Everything else of the settings keeps its default.
+/// Returns the gains with the smallest `cost`: a coarse grid search in kp and ki, followed by the simplex in
+/// ln kp, ln ki and kd. All other settings keep their defaults.
 [[nodiscard]] PidSettings search_gains(const std::function<double(const PidSettings&)>& cost,
                                        const GainSearch& search = {});
 

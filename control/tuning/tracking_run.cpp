@@ -23,7 +23,7 @@ namespace {
 
 constexpr double rest_s = 0.5;
 constexpr double approach_s = 3;
-/// The grid on which a loop's frequency response is looked at.
+/// Frequencies at which the response of a loop is computed.
 constexpr double lowest_hz = 1e-3;
 constexpr double step_factor = 1.005;
 
@@ -42,7 +42,7 @@ double quantised(double value, double step) {
   return step > 0 ? step * std::round(value / step) : value;
 }
 
-/// Finger, board and clock.
+/// Simulated finger, board and clock.
 class Bench {
  public:
   explicit Bench(const TrackingRun& run)
@@ -52,7 +52,7 @@ class Bench {
         finger_(run.finger, {}, tick_s_, run.seed),
         seed_(derived_seed(run.seed, 1)) {}
 
-  /// The tick computes `command`; it goes out at the exchange. Returns what the same exchange reads.
+  /// Sends the `command` of the tick at its exchange. Returns the reading of the same exchange.
   double exchange(double command_kpa) {
     if (exchange_s_ > 0) finger_.step(exchange_s_, out_kpa_);
     out_kpa_ = quantised(command_kpa, run_.command_step_kpa);
@@ -60,7 +60,7 @@ class Bench {
     return quantised(finger_.reading_mm() + run_.noise_mm * normal_at(seed_, readings_++),
                      run_.reading_step_mm);
   }
-  /// The finger at the middle of what is left of the tick, and at its end.
+  /// Returns the finger's displacement at the middle of the rest of the tick, and at its end.
   std::array<double, 2> rest_of_tick() {
     std::array<double, 2> places{};
     for (double& place : places) {
@@ -81,8 +81,8 @@ class Bench {
   double out_kpa_ = 0;
 };
 
-/// Smallest and largest slope at once that the model shows over its working range, in two whole cycles:
-/// hysteresis may be further off after the first.
+/// Smallest and largest instantaneous slope of the model over its working range in two cycles. The hysteresis
+/// may differ after the first cycle.
 struct GainRange {
   double smallest = std::numeric_limits<double>::max();
   double largest = 0;

@@ -1,5 +1,5 @@
 #pragma once
-// A finger tracked in simulation: how well would this channel follow a sine? For studies, tuning and tests.
+// Simulates a finger that tracks a sine, for studies, tuning and tests.
 
 #include <cstdint>
 #include <vector>
@@ -10,18 +10,20 @@
 
 namespace softgrip::control {
 
-/// The finger's way over the measured cycles, one value per tick; times from the first of them.
+/// The finger's motion in the measured cycles, one value per tick. Times count from the start of these
+/// cycles.
 struct TrackingTrace {
   std::vector<double> time_s;
   std::vector<double> reference_mm;
   std::vector<double> displacement_mm;
 };
 
-/// One run: rest, ramp to the lowest point of the sine, cycles. The board holds each command for a tick, from
-/// `exchange_s` after the tick on; it reads in the same exchange, so a reading is a tick old when it is used.
+/// One run: rest, a ramp to the lowest point of the sine, cycles. The board outputs each command for a tick,
+/// from `exchange_s` after the tick on. It reads in the same exchange, so a reading is a tick old when it is
+/// used.
 struct TrackingRun {
-  ChannelSettings settings;  ///< the controller, with the model it believes in
-  model::Model finger;       ///< the truth
+  ChannelSettings settings;  ///< the controller with its model
+  model::Model finger;       ///< the simulated finger
   double rate_hz = 200;
   double mean_mm = 13;
   double amplitude_mm = 7;
@@ -35,37 +37,37 @@ struct TrackingRun {
   std::uint64_t seed = 1;
   /// For feedforward `planned`: plan_for() of this run; if it is null, the plan is computed for the run.
   const PressurePlan* plan = nullptr;
-  TrackingTrace* trace = nullptr;  ///< filled where there is one
+  TrackingTrace* trace = nullptr;  ///< filled if it is not null
 };
 
-/// The plan for a run's reference, by the model that its controller believes in.
+/// Returns the plan for a run's reference, computed with the model of the controller.
 [[nodiscard]] PressurePlan plan_for(const TrackingRun& run);
 
 /// The result over the measured cycles, for the finger itself (not for its noisy reading).
 struct TrackingResult {
   double rmse_mm = 0;
   double worst_mm = 0;
-  double pressure_mean_kpa = 0;  ///< of the commands
+  double pressure_mean_kpa = 0;  ///< mean of the commands
   double pressure_most_kpa = 0;
   double residual_rms_mm = 0;                 ///< of the running model
-  double out_of_reach_share = 0;              ///< of the ticks
-  double cut_share = 0;                       ///< of the ticks in which limits changed the request
-  HealthState health = HealthState::unknown;  ///< the worst that model health said
+  double out_of_reach_share = 0;              ///< share of the ticks
+  double cut_share = 0;                       ///< share of the ticks in which limits changed the request
+  HealthState health = HealthState::unknown;  ///< the worst state during the run
 };
 [[nodiscard]] TrackingResult track(const TrackingRun& run);
 
-/// The model with every parameter multiplied by its own factor, even in [1 - relative, 1 + relative]; whole
-/// numbers stay.
+/// Returns the model with each parameter multiplied by its own factor, uniform in [1 - relative, 1 +
+/// relative]. Whole numbers do not change.
 [[nodiscard]] model::Model with_scatter(const model::Model& model, double relative, std::uint64_t seed);
 
-/// Margins of a PID on a model, linearised about the slopes between which its hysteresis moves.
+/// Margins of a PID with a model, linearised at the slopes of its hysteresis.
 struct LoopMargins {
-  double sensitivity = 0;   ///< Ms, the largest of |1/(1+L)|; infinite for an unstable loop
+  double sensitivity = 0;   ///< Ms, the largest |1/(1+L)|; infinite for an unstable loop
   double crossover_hz = 0;  ///< lowest frequency at which |L| = 1
 };
-/// The worst over the smallest and the largest instantaneous gain that the model shows on both sides of 0
-/// kPa, as far as the pressure range reaches, with the model's dead time, the hold's half tick and `age_s` of
-/// the reading.
+/// Returns the worst margins over the smallest and the largest instantaneous gain of the model on both sides
+/// of 0 kPa, within the pressure range. The loop includes the model's dead time, half a tick for the hold,
+/// and `age_s` of the reading.
 [[nodiscard]] LoopMargins loop_margins(const model::Model& model, const PidSettings& pid,
                                        const LimitSettings& limits, double tick_s, double age_s);
 

@@ -55,7 +55,7 @@ class Cost {
     return rmse(pid, fingers_, task_.noise_mm);
   }
 
-  /// The worst over the fingers.
+  /// Returns the worst margins of all fingers.
   [[nodiscard]] LoopMargins margins(const PidSettings& pid) const {
     LoopMargins worst;
     worst.crossover_hz = 0.5 * task_.rate_hz;

@@ -1,5 +1,5 @@
 #pragma once
-// PID gains for a finger that is not quite what its model says.
+// Tunes PID gains for fingers that differ from their model.
 
 #include <cstdint>
 #include <string>
@@ -12,42 +12,44 @@
 
 namespace softgrip::control {
 
-/// The task of a tuning. The finger is drawn around `finger`, the controller believes `channel.model`.
+/// The task of a tuning. The fingers are random variations of `finger`; the controller uses `channel.model`.
 struct TuneTask {
-  ChannelSettings channel;  ///< model, feedforward and limits; the gains in it are not used
+  ChannelSettings channel;  ///< model, feedforward and limits; its gains are not used
   model::Model finger;
   double rate_hz = 200;
-  double exchange_s = 0;  ///< from the tick to the board, as in TrackingRun
+  double exchange_s = 0;  ///< from the tick to the exchange, as in TrackingRun
   double mean_mm = 13;
   double amplitude_mm = 7;
-  std::vector<double> frequencies_hz{0.1, 0.3};  ///< of the sines that are tracked
+  std::vector<double> frequencies_hz{0.1, 0.3};  ///< of the tracked sines
   double noise_mm = 0.03;
-  double mismatch = 0.05;       ///< every parameter of the finger off by up to this share
-  int draws = 6;                ///< fingers
-  double most_sensitivity = 2;  ///< Ms of every one of them: gain margin 2, phase margin 29 degrees
+  double mismatch = 0.05;       ///< largest relative error of each parameter of a finger
+  int draws = 6;                ///< number of fingers
+  double most_sensitivity = 2;  ///< largest Ms of each finger; 2 means gain margin 2 and phase margin 29
+                                ///< degrees
   std::uint64_t seed = 1;
-  int iterations = 40;  ///< of the search, after its grid
+  int iterations = 40;  ///< of the search after the grid
 };
 
 /// The optimum, its margin and its errors.
 struct Tuned {
   PidSettings pid;
-  double sensitivity = 0;   ///< the worst Ms over the fingers
-  double crossover_hz = 0;  ///< the lowest over the fingers
+  double sensitivity = 0;   ///< worst Ms of the fingers
+  double crossover_hz = 0;  ///< lowest of the fingers
   double rmse_mm = 0;       ///< root mean square over fingers and frequencies
-  double exact_mm = 0;      ///< the same with the finger as it was given and without noise
-  double noisy_mm = 0;      ///< the finger as given, with noise
-  double mismatch_mm = 0;   ///< fingers drawn, without noise
+  double exact_mm = 0;      ///< for `finger` without variation and noise
+  double noisy_mm = 0;      ///< for `finger` without variation, with noise
+  double mismatch_mm = 0;   ///< for the random fingers, without noise
   int evaluations = 0;
-  std::string limited_by;  ///< in words
+  std::string limited_by;  ///< limiting factor, as text
 };
 
-/// Minimises the tracking error over the fingers under the bound on Ms: a grid over kp and ki, then Nelder
-/// and Mead's search (Computer Journal 7, 1965) over kp, ki and the derivative time. The derivative's filter
-/// is an eighth of its time, at least two ticks.
+/// Minimises the tracking error over the fingers within the bound on Ms: a grid search in kp and ki, then the
+/// simplex of Nelder and Mead (Computer Journal 7, 1965) in kp, ki and the derivative time. The filter time
+/// of the derivative is an eighth of the derivative time, at least two ticks.
 [[nodiscard]] Tuned tune(const TuneTask& task);
 
-/// A sine that the model reaches: mean and amplitude as shares of what it shows at the highest pressure.
+/// Chooses a sine that the model reaches: mean and amplitude are shares of its displacement at the highest
+/// pressure.
 void choose_reference(TuneTask& task);
 
 }  // namespace softgrip::control
