@@ -1,5 +1,5 @@
 #pragma once
-// A history of small values from one thread to several, without a lock: the events of the loop.
+// Distributes small values from one thread to several without a lock: the events of the loop.
 
 #include <array>
 #include <atomic>
@@ -12,7 +12,7 @@
 
 namespace softgrip::daemon {
 
-/// Tests put something else into the middle of every copy.
+/// Tests replace this function with one that interrupts each copy in the middle.
 struct NoInterruption {
   static void halfway() noexcept {}
 };
@@ -26,7 +26,7 @@ class Broadcast {
   static_assert(std::is_trivially_copyable_v<T>);
 
  public:
-  /// Room for at least `capacity` items (rounded up to a power of two).
+  /// Allocates space for at least `capacity` items (rounded up to a power of two).
   explicit Broadcast(std::size_t capacity) : slots_(std::bit_ceil(capacity)) {}
 
   [[nodiscard]] std::size_t capacity() const noexcept { return slots_.size(); }
@@ -45,12 +45,12 @@ class Broadcast {
     newest_.store(pushed_, std::memory_order_release);
   }
 
-  /// Begins with the oldest item that is still there.
+  /// Starts with the oldest stored item.
   class Reader {
    public:
     explicit Reader(const Broadcast& from) noexcept : from_(&from) {}
 
-    /// Takes the next item, if there is one.
+    /// Returns true and the next item, if there is one.
     bool pop(T& item) noexcept {
       for (;;) {
         const std::uint64_t newest = from_->newest_.load(std::memory_order_acquire);
@@ -74,7 +74,7 @@ class Broadcast {
       }
     }
 
-    /// Items that were overwritten before they could be taken.
+    /// Returns the number of items that were overwritten before they were read.
     [[nodiscard]] std::uint64_t lost() const noexcept { return lost_; }
 
    private:
@@ -102,7 +102,7 @@ class Broadcast {
   }
 
   std::vector<Slot> slots_;
-  std::uint64_t pushed_ = 0;  // the writer's
+  std::uint64_t pushed_ = 0;  // used by the writer only
   alignas(64) std::atomic<std::uint64_t> newest_{0};
 };
 

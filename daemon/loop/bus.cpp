@@ -13,14 +13,14 @@ using drivers::BusStatus;
 
 namespace {
 
-/// The board has answered what it was asked, and be it that it refuses.
+/// Returns true if the board has responded to the request, even with a rejection.
 bool is_answer(BusStatus status) noexcept {
   return status != BusStatus::disconnected && status != BusStatus::closed_at_once &&
          status != BusStatus::timed_out && status != BusStatus::bad_reply;
 }
 
-/// After these the board may still send what belongs to an old question, or waits for the greeting that only
-/// a new session brings: the session is not used again.
+/// Returns true if the session cannot be used again: the board may still send the response to an old request,
+/// or waits for the set-up of a new session.
 bool loses_session(BusStatus status) noexcept {
   return !is_answer(status) || status == BusStatus::watchdog_tripped;
 }
@@ -87,7 +87,7 @@ void Bus::step(Nanoseconds due) noexcept {
   if (!listen()) return;
   const bool connected = session_ != Session::none;
   if (ensure_session()) {
-    // Connecting takes its time: what the loop has said meanwhile counts.
+    // Opening a session takes time, so commands that arrived meanwhile count.
     if (!connected && shared_.commands.fetch()) unheard_ = 0;
     exchange();
   } else {
@@ -96,7 +96,7 @@ void Bus::step(Nanoseconds due) noexcept {
   publish();
 }
 
-/// False as long as the loop has never spoken.
+/// Returns false until the loop has sent its first commands.
 bool Bus::listen() noexcept {
   if (shared_.commands.fetch()) {
     spoken_ = true;
@@ -130,7 +130,7 @@ bool Bus::ensure_session() noexcept {
   if (session_ != Session::none) return true;
   if (clock_.now() < next_attempt_) return false;
   report_.health.connected = false;
-  publish();  // connect() may take its time; the loop shall know meanwhile
+  publish();  // connect() may take long; the loop must know the state before
   statistics_.attempts.fetch_add(1, std::memory_order_relaxed);
   const BusStatus status = board_.connect(reconnect_.connect_deadline);
   if (status == BusStatus::ok) {
@@ -168,7 +168,7 @@ void Bus::exchange() noexcept {
   }
   if (status != BusStatus::ok) {
     if (loses_session(status)) {
-      // A board whose every session fails at its first exchange must not be connected to in every cycle.
+      // If each session fails at its first exchange, the board must not be connected to in each cycle.
       if (session_ != Session::proven) put_off_next_attempt();
       session_ = Session::none;
     }
@@ -179,7 +179,8 @@ void Bus::exchange() noexcept {
     return;
   }
   report_.outputs_kpa = written_kpa_;
-  // This thread may have been stopped on the way: what arrived came too late for the old outputs.
+  // If this thread was stopped during the exchange, the commands may have arrived too late for the old
+  // outputs.
   judge_gap(ended, 0);
   last_good_ = began;
   note_success(ended - began);
@@ -211,8 +212,8 @@ void Bus::note_success(Nanoseconds duration) noexcept {
   note_clients();
 }
 
-/// Once a session: a client that comes and goes must not fill the log. Where only writes feed the watchdog
-/// another client that writes is found at the outputs.
+/// Reports another client once per session, so that a client that reconnects often does not fill the log. If
+/// only writes feed the watchdog, another client that writes is detected by the outputs.
 void Bus::note_clients() noexcept {
   if (told_clients_ || !board_.fed_by_readers()) return;
   const unsigned clients = board_.clients();
@@ -224,7 +225,7 @@ void Bus::note_clients() noexcept {
 }
 
 void Bus::note_failure(BusStatus status) noexcept {
-  // It may have been taken, or not.
+  // The board may have applied the write or not.
   for (std::size_t i = 0; i < channels_; ++i) {
     report_.outputs_kpa[i] = control::no_further(rest_kpa_[i], written_kpa_[i], report_.outputs_kpa[i]);
   }
@@ -237,7 +238,7 @@ void Bus::note_failure(BusStatus status) noexcept {
   }
   const bool others = status == BusStatus::overwritten;
   if (others || status == BusStatus::watchdog_tripped) rest_outputs();
-  // A watchdog that has acted has overwritten them, too.
+  // A watchdog that has tripped also overwrites the outputs.
   const bool known = others && inhibited_ == FaultCode::board_watchdog_tripped;
   if (control::inhibits(fault_of(status)) && !known) inhibit(fault_of(status));
   statistics_.failures.add();
@@ -248,9 +249,9 @@ void Bus::note_failure(BusStatus status) noexcept {
   tell(BusEvent::Kind::failed, status, board_.detail());
 }
 
-/// Outputs that the board reports nearer to rest than they were written: writing the last commands again
-/// would move them away from rest. A hold is not dropped for that, because a gateway that repeats an old
-/// reading must not open a grip. It ends with the first commands that do not hold.
+/// Handles outputs that the board reports nearer to rest than they were written: the last commands would move
+/// them away from rest again. A hold remains, because a gateway that repeats an old reading must not open a
+/// grip. It ends with the first commands that do not hold.
 void Bus::respect_found_outputs() noexcept {
   const Commands& commands = shared_.commands.value();
   for (std::size_t i = 0; i < channels_; ++i) {
@@ -260,15 +261,15 @@ void Bus::respect_found_outputs() noexcept {
   }
 }
 
-/// Once in an outage: why no new session can be opened may be another fact than why the last one ended. A
-/// converter is gone, and another one of its name is there.
+/// Reports once per outage why no new session can be opened, if this differs from the reason why the last one
+/// ended. Example: a converter was removed, and another one has its name.
 void Bus::note_refusal(BusStatus status) noexcept {
   if (told_refused_ || std::strncmp(told_.data(), board_.detail(), told_.size() - 1) == 0) return;
   told_refused_ = true;
   tell(BusEvent::Kind::not_connected, status, board_.detail());
 }
 
-/// A board that has not been fed for longer than it waits has put its own safe value out.
+/// Assumes the board's safe outputs if the board was not fed for longer than its watchdog time.
 void Bus::judge_gap(Nanoseconds now, Nanoseconds margin) noexcept {
   if (watchdog_ == 0 || !last_good_ || now - *last_good_ < watchdog_ - margin) return;
   rest_outputs();
@@ -279,7 +280,7 @@ void Bus::judge_gap(Nanoseconds now, Nanoseconds margin) noexcept {
                 seconds(now - *last_good_), seconds(watchdog_));
   tell(BusEvent::Kind::failed, BusStatus::watchdog_tripped, detail.data());
   told_failed_ = true;
-  last_good_.reset();  // once a gap: what is written until the next good exchange is the rest pressure
+  last_good_.reset();  // once per gap: the rest pressures are written until the next successful exchange
 }
 
 void Bus::rest_outputs() noexcept {

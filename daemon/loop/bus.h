@@ -1,5 +1,5 @@
 #pragma once
-// The bus thread: exchanges with the board in step with the loop, and rebuilds a lost session by itself.
+// The bus thread: exchanges with the board at the rate of the loop, and reopens a lost session.
 
 #include <array>
 #include <chrono>
@@ -38,20 +38,20 @@ namespace softgrip::daemon {
 /// - another Modbus client writes to the board: the rest pressures are written (outputs_overwritten).
 class Bus {
  public:
-  /// All references outlive the bus. `rig`: one channel per channel of the board.
+  /// All references must outlive the bus. `rig` has a channel for each channel of the board.
   Bus(drivers::Board& board, const control::RigSettings& rig, const rig::LoopSettings& loop,
       const rig::ReconnectSettings& reconnect, const Clock& clock, SharedState& shared,
       BusStatistics& statistics) noexcept;
 
-  /// Tries to open the session before the first step, so that what connecting measures is known. Blocks up to
-  /// connect_deadline.
+  /// Tries to open the session before the first step, so that the measurements of the connection are known.
+  /// Blocks up to connect_deadline.
   bool open() noexcept { return ensure_session(); }
 
   /// Runs on the schedule until the last commands are confirmed, or until `shutdown_deadline` has passed
   /// since the shutdown request to the loop.
   void run(PeriodicSchedule schedule, std::chrono::nanoseconds shutdown_deadline) noexcept;
 
-  /// One exchange, or one attempt to rebuild the session if it is due. `due` is when it should have begun.
+  /// Performs one exchange, or one attempt to reopen the session if it is due. `due` is the scheduled start.
   void step(Nanoseconds due) noexcept;
 
  private:
@@ -81,30 +81,31 @@ class Bus {
   BusStatistics& statistics_;
   std::size_t channels_;
   std::array<double, control::max_channels> rest_kpa_{};
-  Nanoseconds watchdog_;         // the board's; 0: none
-  Nanoseconds watchdog_margin_;  // what an exchange that begins now may take until the board sees it
+  Nanoseconds watchdog_;         // watchdog time of the board; 0: none
+  Nanoseconds watchdog_margin_;  // longest time from the start of an exchange until the board receives it
 
-  /// With the board.
+  /// State of the session with the board.
   enum class Session : std::uint8_t {
-    none,      // to be opened when the next attempt is due
+    none,      // closed; it is opened when the next attempt is due
     opened,    // connect() succeeded
-    answered,  // and the board has answered an exchange in it
-    proven,    // and an exchange in it was good
+    answered,  // the board has responded to an exchange
+    proven,    // an exchange was successful
   };
 
   BusReport report_;
   std::array<double, control::max_channels> written_kpa_ = BusReport::anything;
   std::array<double, control::max_channels> found_kpa_ = BusReport::anything;  // since the last good exchange
   Session session_ = Session::none;
-  bool spoken_ = false;                                      // the loop, at least once
-  control::FaultCode inhibited_ = control::FaultCode::none;  // why, or none
+  bool spoken_ = false;                                      // the loop has sent commands at least once
+  control::FaultCode inhibited_ = control::FaultCode::none;  // reason, or none
   std::uint32_t unheard_ = 0;                                // steps since the loop's last commands
-  std::optional<Nanoseconds> last_good_;                     // when the last good exchange began
-  bool told_failed_ = false;                                 // the log knows about the present failure
-  bool told_refused_ = false;                                // and why no session can be opened again
+  std::optional<Nanoseconds> last_good_;                     // start of the last successful exchange
+  bool told_failed_ = false;                                 // the present failure has been logged
+  bool told_refused_ = false;                                // the reason why no session can be opened has
+                                                             // been logged
   std::array<char, sizeof(BusEvent::detail)> told_{};        // the last failure in the log
-  bool told_clients_ = false;  // the log knows, of this session, that the board has another client
-  Nanoseconds pause_ = 0;      // before the attempt after the next
+  bool told_clients_ = false;  // the other client of the board has been logged in this session
+  Nanoseconds pause_ = 0;      // pause before the attempt after the next one
   Nanoseconds next_attempt_ = 0;
 };
 

@@ -8,15 +8,15 @@
 
 namespace softgrip::daemon {
 
-/// Watches counters that their threads raise. Each has its own patience: a bus thread may rightly stand still
-/// as long as opening a session may take, a loop may not.
+/// Checks counters that the threads increase. Each has its own time-out: a bus thread may stop for as long as
+/// opening a session takes, but a loop may not.
 class Heartbeat {
  public:
-  /// One patience per counter. Time begins with the first beats().
+  /// `patience` has the time-out of each counter [ns]. The time starts with the first beats().
   explicit Heartbeat(const std::vector<Nanoseconds>& patience);
 
-  /// One count per counter, in the same order. False as soon as one of them has stood still for longer than
-  /// its patience, however far the others are behind or ahead.
+  /// Returns false if a counter has not changed for longer than its time-out. `counts` has the counters in
+  /// the same order.
   [[nodiscard]] bool beats(Nanoseconds now, const std::vector<std::uint64_t>& counts);
 
  private:

@@ -1,5 +1,5 @@
 #pragma once
-// Always-on histograms of durations: one thread records, any thread may look.
+// Histograms of durations that are always active: one thread records, and any thread may read.
 
 #include <array>
 #include <atomic>
@@ -11,15 +11,16 @@
 
 namespace softgrip::daemon {
 
-/// Counts of durations in nanoseconds. Bins are exact below 128 ns and then 1/128 of an octave's start wide:
-/// a duration is known to better than 0.8 %, from 1 ns to 68 s, in 30 kB. Negative durations count as 0 and
-/// longer ones as the last bin. add() is a handful of plain loads and stores: no lock, no locked instruction.
+/// Counts of durations in nanoseconds. Bins are exact below 128 ns. Above, their width is 1/128 of the start
+/// of their octave, so the error is below 0.8 % from 1 ns to 68 s, in 30 kB. Negative durations count as 0,
+/// longer ones in the last bin. add() needs a few plain loads and stores, without locks and locked
+/// instructions.
 class Histogram {
  public:
-  /// One thread only.
+  /// Called by one thread only.
   void add(std::int64_t duration_ns) noexcept;
 
-  /// The counts so far. If add() runs at the same time, the newest few may be missing.
+  /// Returns the counts so far. If add() runs at the same time, the newest counts may be missing.
   struct Summary {
     std::uint64_t count = 0;
     std::int64_t min_ns = 0;
@@ -31,11 +32,11 @@ class Histogram {
   };
   [[nodiscard]] Summary summary() const;
 
-  /// The smallest recorded bin, by its upper end (and at most the maximum), that holds the quantile; 0 when
-  /// empty. q in [0, 1].
+  /// Returns the upper end of the smallest bin that contains the quantile, at most the maximum; 0 if empty. q
+  /// in [0, 1].
   [[nodiscard]] std::int64_t quantile_ns(double q) const;
 
-  /// Bins that are not empty, as lower end in ns and count.
+  /// Returns the bins that are not empty, as lower end in ns and count.
   struct Bin {
     std::int64_t lower_ns;
     std::uint64_t count;

@@ -1,5 +1,5 @@
 #pragma once
-// The loop: wake, read, control, command, record, sleep.
+// The control loop: waits, reads, computes the commands, sends and records them.
 
 #include <cstddef>
 #include <cstdint>
@@ -16,17 +16,17 @@ class RigController;
 
 namespace softgrip::daemon {
 
-/// Nothing in here allocates, locks, logs, throws or enters the kernel but for the clock and the sleep.
+/// No function here allocates, locks, logs, throws or enters the kernel, except for the clock and the sleep.
 class Loop {
  public:
-  /// A row is recorded every `decimation` ticks, at least 1. All references outlive the loop.
+  /// A row is recorded every `decimation` ticks, at least 1. All references must outlive the loop.
   Loop(control::RigController& controller, std::uint32_t decimation, const Clock& clock, SharedState& shared,
        LoopStatistics& statistics) noexcept;
 
-  /// Ticks on the schedule until shared.shutdown_requested is set; then leave().
+  /// Executes ticks on the schedule until shared.shutdown_requested is set, followed by leave().
   void run(PeriodicSchedule schedule) noexcept;
 
-  /// One tick that was due at `due`, for callers that keep the time themselves.
+  /// Executes a tick that was due at `due`, for callers with their own timing.
   void tick(Nanoseconds due) noexcept;
 
   /// Sends the safe outputs of the present phase, marked as last, and records them.
@@ -45,12 +45,12 @@ class Loop {
   const Clock& clock_;
   SharedState& shared_;
   LoopStatistics& statistics_;
-  const control::TickOutput& output_;  // the controller's, of the last tick
+  const control::TickOutput& output_;  // output of the controller in the last tick
   std::size_t channels_;
   std::uint32_t decimation_;
   std::uint64_t ticks_ = 0;
   std::uint32_t unreported_ = 0;      // ticks since the bus last reported
-  std::uint32_t inhibit_ = 0;         // as the bus last counted it
+  std::uint32_t inhibit_ = 0;         // the newest number from the bus
   std::uint32_t overrun_cycles_ = 0;  // input of the next tick
   Nanoseconds woken_ = 0;
   Nanoseconds ended_ = 0;

@@ -35,7 +35,7 @@ long page_bytes() {
   return sysconf(_SC_PAGESIZE);
 }
 
-/// Page faults of the calling thread so far.
+/// Returns the page faults of the calling thread so far.
 long page_faults() {
   rusage usage{};
   getrusage(RUSAGE_THREAD, &usage);
@@ -58,7 +58,7 @@ RealTimeStep prepare_heap(std::size_t bytes) {
   RealTimeStep step{"heap", Outcome::not_asked, "",
                     "an allocation of the threads beside the loop may page-fault"};
   if (bytes == 0) return step;
-  // Freed blocks stay with the process, and large ones come from the same heap instead of fresh mappings.
+  // Keeps freed blocks in the process, and takes large ones from the same heap instead of new mappings.
   const bool accepted = mallopt(M_TRIM_THRESHOLD, -1) == 1 && mallopt(M_MMAP_MAX, 0) == 1;
   faults_of_a_heap_block(bytes);
   const long faults = faults_of_a_heap_block(bytes);
@@ -73,7 +73,7 @@ RealTimeStep prepare_heap(std::size_t bytes) {
   return step;
 }
 
-/// Why a page mapped now is not known to be there at once, the proof of MCL_FUTURE; empty if it is.
+/// Tests MCL_FUTURE: returns the reason if a new page is not known to be resident; empty if it is.
 std::string doubt_of_a_new_mapping() {
   const auto bytes = static_cast<std::size_t>(page_bytes());
   void* page = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
@@ -106,7 +106,7 @@ RealTimeStep lock_memory(bool wanted) {
       "the first use of a page, or its return from swap, stops the loop for up to milliseconds"};
   if (!wanted) return step;
   step.outcome = Outcome::failed;
-  // Under a limit the lock might succeed now, and the memory that is mapped later be refused for it.
+  // Under a limit, the lock might succeed now, and later mappings could be refused.
   const bool unlimited = may_lock_without_limit();
   if (!unlimited || mlockall(MCL_CURRENT | MCL_FUTURE) != 0) {
     const int error = unlimited ? errno : EPERM;
@@ -206,7 +206,7 @@ RealTimeStep set_scheduling(int priority, std::string_view who) {
   return step;
 }
 
-/// Not inlined: its frame is the stack that the thread will use later.
+/// Not inlined: its frame is the part of the stack that the thread will use later.
 [[gnu::noinline]] long touch_stack(std::size_t bytes) {
   const long before = page_faults();
   auto* memory = static_cast<volatile char*>(__builtin_alloca(bytes));
@@ -214,7 +214,7 @@ RealTimeStep set_scheduling(int priority, std::string_view who) {
   return page_faults() - before;
 }
 
-/// Bytes of the calling thread's stack that are not used, less a margin for what the calls below need.
+/// Returns the unused bytes of the calling thread's stack, less a margin for the calls below.
 std::size_t stack_left() {
   constexpr std::size_t margin = 64 * 1024;
   pthread_attr_t attributes;

@@ -1,5 +1,5 @@
 #pragma once
-// Asks the operating system for what a punctual loop needs, and believes nothing that it cannot read back.
+// Requests real-time settings from the operating system and reads each of them back.
 
 #include <string>
 #include <string_view>
@@ -14,8 +14,8 @@ struct RealTimeStep {
   enum class Outcome { verified, failed, not_asked };
   std::string name;
   Outcome outcome = Outcome::not_asked;
-  std::string detail;  ///< what was read back, or why it failed and what usually helps
-  std::string cost;    ///< what a failure costs, in one sentence
+  std::string detail;  ///< value that was read back, or reason of the failure and usual remedy
+  std::string cost;    ///< consequence of a failure, in one sentence
 };
 [[nodiscard]] std::string_view name_of(RealTimeStep::Outcome outcome) noexcept;
 
@@ -27,14 +27,14 @@ class RealTimeReport {
   [[nodiscard]] const std::vector<RealTimeStep>& steps() const noexcept { return steps_; }
   /// Returns true if a requested setting could not be verified.
   [[nodiscard]] bool degraded() const noexcept;
-  /// One line per step, and for a failed one a second line with its cost.
+  /// Returns one line per step, and for a failed step a second line with its consequence.
   [[nodiscard]] std::string format() const;
 
  private:
   std::vector<RealTimeStep> steps_;
 };
 
-/// Keeps the processors out of deep sleep as long as it lives.
+/// Keeps the processors out of deep sleep states until it is destroyed.
 class ProcessorLatencyRequest {
  public:
   ProcessorLatencyRequest() = default;
@@ -49,11 +49,11 @@ class ProcessorLatencyRequest {
   int descriptor_ = -1;
 };
 
-/// For the whole process, before its threads start: heap, locked memory, processor latency.
+/// Prepares the process before its threads start: heap, locked memory, processor latency.
 [[nodiscard]] ProcessorLatencyRequest prepare_process(const rig::RealTimeSettings& settings,
                                                       RealTimeReport& report);
 
-/// For the calling thread: processors, scheduling at `priority`, stack. `who` names it in the report.
+/// Prepares the calling thread: processors, scheduling at `priority`, stack. `who` is its name in the report.
 void prepare_thread(const rig::RealTimeSettings& settings, int priority, std::string_view who,
                     RealTimeReport& report);
 

@@ -1,5 +1,5 @@
 #pragma once
-// A bounded queue from one thread to another, without a lock: rows, events and requests.
+// A bounded queue from one thread to another without a lock: rows, events and requests.
 
 #include <algorithm>
 #include <atomic>
@@ -10,17 +10,17 @@
 
 namespace softgrip::daemon {
 
-/// Single producer, single consumer. Neither side waits: push() refuses when there is no room, pop() takes
-/// what is there. Memory is allocated at construction only. T is a plain value.
+/// Single producer, single consumer. Neither side waits: push() fails if there is no space, pop() returns the
+/// available items. Memory is allocated at construction only. T is a plain value.
 template <class T>
 class Ring {
  public:
-  /// Room for at least `capacity` items (rounded up to a power of two).
+  /// Allocates space for at least `capacity` items (rounded up to a power of two).
   explicit Ring(std::size_t capacity) : items_(std::bit_ceil(capacity)), mask_(items_.size() - 1) {}
 
   [[nodiscard]] std::size_t capacity() const noexcept { return items_.size(); }
 
-  /// Producer: `count` items in one piece, each made where it lies by fill(item, index), or none (false).
+  /// Producer: adds `count` items, each written in place by fill(item, index), or none (false).
   template <class Fill>
   bool push(std::size_t count, Fill&& fill) noexcept {
     const std::size_t tail = tail_.load(std::memory_order_relaxed);
@@ -37,7 +37,7 @@ class Ring {
   }
   bool push(const T& item) noexcept { return push(std::span<const T>(&item, 1)); }
 
-  /// Consumer: moves up to items.size() items out and says how many.
+  /// Consumer: moves up to items.size() items out and returns their number.
   std::size_t pop(std::span<T> items) noexcept {
     const std::size_t head = head_.load(std::memory_order_relaxed);
     if (known_tail_ - head < items.size()) known_tail_ = tail_.load(std::memory_order_acquire);
@@ -48,7 +48,7 @@ class Ring {
   }
   bool pop(T& item) noexcept { return pop(std::span<T>(&item, 1)) == 1; }
 
-  /// Either side: how many items wait; already outdated when it returns.
+  /// Both sides: returns the number of waiting items, which may change at any time.
   [[nodiscard]] std::size_t size() const noexcept {
     const std::size_t head = head_.load(std::memory_order_acquire);
     return tail_.load(std::memory_order_acquire) - head;
@@ -59,11 +59,12 @@ class Ring {
 
   std::vector<T> items_;
   std::size_t mask_;
-  // Each side keeps the other's position as last seen, so that most calls touch no shared line.
+  // Each side keeps the last known position of the other side, so that most calls access no shared cache
+  // line.
   alignas(cache_line) std::atomic<std::size_t> head_{0};  // written by the consumer
-  std::size_t known_tail_ = 0;                            // the consumer's
+  std::size_t known_tail_ = 0;                            // used by the consumer only
   alignas(cache_line) std::atomic<std::size_t> tail_{0};  // written by the producer
-  std::size_t known_head_ = 0;                            // the producer's
+  std::size_t known_head_ = 0;                            // used by the producer only
 };
 
 }  // namespace softgrip::daemon

@@ -17,18 +17,18 @@
 
 namespace softgrip::daemon {
 
-/// From the loop to the bus: what the board shall output.
+/// From the loop to the bus: the outputs for the board.
 struct Commands {
-  Nanoseconds at = 0;  ///< the tick they come from
+  Nanoseconds at = 0;  ///< scheduled time of the tick that computed them
   std::array<double, control::max_channels> command_kpa{};
   /// The output if the loop stops sending commands.
   std::array<double, control::max_channels> safe_kpa{};
   bool may_rise = false;      ///< a sequence runs; otherwise a command away from rest is a late old command
-  std::uint32_t inhibit = 0;  ///< control::BusHealth::inhibit, as this tick knew it
+  std::uint32_t inhibit = 0;  ///< control::BusHealth::inhibit that this tick had read
   bool last = false;          ///< the loop has ended; write these until the board confirms them
 };
 
-/// From the bus to the loop: what came back.
+/// From the bus to the loop: readings and state of the bus.
 struct BusReport {
   static constexpr auto anything = [] {
     std::array<double, control::max_channels> outputs_kpa{};
@@ -43,12 +43,12 @@ struct BusReport {
   control::BusHealth health;
 };
 
-/// From the bus to the log: something changed.
+/// From the bus to the log: a change.
 struct BusEvent {
   enum class Kind : std::uint8_t {
     connected,       ///< the board has answered in a new session
-    failed,          ///< the first failure after a good exchange; `status` and `detail` say what
-    recovered,       ///< the first good exchange after failures
+    failed,          ///< the first failure after a successful exchange, with `status` and `detail`
+    recovered,       ///< the first successful exchange after failures
     loop_silent,     ///< no new commands from the loop: the safe outputs are written
     loop_back,       ///< the loop's commands are written again
     another_client,  ///< another client feeds the board's watchdog; `detail`: number of clients
@@ -57,7 +57,7 @@ struct BusEvent {
   Kind kind = Kind::connected;
   Nanoseconds at = 0;
   drivers::BusStatus status = drivers::BusStatus::ok;
-  std::array<char, 256> detail{};  ///< what the board said, ended by 0
+  std::array<char, 256> detail{};  ///< message of the board, terminated by 0
 };
 
 /// From the loop to the recorder: a row of one channel.
@@ -68,7 +68,7 @@ struct Record {
   control::ChannelOutput output;
 };
 
-/// From the loop to the log and to the recorder. Those of a tick are pushed before its rows.
+/// From the loop to the log and to the recorder. The events of a tick are pushed before its rows.
 struct StampedEvent {
   Nanoseconds at = 0;
   control::Event event;
@@ -80,7 +80,7 @@ struct Snapshot {
   std::uint64_t ticks = 0;
   control::State state = control::State::starting;
   control::Fault first_fault;
-  control::Fault cause;              ///< what is there in this tick and is a fault or grows to one
+  control::Fault cause;              ///< present condition that is a fault or may become one
   std::uint32_t under_pressure = 0;  ///< as in control::TickOutput
   std::size_t channel_count = 0;
   std::array<control::ChannelOutput, control::max_channels> channels{};
@@ -91,9 +91,9 @@ struct Snapshot {
 struct InputLevels {
   std::atomic<bool> emergency_stop{false};
   std::atomic<bool> interlock_open{false};
-  std::atomic<bool> lost{false};          ///< the lines cannot be read any more
-  std::atomic<Nanoseconds> looked_at{0};  ///< when the lines were read last
-  /// The lines are lost if the last read is older than this; 0: there are no lines.
+  std::atomic<bool> lost{false};          ///< the lines cannot be read
+  std::atomic<Nanoseconds> looked_at{0};  ///< time of the last read of the lines
+  /// The lines are lost if the last read is older than this [ns]; 0: there are no lines.
   Nanoseconds longest_silence = 0;
 };
 
@@ -106,7 +106,7 @@ struct PanelEvent {
     part_away,
     enable_on,
     enable_off,
-    loop_hangs,  ///< no tick for too long: the enable output was dropped
+    loop_hangs,  ///< no tick for too long: the enable output was switched off
     gpio_lost,   ///< the chip failed
   };
   Kind kind = Kind::gpio_lost;
@@ -114,7 +114,8 @@ struct PanelEvent {
 };
 
 struct SharedState {
-  /// `record_capacity`: rows the recorder may lag behind; `event_capacity`: events that a client may.
+  /// `record_capacity`: rows by which the recorder may lag; `event_capacity`: events by which a reader may
+  /// lag.
   explicit SharedState(std::size_t record_capacity, std::size_t event_capacity = 4096)
       : records(record_capacity), events(event_capacity) {}
 
@@ -125,18 +126,19 @@ struct SharedState {
   Ring<Record> records;
   Broadcast<StampedEvent> events;
   Ring<PanelEvent> panel_events{64};
-  Ring<control::Request> vents{16};  ///< taken before ...
-  Ring<control::Request> stops{16};  ///< ... these, these before ...
-  /// ... these: stops of one named start, at most one for each. There is room for every start that waits, and
-  /// for some that were taken a moment ago.
+  Ring<control::Request> vents{16};  ///< read before ...
+  Ring<control::Request> stops{16};  ///< ... these, which are read before ...
+  /// ... these: stops of one named start, at most one for each. The capacity covers all waiting starts and
+  /// some that were read a moment ago.
   Ring<control::Request> named_stops{128};
   Ring<control::Request> requests{64};
   std::atomic<control::State> state{control::State::starting};  ///< of the last tick
-  std::atomic<bool> under_pressure{false};                      ///< some finger stays so, of the last tick
-  std::atomic<bool> enable_on{false};                           ///< the enable output, as it was written
+  std::atomic<bool> under_pressure{false};                      ///< a finger is pressurised without motion,
+                                                                ///< in the last tick
+  std::atomic<bool> enable_on{false};                           ///< last written level of the enable output
   InputLevels inputs;
-  std::atomic<std::uint64_t> records_dropped{0};  ///< no room: the recorder lagged
-  std::atomic<std::uint64_t> events_dropped{0};   ///< more in a tick than it has room for
+  std::atomic<std::uint64_t> records_dropped{0};  ///< no space: the recorder lagged
+  std::atomic<std::uint64_t> events_dropped{0};   ///< more events in a tick than its capacity
   std::atomic<bool> shutdown_requested{false};    ///< to the loop: end after a last, safe tick
   std::atomic<bool> safe_state_confirmed{false};  ///< from the bus: the board confirmed the last commands
 };

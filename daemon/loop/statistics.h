@@ -1,5 +1,5 @@
 #pragma once
-// Loop statistics: always on, written by loop and bus, read by anyone.
+// Statistics of the loop and the bus. They are always active; loop and bus write them, any thread may read.
 
 #include <atomic>
 #include <cstdint>
@@ -32,13 +32,13 @@ struct LoopStatistics {
 
 struct BusStatistics {
   Histogram wake_up;
-  Histogram exchange;  ///< duration of good exchanges
-  Counter steps;       ///< of its schedule, with an exchange or without
+  Histogram exchange;  ///< duration of successful exchanges
+  Counter steps;       ///< steps of the schedule, with or without an exchange
   Counter exchanges;
   Counter failures;
   Counter overruns;
   Counter sessions;                         ///< successful connects
-  std::atomic<std::uint64_t> attempts{0};   ///< to connect since the last good exchange
+  std::atomic<std::uint64_t> attempts{0};   ///< attempts to connect since the last successful exchange
   std::atomic<Nanoseconds> retry_pause{0};  ///< upper limit of the time until the next one
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// A named thread with a stack of known size whose exceptions do not end the process unseen.
+// A named thread with a stack of known size. Exceptions in it are reported.
 
 #include <pthread.h>
 
@@ -9,18 +9,18 @@
 
 namespace softgrip::daemon {
 
-/// Joins on destruction at the latest. The body must end by itself on request.
+/// The destructor joins the thread. The body must end by itself on request.
 class Thread {
  public:
   struct Options {
-    std::string name;  ///< at most 15 bytes, as `ps -L` and the kernel show it
-    /// std::thread would take 8 MiB, all of it resident under mlockall.
+    std::string name;  ///< at most 15 bytes, as shown by `ps -L` and the kernel
+    /// std::thread would need 8 MiB, and mlockall() would make all of it resident.
     std::size_t stack_bytes = 1024 * 1024;
   };
 
   Thread() = default;
-  /// Throws std::system_error if there is no thread to be had. `on_exception` is called in the new thread
-  /// with the text of an exception that left `body`.
+  /// Throws std::system_error if the thread cannot be created. `on_exception` is called in the new thread
+  /// with the text of an exception from `body`.
   Thread(const Options& options, std::function<void()> body,
          std::function<void(const std::string&)> on_exception);
   Thread(const Thread&) = delete;

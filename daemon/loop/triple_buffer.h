@@ -1,6 +1,6 @@
 #pragma once
-// The newest value, from one thread to another, without a lock. Loop, bus and socket exchange values this
-// way.
+// Passes the newest value from one thread to another without a lock. Loop, bus and socket exchange values
+// this way.
 
 #include <array>
 #include <atomic>
@@ -8,18 +8,19 @@
 
 namespace softgrip::daemon {
 
-/// A triple buffer. One thread writes, one thread reads; neither ever waits, retries or sees half a value,
-/// and both work in place, so a large value is not copied. Values that the reader did not fetch in time are
-/// lost. Three slots: the writer fills the write slot, the reader holds the read slot, and both exchange
-/// theirs with the middle slot.
+/// A triple buffer for one writer and one reader. Neither thread waits, retries or reads an incomplete value.
+/// Both work in place, so a large value is not copied. Values that the reader did not fetch in time are lost.
+/// There are three slots: the writer fills the write slot, the reader holds the read slot, and both exchange
+/// their slot with the middle slot.
 template <class T>
 class TripleBuffer {
  public:
   TripleBuffer() = default;
-  /// All slots start as copies of `value`; it does not count as published.
+  /// All slots start as copies of `value`, which does not count as published.
   explicit TripleBuffer(const T& value) : slots_{{{value}, {value}, {value}}} {}
 
-  /// The slot to fill before publish(). Its content is some older value, not necessarily the last published.
+  /// Returns the slot to fill before publish(). It contains an older value, not necessarily the last
+  /// published one.
   [[nodiscard]] T& write_slot() noexcept { return slots_[write_].value; }
 
   /// Exchanges the write slot with the middle slot: write_slot() returns another slot after this call.
@@ -28,7 +29,7 @@ class TripleBuffer {
     write_ = taken & index_mask;
   }
 
-  /// Copies and publishes.
+  /// Copies and publishes a value.
   void publish(const T& value) noexcept {
     write_slot() = value;
     publish();
@@ -36,15 +37,14 @@ class TripleBuffer {
 
   /// Fetches the newest value if it was not fetched yet. Returns true if it did.
   bool fetch() noexcept {
-    // The flag is looked at first: an exchange would put an old value back into circulation as if it were
-    // new.
+    // Reads the flag first: an exchange without a new value would publish an old value as new.
     if ((middle_.load(std::memory_order_relaxed) & fresh) == 0) return false;
     const std::uint8_t taken = middle_.exchange(read_, std::memory_order_acq_rel);
     read_ = taken & index_mask;
     return true;
   }
 
-  /// The value of the last fetch() that returned true; before that the initial one.
+  /// Returns the value of the last successful fetch(); before that the initial value.
   [[nodiscard]] const T& value() const noexcept { return slots_[read_].value; }
 
  private:
@@ -57,8 +57,8 @@ class TripleBuffer {
   };
 
   std::array<Slot, 3> slots_{};
-  alignas(cache_line) std::uint8_t write_ = 0;               // the writer's
-  alignas(cache_line) std::uint8_t read_ = 1;                // the reader's
+  alignas(cache_line) std::uint8_t write_ = 0;               // used by the writer only
+  alignas(cache_line) std::uint8_t read_ = 1;                // used by the reader only
   alignas(cache_line) std::atomic<std::uint8_t> middle_{2};  // shared
 };
 

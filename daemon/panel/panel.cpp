@@ -10,10 +10,10 @@ using drivers::GpioRole;
 
 namespace {
 
-/// Edges taken at once: the kernel keeps 16 per line.
+/// Largest number of edges read in one call. The kernel buffers 16 per line.
 constexpr std::size_t edges_at_once = 32;
 
-/// How a lamp blinks while pressure stays on: half of this on, half of it off.
+/// Blink period of a lamp while fingers are pressurised: half on, half off [ns].
 constexpr Nanoseconds blink_period = ns_per_s;
 
 bool in_dark_half(Nanoseconds now) noexcept {
@@ -82,7 +82,7 @@ void Panel::read_inputs() noexcept {
   const auto count = lines_->wait(pause(clock_.now()), edges);
   if (!count) return lose(clock_.now());
   for (const drivers::GpioEdge& edge : std::span(edges).first(*count)) {
-    // Active means pressed of the emergency stop, and good of the part.
+    // Active means "pressed" for the emergency stop, and "in position" for the part.
     if (TripInput* const to = input(edge.role)) {
       to->edge(edge.active == (edge.role == GpioRole::emergency_stop), edge.at);
     }
@@ -133,15 +133,16 @@ bool Panel::loop_hangs(Nanoseconds now) noexcept {
   const bool hangs = !leaving && now - ticked_ > stale_after_;
   if (hangs && !hung_) {
     tell(PanelEvent::Kind::loop_hangs, now);
-    // Should it come back, it shall not go on as if nothing had happened.
+    // If the loop continues later, it must stop with a fault.
     shared_.inputs.lost.store(true, std::memory_order_relaxed);
   }
   hung_ = hangs;
   return hangs;
 }
 
-/// Rises when the rig is ready; what a fault does to it is the rig file's choice, but an emergency stop, lost
-/// inputs and a loop that hangs always drop it. While it is being found out whether all is well, it stays.
+/// Returns true if the enable output must be on. It is switched on when the rig is ready. The rig file
+/// decides its state after a fault. An emergency stop, lost inputs and a stalled loop always switch it off.
+/// While the state is not known yet, it does not change.
 bool Panel::enable_wanted(State state, bool hangs) const noexcept {
   if (hangs || lost_ || shared_.inputs.emergency_stop.load(std::memory_order_relaxed)) return false;
   if (works(state)) return true;
@@ -171,7 +172,7 @@ void Panel::write(GpioRole role, bool active) noexcept {
   const bool droppable = role != GpioRole::fault_lamp;
   if (droppable && active && dropped_.load()) return;
   const bool taken = lines_->write(role, active);
-  // A drop() from another thread between the two lines above has come first.
+  // A drop() of another thread may have come between the two lines above.
   if (droppable && dropped_.load()) lines_->write(role, false);
   written = active;
   if (!taken && !lost_) lose(clock_.now());

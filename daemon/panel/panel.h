@@ -1,6 +1,6 @@
 #pragma once
-// Buttons and lamps: reads the digital inputs for the loop and drives the digital outputs by what the loop
-// does.
+// Buttons and lamps: reads the digital inputs for the loop, and sets the digital outputs by the state of the
+// loop.
 
 #include <array>
 #include <atomic>
@@ -27,23 +27,23 @@ namespace softgrip::daemon {
 /// the line has been steadily released. Motion then still needs a reset (acknowledge).
 class Panel {
  public:
-  /// All references outlive it. Sets the inputs of `shared` to what they are before anything is known.
+  /// All references must outlive the object. Sets the inputs of `shared` to their values for unknown lines.
   Panel(std::unique_ptr<drivers::GpioLines> lines, const rig::GpioSettings& settings, const Clock& clock,
         SharedState& shared, const LoopStatistics& loop) noexcept;
   Panel(const Panel&) = delete;
   Panel& operator=(const Panel&) = delete;
   Panel(Panel&&) = delete;
   Panel& operator=(Panel&&) = delete;
-  /// drop()
+  /// Calls drop().
   ~Panel();
 
-  /// Steps until stop().
+  /// Calls step() until stop().
   void run() noexcept;
   void stop() noexcept { stopped_.store(true); }
-  /// Waits for an edge, at most until something is due or the look interval is over; then acts.
+  /// Waits for an edge, at most until an action is due or the look interval is over, and then acts.
   void step() noexcept;
 
-  /// Enable output and ready lamp off, for good. Any thread; safe in a signal handler.
+  /// Switches the enable output and the ready lamp off permanently. Any thread; safe in a signal handler.
   void drop() noexcept;
 
  private:
@@ -67,9 +67,9 @@ class Panel {
   Nanoseconds stale_after_;
   std::optional<TripInput> emergency_stop_;
   std::optional<TripInput> part_;
-  bool latched_ = false;  // the loop has latched the emergency stop of the start
+  bool latched_ = false;  // the loop has latched the emergency stop of the start-up
   bool lost_ = false;
-  std::uint64_t ticks_ = 0;  // of the loop, and since when they stand still
+  std::uint64_t ticks_ = 0;  // ticks of the loop, and since when they have not changed
   Nanoseconds ticked_ = 0;
   bool hung_ = false;
   std::array<std::optional<bool>, drivers::gpio_role_count> written_{};

@@ -17,9 +17,9 @@ std::atomic<Panel*> guarded{nullptr};
 std::array<struct sigaction, endings.size()> before;
 
 extern "C" void softgrip_drop_panel(int signal) {
-  // Writing a line is one system call of the driver library, without a lock or memory of its own.
+  // Writing a line is one system call of the driver library without locks or allocation.
   if (Panel* const panel = guarded.exchange(nullptr)) panel->drop();
-  // SA_RESETHAND has restored the usual ending.
+  // SA_RESETHAND has restored the default action.
   ::raise(signal);
 }
 

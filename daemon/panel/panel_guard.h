@@ -1,13 +1,13 @@
 #pragma once
-// The enable output on the way out of a process that crashes.
+// Switches the enable output off when the process crashes.
 
 namespace softgrip::daemon {
 
 class Panel;
 
-/// As long as it lives, the signals by which a crash ends the process (SIGSEGV, SIGBUS, SIGFPE, SIGILL,
-/// SIGABRT, SIGSYS, SIGQUIT, SIGXCPU) drop the panel's enable output before they take their course. Nothing
-/// helps against SIGKILL. At most one lives at a time.
+/// While this object exists, signals of a crash (SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGSYS, SIGQUIT,
+/// SIGXCPU) switch the panel's enable output off before they end the process. SIGKILL cannot be handled. Only
+/// one object may exist.
 class PanelGuard {
  public:
   explicit PanelGuard(Panel& panel) noexcept;

@@ -19,12 +19,12 @@ void TripInput::change(bool trips, Nanoseconds at) noexcept {
   known_ = true;
   asks_ = trips;
   since_ = at;
-  // Any disturbance of a clear line is suspicious, even an edge without its partner.
+  // Any edge on a clear line is suspicious, even an edge whose partner is missing.
   if (suspect_ == never) suspect_ = at;
 }
 
 void TripInput::edge(bool trips, Nanoseconds at) noexcept {
-  // The level may have been read after the interrupt and before its event: then the change is known already.
+  // If the level was read between the interrupt and its event, the change is already known.
   if (known_ && at <= since_) {
     if (trips != asks_) change(trips, since_);
     return;

@@ -1,28 +1,28 @@
 #pragma once
-// An input that stops something: trips on doubt, clears only when it has been steady.
+// An input that stops the rig: trips if the level is doubtful, clears only after the level has been steady.
 
 #include "base/periodic_schedule.h"
 
 namespace softgrip::daemon {
 
-/// Debounces one input from edges with the kernel's times and from levels read now and then; either alone
-/// would do, edges are faster and levels cannot be lost. Tripped from the start.
+/// Debounces one input, using edges with the kernel's times and levels that are read periodically. Either
+/// source would be sufficient: edges are faster, and levels cannot be lost. Starts tripped.
 ///
-///   trips   when the line was at its trip level for `debounce` without a break, and at the latest
-///           2 `debounce` after the first edge to it, even if the line chatters. A disturbance shorter than
+///   trips   when the line has been at its trip level for `debounce` without interruption, and at most
+///           2 `debounce` after the first edge to it, even if the line bounces. A disturbance shorter than
 ///           `debounce` does not trip.
-///   clears  when the line has been steadily clear for `debounce`
+///   clears  when the line has been clear for `debounce` without interruption
 class TripInput {
  public:
   explicit TripInput(Nanoseconds debounce) noexcept : debounce_(debounce) {}
 
-  /// The line changed to `trips` at `at`.
+  /// Processes an edge: the line changed to the trip level (`trips`) or from it at `at`.
   void edge(bool trips, Nanoseconds at) noexcept;
-  /// The line is `trips` now.
+  /// Processes a read level: the line is now at the trip level (`trips`) or not.
   void level(bool trips, Nanoseconds now) noexcept;
 
   [[nodiscard]] bool tripped() const noexcept { return tripped_; }
-  /// When level() should be called next if nothing happens until then; far away if nothing is pending.
+  /// Returns the time of the next call of level() if nothing else happens; very late if nothing is pending.
   [[nodiscard]] Nanoseconds due() const noexcept;
 
  private:
@@ -32,10 +32,10 @@ class TripInput {
 
   Nanoseconds debounce_;
   bool tripped_ = true;
-  bool known_ = false;           // the line was looked at
-  bool asks_ = true;             // the line's present wish to trip ...
-  Nanoseconds since_ = 0;        // ... and since when it is steady
-  Nanoseconds suspect_ = never;  // while clear: since when it was not steadily clear
+  bool known_ = false;           // the level was read
+  bool asks_ = true;             // the line is at its trip level ...
+  Nanoseconds since_ = 0;        // ... and has been steady since this time
+  Nanoseconds suspect_ = never;  // while clear: time since when it has not been steadily clear
 };
 
 }  // namespace softgrip::daemon

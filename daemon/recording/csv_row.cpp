@@ -17,10 +17,10 @@ constexpr std::string_view columns =
     "time_s,channel,pressure_command_kpa,displacement_mm,pressure_kpa,temperature_c,reference_mm,"
     "feedforward_kpa,feedback_kpa,residual_mm,deficit_mm,age_s,state,step,validity,result,saturated,slewing";
 constexpr std::string_view pressure_column = "pressure_kpa,", temperature_column = "temperature_c,";
-/// Everything in a row but numbers and the channel's name.
+/// Length of all words in a row except numbers and the channel's name.
 constexpr std::size_t longest_words = 128;
 
-/// "00" to "99".
+/// The texts "00" to "99".
 constexpr std::array<char, 200> digit_pairs = [] {
   std::array<char, 200> pairs{};
   for (std::size_t i = 0; i < 100; ++i) {
@@ -30,7 +30,7 @@ constexpr std::array<char, 200> digit_pairs = [] {
   return pairs;
 }();
 
-/// `digits` decimals of `fraction`, without trailing zeros; nothing at all for 0.
+/// Writes `digits` decimals of `fraction` without trailing zeros; nothing for 0.
 template <int digits>
 char* write_fraction(char* to, std::uint64_t fraction) noexcept {
   static_assert(digits % 2 == 0);

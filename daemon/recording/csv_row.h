@@ -1,5 +1,5 @@
 #pragma once
-// Rows of run.csv, as fast as numbers can be written.
+// Writes rows of run.csv quickly.
 
 #include <cstddef>
 #include <string>
@@ -10,26 +10,27 @@
 
 namespace softgrip::daemon {
 
-/// Longest text that write_decimal() makes.
+/// Length of the longest text of write_decimal().
 inline constexpr std::size_t longest_decimal = 32;
 
-/// Writes a number with six decimals at most, trailing zeros left out, and returns the end. A nanometre or a
-/// millipascal is far below what any sensor of a rig resolves, and this costs a quarter of a shortest
-/// round-trip text. Not finite: nothing is written. Beyond a million million: shortest round-trip form.
+/// Writes a number with at most six decimals, without trailing zeros, and returns the end. A nanometre or a
+/// millipascal is far below the resolution of any sensor of a rig, and this takes a quarter of the time of a
+/// shortest round-trip text. Writes nothing for a number that is not finite. Above 1e12 it uses the shortest
+/// round-trip form.
 [[nodiscard]] char* write_decimal(char* to, double value) noexcept;
 
-/// Writes nanoseconds as seconds, exactly, trailing zeros left out.
+/// Writes nanoseconds as seconds, exactly and without trailing zeros.
 [[nodiscard]] char* write_seconds(char* to, Nanoseconds duration) noexcept;
 
 /// The rows of one recording. Columns: see docs/reference/recording.md.
 class CsvRows {
  public:
-  /// `with_pressure`: some channel measures its pressure, so there is a column for it; `with_temperature`
-  /// likewise.
+  /// `with_pressure`: adds the column of the measured pressure, because a channel measures it;
+  /// `with_temperature` likewise for the temperature.
   CsvRows(std::vector<std::string> channel_names, bool with_pressure, bool with_temperature = false);
 
   [[nodiscard]] std::string header() const;
-  /// Appends a row; `begin` is the recording's time 0.
+  /// Appends a row. `begin` is time 0 of the recording.
   void append(std::string& text, const Record& record, Nanoseconds begin) const;
 
  private:
@@ -38,7 +39,7 @@ class CsvRows {
   bool with_pressure_, with_temperature_;
 };
 
-/// "valid", "none_yet", ... as the column `validity` has them.
+/// Returns "valid", "none_yet", ... for the column `validity`.
 [[nodiscard]] std::string_view name_of(model::Validity validity) noexcept;
 
 }  // namespace softgrip::daemon

@@ -108,7 +108,7 @@ void describe_result(const Event& event, const Sequence*, EventEntry& entry) {
 void describe_refusal(const Event& event, const Sequence*, EventEntry& entry) {
   const auto refusal = static_cast<control::RefusalCode>(event.detail);
   entry.code = control::id_of(refusal);
-  // The sentence already starts with the finger.
+  // The text may already start with the finger.
   entry.text =
       fmt::format("The request was refused. {}", sentences_of(refusal, {refused_because_of(event)}, {}));
   entry.severity = Severity::warning;
@@ -326,7 +326,7 @@ std::uint64_t EventLog::add(EventEntry entry) {
 std::vector<EventEntry> EventLog::since(std::uint64_t id, std::size_t limit) const {
   const std::scoped_lock lock(mutex_);
   if (id >= last_id_) return {};
-  // The ids have no gaps.
+  // The ids are consecutive.
   const std::uint64_t known = last_id_ - entries_.size();
   const auto first = entries_.begin() + static_cast<std::ptrdiff_t>(std::max(id, known) - known);
   const auto count = std::min<std::size_t>(limit, static_cast<std::size_t>(entries_.end() - first));

@@ -1,5 +1,5 @@
 #pragma once
-// Events in words: what the socket API, the recordings and the log show.
+// Texts of events for the socket API, the recordings and the log.
 
 #include <cstddef>
 #include <cstdint>
@@ -16,36 +16,36 @@
 
 namespace softgrip::daemon {
 
-/// How much attention an event wants.
+/// The importance of an event for users.
 enum class Severity : std::uint8_t { information, warning, error };
 
-/// One event, as everybody outside the loop sees it.
+/// One event in the form for users and clients.
 struct EventEntry {
-  std::uint64_t id = 0;  ///< counts from 1, without gaps
-  double time_s = 0;     ///< since the daemon's start, or since the recording's
+  std::uint64_t id = 0;  ///< from 1, without gaps
+  double time_s = 0;     ///< since the start of the daemon or of the recording
   std::string kind;      ///< "fault_latched", "bus_failed", ...; a contract
   Severity severity = Severity::information;
-  std::string channel;        ///< its name, or empty for the whole rig
+  std::string channel;        ///< name of the channel; empty for the complete rig
   std::string code;           ///< "F101", "R02", "HOLDING", a state, a step; by kind; may be empty
   std::string text;           ///< one sentence
-  std::uint32_t request = 0;  ///< the request it answers, or 0
+  std::uint32_t request = 0;  ///< the request that it answers, or 0
   std::string client;         ///< name of the client that made the request; empty: unknown
-  double value = 0;           ///< a number that goes with it, or 0
-  std::vector<control::Argument> parameters;  ///< of sequence_started: what the sequence runs with
+  double value = 0;           ///< a related number, or 0
+  std::vector<control::Argument> parameters;  ///< of sequence_started: the values of the sequence
 };
 
-/// Describes an event of the controller. `time_s` and `id` are left to the caller. `sequence` is the one that
-/// runs or is started, or nullptr.
+/// Describes an event of the controller. The caller sets `time_s` and `id`. `sequence` is the running or
+/// started sequence, or nullptr.
 [[nodiscard]] EventEntry describe(const control::Event& event, const std::vector<std::string>& channel_names,
                                   const control::PreparedSequence* sequence);
 /// Describes an event of the bus.
 [[nodiscard]] EventEntry describe(const BusEvent& event);
 /// Describes an event of the digital lines.
 [[nodiscard]] EventEntry describe(const PanelEvent& event);
-/// "information", "warning", "error"
+/// Returns "information", "warning" or "error".
 [[nodiscard]] std::string_view name_of(Severity severity) noexcept;
 
-/// "F202 reading_out_of_range of left"; without a finger where it concerns the whole rig.
+/// Returns "F202 reading_out_of_range of left"; without a finger if it concerns the complete rig.
 [[nodiscard]] std::string title_of(const control::Fault& fault,
                                    const std::vector<std::string>& channel_names);
 
@@ -54,28 +54,28 @@ struct EventEntry {
 [[nodiscard]] std::string sentences_of(control::RefusalCode refusal, const control::Fault& cause,
                                        const std::vector<std::string>& channel_names);
 
-/// How often something has happened since the daemon's start.
+/// The number of events of one kind since the daemon's start.
 struct EventCount {
   std::string kind;
-  std::string code;     ///< left out of kinds whose codes are names or numbers of a sequence
-  std::string channel;  ///< empty for the whole rig
+  std::string code;     ///< empty for kinds whose codes are names or numbers of a sequence
+  std::string channel;  ///< empty for the complete rig
   std::uint64_t count = 0;
 };
 
-/// The newest events, for all threads but the loop, and how many of each sort there were.
+/// Stores the newest events for all threads except the loop, and counts the events of each kind.
 class EventLog {
  public:
   explicit EventLog(std::size_t capacity) : capacity_(capacity) {}
 
-  /// Gives the event its id, which it returns.
+  /// Assigns an id to the event, stores it and returns the id.
   std::uint64_t add(EventEntry entry);
-  /// Those after `id`, oldest first, at most `limit`.
+  /// Returns the events after `id`, oldest first, at most `limit`.
   [[nodiscard]] std::vector<EventEntry> since(std::uint64_t id, std::size_t limit) const;
-  /// The id of the newest event; 0 if there is none.
+  /// Returns the id of the newest event; 0 if there is none.
   [[nodiscard]] std::uint64_t newest() const;
-  /// The id of the oldest that is kept; 0 if there is none.
+  /// Returns the id of the oldest stored event; 0 if there is none.
   [[nodiscard]] std::uint64_t oldest() const;
-  /// By kind, code and channel; those that never happened are not there.
+  /// Returns the counts by kind, code and channel, without events that never occurred.
   [[nodiscard]] std::vector<EventCount> counts() const;
 
  private:

@@ -1,5 +1,5 @@
 #pragma once
-// Where a recording comes from: what run.json says besides events.
+// The provenance of a recording: the contents of run.json except events.
 
 #include <cstdint>
 #include <optional>
@@ -8,7 +8,7 @@
 
 namespace softgrip::daemon {
 
-/// A file that shaped the run, by its content.
+/// A file that the run used, with its hash.
 struct SourceFile {
   std::string role;  ///< "rig", "board", "model", "plant"
   std::string path;
@@ -18,11 +18,11 @@ struct SourceFile {
 /// Data that all recordings of a daemon share.
 struct Provenance {
   std::string software_version;
-  std::string rig;  ///< its name
+  std::string rig;  ///< name of the rig
   std::vector<SourceFile> files;
   std::vector<std::string> channel_names;
-  bool simulated = false;          ///< no board: fingers, valves and sensors are computed
-  bool measures_pressure = false;  ///< some channel does
+  bool simulated = false;          ///< without a board: fingers, valves and sensors are simulated
+  bool measures_pressure = false;  ///< a channel measures its pressure
   bool measures_temperature = false;
   double rate_hz = 0;
   std::uint32_t decimation = 1;

@@ -17,17 +17,17 @@ namespace {
 
 constexpr std::size_t batch_records = 256;
 constexpr std::size_t text_bytes = 256 * 1024;
-/// After the last motion: how the finger settles.
+/// Recorded time after the last motion, in which the finger settles [ns].
 constexpr Nanoseconds tail = ns_per_s / 2;
-/// Between two versions of run.json.
+/// Time between two versions of run.json [ns].
 constexpr Nanoseconds json_pause = ns_per_s / 4;
-/// After the disk refused, before the next attempt.
+/// Time after a disk error until the next attempt [ns].
 constexpr Nanoseconds retry_pause = 60 * ns_per_s;
 constexpr std::size_t events_per_file = 10'000;
 
 using Kind = control::Event::Kind;
 
-/// Letters, digits, '-' and '_' of a name; all else becomes '_'.
+/// Returns a name with letters, digits, '-' and '_' only; other characters become '_'.
 std::string file_name_of(std::string_view name) {
   std::string text;
   for (const char c : name.substr(0, 60)) {
@@ -50,7 +50,7 @@ struct Recorder::Recording {
   bool json_due = true;
   Nanoseconds json_at = 0;
   Nanoseconds synced_at = 0;
-  std::string text;  // rows that the kernel does not have yet
+  std::string text;  // rows that were not passed to the kernel yet
 };
 
 Recorder::Recorder(const rig::RecorderSettings& settings, const Provenance& provenance,
@@ -75,7 +75,8 @@ void Recorder::drain() {
     for (std::size_t i = 0; i < count; ++i) take(batch_[i]);
     if (recording_ && recording_->text.size() >= text_bytes) flush(false);
   }
-  // In virtual time, hours pass in seconds and no live reader exists: the kernel gets whole buffers.
+  // In virtual time, hours pass in seconds and there are no live readers, so the kernel gets complete
+  // buffers.
   if (recording_ && !provenance_.virtual_time) flush(false);
   show();
 }
@@ -111,7 +112,7 @@ void Recorder::take(const Record& row) {
 void Recorder::take(const StampedEvent& event) {
   now_ = event.at;
   const bool starts = event.event.kind == Kind::sequence_started;
-  // A start within the tail of the last run begins a recording of its own.
+  // A start during the tail of the last run begins a new recording.
   if (recording_ && !always_ && starts && recording_->story.sequence != nullptr) end("complete");
   const bool opens = always_ || starts || event.event.kind == Kind::fault_latched;
   if (!recording_ && may_begin(event.at) && opens) begin(event.at, &event.event);
@@ -253,7 +254,7 @@ void Recorder::end(const char* state) {
 }
 
 void Recorder::block() {
-  // A folder that the user named is there already; a second attempt could only say so.
+  // The folder of the user exists already, so a second attempt would fail with the same error.
   blocked_ = only_folder_.empty() ? now_ + retry_pause : std::numeric_limits<Nanoseconds>::max();
 }
 

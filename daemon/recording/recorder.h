@@ -1,5 +1,5 @@
 #pragma once
-// The recorder: takes what the loop left for it, rows and events, and makes recordings of them.
+// The recorder: reads rows and events of the loop and writes recordings.
 
 #include <cstdint>
 #include <deque>
@@ -23,10 +23,10 @@ namespace softgrip::daemon {
 /// Status of the recorder.
 struct RecorderStatus {
   bool active = false;
-  std::string folder;  ///< of the present or last recording; empty before the first
+  std::string folder;  ///< folder of the present or last recording; empty before the first
   std::uint64_t rows = 0;
   std::uint64_t dropped_rows = 0;  ///< since the daemon's start
-  std::string error;               ///< of the present or last recording
+  std::string error;               ///< error of the present or last recording
 };
 
 /// Decides when recordings start and end, and writes them. A recording starts with a sequence and ends 0.5 s
@@ -35,8 +35,8 @@ struct RecorderStatus {
 /// status() come from one thread.
 class Recorder {
  public:
-  /// `only_folder`: if not empty, everything goes into this one folder from start to stop, in every mode.
-  /// `origin`: time 0 of the event log. All references outlive the recorder.
+  /// `only_folder`: if it is not empty, all data are recorded in this folder from start to stop, in each
+  /// mode. `origin`: time 0 of the event log. All references must outlive the recorder.
   Recorder(const rig::RecorderSettings& settings, const Provenance& provenance, std::string only_folder,
            Nanoseconds origin, SharedState& shared, EventLog& events, const SequenceStore& sequence_store);
   Recorder(const Recorder&) = delete;
@@ -45,18 +45,18 @@ class Recorder {
   Recorder& operator=(Recorder&&) = delete;
   ~Recorder();
 
-  /// Takes what is in the ring and hands it to the kernel. To be called at least every flush_interval_s.
+  /// Reads the ring and passes the rows to the kernel. Must be called at least every flush_interval_s.
   void drain();
-  /// drain(), and the end of the recording.
+  /// Calls drain() and ends the recording.
   void finish();
 
-  /// From any thread.
+  /// Returns the status. May be called from any thread.
   [[nodiscard]] RecorderStatus status() const;
 
  private:
   struct Recording;
 
-  /// Those of the loop up to and with this moment.
+  /// Takes the events of the loop up to and including a time.
   void take_events(Nanoseconds until);
   void take(const Record& row);
   void take(const StampedEvent& event);
@@ -64,7 +64,7 @@ class Recorder {
   void write(const StampedEvent& event);
   [[nodiscard]] bool may_begin(Nanoseconds at) const;
   void forget_before(Nanoseconds at);
-  /// `event`: what it begins with; nullptr: with a row.
+  /// `event`: first event of the recording; nullptr: the recording begins with a row.
   void begin(Nanoseconds at, const control::Event* event);
   [[nodiscard]] std::string folder_for(Nanoseconds at, const control::Event* event) const;
   void end(const char* state);
@@ -82,17 +82,17 @@ class Recorder {
   SharedState& shared_;
   Broadcast<StampedEvent>::Reader loop_events_;
   std::optional<StampedEvent> waiting_;  // newer than the newest row
-  std::uint64_t events_lost_ = 0;        // reported so far
+  std::uint64_t events_lost_ = 0;        // number of lost events that was reported
   EventLog& events_;
   const SequenceStore& sequence_store_;
   CsvRows rows_;
   std::vector<Record> batch_;
-  std::deque<Record> past_rows_;  // while nothing is recorded
+  std::deque<Record> past_rows_;  // kept while no recording is active
   std::deque<StampedEvent> past_events_;
   std::unique_ptr<Recording> recording_;
   std::uint32_t recordings_ = 0;
-  Nanoseconds now_ = 0;      // of the newest record
-  Nanoseconds blocked_ = 0;  // no new recording before: the disk refused the last one
+  Nanoseconds now_ = 0;      // time of the newest record
+  Nanoseconds blocked_ = 0;  // no new recording before this time, because of a disk error
   mutable std::mutex status_mutex_;
   RecorderStatus status_;
 };

@@ -1,5 +1,5 @@
 #pragma once
-// The folder of one recorded run on disk: run.csv, which grows, and run.json, which is whole at any moment.
+// The folder of one recorded run: run.csv, which grows, and run.json, which is always complete.
 
 #include <cstdint>
 #include <string>
@@ -14,13 +14,13 @@ namespace softgrip::daemon {
 /// motion.
 [[nodiscard]] std::string recorded_already(const std::string& path);
 
-/// Writes, and survives what disks do. After the first failed write of run.csv it writes no more rows: the
-/// file is cut back to its last whole line and error() says why.
+/// Writes a recording and handles errors of the disk. After the first failed write of run.csv it writes no
+/// more rows: the file is truncated to its last complete line, and error() gives the reason.
 class RunFolder {
  public:
-  /// Creates `path` and the folders above it, and run.csv with `header` in it. Refuses a folder that already
-  /// holds a run.csv: recordings are never overwritten. `durable`: run.json is on the disk, not only in the
-  /// kernel, before it takes its name. The error is a sentence.
+  /// Creates `path`, its parent folders, and run.csv with `header`. Refuses a folder with a run.csv, because
+  /// recordings are never overwritten. `durable`: run.json is written to the disk before it is renamed. The
+  /// error is a sentence.
   [[nodiscard]] static tl::expected<RunFolder, std::string> create(const std::string& path,
                                                                    std::string_view header, bool durable);
 
@@ -31,15 +31,16 @@ class RunFolder {
   ~RunFolder();
 
   [[nodiscard]] const std::string& path() const noexcept { return path_; }
-  /// Hands whole lines to the kernel: what a kill of the process cannot take back. False once it has failed.
+  /// Passes complete lines to the kernel, so that a kill of the process does not lose them. False after a
+  /// failure.
   bool append(std::string_view lines);
-  /// Waits until the disk has what append() was given.
+  /// Waits until the appended lines are on the disk.
   bool sync();
   /// Replaces run.json atomically. A failure is reported but does not end the recording of rows.
   bool replace_json(std::string_view text);
-  /// Empty, or the sentence of the first failure.
+  /// Returns the sentence of the first failure; empty if there was none.
   [[nodiscard]] const std::string& error() const noexcept { return error_; }
-  /// True if rows can still be written.
+  /// Returns true if rows can still be written.
   [[nodiscard]] bool healthy() const noexcept { return descriptor_ >= 0; }
 
  private:
@@ -51,7 +52,7 @@ class RunFolder {
   std::string path_;
   int descriptor_ = -1;
   bool durable_ = true;
-  std::int64_t whole_bytes_ = 0;  // of run.csv, up to the end of the last append that succeeded
+  std::int64_t whole_bytes_ = 0;  // size of run.csv after the last successful append
   std::string error_;
 };
 

@@ -8,7 +8,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// File names and messages may hold bytes that are no UTF-8; they must not make the file unreadable.
+/// Replaces bytes that are not UTF-8 in file names and messages, so that the file remains readable.
 std::string dump(const Json& json) {
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -1,5 +1,5 @@
 #pragma once
-// The text of run.json.
+// Writes the text of run.json.
 
 #include <cstdint>
 #include <memory>
@@ -18,16 +18,16 @@ namespace softgrip::daemon {
 /// State and contents of one recording.
 struct RunStory {
   std::string state = "recording";  ///< "recording", "complete", "stopped_early" (rows could not be written)
-  std::string reason;               ///< why it began: "sequence", "fault", "always"
+  std::string reason;               ///< reason for the recording: "sequence", "fault", "always"
   std::string started_at;           ///< UTC, ISO 8601; empty in virtual time
   double duration_s = 0;
   std::uint64_t rows = 0;
   std::uint64_t dropped_rows = 0;
   std::shared_ptr<const LoadedSequence> sequence;
-  std::uint32_t request = 0;  ///< that started the sequence
+  std::uint32_t request = 0;  ///< the request that started the sequence
   std::vector<EventEntry> events;
-  std::uint64_t events_left_out = 0;  ///< beyond what one file holds
-  std::string error;                  ///< of the disk
+  std::uint64_t events_left_out = 0;  ///< events beyond the capacity of one file
+  std::string error;                  ///< error of the disk
 };
 
 /// Returns the parameters of a sequence as an object: {"squeeze_kpa": 4}.

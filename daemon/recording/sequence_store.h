@@ -1,5 +1,5 @@
 #pragma once
-// Stores sequences that were passed to the loop until no thread uses them.
+// Stores the sequences of the loop until no thread uses them.
 
 #include <cstdint>
 #include <map>
@@ -11,24 +11,24 @@
 
 namespace softgrip::daemon {
 
-/// A sequence as read and as fitted to the rig.
+/// A sequence as read from its file, and as fitted to the rig.
 struct LoadedSequence {
   control::Sequence written;
   control::PreparedSequence prepared;
   std::string sha256;          ///< of the text
-  document::Problems remarks;  ///< warnings only: what it will not do as written
+  document::Problems remarks;  ///< warnings only: differences between the file and the motion
 };
 
-/// By the request that starts them. The loop holds a bare pointer into an entry; the entry stays until its
-/// request was refused or its run has ended and been recorded.
+/// Sequences by the number of the request that starts them. The loop has a plain pointer to an entry. The
+/// entry remains until its request was refused, or until its run has ended and has been recorded.
 class SequenceStore {
  public:
   void put(std::uint32_t request, std::shared_ptr<const LoadedSequence> sequence);
-  /// nullptr if there is none.
+  /// Returns the sequence of a request; nullptr if there is none.
   [[nodiscard]] std::shared_ptr<const LoadedSequence> find(std::uint32_t request) const;
-  /// Its start was refused, or never reached the loop.
+  /// Removes a sequence whose start was refused or never reached the loop.
   void drop(std::uint32_t request);
-  /// Drops those of requests before `request`: a later start was accepted, so nothing runs from them.
+  /// Removes the sequences of requests before `request`: a later start was accepted, so they do not run.
   void drop_before(std::uint32_t request);
 
  private:

@@ -31,10 +31,10 @@ namespace softgrip::daemon {
 
 namespace {
 
-/// Of an IPv4 address that is written as one of IPv6.
+/// Prefix of an IPv4 address in IPv6 notation.
 constexpr std::array<unsigned char, 12> mapped_prefix{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0xff, 0xff};
 
-/// "::1" and "0:0::1" are one board, as are "::ffff:10.0.0.5" and "10.0.0.5".
+/// Returns a normal form: "::1" and "0:0::1" are the same board, and so are "::ffff:10.0.0.5" and "10.0.0.5".
 std::string numeric(const std::string& host) {
   std::array<unsigned char, sizeof(in6_addr)> address{};
   std::array<char, INET6_ADDRSTRLEN> text{};
@@ -61,7 +61,7 @@ std::string name_of(const drivers::ModbusAddress& link, std::uint8_t unit) {
   return "serial " + real_path(std::get<drivers::SerialLine>(link).device);
 }
 
-/// A converter is one board under all its words.
+/// Returns the same name for all words of a converter.
 std::string name_of(const std::vector<ComputerDevice>& there, const std::string& word,
                     const std::string& root) {
   const auto device = only_device(there, word, "converter");
@@ -84,7 +84,7 @@ sockaddr_un address_of(const std::string& board, socklen_t& length) {
   return address;
 }
 
-/// " (process 4711)", or nothing.
+/// Returns " (process 4711)", or an empty text.
 std::string in_brackets(pid_t process) {
   return process > 0 ? fmt::format(" (process {})", process) : "";
 }
@@ -94,7 +94,7 @@ std::string taken(const std::string& board, pid_t process) {
                      in_brackets(process));
 }
 
-/// The state of a process as in /proc: R, S, D, T ...; nothing if it cannot be seen from here.
+/// Returns the state of a process as in /proc: R, S, D, T ...; nothing if it is not visible.
 std::optional<char> state_of(pid_t process) {
   std::ifstream file(fmt::format("/proc/{}/stat", process));
   std::string text;
@@ -104,7 +104,7 @@ std::optional<char> state_of(pid_t process) {
   return text[name_end + 2];
 }
 
-/// True if the process is stopped, dead or hung in a system call: it drives nothing.
+/// Returns true if the process is stopped, dead or blocked in a system call, so that it drives nothing.
 bool stands_still(pid_t process) {
   constexpr int looks = 5;
   constexpr Nanoseconds pause = 50'000'000;
@@ -116,7 +116,7 @@ bool stands_still(pid_t process) {
   return true;
 }
 
-/// The process that locked the file, as it wrote into it; 0: not known.
+/// Returns the process that locked the file, as it wrote it into the file; 0: unknown.
 pid_t holder_of(int file) {
   std::array<char, 16> text{};
   if (::pread(file, text.data(), text.size() - 1, 0) <= 0) return 0;
@@ -125,14 +125,14 @@ pid_t holder_of(int file) {
 
 void write_holder(int file) {
   const std::string text = std::to_string(::getpid()) + "\n";
-  // Only messages need it.
+  // The number is used for messages only.
   if (::ftruncate(file, 0) == 0) [[maybe_unused]]
     const ssize_t written = ::pwrite(file, text.data(), text.size(), 0);
 }
 
 /// Returns the holder of a name, or nothing if it cannot be seen: it does not listen, or its queue is full.
 std::optional<Peer> holder_of(const sockaddr_un& address, socklen_t length) {
-  // Between its bind() and listen() a program of softgrip cannot be seen yet.
+  // Between bind() and listen(), a softgrip program is not visible yet.
   constexpr int attempts = 5;
   constexpr Nanoseconds pause = 2'000'000;
   for (int i = 0; i < attempts; ++i) {
@@ -150,7 +150,7 @@ std::string standing_still(const std::string& board, pid_t process) {
                      in_brackets(process));
 }
 
-/// A holder that does not count.
+/// Returns the sentence for a holder that is ignored.
 std::string without_right(const std::string& board, const std::optional<Peer>& holder) {
   if (holder && holder->trusted) return standing_still(board, holder->process);
   const std::string who =
@@ -188,7 +188,7 @@ LockedFile& LockedFile::operator=(LockedFile&& other) noexcept {
 }
 
 LockedFile::~LockedFile() {
-  // A program that has opened it meanwhile sees by the name that it must open the next one.
+  // A program that has opened the file meanwhile detects by the name that it must open the new one.
   if (file_ && folder_->still_names(name_, file_.get())) folder_->remove(name_);
 }
 
@@ -209,7 +209,7 @@ tl::expected<void, std::string> BoardLock::add_file(const std::shared_ptr<const 
       remarks_.push_back(standing_still(board, process));
       return {};
     }
-    // A holder that ended between open() and flock() took the name away.
+    // A holder that ended between open() and flock() has removed the name.
     if (!folder->still_names(name, file->get())) continue;
     write_holder(file->get());
     files_.emplace_back(folder, name, std::move(*file));
@@ -222,7 +222,7 @@ tl::expected<void, std::string> BoardLock::add_name(const std::string& board, Lo
   const sockaddr_un address = address_of(board, length);
   Descriptor held(socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
   if (bind(held.get(), reinterpret_cast<const sockaddr*>(&address), length) == 0 &&
-      listen(held.get(), SOMAXCONN) == 0) {  // the kernel names the holder only of a socket that listens
+      listen(held.get(), SOMAXCONN) == 0) {  // the kernel reports the holder only of a socket that listens
     names_.push_back(std::move(held));
     return {};
   }

@@ -1,11 +1,10 @@
 #pragma once
-// One Modbus client per board that writes: a program that drives a board holds a lock, which ends with the
-// process.
+// Ensures that one softgrip program drives a board: the program holds a lock, which ends with the process.
 //
-// The lock has two halves. A locked file in the runtime folder: only root and the service can make it. And a
-// name of an abstract socket: it works also after the removal of the file, and between the users of the
-// service's group. Every user of the machine can bind such a name, so a holder counts only if it is trusted
-// (trusted_user.h).
+// The lock has two parts. The first is a locked file in the runtime folder, which only root and the service
+// can create. The second is the name of an abstract socket. It works also after the removal of the file, and
+// between the users of the service's group. Each user of the machine can bind such a name, so a holder counts
+// only if it is trusted (trusted_user.h).
 
 #include <cstdint>
 #include <memory>
@@ -24,7 +23,7 @@ namespace softgrip::daemon {
 /// converter by its real path; one entry each. The list is empty for a simulated board.
 [[nodiscard]] std::vector<std::string> driven_by(const rig::RigFile& rig);
 
-/// A file of the runtime folder that this process has locked. Its end removes the file.
+/// A file of the runtime folder that this process has locked. The destructor removes the file.
 class LockedFile {
  public:
   LockedFile(std::shared_ptr<const RuntimeFolder> folder, std::string name, Descriptor file);
@@ -43,21 +42,21 @@ class LockedFile {
 /// The purpose of a lock.
 enum class LockPurpose : std::uint8_t {
   drive,
-  /// Safe outputs: they yield to another program of softgrip that runs. A lock that cannot be made, and a
-  /// holder that stands still (stopped, or hung in a system call), do not keep them from the board.
+  /// Safe outputs. They yield to another running softgrip program. They are written in spite of a lock that
+  /// cannot be created, or a holder that does not run (stopped, or blocked in a system call).
   vent,
 };
 
-/// Held by this process until it ends, however it ends. It binds the processes of one machine: those that
-/// share /run, and those of one network namespace. Another machine on the same Modbus TCP board is noticed on
-/// the wire instead (F304).
+/// The lock of this process until it ends in any way. It applies to the processes of one machine that share
+/// /run, and to those of one network namespace. Another machine on the same Modbus TCP board is detected on
+/// the network (F304).
 class BoardLock {
  public:
-  /// Takes all that the rig drives. The error names the program that has it, or the reason.
+  /// Locks all boards of the rig. The error names the program that holds a lock, or the reason.
   [[nodiscard]] static tl::expected<BoardLock, std::string> take(const rig::RigFile& rig,
                                                                  LockPurpose purpose = LockPurpose::drive);
 
-  /// Returns one sentence for each holder that did not count, such as a user without the right to the lock.
+  /// Returns one sentence for each ignored holder, such as a user without the right to the lock.
   [[nodiscard]] const std::vector<std::string>& remarks() const noexcept { return remarks_; }
 
  private:

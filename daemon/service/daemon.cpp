@@ -15,14 +15,14 @@ namespace softgrip::daemon {
 
 namespace {
 
-/// Time of rows that the recorder may lag behind: a slow disk is tolerated this long.
+/// Duration of the rows by which the recorder may lag: a slow disk is tolerated for this time [s].
 constexpr double seconds_of_rows = 8;
 constexpr std::size_t fewest_records = 4096;
 constexpr std::size_t most_records = std::size_t{1} << 18;
 constexpr std::size_t events_kept = 10'000;
-/// A reading that was sampled at 0 has not been sampled.
+/// A sampling time of 0 means that a reading was never sampled, so virtual time starts later.
 constexpr Nanoseconds virtual_origin = ns_per_s;
-/// How long the rig may take to become idle before a sequence of the options is given up.
+/// Longest time until the rig must be idle for a sequence of the command line [ns].
 constexpr Nanoseconds patience = 10 * ns_per_s;
 
 bool waits_for_a_release(const control::PreparedSequence& sequence) {

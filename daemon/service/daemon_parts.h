@@ -1,5 +1,5 @@
 #pragma once
-// Inside of Daemon: the parts that both kinds of run put in motion.
+// The parts of Daemon that both kinds of run use.
 
 #include <memory>
 #include <optional>
@@ -17,17 +17,17 @@
 
 namespace softgrip::daemon {
 
-/// How long the board may take to confirm the last outputs.
+/// Longest time for the board to confirm the last outputs [ns].
 inline constexpr Nanoseconds shutdown_deadline = ns_per_s;
 
 struct DaemonParts {
   DaemonParts(rig::RigFile rig_file, DaemonOptions run_options);
 
-  /// Between two ticks.
+  /// Returns the time between two ticks [ns].
   [[nodiscard]] Nanoseconds period() const noexcept;
-  /// From a tick to the exchange that follows it.
+  /// Returns the time from a tick to the following exchange [ns].
   [[nodiscard]] Nanoseconds bus_offset() const noexcept;
-  /// Gives new events to options.on_event.
+  /// Passes new events to options.on_event.
   void deliver_events();
   /// Updates the result of the run from the present state, if the sequence is over.
   void conclude(Outcome& outcome);
@@ -54,15 +54,15 @@ struct DaemonParts {
   Recorder recorder;
   Service service;
   std::optional<OneShotRun> one_shot_run;
-  std::uint64_t delivered = 0;  // id of the last event given to on_event
+  std::uint64_t delivered = 0;  // id of the last event passed to on_event
 };
 
-/// Updates the result from the one-shot task, finished or not.
+/// Updates the result from the one-shot run, finished or not.
 void conclude_one_shot_run(const OneShotRun& one_shot_run, Outcome& outcome);
 
-/// Ticks as fast as it can, in this thread alone.
+/// Runs ticks as fast as possible in this thread only.
 [[nodiscard]] Outcome run_in_virtual_time(DaemonParts& parts, Signals& signals);
-/// Ticks by the clock, with threads.
+/// Runs ticks by the clock, with threads.
 [[nodiscard]] Outcome run_in_real_time(DaemonParts& parts, Signals& signals);
 
 }  // namespace softgrip::daemon

@@ -32,11 +32,11 @@ spdlog::level::level_enum level_of(Severity severity) {
   return spdlog::level::info;
 }
 
-/// How long a reader of the standard error may keep a line waiting, once.
+/// Longest time that a blocked reader of the standard error may delay a line, once [ms].
 constexpr int patience_ms = 200;
 
-/// The standard error, which a reader may have stopped reading: a line that cannot be written is dropped, for
-/// who writes must be able to end.
+/// The standard error, whose reader may be blocked. A line that cannot be written is dropped, so that the
+/// daemon can always end.
 class StandardError final : public spdlog::sinks::base_sink<std::mutex> {
  protected:
   void sink_it_(const spdlog::details::log_msg& message) override {
@@ -57,7 +57,7 @@ class StandardError final : public spdlog::sinks::base_sink<std::mutex> {
            : level == spdlog::level::warn ? "\033[33m\033[1m"
                                           : "\033[32m";
   }
-  /// A pipe that is ready takes a line of ours in one piece, so this does not wait.
+  /// A pipe that is ready accepts a complete line, so this does not wait.
   void write(const std::string& line) {
     pollfd ready{STDERR_FILENO, POLLOUT, 0};
     const bool writable = ::poll(&ready, 1, blocked_ ? 0 : patience_ms) > 0;
@@ -76,8 +76,7 @@ class StandardError final : public spdlog::sinks::base_sink<std::mutex> {
 EventPrinter::EventPrinter(bool beside) {
   auto sink = std::make_shared<StandardError>();
   if (beside) {
-    // The writer's thread takes no signal: one that came to it would end the process without the safe
-    // outputs.
+    // The writer's thread blocks all signals: a signal in it would end the process without the safe outputs.
     sigset_t all;
     sigset_t before;
     sigfillset(&all);
@@ -89,7 +88,7 @@ EventPrinter::EventPrinter(bool beside) {
   } else {
     logger_ = std::make_shared<spdlog::logger>("softgripd", sink);
   }
-  // The journal knows the time itself.
+  // The journal adds the time itself.
   const bool journal = std::getenv("JOURNAL_STREAM") != nullptr;
   logger_->set_pattern(journal ? "%l: %v" : "%H:%M:%S.%e %^%l%$: %v");
   logger_->flush_on(spdlog::level::info);

@@ -1,5 +1,5 @@
 #pragma once
-// The daemon's own log: events and the reports of start and end, on the standard error.
+// The daemon's own log on the standard error: events, and the reports at start and end.
 
 #include <map>
 #include <memory>
@@ -17,29 +17,30 @@ class thread_pool;
 
 namespace softgrip::daemon {
 
-/// Never used in the loop. Events of one kind that come faster than 20 in 10 s are counted instead of
+/// Not used in the loop. If events of one kind come faster than 20 in 10 s, they are counted instead of
 /// printed.
 class EventPrinter {
  public:
-  /// `beside`: lines are written by a thread of the printer's own, so that a reader that hangs cannot hold up
-  /// the caller; the oldest lines are lost then. Otherwise every line is written before the call returns.
+  /// `beside`: a thread of the printer writes the lines, so that a blocked reader cannot delay the caller;
+  /// the oldest lines are lost in this case. Otherwise each line is written before the call returns.
   explicit EventPrinter(bool beside);
 
   void print(const EventEntry& event);
-  /// Several lines.
+  /// Prints several lines.
   void print_report(const std::string& report);
   void print_end(const Outcome& outcome);
 
  private:
   struct Flow {
-    double window_s = 0;  ///< when the present window began
+    double window_s = 0;  ///< start of the present window
     int printed = 0;
     int suppressed = 0;
   };
   [[nodiscard]] bool passes(const EventEntry& event);
 
   std::shared_ptr<spdlog::logger> logger_;
-  std::shared_ptr<spdlog::details::thread_pool> writer_;  // goes first: its thread writes through the logger
+  std::shared_ptr<spdlog::details::thread_pool> writer_;  // destroyed first, because its thread writes
+                                                          // through the logger
   std::map<std::string, Flow> flows_;                     // by kind
 };
 

@@ -18,7 +18,7 @@ namespace {
 using nlohmann::json;
 
 constexpr int schema = 1;
-/// Rig file, board maps and models of 256 KiB each at most.
+/// Largest size [bytes]: rig file, board maps and models have at most 256 KiB each.
 constexpr std::size_t largest = std::size_t{32} << 20U;
 
 /// Returns the absolute path, independent of the working directory.
@@ -32,7 +32,8 @@ std::string name_of(const std::string& config) {
   return "rig-" + sha256(absolute(config)) + ".json";
 }
 
-/// The folder, if it does not outlive the state of the boards by a restart of the machine.
+/// Returns the folder if a restart of the machine removes it, because the state of the boards is unknown
+/// then.
 std::optional<RuntimeFolder> folder() {
   auto opened = RuntimeFolder::open();
   if (!opened || !opened->ends_with_the_machine()) return std::nullopt;

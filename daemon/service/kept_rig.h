@@ -11,16 +11,16 @@
 
 namespace softgrip::daemon {
 
-/// Keeps the rig file and every file that it names, in one file of the runtime folder and in one step. It
-/// takes the place of what an earlier run of the same rig file kept. Does nothing for a rig that drives no
-/// board. The error is a sentence.
+/// Copies the rig file and all files that it names into one file of the runtime folder, in one step. The copy
+/// replaces that of an earlier run with the same rig file. Does nothing for a rig without a real board. The
+/// error is a sentence.
 [[nodiscard]] tl::expected<void, std::string> keep_rig(const rig::RigFile& rig);
 
-/// Returns the rig as the last softgripd ran it with the rig file `config`. Nothing is returned if that run
-/// ended in order with all outputs at their lowest, or if what it kept cannot be read.
+/// Returns the rig that the last softgripd with the rig file `config` used. Returns nothing if that run ended
+/// in order with all outputs at rest, or if the copy cannot be read.
 [[nodiscard]] std::optional<rig::RigFile> kept_rig(const std::string& config);
 
-/// Forgets it: the outputs are at their lowest, confirmed by the board.
+/// Removes the copy, after the board has confirmed that all outputs are at rest.
 void forget_rig(const std::string& config);
 
 }  // namespace softgrip::daemon

@@ -1,6 +1,6 @@
 #pragma once
-// Which devices of this computer a rig file names: the udev rule of the package gives the service these and
-// no others.
+// Finds the devices of this computer that a rig file names. The package's udev rule gives the service only
+// these devices.
 
 #include <filesystem>
 #include <optional>
@@ -16,8 +16,8 @@ struct NamedDevice {
   std::vector<std::string> written;  ///< attributes of a converter that the daemon writes: out_voltage0_raw
 };
 
-/// Returns nothing for a device that the rig file does not name. `device`: the kernel's name, gpiochip0 or
-/// iio:device0. `chips`: where the files of the GPIO chips are.
+/// Returns nothing for a device that the rig file does not name. `device`: name in the kernel, gpiochip0 or
+/// iio:device0. `chips`: folder of the GPIO chips' files.
 [[nodiscard]] std::optional<NamedDevice> named_device(const rig::RigFile& rig, const std::string& device,
                                                       const std::filesystem::path& chips = "/dev");
 

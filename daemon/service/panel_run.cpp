@@ -8,7 +8,7 @@ namespace softgrip::daemon {
 
 namespace {
 
-/// Below loop and bus, above everything that is not real-time.
+/// Returns a priority below loop and bus and above all threads that are not real-time.
 int priority_of(const rig::RealTimeSettings& settings) {
   return settings.priority > 0 ? std::max(settings.priority - 2, 1) : 0;
 }

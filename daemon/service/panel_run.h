@@ -1,5 +1,5 @@
 #pragma once
-// The panel and its thread, from opening the lines to giving them back.
+// The panel and its thread, from opening the lines to releasing them.
 
 #include <memory>
 #include <optional>
@@ -12,7 +12,7 @@
 
 namespace softgrip::daemon {
 
-/// Does nothing for a rig without digital lines. All references outlive it.
+/// Does nothing for a rig without digital lines. All references must outlive the object.
 class PanelRun {
  public:
   PanelRun(const rig::RigFile& rig, const DaemonOptions& options, const Clock& clock, SharedState& shared,
@@ -24,7 +24,7 @@ class PanelRun {
   PanelRun& operator=(PanelRun&&) = delete;
   ~PanelRun() { stop(); }
 
-  /// Requests the lines. False, with ending and message in `outcome`: they cannot be had.
+  /// Requests the lines. If it fails, returns false and sets ending and message in `outcome`.
   bool open(Outcome& outcome);
   /// Starts reading the lines. Adds the result of the thread's scheduling to `report`.
   void start(RealTimeReport& report);

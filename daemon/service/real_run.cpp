@@ -1,4 +1,4 @@
-// Real time: the threads, in the order in which they begin and end.
+// Runs in real time: the threads in the order in which they begin and end.
 
 #include <algorithm>
 #include <atomic>
@@ -31,23 +31,23 @@ namespace softgrip::daemon {
 
 namespace {
 
-/// Beyond all deadlines: a thread that is still not done hangs.
+/// Time beyond all deadlines after which a thread that has not ended counts as blocked [ns].
 constexpr Nanoseconds longest_join = ns_per_s;
-/// Between two looks of this thread at everything else.
+/// Time between two checks of this thread [ns].
 constexpr Nanoseconds look_pause = ns_per_s / 20;
-/// How long loop and bus may stand still beyond what the rig file allows them before the service manager's
-/// watchdog starves: a machine that is busy for a moment is no hung daemon.
+/// Time for which loop and bus may stop beyond the rig file's limits before the service manager's watchdog is
+/// no longer fed. A machine that is busy for a moment must not restart the daemon [ns].
 constexpr Nanoseconds heartbeat_patience = ns_per_s / 2;
 /// Longest time of one turn of the service thread: clients are not served meanwhile.
 constexpr Nanoseconds service_patience = 2 * ns_per_s;
 /// Longest time for the recorder and the service thread to end after the outputs are safe.
 constexpr Nanoseconds longest_end = 3 * ns_per_s;
-/// Between two looks of the service thread when nothing listens.
+/// Time between two turns of the service thread without a socket [ns].
 constexpr Nanoseconds service_pause = ns_per_s / 50;
-/// From the start of the threads to the first tick.
+/// Time from the start of the threads to the first tick [ns].
 constexpr Nanoseconds lead_time = ns_per_s / 100;
 
-/// A flag that a sleeping thread notices.
+/// A flag that wakes a sleeping thread.
 class Stop {
  public:
   void set() {
@@ -55,7 +55,7 @@ class Stop {
     set_ = true;
     changed_.notify_all();
   }
-  /// True if it was set within `timeout`.
+  /// Returns true if the flag was set within `timeout`.
   bool wait(std::chrono::duration<double> timeout) {
     std::unique_lock lock(mutex_);
     return changed_.wait_for(lock, timeout, [this] { return set_; });
@@ -79,12 +79,12 @@ class RealRun {
 
  private:
   bool listen();
-  /// Says what was found beside the lock, and keeps the rig for the safe outputs after a crash.
+  /// Reports the remarks of the lock, and stores the rig for the safe outputs after a crash.
   void note_and_keep(const BoardLock& lock);
   void forget_if_rested();
   void start_threads();
   void start();
-  /// An exception of this thread must not leave the others alone: it is noted, and the run ends in order.
+  /// Handles exceptions of this thread: they are reported, and the run ends in order with all threads.
   void guarded(const std::function<void()>& action);
   void prepare(int priority, const char* who, RealTimeReport& report);
   void look_after();
@@ -158,7 +158,7 @@ void RealRun::loop_body() {
 }
 
 void RealRun::bus_body() {
-  // One below the loop: an exchange that is late must not delay a tick.
+  // 1 lower than the loop, so that a late exchange does not delay a tick.
   const int priority = parts_.rig.real_time.priority;
   prepare(priority > 1 ? priority - 1 : priority, "the bus", bus_report_);
   parts_.bus.run(PeriodicSchedule(start_ + parts_.bus_offset(), parts_.period()),
@@ -302,7 +302,7 @@ void RealRun::look_after() {
   }
 }
 
-/// A thread that hangs cannot be joined, and without it nothing can be tidied up.
+/// A blocked thread cannot be joined, and without it no orderly end is possible.
 void RealRun::end_without(const char* hangs, ExitCode code) {
   parts_.tell("internal_error", Severity::error, fmt::format("{}; the process ends without it.", hangs));
   parts_.deliver_events();
@@ -360,7 +360,7 @@ void RealRun::note_and_keep(const BoardLock& lock) {
               fmt::format("{}; after a crash the safe outputs depend on the rig file.", kept.error()));
 }
 
-/// As long as pressure may be on, the safe outputs need the rig that put it there.
+/// While a finger may be pressurised, the safe outputs need the rig of this run.
 void RealRun::forget_if_rested() {
   if (outcome_.safe_state_confirmed && !outcome_.pressure_left_on) forget_rig(parts_.rig.path);
 }

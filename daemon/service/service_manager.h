@@ -7,7 +7,7 @@
 
 namespace softgrip::daemon {
 
-/// sd_notify(3). Does nothing outside a unit of Type=notify.
+/// Uses sd_notify(3). Does nothing outside a unit of Type=notify.
 class ServiceManager {
  public:
   ServiceManager();

@@ -1,5 +1,5 @@
 #pragma once
-// Signals as something to wait for, not as interruptions.
+// Receives signals by waiting for them instead of by interruption.
 
 #include <array>
 #include <csignal>
@@ -9,10 +9,10 @@
 
 namespace softgrip::daemon {
 
-/// As long as it lives, every signal that asks a process to end is blocked in the calling thread and in those
-/// it starts; and ignored are SIGPIPE and SIGXFSZ, because a peer that is gone and a file that is too large
-/// are errors of the call, and what a terminal sends to stop a process, because a loop that stands still
-/// holds nothing.
+/// While this object exists, all signals that request the end of the process are blocked in the calling
+/// thread and in the threads started from it. SIGPIPE and SIGXFSZ are ignored, because the failed call
+/// reports the error. Signals with which a terminal stops a process are ignored, because a stopped loop
+/// cannot hold a part.
 class Signals {
  public:
   Signals() noexcept;
@@ -22,10 +22,10 @@ class Signals {
   Signals& operator=(Signals&&) = delete;
   ~Signals();
 
-  /// The signal that came, or 0 after `timeout`. It is noted as the process's ending signal
+  /// Returns the received signal, or 0 after `timeout`. Stores it as the signal that ends the process
   /// (ending_signal.h).
   [[nodiscard]] int wait(Nanoseconds timeout) noexcept;
-  /// Takes all signals that came meanwhile. Returns the first one that this object has ever taken, or 0.
+  /// Reads all pending signals. Returns the first one that this object has ever read, or 0.
   [[nodiscard]] int first() noexcept;
 
  private:

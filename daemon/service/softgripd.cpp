@@ -28,7 +28,7 @@ namespace {
 
 using namespace softgrip;
 
-// The exit codes of every program of the project.
+// Exit codes of all programs of the project.
 
 struct Arguments {
   std::string config;
@@ -86,7 +86,7 @@ void declare(CLI::App& program, Arguments& arguments) {
       "The configuration is read once; restart to change it.");
 }
 
-/// fmt::print throws where nothing can be written, and then nothing could say why.
+/// fmt::print() throws if nothing can be written, and the reason would be lost.
 void complain(const std::string& sentence) {
   std::fputs(("softgripd: " + sentence + "\n").c_str(), stderr);
 }
@@ -102,7 +102,7 @@ ExitCode check(const Arguments& arguments) {
   const rig::CheckReport report = rig::check_files(files);
   std::fputs(report.problems.format().c_str(), stderr);
   if (!report.accepted()) return ExitCode::input_refused;
-  document::Problems ignored;  // the report has them
+  document::Problems ignored;  // the start-up report contains them
   const auto rig = rig::load_rig(arguments.config, ignored);
   if (!rig) return ExitCode::input_refused;
   const MonotonicClock clock;
@@ -127,7 +127,7 @@ ExitCode end_of_safe_outputs(const daemon::SafeOutputsReport& report) {
   return daemon::exit_code_of(report.end);
 }
 
-/// Prefers the rig as the last softgripd read it: the rig file may be half edited.
+/// Prefers the rig that the last softgripd read, because the rig file may be incomplete during an edit.
 ExitCode safe_outputs(const Arguments& arguments) {
   const char* result = std::getenv("SERVICE_RESULT");
   if (!daemon::safe_outputs_needed(result == nullptr ? "" : result)) {
@@ -199,7 +199,7 @@ ExitCode run(const Arguments& arguments) {
   if (arguments.histograms.empty()) return code;
   if (const auto written = write_histograms(arguments.histograms, **daemon); !written) {
     complain(written.error());
-    if (code == ExitCode::done) code = ExitCode::io;  // the end of the run matters more
+    if (code == ExitCode::done) code = ExitCode::io;  // the result of the run is more important
   }
   return code;
 }
@@ -216,12 +216,12 @@ int main(int argc, char** argv) {
     } catch (const CLI::ParseError& error) {
       return program.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::usage);
     }
-    // The result of the others is the state of the board, not what they print.
+    // The other modes report by their exit code, not by their output.
     const ExitCode code = arguments.safe_outputs      ? safe_outputs(arguments)
                           : arguments.check           ? with_output_checked(check(arguments), "softgripd")
                           : !arguments.device.empty() ? say_whether_named(arguments)
                                                       : run(arguments);
-    // A signal is the usual end of a daemon, but it interrupts a run that has an end of its own.
+    // A signal is the usual end of a daemon, but it interrupts a run with its own end.
     const bool has_an_end = !arguments.sequence.empty() || arguments.duration_s;
     if (has_an_end && ending_signal() != 0) end_by_signal(ending_signal());
     return static_cast<int>(code);

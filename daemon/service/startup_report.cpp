@@ -56,7 +56,8 @@ std::string channel_line(const control::ChannelSettings& channel, const rig::Val
                      valve.on_power_loss == rig::PowerLoss::vents ? "vents" : "holds");
 }
 
-/// How soon an emergency stop is seen: the debounced line, the next tick, the exchange that follows it.
+/// Returns the lines on the GPIO, with the response time of an emergency stop: debounce, next tick, and
+/// exchange.
 std::string gpio_lines(const rig::RigFile& rig) {
   std::string text;
   const rig::GpioSettings& gpio = *rig.gpio;

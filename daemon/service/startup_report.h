@@ -10,9 +10,9 @@
 
 namespace softgrip::daemon {
 
-/// Several lines: rate, board, bus budget, latency, watchdog, safe actions, feedforward of every channel, and
-/// the real-time set-up if there is one (`real_time` may be nullptr: virtual time, or a check without
-/// starting). `program` is who drives the rig.
+/// Returns several lines: rate, board, bus budget, latency, watchdog, safe actions and the feedforward of
+/// each channel. The real-time set-up is added if `real_time` is not nullptr (it is in virtual time, or in a
+/// check without a start). `program` is the name of the program that drives the rig.
 [[nodiscard]] std::string startup_report(const rig::RigFile& rig, const drivers::Board& board,
                                          const RealTimeReport* real_time, std::string_view program);
 

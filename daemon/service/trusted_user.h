@@ -1,5 +1,5 @@
 #pragma once
-// Whom a program of softgrip believes that it drives a board: other users may bind any name first.
+// Decides which users a softgrip program trusts to drive a board, because any user may bind any socket name.
 
 #include <sys/types.h>
 
@@ -13,14 +13,14 @@ inline constexpr const char* service_account = "softgrip";
 /// Returns the user id of the service, or nothing on a machine without this user.
 [[nodiscard]] std::optional<uid_t> service_user();
 
-/// True for root, the user of the service and the user of this process.
+/// Returns true for root, the user of the service and the user of this process.
 [[nodiscard]] bool is_trusted(uid_t user);
 
-/// The other end of a Unix domain socket, as the kernel knows it from connect() or listen().
+/// The process at the other end of a Unix domain socket, as the kernel recorded it at connect() or listen().
 struct Peer {
   pid_t process = 0;  ///< 0: not visible from here
   uid_t user = 0;
-  /// A trusted user, or a member of the service's group, who may move the gripper anyway.
+  /// True for a trusted user and for members of the service's group, who may move the gripper.
   bool trusted = false;
 };
 /// Returns the peer of a connected socket, or an empty value if the kernel does not report it.

@@ -15,7 +15,8 @@ namespace {
 using SortedJson = nlohmann::json;
 using Command = ClientRequest::Command;
 
-constexpr std::uint64_t largest_id = std::uint64_t{1} << 53;  // what every JSON reader keeps exactly
+constexpr std::uint64_t largest_id = std::uint64_t{1} << 53;  // largest integer that all JSON readers
+                                                              // represent exactly
 constexpr std::uint64_t largest_request = (std::uint64_t{1} << 32) - 1;
 
 constexpr std::array<std::pair<std::string_view, Command>, 14> commands{{
@@ -40,9 +41,9 @@ constexpr std::string_view nested_key = "parameters";
 constexpr std::size_t most_parameters = 64;
 constexpr std::size_t longest_name = 64;
 
-/// Parses a flat JSON object; what is wrong with it as a JSON object is left in `problem`.
+/// Parses a flat JSON object. If it is not one, `problem` contains the reason.
 SortedJson parse_object(std::string_view line, std::string& problem) {
-  std::array<std::vector<std::string>, 2> keys;  // of the object, and of the one within it
+  std::array<std::vector<std::string>, 2> keys;  // keys of the object, and of the nested object
   const auto look = [&](int depth, SortedJson::parse_event_t event, SortedJson& parsed) {
     const bool object = event == SortedJson::parse_event_t::object_start;
     const bool nested = object || event == SortedJson::parse_event_t::array_start;
@@ -62,7 +63,7 @@ SortedJson parse_object(std::string_view line, std::string& problem) {
   return object;
 }
 
-/// Takes keys out of the object, so that what is left is unknown.
+/// Removes keys from the object while reading, so that the remaining keys are unknown.
 class Reader {
  public:
   explicit Reader(SortedJson& object) : object_(object) {}
@@ -133,7 +134,7 @@ class Reader {
   void fail(std::string problem) {
     if (problem_.empty()) problem_ = std::move(problem);
   }
-  /// The first problem, unknown keys included.
+  /// Returns the first problem, including unknown keys.
   [[nodiscard]] std::string finish(std::string_view command) {
     for (const auto& [key, value] : object_.items()) {
       fail(fmt::format("the command '{}' knows no key '{}'", command, key));

@@ -1,7 +1,6 @@
 #pragma once
-// One line of a client of the socket API, read into a plain value. Lines come from outside: this is the
-// parser that is fuzzed (tests/daemon/socket/client_request_fuzz.cpp). docs/reference/socket-api.md is the
-// manual.
+// Reads one line of a client of the socket API into a plain value. Lines come from outside, so this parser is
+// fuzzed (tests/daemon/socket/client_request_fuzz.cpp). docs/reference/socket-api.md describes the requests.
 
 #include <cstdint>
 #include <optional>
@@ -37,28 +36,30 @@ struct ClientRequest {
     unsubscribe,
   };
 
-  std::optional<std::uint64_t> id;  ///< the client's own, echoed in every reply
+  std::optional<std::uint64_t> id;  ///< id of the client, repeated in each reply
   Command command = Command::status;
-  double rate_hz = 10;        ///< of watch: [0.1, 50]
-  std::string sequence;       ///< of start: a file in the daemon's sequence directory, or ...
+  double rate_hz = 10;        ///< for watch: [0.1, 50]
+  std::string sequence;       ///< for start: a file in the daemon's sequence directory, or ...
   std::string sequence_text;  ///< ... the sequence itself; then `sequence` is its name in messages
-  std::vector<control::Argument> parameters;  ///< of start: values in the place of defaults
-  bool dry_run = false;                       ///< of start: everything but the motion
-  /// The client's own name for a start, [1, 64] bytes without control characters: given by start, and by a
-  /// stop of this start alone. Empty: none.
+  std::vector<control::Argument> parameters;  ///< for start: values that replace defaults
+  bool dry_run = false;                       ///< for start: all checks without the motion
+  /// The client's name for a start, [1, 64] bytes without control characters: used by start, and by a stop of
+  /// only this start. Empty: none.
   std::string start_id;
-  std::optional<std::uint64_t> request;  ///< of a stop: the number of the only start that it stops, [1, 2^32)
-  std::optional<std::uint64_t> since;    ///< of events and subscribe: only those with a larger id
-  std::string started_at;                ///< of subscribe: of the daemon whose ids these are; empty: this one
-  std::string client;                    ///< of hello: who it is, [1, 64] bytes without control characters
-  std::uint64_t api = api_version;       ///< of hello: the version that the client speaks
-  std::uint64_t limit = 100;             ///< of events: [1, 1000]
-  bool histograms = false;               ///< of statistics: with the bins
+  std::optional<std::uint64_t> request;  ///< for stop: number of the only start that it stops, [1, 2^32)
+  std::optional<std::uint64_t> since;    ///< for events and subscribe: only events with a larger id
+  std::string started_at;                ///< for subscribe: start time of the daemon that assigned the ids;
+                                         ///< empty: this one
+  std::string client;                    ///< for hello: name of the client, [1, 64] bytes without control
+                                         ///< characters
+  std::uint64_t api = api_version;       ///< for hello: version of the client
+  std::uint64_t limit = 100;             ///< for events: [1, 1000]
+  bool histograms = false;               ///< for statistics: include the bins
 };
 
-/// Why a line was refused.
+/// The reason why a line was refused.
 struct ClientError {
-  std::optional<std::uint64_t> id;  ///< as far as it could be read
+  std::optional<std::uint64_t> id;  ///< if it could be read
   std::string message;              ///< one sentence
 };
 
@@ -66,9 +67,9 @@ struct ClientError {
 /// command, a wrong type and a number out of range are errors.
 [[nodiscard]] tl::expected<ClientRequest, ClientError> parse_client_request(std::string_view line);
 
-/// The names of the commands that a role may use.
+/// Returns the names of the commands that a role may use.
 [[nodiscard]] std::vector<std::string_view> commands_of(Role role);
-/// False of what moves, stops or acknowledges.
+/// Returns false for commands that move, stop or acknowledge.
 [[nodiscard]] bool only_looks(ClientRequest::Command command) noexcept;
 
 /// Returns true if the line requests a stop or a vent.

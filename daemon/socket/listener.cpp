@@ -43,17 +43,17 @@ bool answers(const sockaddr_un& address) {
   return connect(probe.get(), generic, sizeof address) == 0 || errno == EAGAIN;
 }
 
-/// Removes the file of a daemon that is gone. False if one answers.
+/// Removes the file of a daemon that has ended. Returns false if a daemon responds.
 bool clear_away(const sockaddr_un& address) {
   if (answers(address)) return false;
-  // A file that is no socket also refuses a connection. It is not removed, and bind() reports that it exists.
+  // A file that is not a socket also refuses a connection. It remains, and bind() reports that it exists.
   struct stat status {};
   const bool refused = errno == ECONNREFUSED;
   if (refused && lstat(address.sun_path, &status) == 0 && S_ISSOCK(status.st_mode)) unlink(address.sun_path);
   return true;
 }
 
-/// Mode and group of the socket's file.
+/// Sets mode and group of the socket's file.
 bool give_rights(const rig::SocketFile& file) {
   if (!file.group.empty()) {
     const group* entry = getgrnam(file.group.c_str());
@@ -89,7 +89,7 @@ tl::expected<Listener, std::string> Listener::open(const rig::SocketFile& file) 
 
   Descriptor socket(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
   if (!socket) return failure(file.path, "socket");
-  // Between bind and chmod, no other user may connect.
+  // Between bind() and chmod(), no other user may connect.
   const mode_t before = umask(0177);
   const int bound = bind(socket.get(), reinterpret_cast<const sockaddr*>(&*address), sizeof *address);
   umask(before);

@@ -17,14 +17,15 @@ namespace softgrip::daemon {
 
 class Listener {
  public:
-  /// Creates the socket's file with the owner's rights first and those of `file` then. A file left by a
-  /// daemon that is gone is replaced; one of a daemon that answers is an error. The error is a sentence.
+  /// Creates the socket's file, first with permissions for the owner only, then with those of `file`.
+  /// Replaces the file of a daemon that has ended; the file of a running daemon is an error. The error is a
+  /// sentence.
   [[nodiscard]] static tl::expected<Listener, std::string> open(const rig::SocketFile& file);
   Listener(const Listener&) = delete;
   Listener& operator=(const Listener&) = delete;
   Listener(Listener&& other) noexcept = default;
   Listener& operator=(Listener&&) = delete;
-  /// Removes the socket's file, if it still is its own.
+  /// Removes the socket's file, if it is still the one that was created.
   ~Listener();
 
   [[nodiscard]] int get() const noexcept { return socket_.get(); }

@@ -8,7 +8,7 @@ namespace softgrip::daemon {
 
 namespace {
 
-/// After the end: a recording closes half a second after the motion.
+/// Time after the end of the sequence, because a recording ends half a second after the motion [ns].
 constexpr Nanoseconds tail = ns_per_s;
 
 bool at_rest(control::State state) noexcept {

@@ -1,5 +1,5 @@
 #pragma once
-// One sequence from start to end without a user: `softgripd --sequence`, `softgrip run`.
+// Runs one sequence from start to end without a user: `softgripd --sequence`, `softgrip run`.
 
 #include <cstdint>
 #include <memory>
@@ -10,28 +10,29 @@
 
 namespace softgrip::daemon {
 
-/// Waits until the rig is idle, starts the sequence, waits until it has ended and the fingers came to rest.
+/// Waits until the rig is idle, starts the sequence, and waits until it has ended and the fingers are at
+/// rest.
 class OneShotRun {
  public:
   enum class State : std::uint8_t {
-    waiting,  ///< for the rig to be idle
-    asked,    ///< the loop shall start it
+    waiting,  ///< waits until the rig is idle
+    asked,    ///< the start was requested from the loop
     running,
     ended,
     refused,   ///< by the state of the rig; see refusal()
     not_idle,  ///< the rig did not become idle in time
   };
 
-  /// `patience`: how long the rig may take to become idle.
+  /// `patience`: longest time until the rig must be idle [ns].
   OneShotRun(std::shared_ptr<const LoadedSequence> sequence, Nanoseconds patience);
 
-  /// To be called now and then, by the thread that calls the service, after its pump().
+  /// Must be called periodically by the thread that calls the service, after its pump().
   void step(Service& service, Nanoseconds now);
 
   [[nodiscard]] State state() const noexcept { return state_; }
   [[nodiscard]] bool over() const noexcept { return state_ >= State::ended; }
   [[nodiscard]] control::RefusalCode refusal() const noexcept { return refusal_; }
-  /// How it ended, once it has.
+  /// Returns the end of the sequence after it has ended.
   [[nodiscard]] std::optional<control::SequenceEnd> end() const noexcept { return end_; }
 
  private:

@@ -1,5 +1,5 @@
 #pragma once
-// One answer for a grip of several fingers.
+// Computes one result for a grip of several fingers.
 
 #include <cstdint>
 #include <span>
@@ -8,8 +8,9 @@
 
 namespace softgrip::daemon {
 
-/// Of the fingers of `members` (bit i: results[i]): what is worst of any (error, part_lost, no_part), or else
-/// what is true of all; none otherwise, and where there are no members.
+/// Returns the result for the fingers in `members` (bit i: results[i]). It is the worst one of error,
+/// part_lost and no_part if any finger has it; otherwise the result that all fingers share; otherwise none.
+/// The result is also `none` without members.
 [[nodiscard]] control::GripResult overall_result(std::span<const control::GripResult> results,
                                                  std::uint32_t members) noexcept;
 

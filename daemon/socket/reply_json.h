@@ -1,5 +1,5 @@
 #pragma once
-// The parts of replies of the socket API that are no state: errors, problems, sequences, the greeting.
+// Parts of replies of the socket API that do not depend on the state: errors, problems, sequences, greeting.
 
 #include <cstdint>
 #include <optional>
@@ -22,21 +22,21 @@ namespace softgrip::daemon {
 [[nodiscard]] nlohmann::ordered_json error_json(std::string_view code, std::string_view message);
 [[nodiscard]] nlohmann::ordered_json problems_json(const std::vector<document::Problem>& problems);
 [[nodiscard]] nlohmann::ordered_json sequences_json(const std::vector<SequenceLoader::Listed>& sequences);
-/// Of a start that was only checked: what would run.
+/// Describes the sequence of a start that was only checked.
 [[nodiscard]] nlohmann::ordered_json checked_json(const LoadedSequence& sequence);
 
 /// The data of a reply to hello.
 struct Greeting {
   std::string_view software_version;
-  std::string_view started_at;  ///< of the daemon, UTC: event ids count from there
+  std::string_view started_at;  ///< start time of the daemon, UTC, for the event ids
   Role role = Role::look;
-  std::string_view client;  ///< as it calls itself
+  std::string_view client;  ///< name that the client gave
   double longest_answer_s = 0;
 };
 [[nodiscard]] nlohmann::ordered_json hello_json(const Greeting& greeting,
                                                 const rig::SocketSettings& settings);
 
-/// The line that refuses a client before it could say anything, or for what cannot be parsed.
+/// Returns the line that refuses a client before its first request, or a line that cannot be parsed.
 [[nodiscard]] std::string error_line(std::optional<std::uint64_t> id, std::string_view code,
                                      std::string_view message);
 

@@ -10,7 +10,7 @@ enum class Role : std::uint8_t {
   look,     ///< `socket: look:` of the rig file
   operate,  ///< `socket: path:`
 };
-/// "look", "operate"
+/// Returns "look" or "operate".
 [[nodiscard]] constexpr std::string_view name_of(Role role) noexcept {
   return role == Role::look ? "look" : "operate";
 }

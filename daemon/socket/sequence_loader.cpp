@@ -24,7 +24,7 @@ namespace {
 constexpr double longest_planning_share = 0.1;
 constexpr double planning_slack_s = 0.2;
 
-/// One step down from the directory, nothing hidden.
+/// Returns true for a name of a file directly in the directory that is not hidden.
 bool is_plain_name(const std::string& name) {
   return !name.empty() && name.front() != '.' && name.find('/') == std::string::npos &&
          name.find('\0') == std::string::npos;

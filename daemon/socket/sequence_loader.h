@@ -1,5 +1,5 @@
 #pragma once
-// Sequences for the loop: found, read, fitted to the rig, all before the loop hears of them.
+// Loads sequences for the loop: finds, reads and fits them to the rig before the loop gets them.
 
 #include <memory>
 #include <optional>
@@ -19,35 +19,34 @@ namespace softgrip::daemon {
 
 class SequenceLoader {
  public:
-  /// `directory`: where names given by clients are looked up.
+  /// `directory`: folder of the names given by clients.
   SequenceLoader(control::RigSettings rig, std::string directory);
 
-  // Loading takes time: up to a second for ten seconds of motion where some channel's is planned (feedforward
-  // `planned`), for ever where the directory is on a mount that is gone. It is thread-safe. Planning can be
-  // asked to stop: the sequence is then refused for that reason. Parameters that are not among the arguments
-  // have their defaults.
+  // Loading is thread-safe. It takes up to 1 s for 10 s of planned motion (feedforward `planned`), and may
+  // block for ever if the directory is on a mount whose server does not respond. After a stop request,
+  // planning ends and the sequence is refused. Parameters without an argument have their defaults.
   using Result = tl::expected<std::shared_ptr<const LoadedSequence>, document::Problems>;
   using Arguments = std::span<const control::Argument>;
-  /// A file, wherever it is: what the user of the daemon's own command line named.
+  /// Loads a file at any path, for the daemon's command line.
   [[nodiscard]] Result load_file(const std::string& path, Arguments arguments = {},
                                  const std::stop_token& stop = {}) const;
-  /// A regular file in the directory; `name` may leave the ending `.yaml` out, and may not lead out of the
-  /// directory. A name that is none is refused with those that there are.
+  /// Loads a regular file of the directory. `name` may omit the ending `.yaml` and may not lead out of the
+  /// directory. If there is no such file, the message lists the existing names.
   [[nodiscard]] Result load_named(const std::string& name, Arguments arguments = {},
                                   const std::stop_token& stop = {}) const;
-  /// The text itself; `name` stands for a file name in messages.
+  /// Loads a text. `name` replaces the file name in messages.
   [[nodiscard]] Result load_text(const std::string& name, const std::string& text, Arguments arguments = {},
                                  const std::stop_token& stop = {}) const;
 
   /// A file of the directory, described without a rig.
   struct Listed {
-    std::string name;  ///< as a start takes it: without `.yaml`
+    std::string name;  ///< name for a start, without `.yaml`
     std::string about;
     std::vector<control::Parameter> parameters;
-    document::Problems problems;  ///< why it cannot be started
+    document::Problems problems;  ///< reasons why it cannot be started
   };
-  /// All sequences of the directory, by name; at most `most_listed`. Reads them: takes as long as the disk
-  /// does.
+  /// Returns all sequences of the directory by name, at most `most_listed`. Reads their files, which may
+  /// block on the disk.
   [[nodiscard]] std::vector<Listed> list() const;
   static constexpr std::size_t most_listed = 500;
 

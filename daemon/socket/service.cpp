@@ -14,10 +14,10 @@ using EventKind = control::Event::Kind;
 
 namespace {
 
-/// Requests whose clients' names are kept.
+/// Number of requests whose clients' names are stored.
 constexpr std::size_t most_clients = 256;
 
-/// The fault that an answer is about.
+/// Returns the fault to which a reply refers.
 control::Fault fault_in(const control::Event& event) {
   const double number = event.kind == EventKind::fault_acknowledged ? event.detail
                         : event.kind == EventKind::request_refused  ? event.value
@@ -78,7 +78,7 @@ void Service::forget(std::uint32_t request) {
 
 void Service::note_client(std::uint32_t request, const std::string& client) {
   if (!client.empty()) clients_[request] = client;
-  // The oldest goes, but for the one whose sequence may still run.
+  // Removes the oldest entry, except for that of the running sequence.
   auto oldest = clients_.begin();
   if (oldest != clients_.end() && oldest->first == sequence_request_) ++oldest;
   if (clients_.size() > most_clients) clients_.erase(oldest);
@@ -144,7 +144,7 @@ void Service::take(const StampedEvent& stamped) {
     std::fill(results_.begin(), results_.end(), control::GripResult::none);
     overall_ = control::GripResult::none;
   }
-  // The loop has let go of it.
+  // The loop does not use the sequence any more.
   if (event.kind == EventKind::request_refused || event.kind == EventKind::start_checked)
     sequence_store_.drop(event.request);
   if (event.kind == EventKind::sequence_finished) {

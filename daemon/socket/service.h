@@ -1,5 +1,5 @@
 #pragma once
-// Requests into the loop and events out of it, for everything that is not real-time.
+// Passes requests to the loop and its events to all threads that are not real-time.
 
 #include <cstdint>
 #include <map>
@@ -14,7 +14,7 @@
 
 namespace softgrip::daemon {
 
-/// All calls come from one thread. References outlive it.
+/// All calls come from one thread. References must outlive the object.
 class Service {
  public:
   /// `origin`: time 0 of the event log.
@@ -29,9 +29,9 @@ class Service {
                                       std::shared_ptr<const LoadedSequence> sequence = nullptr,
                                       const std::string& client = {});
 
-  /// Hands over a stop of what the request `start` began, or will begin, and of nothing else. Returns its id;
-  /// that of an earlier one of the same start that waits for its answer; or nothing if the loop has not taken
-  /// the last ones yet.
+  /// Passes a stop of only the sequence that the request `start` began or will begin. Returns its id, or the
+  /// id of an earlier stop of the same start without a reply. Returns nothing if the loop has not read the
+  /// last ones yet.
   std::optional<std::uint32_t> submit_stop_of(std::uint32_t start, const std::string& client = {});
 
   /// Moves the events of loop and bus into the log, and notes replies.
@@ -42,7 +42,7 @@ class Service {
     enum class Kind : std::uint8_t { pending, accepted, refused };
     Kind kind = Kind::pending;
     control::RefusalCode refusal = control::RefusalCode::none;
-    control::Fault fault;  ///< that was acknowledged, or whose cause is still there; none where there is none
+    control::Fault fault;  ///< fault that was acknowledged or whose cause is still present; none otherwise
   };
   [[nodiscard]] Answer take_answer(std::uint32_t request);
   /// Discards the reply to a request.
@@ -50,14 +50,14 @@ class Service {
 
   /// Returns the end of the newest finished sequence, and the request that had started it.
   struct Ending {
-    std::uint32_t request = 0;  ///< 0: none so far
+    std::uint32_t request = 0;  ///< 0: no sequence has ended
     control::SequenceEnd end = control::SequenceEnd::done;
   };
   [[nodiscard]] const Ending& last_ending() const noexcept { return ending_; }
 
-  /// The sequence that runs or ran last; nullptr before the first.
+  /// Returns the running or last sequence; nullptr before the first.
   [[nodiscard]] const std::shared_ptr<const LoadedSequence>& sequence() const noexcept { return sequence_; }
-  /// The request that started it, or 0.
+  /// Returns the request that started it, or 0.
   [[nodiscard]] std::uint32_t sequence_request() const noexcept { return sequence_request_; }
 
   /// Returns the client of a request. The text is empty if the client is unknown, or if too many requests
@@ -68,8 +68,8 @@ class Service {
     return request != 0 && request == sequence_request_ && ending_.request != request;
   }
 
-  /// The first failure since the last good exchange, or why no session can be opened again: the name of its
-  /// BusStatus, and a sentence. Both empty while the board answers.
+  /// The first failure since the last successful exchange, or the reason why no session can be opened again:
+  /// the name of its BusStatus, and a sentence. Both are empty while the board responds.
   struct BusFailure {
     std::string kind;
     std::string text;
@@ -77,7 +77,7 @@ class Service {
   [[nodiscard]] const BusFailure& bus_failure() const noexcept { return bus_failure_; }
   [[nodiscard]] const std::vector<std::string>& channel_names() const noexcept { return channel_names_; }
 
-  /// The newest state of the loop.
+  /// Returns the newest state of the loop.
   [[nodiscard]] const Snapshot& snapshot() noexcept;
 
  private:
@@ -96,16 +96,16 @@ class Service {
   std::uint32_t last_request_ = 0;
   std::uint32_t last_vent_ = 0;
   std::uint32_t last_stop_ = 0;
-  std::map<std::uint32_t, Answer> answers_;          // of requests that were submitted and not taken
-  std::map<std::uint32_t, std::uint32_t> stops_of_;  // by start: its stop that waits for an answer
-  std::vector<control::GripResult> results_;         // by channel, of the sequence
+  std::map<std::uint32_t, Answer> answers_;          // of submitted requests whose reply was not read
+  std::map<std::uint32_t, std::uint32_t> stops_of_;  // by start: its stop without a reply
+  std::vector<control::GripResult> results_;         // by channel, for the sequence
   control::GripResult overall_ = control::GripResult::none;
-  std::map<std::uint32_t, std::string> clients_;  // who made the newest requests
+  std::map<std::uint32_t, std::string> clients_;  // clients of the newest requests
   std::shared_ptr<const LoadedSequence> sequence_;
   std::uint32_t sequence_request_ = 0;
   Ending ending_;
   BusFailure bus_failure_;
-  std::uint64_t events_dropped_ = 0;  // reported so far
+  std::uint64_t events_dropped_ = 0;  // number of lost events that was reported
 };
 
 }  // namespace softgrip::daemon

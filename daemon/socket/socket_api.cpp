@@ -21,7 +21,7 @@ using Json = nlohmann::ordered_json;
 using Command = ClientRequest::Command;
 using Kind = control::Request::Kind;
 
-/// The loop answers within a tick; after this it is not coming.
+/// The loop replies within a tick. After this time, no reply is expected [ns].
 constexpr Nanoseconds longest_answer = ns_per_s;
 /// Longest interval between calls of on_time(), normally and while a client waits for the loop's reply.
 constexpr Nanoseconds longest_pause = ns_per_s / 50;
@@ -104,8 +104,8 @@ void SocketApi::on_line(ClientId client, std::string_view line, Nanoseconds now)
   }
 }
 
-/// Returns the reason why this client may not make the request now; null if it may. A client that may start
-/// may also check a start.
+/// Returns the reason why this client may not make the request now; null if it may. The rule for a start also
+/// applies to the check of a start.
 Json SocketApi::refusal_of(ClientId client, const ClientRequest& request) const {
   if (only_looks(request.command)) return nullptr;
   const auto found = clients_.find(client);
@@ -130,8 +130,8 @@ const std::string* SocketApi::owner() const {
   return found == clients_.end() || found->second.name.empty() ? nullptr : &found->second.name;
 }
 
-/// The client whose sequence runs, or whose start is the first that waits for the loop's answer; 0: none. It
-/// may have gone.
+/// Returns the client whose sequence runs, or whose start is the first without a reply of the loop; 0: none.
+/// It may have disconnected.
 ClientId SocketApi::owner_client() const {
   const std::uint32_t running = sources_.service.sequence_request();
   if (sources_.service.runs(running)) return starts_.client_of(running);
@@ -234,7 +234,7 @@ void SocketApi::start(ClientId client, const ClientRequest& request, Nanoseconds
   std::thread(std::move(load)).detach();
 }
 
-/// Returns null if a start may have that id.
+/// Returns null if a start may have this id; otherwise the error.
 Json SocketApi::refusal_of_id(const std::string& start_id) const {
   if (starts_.is_forbidden(start_id))
     return error_json("abandoned", "a stop that names this start came before it");
@@ -252,7 +252,7 @@ void SocketApi::stop(ClientId client, const ClientRequest& request, Nanoseconds 
   ask(client, request.id, Kind::stop, nullptr, now);
 }
 
-/// Stops one start wherever it is: still to come, being loaded, on its way into the loop, or running.
+/// Stops one start in any state: not received yet, being loaded, on its way to the loop, or running.
 void SocketApi::stop_of(ClientId client, const ClientRequest& request, Nanoseconds now) {
   const std::string& id = request.start_id;
   if (!id.empty() && planned_ && !planned_->abandoned && planned_->start_id == id) {
@@ -273,7 +273,7 @@ void SocketApi::stop_of(ClientId client, const ClientRequest& request, Nanosecon
   wait_for(number, {client, request.id, now + longest_answer, {}, {}});
 }
 
-/// Reading uses its own thread: vent requests never wait for a disk. A directory that hangs costs one thread,
+/// Reading uses its own thread, so vent requests never wait for a disk. A blocked directory costs one thread,
 /// regardless of the number of requests.
 void SocketApi::list_sequences(ClientId client, std::optional<std::uint64_t> id) {
   if (!listing_) {
@@ -338,7 +338,7 @@ std::optional<std::uint32_t> SocketApi::ask(ClientId client, std::optional<std::
   return number;
 }
 
-/// Replies `busy` if the loop had no room for the request and so gave it no number.
+/// Replies `busy` if the loop's queue was full, so the request has no number.
 void SocketApi::wait_for(std::optional<std::uint32_t> number, Asked asked) {
   if (number) {
     asked_.insert({*number, std::move(asked)});
@@ -386,8 +386,8 @@ Json SocketApi::dated(const EventEntry& event, Nanoseconds now) {
   return json;
 }
 
-/// The two clocks are read one after the other. A repeated event keeps its time unless the wall clock was set
-/// in between.
+/// Returns the wall-clock time of the log's time 0. The value is kept unless the wall clock was set, so that
+/// a repeated event has the same time.
 Nanoseconds SocketApi::wall_origin(Nanoseconds now) {
   constexpr Nanoseconds was_set = ns_per_s / 2;
   const Nanoseconds origin = wall_time_now() - (now - sources_.origin);
@@ -403,7 +403,7 @@ void SocketApi::tell_events(ClientId client, const ClientRequest& request, Nanos
   ok(client, request.id, {{"events", std::move(list)}, {"newest", events_.newest()}});
 }
 
-/// Ids of another daemon's run say nothing of this one's events: then all that are kept are new.
+/// Event ids of another run of the daemon are not comparable, so all stored events are new.
 void SocketApi::subscribe(ClientId client, const ClientRequest& request) {
   const std::uint64_t newest = events_.newest();
   const bool of_another = !request.started_at.empty() && request.started_at != started_at_;

@@ -1,5 +1,5 @@
 #pragma once
-// The commands of the socket API: what a client's line leads to. Knows no sockets.
+// Executes the commands of the socket API. It does not use sockets.
 
 #include <cstdint>
 #include <functional>
@@ -23,14 +23,14 @@
 
 namespace softgrip::daemon {
 
-/// Names a connection; never used twice.
+/// Identifies a connection; never used again.
 using ClientId = std::uint64_t;
 
 /// All calls come from one thread, the one that calls Service.
 class SocketApi {
  public:
-  /// How lines reach a client; the line ends with a line break. `skippable`: not sent if the client has not
-  /// yet read the last ones; then it returns false.
+  /// Sends a line with its line break to a client. `skippable`: if the client has not read the last lines
+  /// yet, the line is not sent and the result is false.
   using Send = std::function<bool(ClientId client, std::string_view line, bool skippable)>;
 
   SocketApi(StatusSources sources, rig::SocketSettings settings, std::shared_ptr<const SequenceLoader> loader,
@@ -42,29 +42,29 @@ class SocketApi {
 
   /// Registers a new client. An unregistered client is read-only.
   void on_opened(ClientId client, Role role);
-  /// One line of a client, without its line break.
+  /// Processes one line of a client, without its line break.
   void on_line(ClientId client, std::string_view line, Nanoseconds now);
-  /// The client is gone.
+  /// Removes a client that has disconnected.
   void on_closed(ClientId client);
   /// Returns true if the client must keep its connection although it is silent: it has a subscription, or its
   /// start runs or may still begin.
   [[nodiscard]] bool keeps_place(ClientId client) const;
-  /// The sequence of a start is being loaded. on_time() takes it when it is.
+  /// Returns true while the sequence of a start is being loaded. on_time() continues after that.
   [[nodiscard]] bool loads() const noexcept { return planned_.has_value(); }
-  /// Sends what is due: answers of the loop, watched states. Returns when to call again at the latest.
+  /// Sends due replies of the loop and watched states. Returns the latest time of the next call.
   Nanoseconds on_time(Nanoseconds now);
 
  private:
   struct Client {
     Role role = Role::look;
-    std::string name;  ///< of its hello
+    std::string name;  ///< from its hello
   };
-  struct Asked {  // of the loop
+  struct Asked {  // a request to the loop
     ClientId client = 0;
     std::optional<std::uint64_t> id;
     Nanoseconds give_up = 0;
-    document::Problems remarks;                     ///< on the sequence
-    std::shared_ptr<const LoadedSequence> checked;  ///< of a dry run
+    document::Problems remarks;                     ///< warnings about the sequence
+    std::shared_ptr<const LoadedSequence> checked;  ///< for a dry run
   };
   struct Subscription {
     std::optional<std::uint64_t> id;
@@ -76,17 +76,17 @@ class SocketApi {
     Nanoseconds due = 0;
   };
 
-  struct Planned {  // being loaded by a thread of its own
+  struct Planned {  // being loaded by a separate thread
     ClientId client = 0;
     std::optional<std::uint64_t> id;
     std::future<SequenceLoader::Result> loaded;
     std::stop_source stop;
-    std::string start_id;  ///< the client's own name for it; may be empty
+    std::string start_id;  ///< name given by the client; may be empty
     bool dry_run = false;
     bool abandoned = false;  ///< no client waits for it
   };
 
-  struct Listing {  // of the sequence directory, being read by a thread of its own
+  struct Listing {  // the sequence directory, read by a separate thread
     std::future<std::vector<SequenceLoader::Listed>> read;
     std::vector<std::pair<ClientId, std::optional<std::uint64_t>>> waiting;
   };
@@ -128,14 +128,14 @@ class SocketApi {
   std::shared_ptr<const SequenceLoader> loader_;
   const EventLog& events_;
   Send send_;
-  std::multimap<std::uint32_t, Asked> asked_;  // by the request's id in the loop
+  std::multimap<std::uint32_t, Asked> asked_;  // by the request's number in the loop
   std::map<ClientId, Client> clients_;
   std::map<ClientId, Subscription> subscriptions_;
   std::map<ClientId, Watch> watches_;
   std::optional<Planned> planned_;
   StartLedger starts_;
   std::optional<Listing> listing_;
-  std::optional<Nanoseconds> wall_origin_;  ///< the time of day at sources_.origin
+  std::optional<Nanoseconds> wall_origin_;  ///< wall-clock time at sources_.origin
 };
 
 }  // namespace softgrip::daemon

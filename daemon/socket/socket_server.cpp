@@ -21,7 +21,7 @@ namespace softgrip::daemon {
 
 namespace {
 
-/// New clients in one call: they must not keep those that are there from having their turn.
+/// Largest number of new clients per call, so that the present clients are served too.
 constexpr int most_accepts = 4;
 /// Times for which a client keeps its place: a new client without a request, and a client after its last
 /// request or its last received reply.
@@ -29,9 +29,9 @@ constexpr Nanoseconds first_word = ns_per_s / 10;
 constexpr Nanoseconds longest_silence = 5 * ns_per_s;
 /// Number of additional clients beyond those with places.
 constexpr std::size_t most_standing = 32;
-/// Lines of one client in one call take no longer than this and one more line.
+/// A client's turn in one call ends after this time and at most one more line.
 constexpr std::chrono::microseconds longest_turn(500);
-/// Without a descriptor for it a new client cannot even be refused.
+/// Without a free descriptor, a new client cannot even be refused. Time until the next attempt [ns].
 constexpr Nanoseconds accept_pause = ns_per_s / 10;
 /// A client that receives nothing for this time is disconnected.
 constexpr Nanoseconds longest_stall = 10 * ns_per_s;
@@ -68,8 +68,7 @@ void SocketServer::poll(Nanoseconds now, Nanoseconds until) {
   }
   std::vector<std::uint64_t> ids(polled.size());
   for (const auto& [id, client] : clients_) {
-    // A client whose replies are not taken is not read either, nor one that has more to say than its turn
-    // takes.
+    // A client with unread replies is not read, and neither is one with lines left from its last turn.
     const bool writes = !client.output.empty();
     const bool reads = client.ended_at == 0 && !has_line(client);
     polled.push_back({client.socket.get(), static_cast<short>(writes ? POLLOUT : reads ? POLLIN : 0), 0});
@@ -120,12 +119,12 @@ void SocketServer::accept_some(const Entrance& entrance) {
     client.active_at = now_;
     client.stands = stands;
     if (handlers_.on_opened) handlers_.on_opened(last_id_, role);
-    read_from(client);  // what it has to say is usually there already
+    read_from(client);  // its first line has usually arrived already
   }
 }
 
-/// Returns an invalid descriptor if no client waits, or if there is no descriptor even without the client
-/// that was silent for longest. A client that only reads takes no descriptor from one that operates.
+/// Returns an invalid descriptor if no client waits, or if no descriptor is free even after the client that
+/// was silent for longest was disconnected. A read-only client cannot displace an operating one.
 Descriptor SocketServer::accept_one(const Entrance& entrance) {
   for (;;) {
     Descriptor socket(accept4(entrance.listener.get(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
@@ -139,16 +138,16 @@ Descriptor SocketServer::accept_one(const Entrance& entrance) {
   }
 }
 
-/// Returns true if the client has ended, or was silent for long, or if `any` silent or active client may go.
-/// One that keeps its place may not go: the sequence that it has started would lose its owner.
+/// Returns true if the client has ended, has been silent for long, or `any` is true. A client that keeps its
+/// place is not displaced, because its running sequence would lose its owner.
 bool SocketServer::may_go(std::uint64_t id, const Client& client, bool any) const {
   if (client.ended_at != 0) return true;
   if (handlers_.keeps_place && handlers_.keeps_place(id)) return false;
   return any || now_ - client.active_at >= (client.spoke ? longest_silence : first_word);
 }
 
-/// Displaces one client of the role that may go. A client without a place comes first, then one that never
-/// spoke, then the one that was silent for longest. Returns false if there is none.
+/// Displaces one client of the role, if possible. The order is: a client without a place, one that never sent
+/// a line, the one that was silent for longest. Returns false if there is none.
 bool SocketServer::displace_one(Role role, bool any) {
   const auto rank = [](const Client& client) {
     return std::tuple(client.ended_at == 0, !client.stands, client.spoke, client.active_at);
@@ -160,7 +159,7 @@ bool SocketServer::displace_one(Role role, bool any) {
     if (found == clients_.end() || rank(client) < rank(found->second)) found = entry;
   }
   if (found == clients_.end()) return false;
-  // Best effort: the server does not wait for a client that does not read.
+  // An error is ignored: the server does not wait for a client that does not read.
   const std::string line = too_many();
   [[maybe_unused]] const ssize_t sent =
       ::send(found->second.socket.get(), line.data(), line.size(), MSG_NOSIGNAL);
@@ -184,7 +183,7 @@ void SocketServer::hear(std::uint64_t id, Client& client, std::string_view line)
     send(id, too_many(), false);
     client.closing = true;
   }
-  // One word, and the time until its answer.
+  // A client without a place may send one line and wait for its reply.
   if (client.stands) client.ended_at = now_;
 }
 
@@ -194,7 +193,7 @@ void SocketServer::read_from(Client& client) {
   const ssize_t count = recv(client.socket.get(), buffer.data(), buffer.size(), 0);
   if (count < 0 && (errno == EAGAIN || errno == EINTR)) return;
   if (count <= 0) {
-    // `echo ... | socat` says no more, but waits for the answer.
+    // `echo ... | socat` sends no more lines but waits for the reply.
     client.ended_at = now_;
     return;
   }
@@ -205,7 +204,7 @@ bool SocketServer::has_line(const Client& client) {
   return client.input.find('\n') != std::string::npos;
 }
 
-/// As many as its turn allows, and no more as long as an answer waits to be taken.
+/// Processes lines of a client within its turn, as long as no reply waits to be read.
 void SocketServer::take_lines(std::uint64_t id, Client& client) {
   const auto began = std::chrono::steady_clock::now();
   std::size_t begin = 0;
@@ -222,7 +221,7 @@ void SocketServer::take_lines(std::uint64_t id, Client& client) {
     if (std::chrono::steady_clock::now() - began > longest_turn) break;
   }
   client.input.erase(0, begin);
-  // The end of a line that is too long may be there or not.
+  // The end of a line that is too long may be missing.
   if (std::min(client.input.find('\n'), client.input.size()) > settings_.max_line_bytes) {
     send(id,
          error_line(std::nullopt, "too_long",

@@ -1,5 +1,5 @@
 #pragma once
-// Lines over a Unix domain socket, every bound enforced. Knows nothing of what the lines mean.
+// Exchanges lines over a Unix domain socket within all bounds. It does not interpret the lines.
 
 #include <cstdint>
 #include <functional>
@@ -18,16 +18,16 @@
 
 namespace softgrip::daemon {
 
-/// The listening sockets, one per role, and their clients. Every role has places of its own. All calls come
-/// from one thread.
+/// The listening sockets, one per role, and their clients. Each role has its own places. All calls come from
+/// one thread.
 class SocketServer {
  public:
   struct Handlers {
     std::function<void(std::uint64_t client, std::string_view line)> on_line;
     std::function<void(std::uint64_t client)> on_closed;
-    /// Returns true if a line must be heard even from a client for which there is no place.
+    /// Returns true if a line must be processed even for a client without a place.
     std::function<bool(std::string_view line)> is_urgent;
-    /// Before its first line.
+    /// Called before the first line of a client.
     std::function<void(std::uint64_t client, Role role)> on_opened = nullptr;
     /// Returns true if a client keeps its place while it is silent.
     std::function<bool(std::uint64_t client)> keeps_place = nullptr;
@@ -41,18 +41,17 @@ class SocketServer {
   SocketServer& operator=(SocketServer&&) = delete;
   ~SocketServer();
 
-  /// To be set before the first poll().
+  /// Must be called before the first poll().
   void set_handlers(Handlers handlers) { handlers_ = std::move(handlers); }
 
-  /// Waits for something to happen, at most until `until`, and deals with it: a part of it, if there is much,
-  /// so that every client has its turn in the next call. When all places are taken, a new client gets that of
-  /// one that has been silent for long and does not keep its place. If there is none, the new client may send
-  /// one line, which is refused unless it is urgent. Urgent lines of a client that has closed its end
-  /// meanwhile are heard.
+  /// Waits for events, at most until `until`, and processes a part of them, so that each client has its turn
+  /// in the next call. If all places are taken, a new client gets the place of one that has been silent for
+  /// long and does not keep its place. If there is none, the new client may send one line, which is refused
+  /// unless it is urgent. Urgent lines of a client that has closed its end meanwhile are processed.
   void poll(Nanoseconds now, Nanoseconds until);
 
-  /// Queues a line for a client; false if it is gone. `skippable`: dropped, and false, if the client has not
-  /// yet read what was queued before.
+  /// Queues a line for a client. Returns false if the client has disconnected, or if `skippable` is true and
+  /// the client has not read all queued lines.
   bool send(std::uint64_t client, std::string_view line, bool skippable);
 
   [[nodiscard]] std::size_t clients() const noexcept { return clients_.size(); }
@@ -63,13 +62,13 @@ class SocketServer {
     Role role = Role::look;
     std::string input;
     std::string output;
-    Nanoseconds stalled_since = 0;  // output is waiting and nothing was taken since; 0: not
-    Nanoseconds ended_at = 0;       // will send no more; 0: may
-    Nanoseconds active_at = 0;      // it sent a line or took one, or it came
+    Nanoseconds stalled_since = 0;  // output waits, and nothing was read since this time; 0: no
+    Nanoseconds ended_at = 0;       // the client will send no more lines; 0: it may
+    Nanoseconds active_at = 0;      // time of the last sent or read line, or of the connection
     bool spoke = false;             // it has sent a line
-    bool stands = false;            // there was no place for it
-    bool closing = false;           // after the output is gone
-    bool deaf = false;              // it reads no more; its last lines are still to be read
+    bool stands = false;            // it has no place
+    bool closing = false;           // after the output is sent
+    bool deaf = false;              // it reads no more; its last lines are still processed
     bool dead = false;
   };
 
@@ -99,8 +98,8 @@ class SocketServer {
   std::map<std::uint64_t, Client> clients_;
   std::uint64_t last_id_ = 0;
   Nanoseconds now_ = 0;
-  Nanoseconds accepts_again_ = 0;  // out of descriptors until then
-  bool lines_left_ = false;        // of any client, for the next call
+  Nanoseconds accepts_again_ = 0;  // no free descriptor until this time
+  bool lines_left_ = false;        // a client has lines for the next call
 };
 
 }  // namespace softgrip::daemon

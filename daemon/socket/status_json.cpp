@@ -19,7 +19,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr double us_per_ns = 1e-3;
 
-/// JSON has no NaN.
+/// JSON has no NaN, so it becomes null.
 Json number(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);
 }
@@ -34,7 +34,7 @@ Json json_of_fault(control::FaultCode code) {
           {"remedy", info.remedy}};
 }
 
-/// The latched one, whether its cause or another one is still there, and what clears it.
+/// Returns the latched fault, its cause if it is still present, and the remedy.
 Json json_of_latched(const Snapshot& snapshot, const std::vector<std::string>& names) {
   Json json = json_of_fault(snapshot.first_fault.code);
   if (json.is_null()) return json;
@@ -49,7 +49,7 @@ Json json_of_latched(const Snapshot& snapshot, const std::vector<std::string>& n
   return json;
 }
 
-/// The path as it was named to the daemon.
+/// Returns the path that was given to the daemon.
 Json rig_file_of(const Provenance& provenance) {
   for (const SourceFile& file : provenance.files) {
     if (file.role == "rig") return file.path;
@@ -57,7 +57,7 @@ Json rig_file_of(const Provenance& provenance) {
   return nullptr;
 }
 
-/// Returns null without a text.
+/// Returns null if there is no text.
 Json text_or_null(std::string_view text, bool is_there) {
   return is_there ? Json(text) : Json(nullptr);
 }

@@ -17,7 +17,7 @@
 
 namespace softgrip::daemon {
 
-/// Everything a status is made of. References outlive it.
+/// The sources of a status. References must outlive the object.
 struct StatusSources {
   const control::RigSettings& rig;
   const Provenance& provenance;
@@ -25,14 +25,15 @@ struct StatusSources {
   const Recorder& recorder;
   const LoopStatistics& loop;
   const BusStatistics& bus;
-  const std::string& board;  ///< in one line
+  const std::string& board;  ///< description in one line
   Nanoseconds origin = 0;
   const RealTimeReport* real_time = nullptr;  ///< absent in virtual time
   const rig::GpioSettings* gpio = nullptr;    ///< absent without digital lines
-  const SharedState* shared = nullptr;        ///< needed with them
+  const SharedState* shared = nullptr;        ///< required with gpio
 };
 
-/// {"code", "name", "channel"} of a fault, the channel null where it concerns the whole rig; null of none.
+/// Returns {"code", "name", "channel"} of a fault; the channel is null for the complete rig; null without a
+/// fault.
 [[nodiscard]] nlohmann::ordered_json fault_title_json(const control::Fault& fault,
                                                       const std::vector<std::string>& channel_names);
 [[nodiscard]] nlohmann::ordered_json status_json(const StatusSources& sources);
@@ -41,7 +42,7 @@ struct StatusSources {
                                                      bool with_histograms);
 [[nodiscard]] nlohmann::ordered_json event_json(const EventEntry& event);
 
-/// One line; bytes that are no UTF-8 are replaced.
+/// Returns one line. Bytes that are not UTF-8 are replaced.
 [[nodiscard]] std::string line_of(const nlohmann::ordered_json& json);
 
 }  // namespace softgrip::daemon

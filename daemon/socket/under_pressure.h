@@ -1,5 +1,6 @@
 #pragma once
-// Pressure that stays on although nothing moves: after a stop or a fault that holds, or behind a sequence.
+// Reports fingers that are pressurised without motion: after a stop or a fault that holds, or after a
+// sequence.
 
 #include <string>
 #include <vector>
@@ -11,7 +12,7 @@
 
 namespace softgrip::daemon {
 
-/// Returns null if no finger stays under pressure. Otherwise it returns `channels` (a list of `name` and
+/// Returns null if no finger is pressurised. Otherwise returns `channels` (a list of `name` and
 /// `command_kpa`), `command` (vents them) and `text` (both in one or two sentences).
 [[nodiscard]] nlohmann::ordered_json under_pressure_json(
     const std::vector<control::ChannelSettings>& channels, const Snapshot& snapshot);
