@@ -237,8 +237,8 @@ class TreeBuilder final : public YAML::EventHandler {
     if (first == frame.index.end()) return true;
     const Location at = frame.node.entries[first->second].key_at;
     refuse(node.at,
-           "the key `" + shown(node.scalar) + "` stands here for the second time, first at " +
-               std::to_string(at.line) + ":" + std::to_string(at.column),
+           "the key `" + shown(node.scalar) + "` already appears at " + std::to_string(at.line) + ":" +
+               std::to_string(at.column),
            "remove one of them");
     return false;
   }

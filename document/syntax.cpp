@@ -60,7 +60,7 @@ std::string place(Location at) {
 /// Returns the message for a bracket that closes the other kind, or that has no opening bracket.
 SyntaxMessage wrong_end(const Document& document, Location at) {
   const std::vector<Bracket> open = open_brackets(document.text, at);
-  if (open.empty()) return {"a closing bracket stands here without an opening one", ""};
+  if (open.empty()) return {"this closing bracket has no opening bracket", ""};
   const Bracket& bracket = open.back();
   const std::string opener(1, bracket.character);
   const std::string closer = bracket.character == '[' ? "]" : "}";
@@ -75,19 +75,19 @@ struct Translation {
 };
 
 constexpr std::array translations{
-    Translation{"illegal map value", "a second `: ` stands where the value should be",
+    Translation{"illegal map value", "a second `: ` is in the place of the value",
                 "put the value in quotes if the colon belongs to it, or start a new line"},
-    Translation{"illegal map key", "a key cannot stand here", "the key goes on a line of its own"},
-    Translation{"illegal block entry", "a list item `- ` cannot stand here",
+    Translation{"illegal map key", "a key is not permitted here", "the key goes on a line of its own"},
+    Translation{"illegal block entry", "a list item `- ` is not permitted here",
                 "an item of a list goes on a line of its own, below its key"},
     Translation{"illegal EOF in scalar", "a quote is opened but never closed", ""},
     Translation{"illegal document indicator in scalar", "a quote is not closed before the document ends", ""},
-    Translation{"unknown escape character", "an unknown escape stands in a text in double quotes",
+    Translation{"unknown escape character", "a text in double quotes contains an unknown escape",
                 "write a backslash as \\\\, or use single quotes"},
     Translation{"bad character found while scanning hex number",
                 "an escape in a text in double quotes lacks its hexadecimal digits", ""},
     Translation{"invalid unicode", "an escape in a text in double quotes names no character", ""},
-    Translation{"illegal tab when looking for indentation", "a tab stands in the indentation",
+    Translation{"illegal tab when looking for indentation", "the indentation contains a tab",
                 "YAML indents with spaces only"},
     Translation{"unknown token", "this character cannot start a value",
                 "put the text in quotes if the character belongs to it"},

@@ -115,9 +115,9 @@ bool check_text(const Document& document, const Bounds& bounds, Problems& proble
   refuse(bytes, "the byte " + bytes.what + " is not UTF-8" + more(bytes, "such bytes"),
          "save the file as UTF-8");
   const Trouble& control = troubles.control;
-  refuse(control, "a control character " + control.what + " stands in the text" + more(control, "of them"),
+  refuse(control, "the text contains the control character " + control.what + more(control, "of them"),
          "remove it; lines end with a line feed");
-  refuse(troubles.tab, "a tab stands in the indentation" + more(troubles.tab, "lines"),
+  refuse(troubles.tab, "the indentation contains a tab" + more(troubles.tab, "lines"),
          "YAML indents with spaces only");
   if (const auto directive = find_directive(text)) {
     good = false;

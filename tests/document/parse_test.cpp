@@ -91,9 +91,9 @@ TEST(Parse, QuotedOperatorsAreTexts) {
 TEST(Parse, ADuplicateKeyNamesTheFirstAndTheFirstStays) {
   Problems problems;
   const Document document = parse("a.yaml", "a: 1\nb: {k: 1, k: 2, k: 3}\na: 2\n", problems);
-  EXPECT_EQ(lines_of(problems), (Lines{"2:11: the key `k` stands here for the second time, first at 2:5",
-                                       "2:17: the key `k` stands here for the second time, first at 2:5",
-                                       "3:1: the key `a` stands here for the second time, first at 1:1"}));
+  EXPECT_EQ(lines_of(problems),
+            (Lines{"2:11: the key `k` already appears at 2:5", "2:17: the key `k` already appears at 2:5",
+                   "3:1: the key `a` already appears at 1:1"}));
   EXPECT_EQ(value_of(document.root, "a").scalar, "1");
 }
 
@@ -112,21 +112,21 @@ TEST(Parse, BytesMustBeUtf8AndPrintable) {
   EXPECT_EQ(problems_of("a: \xf4\x90\x80\x80\n").size(), 1U);  // beyond U+10FFFF
   EXPECT_EQ(problems_of("a: \xc3"), (Lines{"1:4: the byte \\xc3 is not UTF-8"}));
   EXPECT_EQ(problems_of(std::string("a: \0b\n", 6)),
-            (Lines{"1:4: a control character \\x00 stands in the text"}));
-  EXPECT_EQ(problems_of("a: \x1b[31m\n"), (Lines{"1:4: a control character \\x1b stands in the text"}));
+            (Lines{"1:4: the text contains the control character \\x00"}));
+  EXPECT_EQ(problems_of("a: \x1b[31m\n"), (Lines{"1:4: the text contains the control character \\x1b"}));
   // The parser takes U+0004 for the end of the file: what follows would go unseen.
-  EXPECT_EQ(problems_of("a: 1\n\x04: 2\n"), (Lines{"2:1: a control character \\x04 stands in the text"}));
+  EXPECT_EQ(problems_of("a: 1\n\x04: 2\n"), (Lines{"2:1: the text contains the control character \\x04"}));
   EXPECT_EQ(problems_of("\xEF\xBB\xBF"
                         "a: 1\n"),
             (Lines{"1:1: the file starts with a byte order mark"}));
   EXPECT_EQ(problems_of("a: 1\rb: 2\r"),
-            (Lines{"1:5: a control character \\r stands in the text (and 1 more of them)"}));
+            (Lines{"1:5: the text contains the control character \\r (and 1 more of them)"}));
   EXPECT_EQ(problems_of("a: müßig \xe2\x82\xac \xf0\x9f\x99\x82\n"), Lines{});
 }
 
 TEST(Parse, TabsDoNotIndent) {
   EXPECT_EQ(problems_of("a:\n\tb: 1\n  \tc: 2\n"),
-            (Lines{"2:1: a tab stands in the indentation (and 1 more lines)"}));
+            (Lines{"2:1: the indentation contains a tab (and 1 more lines)"}));
   EXPECT_EQ(problems_of("a:\t1\nb: 2\t# comment\n \t\n"), Lines{});
 }
 
@@ -135,12 +135,12 @@ TEST(Parse, SyntaxErrorsSayWhatWasOpen) {
             (Lines{"2:2: the list `[...]` that starts at 1:4 is not closed here: expected `,` or `]`"}));
   EXPECT_EQ(problems_of("a: {b: 1\n"),
             (Lines{"2:1: the map `{...}` that starts at 1:4 is not closed here: expected `,` or `}`"}));
-  EXPECT_EQ(problems_of("a: b: c\n"), (Lines{"1:5: a second `: ` stands where the value should be"}));
+  EXPECT_EQ(problems_of("a: b: c\n"), (Lines{"1:5: a second `: ` is in the place of the value"}));
   EXPECT_EQ(problems_of("a: 1\n  b: 2\n"),
             (Lines{"2:4: this key starts in column 3, the keys of its map start in column 1"}));
   EXPECT_EQ(problems_of("a:1\nb: 2\n"),
             (Lines{"2:2: this is not a key: the line above has no `: ` and goes on here"}));
-  EXPECT_EQ(problems_of("a: \"\\q\"\n"), (Lines{"1:7: an unknown escape stands in a text in double quotes"}));
+  EXPECT_EQ(problems_of("a: \"\\q\"\n"), (Lines{"1:7: a text in double quotes contains an unknown escape"}));
   EXPECT_EQ(problems_of("a: 1\n- b\n"), (Lines{"2:1: this does not belong to the map that starts at 1:1"}));
   EXPECT_EQ(problems_of("a: @b\n"), (Lines{"1:4: this character cannot start a value"}));
 }
