@@ -125,7 +125,7 @@ class BoardReader {
     const bool is_float = kind == drivers::RegisterKind::float32;
     block.bits = static_cast<int>(in.integer("bits", is_float ? 0 : 1, 32));
     if (!is_float && std::exp2(block.bits) - 1 > block.raw_max - block.raw_min) {
-      in.report("bits", "so many bits do not fit between `raw_min` and `raw_max`");
+      in.report("bits", "`bits` is too large for the range from `raw_min` to `raw_max`");
     }
   }
 
@@ -182,7 +182,7 @@ class BoardReader {
     block.ok = status_values(in, "ok", true);
     block.over = status_values(in, "over", false);
     block.under = status_values(in, "under", false);
-    if (in.has("ok") && block.ok.empty()) in.report("ok", "no status value means that an input is well");
+    if (in.has("ok") && block.ok.empty()) in.report("ok", "list at least one status value of a valid input");
     map_.input_status = block;
   }
 
@@ -305,7 +305,8 @@ class BoardReader {
   void check_directions(MapReader& in) {
     const auto needs = [&](std::string_view key, const std::string& direction) {
       if (in.has(key) && !in.has(direction)) {
-        in.report(key, "`" + std::string(key) + "` needs `" + direction + "`, which this board has not");
+        in.report(key,
+                  "`" + std::string(key) + "` needs `" + direction + "`, which this board does not have");
       }
     };
     needs("input_status", "inputs");

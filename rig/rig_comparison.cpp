@@ -82,7 +82,7 @@ void compare_speed(const document::Document& document, const control::ChannelSet
                                  "`max_speed_mm_per_s` is " + about(allowed / motion.fastest_mm_per_s) +
                                      " times what the model of channel `" + channel.name +
                                      "` can do within its slew limits (" + about(motion.fastest_mm_per_s) +
-                                     " mm/s): jumps of the sensor are taken for motion",
+                                     " mm/s): jumps of the sensor count as motion",
                                  "max_speed_mm_per_s: " + about(3 * motion.fastest_mm_per_s) +
                                      " leaves room for a finger that loses its part"));
 }
@@ -106,8 +106,8 @@ void compare_monitor(const document::Document& document, const RigFile& rig, std
       place != nullptr ? place->at : document.root.at,
       channel.pressure_measured
           ? "the measured pressure of channel `" + channel.name +
-                "` is not compared with its command: nobody would see a burst line"
-          : "channel `" + channel.name + "` has no `pressure_monitor`: nobody would see a burst line",
+                "` is not compared with its command: a burst line is not detected"
+          : "channel `" + channel.name + "` has no `pressure_monitor`: a burst line is not detected",
       remedy(rig, index)));
 }
 
@@ -142,8 +142,8 @@ void compare_grips(const control::Sequence& sequence, const RigFile& rig, docume
         continue;
       problems.warn(source.problem(step.at,
                                    "step '" + step.name +
-                                       "' would answer HOLDING with a burst line, too: on the rig `" +
-                                       rig.name + "` nobody sees one on channel `" + name + "`",
+                                       "' would also report HOLDING with a burst line: the rig `" + rig.name +
+                                       "` does not detect one on channel `" + name + "`",
                                    "in " + rig.path + ": " + remedy(rig, i)));
       return;
     }

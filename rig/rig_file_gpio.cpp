@@ -20,7 +20,7 @@ constexpr std::size_t longest_name = 31;
 std::string read_line_name(MapReader& reader) {
   const auto text = reader.optional_text("line");
   if (text && text->size() > longest_name)
-    reader.report("line", "`line` is longer than 31 bytes, which no name of the kernel is");
+    reader.report("line", "`line` is longer than 31 bytes, the limit for names of lines in the kernel");
   return text.value_or("");
 }
 

@@ -151,7 +151,7 @@ void read_faults(Context& context, MapReader& top) {
   faults.readback_tolerance_kpa = reader.number("readback_tolerance_kpa", {0.001, 1000});
   faults.readback_delay_s = reader.number("readback_delay_s", {0, 10});
   read_pressure_fault(context, reader);
-  faults.overrun_cycles = cycles(reader, "slipped_cycles", 0);
+  faults.overrun_cycles = cycles(reader, "slipped_cycles", 0);  // words-ok: the key of the file
   faults.model_unfit_is_fault = reader.boolean("model_unfit_is_fault");
   faults.unsteady_is_fault = reader.optional_boolean("unsteady_is_fault").value_or(false);
 }
@@ -236,8 +236,8 @@ void read_socket(Context& context, MapReader& top) {
     MapReader look_reader(context.document, *look, context.problems, "socket: look");
     read_socket_file(context, look_reader, socket.look, false);
     if (!socket.look.path.empty() && socket.look.path == socket.path) {
-      look_reader.report("path", "this is the socket of those who operate",
-                         "a path of its own: what may be done is told apart by the socket");
+      look_reader.report("path", "this is the socket of the operators",
+                         "choose another path: the socket determines what a client may do");
     }
   }
   socket.sequence_directory = resolved(context, reader.text("sequence_directory"));

@@ -90,7 +90,7 @@ class Reader {
     const std::int64_t address = reader.integer("address", 0, last_address);
     static_cast<void>(reader.text("about"));
     if (std::erase(missing, name) == 0 && reader.good("name"))
-      reader.report("name", fmt::format("'{}' stands twice", name));
+      reader.report("name", fmt::format("'{}' appears twice", name));
     const auto info = std::find_if(table.begin(), table.end(), [&](const RegisterInfo& other) {
       return other.block == block && other.key == name;
     });
@@ -99,7 +99,7 @@ class Reader {
     if (!info->unit.empty()) {
       map_.resolution[index] = resolution_of(reader.text("unit"), info->unit);
       if (reader.good("unit") && map_.resolution[index] == 0) {
-        reader.report("unit", "this is not what one count stands for",
+        reader.report("unit", "this is not the value of one count",
                       fmt::format("a number and the unit: \"0.01 {}\"", info->unit));
       }
     }

@@ -22,7 +22,7 @@ void read_listen(const document::Document& document, const Node& node, document:
   MapReader reader(document, node, problems, "listen");
   settings.address = reader.text("address");
   if (reader.good("address") && !modbus::is_numeric(settings.address)) {
-    reader.report("address", "this is no numeric address",
+    reader.report("address", "this is not a numeric address",
                   "an IPv4 or IPv6 address in numbers: 192.168.1.20");
   }
   settings.port = static_cast<std::uint16_t>(reader.integer("port", 0, 65535));
@@ -31,7 +31,7 @@ void read_listen(const document::Document& document, const Node& node, document:
   for (const Node* const item : reader.sequence("hosts", false)) {
     settings.hosts.push_back(item->scalar);
     if (item->kind != Node::Kind::scalar || item->scalar.find_first_of("/: ") != std::string::npos)
-      problems.add(document.problem(item->at, "this is no name of a computer", "gripper.example.org"));
+      problems.add(document.problem(item->at, "this is not the name of a computer", "gripper.example.org"));
   }
 }
 
@@ -45,11 +45,12 @@ void read_access(const document::Document& document, const Node& node, document:
   // A wrong address has been reported by read_listen().
   if (!modbus::is_numeric(settings.address) || modbus::is_loopback(settings.address)) return;
   if (reader.good("without_token") && settings.without_token != Role::none) {
-    reader.report("without_token", "beyond this machine nobody may see anything without a token",
+    reader.report("without_token", "other machines can reach this address, so each client needs a token",
                   "without_token: none");
   }
   if (settings.tokens.empty())
-    reader.report("tokens", "beyond this machine there must be tokens", "tokens: /etc/softgrip/web.tokens");
+    reader.report("tokens", "other machines can reach this address, so there must be tokens",
+                  "tokens: /etc/softgrip/web.tokens");
 }
 
 }  // namespace

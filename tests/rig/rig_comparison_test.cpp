@@ -121,7 +121,8 @@ TEST_F(RigComparisonTest, ARecipeThatReliesOnIt) {
   compare_grips(*pick, *rig, told);
   ASSERT_EQ(told.warnings().size(), 1U) << "once, not for each finger";
   EXPECT_NE(told.warnings()[0].file.find("pick_stone.yaml"), std::string::npos);
-  EXPECT_NE(told.warnings()[0].message.find("would answer HOLDING with a burst line"), std::string::npos);
+  EXPECT_NE(told.warnings()[0].message.find("would also report HOLDING with a burst line"),
+            std::string::npos);
   EXPECT_NE(told.warnings()[0].hint.find("rig.yaml: under `faults`"), std::string::npos) << told.format();
 
   const auto staircase = control::load_sequence(folder + "sequences/pressure_staircase.yaml", none);

@@ -52,13 +52,13 @@ TEST(PlcSettings, SaysWhatIsWrongAndWhere) {
             std::string::npos);
   EXPECT_NE(said_of("first: 120", "first: 100").find("address 100"), std::string::npos);
   EXPECT_NE(said_of("name: recipe", "name: receipt").find("recipe"), std::string::npos);
-  EXPECT_NE(said_of("name: heartbeat", "name: fingers").find("stands twice"), std::string::npos);
-  EXPECT_NE(said_of("unit: 0.01 kPa", "unit: 0.01 bar").find("not what one count stands for"),
+  EXPECT_NE(said_of("name: heartbeat", "name: fingers").find("appears twice"), std::string::npos);
+  EXPECT_NE(said_of("unit: 0.01 kPa", "unit: 0.01 bar").find("not the value of one count"),
             std::string::npos);
   EXPECT_NE(said_of("squeeze: squeeze_kpa", "squeeze: squeeze_mm").find("ends with `_kpa`"),
             std::string::npos);
   EXPECT_NE(said_of("number: 2", "number: 1").find("there is a recipe 1 already"), std::string::npos);
-  EXPECT_NE(said_of("address: 127.0.0.1 ", "address: localhost ").find("no numeric address"),
+  EXPECT_NE(said_of("address: 127.0.0.1 ", "address: localhost ").find("not a numeric address"),
             std::string::npos);
   EXPECT_NE(said_of("when_silent: stop", "when_silent: hope").find("vent"), std::string::npos);
   EXPECT_NE(said_of("silence_s", "silence_ms").find("silence_s"), std::string::npos);
@@ -69,7 +69,7 @@ TEST(PlcSettings, BeyondThisMachineMastersAreNamed) {
       "address: 127.0.0.1            # loopback; for a PLC the address of this computer in "
       "the machine's network\n  port: 502\n  allow: [127.0.0.1]",
       "address: 192.168.1.5\n  port: 502\n  allow: []");
-  EXPECT_NE(said.find("nobody may command the gripper who is not named"), std::string::npos) << said;
+  EXPECT_NE(said.find("the permitted clients must be listed"), std::string::npos) << said;
 }
 
 }  // namespace

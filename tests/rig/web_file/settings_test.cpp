@@ -35,14 +35,15 @@ TEST(WebSettings, TheShippedFileIsReadAndLetsNobodyOperate) {
 
 TEST(WebSettings, BeyondThisMachineThereAreTokensAndNothingWithoutThem) {
   const std::string said = said_of("address: 127.0.0.1", "address: 0.0.0.0");
-  EXPECT_NE(said.find("nobody may see anything without a token"), std::string::npos) << said;
+  EXPECT_NE(said.find("each client needs a token"), std::string::npos) << said;
   EXPECT_NE(said.find("there must be tokens"), std::string::npos) << said;
   EXPECT_EQ(said_of("address: 127.0.0.1", "address: \"::1\""), "");
 }
 
 TEST(WebSettings, WhatIsWrongIsSaidWhereItStands) {
-  EXPECT_NE(said_of("address: 127.0.0.1", "address: gripper").find("no numeric address"), std::string::npos);
-  EXPECT_NE(said_of("hosts: []", "hosts: ['http://gripper']").find("no name of a computer"),
+  EXPECT_NE(said_of("address: 127.0.0.1", "address: gripper").find("not a numeric address"),
+            std::string::npos);
+  EXPECT_NE(said_of("hosts: []", "hosts: ['http://gripper']").find("not the name of a computer"),
             std::string::npos);
   EXPECT_NE(said_of("port: 8017", "port: 70000").find("port"), std::string::npos);
   EXPECT_NE(said_of("without_token: look", "without_token: all").find("operate"), std::string::npos);
