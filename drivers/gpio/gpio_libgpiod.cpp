@@ -130,18 +130,18 @@ tl::expected<LineFacts, Failure> find_line(gpiod_chip* chip, const GpioLineSetti
                 "its lines count from 0 to " + std::to_string(lines - 1)));
   }
   auto facts = libgpiod::facts_of(chip, *offset);
-  if (!facts) return tl::unexpected(failed("the line cannot be looked at", errno));
+  if (!facts) return tl::unexpected(failed("the state of the line cannot be read", errno));
   if (facts->used) {
     return tl::unexpected(Failure{
         Failure::Kind::failed, 0,
         "the line is in use" + (facts->consumer.empty() ? std::string{} : " by `" + facts->consumer + "`"),
-        "another program, or the kernel itself, holds it: `gpioinfo` shows who"});
+        "another program or the kernel uses it: `gpioinfo` shows which"});
   }
   if (is_input(settings.role) && facts->output) {
     return tl::unexpected(
         refused("the line is an output now, and `" + std::string(name_of(settings.role)) + "` is an input",
-                "another line is meant, or a program left it so: `gpioget` with this chip and line makes it "
-                "an input"));
+                "the rig file names a wrong line, or a program changed it: `gpioget` with this chip and line "
+                "makes it an input"));
   }
   return *facts;
 }
@@ -157,8 +157,9 @@ Failure request_failure(const GpioLineSettings& settings, int error) {
   if (!unable) return failed("the line cannot be requested", error);
   return refused("the chip cannot make this line an " +
                      std::string(is_input(settings.role) ? "input" : "output") + " as described",
-                 settings.bias == GpioBias::as_is ? "another line is meant, or its direction is fixed"
-                                                  : "its direction is fixed, or it has no such `bias`");
+                 settings.bias == GpioBias::as_is
+                     ? "the rig file names a wrong line, or its direction is fixed"
+                     : "its direction is fixed, or it has no such `bias`");
 }
 
 class LibgpiodLines final : public GpioLines {

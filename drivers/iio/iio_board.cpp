@@ -20,7 +20,7 @@ namespace softgrip::drivers {
 namespace {
 
 constexpr int probes = 5;
-constexpr const char* stays_off_text = "it stays 1 after 0 was written: the output is switched off";
+constexpr const char* stays_off_text = "it remains 1 after 0 was written: the output is switched off";
 
 /// The kernel reports voltages in mV, currents in mA and pressures in kPa.
 double per_unit(std::string_view channel) noexcept {
@@ -149,7 +149,7 @@ BusStatus IioBoard::Parts::attach(const Devices& there, const IioTerminal& termi
   if (!converter.first_identity.empty() && converter.identity != converter.first_identity) {
     return say(BusStatus::disconnected, converter.name,
                ("it was " + converter.first_identity + ", now it is " + converter.identity +
-                ": start again if that is right")
+                ": restart if this is correct")
                    .c_str());
   }
   const std::filesystem::path folder = std::filesystem::path(settings.root) / device->node;
@@ -172,7 +172,8 @@ BusStatus IioBoard::Parts::open_number(const std::filesystem::path& folder, cons
   converter.offset = processed ? 0 : shared_number(folder, direction, channel, "_offset", 0);
   if (!(std::abs(converter.scale) > 0) || !std::isfinite(converter.scale) ||
       !std::isfinite(converter.offset)) {
-    return say(BusStatus::disconnected, converter.name, "it states no scale, so its numbers mean nothing");
+    return say(BusStatus::disconnected, converter.name,
+               "it has no scale, so its numbers cannot be converted");
   }
   return BusStatus::ok;
 }
@@ -288,7 +289,7 @@ BusStatus IioBoard::Parts::write(std::size_t channel, double command_kpa) noexce
   if (status != BusStatus::ok) return status;
   if (taken == raw) return BusStatus::ok;
   std::snprintf(detail.data(), detail.size(),
-                "channel '%s': %g kPa is beyond the output's range, its end was written",
+                "channel '%s': %g kPa is outside the output's range; the limit was written",
                 settings.wiring[channel].name.c_str(), command_kpa);
   return BusStatus::write_refused;
 }
@@ -354,12 +355,13 @@ BusStatus IioBoard::exchange(std::span<const double> commands_kpa, std::span<Rea
   const Nanoseconds until = monotonic_now() + deadline.count();
   if (!parts.open) return BusStatus::disconnected;
   if (commands_kpa.size() != channels() || readings.size() != channels() || channels() > most_channels) {
-    std::snprintf(parts.detail.data(), parts.detail.size(), "not one command and one reading per channel");
+    std::snprintf(parts.detail.data(), parts.detail.size(),
+                  "the numbers of commands, readings and channels differ");
     return BusStatus::write_refused;
   }
   for (const double command : commands_kpa) {
     if (std::isfinite(command)) continue;
-    std::snprintf(parts.detail.data(), parts.detail.size(), "a command that is no number was not written");
+    std::snprintf(parts.detail.data(), parts.detail.size(), "a command that is not a number was not written");
     return BusStatus::write_refused;
   }
   BusStatus written = BusStatus::ok;

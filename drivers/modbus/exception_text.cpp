@@ -8,7 +8,7 @@ const char* text_of_exception(unsigned code) noexcept {
   // For an unknown code, libmodbus would call strerror(), which allocates.
   const bool known = code >= MODBUS_EXCEPTION_ILLEGAL_FUNCTION && code < MODBUS_EXCEPTION_MAX &&
                      code != MODBUS_EXCEPTION_NOT_DEFINED;
-  return known ? ::modbus_strerror(MODBUS_ENOBASE + static_cast<int>(code)) : "no exception of the standard";
+  return known ? ::modbus_strerror(MODBUS_ENOBASE + static_cast<int>(code)) : "not a standard exception";
 }
 
 }  // namespace softgrip::drivers

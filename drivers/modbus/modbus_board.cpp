@@ -202,14 +202,14 @@ BusStatus ModbusBoard::exchange(std::span<const double> commands_kpa, std::span<
   const Nanoseconds until = monotonic_now() + deadline.count();
   for (ModbusModule& module : parts.modules) module.forget_found();
   if (commands_kpa.size() != channels() || readings.size() != channels()) {
-    return parts.say(BusStatus::write_refused, "not one command and one reading per channel");
+    return parts.say(BusStatus::write_refused, "the numbers of commands, readings and channels differ");
   }
   // The reason why the session ended remains in `detail`, because it is more useful than "disconnected".
   if (!parts.is_open()) return BusStatus::disconnected;
   for (std::size_t i = 0; i < commands_kpa.size(); ++i) {
     if (std::isfinite(commands_kpa[i])) continue;
     std::snprintf(parts.detail.data(), parts.detail.size(),
-                  "channel '%s': a command that is no number was not written",
+                  "channel '%s': a command that is not a number was not written",
                   parts.settings.wiring[i].name.c_str());
     return BusStatus::write_refused;
   }

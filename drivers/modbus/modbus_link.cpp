@@ -69,7 +69,7 @@ int ModbusLink::descriptor() const noexcept {
 BusStatus ModbusLink::open(Nanoseconds deadline) noexcept {
   close();
   if (context_ == nullptr)
-    return refuse(BusStatus::disconnected, "connecting", "libmodbus takes no such address");
+    return refuse(BusStatus::disconnected, "connecting", "libmodbus does not accept the address");
   answered_ = false;
   repeats_ = 0;
   expect_more_answers();
@@ -162,9 +162,9 @@ BusStatus ModbusLink::ask(std::uint8_t unit, const ModbusRequest& request, Nanos
   exception_code_ = 0;
   if (!is_open()) return BusStatus::disconnected;
   const std::size_t size = build(unit, request, outgoing_);
-  if (size == 0) return fail(BusStatus::bad_reply, "asking", "no such Modbus request");
+  if (size == 0) return fail(BusStatus::bad_reply, "sending", "invalid Modbus request");
   const auto frame = std::span<const std::uint8_t>(outgoing_).first(size);
-  BusStatus status = drain(quiet_until_, deadline, "waiting for a second answer to a repeated request");
+  BusStatus status = drain(quiet_until_, deadline, "waiting for a second reply to a repeated request");
   if (status == BusStatus::ok) status = before_asking(deadline);
   if (status == BusStatus::ok) status = send_until_heard(frame, deadline);
   if (status != BusStatus::ok) return status;

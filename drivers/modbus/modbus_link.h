@@ -84,7 +84,7 @@ class ModbusLink {
   [[nodiscard]] const RoundTrip& measured() const noexcept { return measured_; }
 
   /// The reason why bytes between two requests end a session.
-  static constexpr const char* unasked = "bytes came that nobody asked for, a late or repeated reply";
+  static constexpr const char* unasked = "unexpected bytes: a late or repeated reply";
 
   /// The checked response. `error` is whole_frame, or the errno for which the frame is incomplete.
   struct Received {

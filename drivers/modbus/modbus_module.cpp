@@ -115,7 +115,7 @@ BusStatus ModbusModule::name_refusal(BusStatus status, Nanoseconds deadline) noe
   const char* const refusal = detail_;
   if (read_step(plan_.tripped->step, deadline) == BusStatus::ok && is_tripped()) {
     return say(BusStatus::watchdog_tripped,
-               "the board's watchdog tripped: it refuses to be written while its outputs are safe");
+               "the board's watchdog tripped: the board rejects writes while its outputs are safe");
   }
   return say(status, refusal);
 }
@@ -180,9 +180,9 @@ BusStatus ModbusModule::encode(std::span<const double> commands_kpa) noexcept {
     if (kind != RegisterKind::float32) raw = std::round(raw);
     requested_raws_[i] = std::clamp(raw, outputs.raw_min, outputs.raw_max);
     if (requested_raws_[i] != raw) {
-      status =
-          fail(BusStatus::write_refused,
-               "channel '%s': %g kPa is beyond the output's range, its end was written", i, commands_kpa[i]);
+      status = fail(BusStatus::write_refused,
+                    "channel '%s': %g kPa is outside the output's range; the limit was written", i,
+                    commands_kpa[i]);
     }
     drivers::encode(
         requested_raws_[i], kind, settings_.map.word_order,
@@ -265,7 +265,7 @@ BusStatus ModbusModule::check() noexcept {
     if (reads_first_) {
       return fail(
           BusStatus::overwritten,
-          "channel '%s': somebody else writes to the board: its output, not yet written again, reads back as "
+          "channel '%s': another client writes to the board: before the next write, the output reads back as "
           "raw %g",
           i, raw);
     }

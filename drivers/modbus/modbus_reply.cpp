@@ -35,23 +35,23 @@ const char* text_of(ReplyDefect defect) noexcept {
     case ReplyDefect::none:
       return "no defect";
     case ReplyDefect::transaction:
-      return "the reply answers another question (transaction id)";
+      return "the reply belongs to another request (transaction id)";
     case ReplyDefect::protocol:
       return "the reply is not Modbus (protocol id)";
     case ReplyDefect::length:
       return "the reply's header states a wrong length";
     case ReplyDefect::unit:
-      return "another unit id answered";
+      return "the reply has another unit id";
     case ReplyDefect::function:
       return "the reply has another function code";
     case ReplyDefect::byte_count:
-      return "the reply's byte count contradicts the question";
+      return "the reply's byte count does not match the request";
     case ReplyDefect::echo:
-      return "the reply confirms another address or value than was written";
+      return "the reply confirms another address or value than the written one";
     case ReplyDefect::trailing:
       return "bytes follow the reply";
     case ReplyDefect::checksum:
-      return "the reply was damaged on the way (checksum)";
+      return "the reply was damaged in transmission (checksum)";
     case ReplyDefect::own_echo:
       return "the line returns what is sent (an adapter that echoes: `echo: true` in the rig file)";
   }

@@ -64,7 +64,8 @@ BusStatus ModbusRtuLink::take_echo(std::span<const std::uint8_t> frame, Nanoseco
     if (status == BusStatus::ok) status = read_some(std::span(echo).first(frame.size()), "sending", got);
     if (status != BusStatus::ok) return status;
     if (!std::equal(echo.begin(), echo.begin() + static_cast<std::ptrdiff_t>(got), frame.begin())) {
-      return fail(BusStatus::bad_reply, "sending", "the echo is not what was sent: two masters on one line?");
+      return fail(BusStatus::bad_reply, "sending",
+                  "the echo differs from the sent bytes: two clients (masters) on one line?");
     }
     frame = frame.subspan(got);
   }

@@ -65,10 +65,10 @@ SerialFailure open_serial(modbus_t* context, const SerialLine& line, Descriptor&
   master = Descriptor(::open(line.device.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));
   if (!master) return {"opening the serial device", errno};
   if (::isatty(master.get()) == 0) return {"opening the serial device", ENOTTY};
-  if (::flock(master.get(), LOCK_EX | LOCK_NB) != 0) return {"taking the serial device", EBUSY};
+  if (::flock(master.get(), LOCK_EX | LOCK_NB) != 0) return {"locking the serial device", EBUSY};
   if (::modbus_connect(context) != 0) return {"setting the serial line", errno};
   if (!keeps_to(::modbus_get_socket(context), line)) {
-    return {"setting the serial line: the device does not keep to rate or format", 0};
+    return {"setting the serial line: the device does not apply rate or format", 0};
   }
   (void)::modbus_flush(context);
   return {};

@@ -120,7 +120,7 @@ void SimulatedBoard::Parts::happen(const SimulatedEvent& event) noexcept {
 drivers::BusStatus SimulatedBoard::Parts::take_commands(std::span<const double> commands_kpa) noexcept {
   for (const double command : commands_kpa) {
     if (!std::isfinite(command)) {
-      return say(drivers::BusStatus::write_refused, "a command that is no number was not written");
+      return say(drivers::BusStatus::write_refused, "a command that is not a number was not written");
     }
   }
   drivers::BusStatus status = drivers::BusStatus::ok;
@@ -131,7 +131,7 @@ drivers::BusStatus SimulatedBoard::Parts::take_commands(std::span<const double> 
         quantised(clamped, channel.valve_min_kpa, channel.valve_max_kpa, channel.output_bits);
     if (clamped != commands_kpa[i]) {
       std::snprintf(text.data(), text.size(),
-                    "channel '%s': %g kPa is beyond the output's range, its end was written",
+                    "channel '%s': %g kPa is outside the output's range; the limit was written",
                     channel.name.c_str(), commands_kpa[i]);
       status = say(drivers::BusStatus::write_refused, text.data());
     }
@@ -194,7 +194,8 @@ drivers::BusStatus SimulatedBoard::exchange(std::span<const double> commands_kpa
                                             std::chrono::nanoseconds) noexcept {
   Parts& parts = *parts_;
   if (commands_kpa.size() != channels() || readings.size() != channels()) {
-    return parts.say(drivers::BusStatus::write_refused, "not one command and one reading per channel");
+    return parts.say(drivers::BusStatus::write_refused,
+                     "the numbers of commands, readings and channels differ");
   }
   const Nanoseconds now = parts.clock.now();
   if (!parts.started) {

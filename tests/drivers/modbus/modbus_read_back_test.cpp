@@ -64,7 +64,7 @@ TEST_F(ModbusBoardTest, WhatSomebodyElseWritesIsNoticedWithinEightExchanges) {
   }
   EXPECT_EQ(status, BusStatus::overwritten);
   EXPECT_LE(until_noticed, 8);
-  EXPECT_NE(std::string(board_->detail()).find("channel 'right': somebody else"), std::string::npos)
+  EXPECT_NE(std::string(board_->detail()).find("channel 'right': another client"), std::string::npos)
       << board_->detail();
   EXPECT_EQ(server_.holding_[11], 0) << "it is not written over before somebody has decided what to do";
   EXPECT_EQ(exchange(0, 0), BusStatus::ok);
