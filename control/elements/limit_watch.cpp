@@ -14,11 +14,11 @@ std::string_view name_of(BindingLimit limit) noexcept {
 std::string_view words_of(BindingLimit limit) noexcept {
   constexpr std::array<std::string_view, 6> words{
       "",
-      "pressure_max_kpa of the rig keeps the pressure down",
-      "pressure_max_kpa of the step keeps the pressure down",
-      "squeeze_max_kpa of the step keeps the pressure down",
-      "slew_up_kpa_per_s of the rig keeps the pressure behind what is asked for",
-      "slew_down_kpa_per_s of the rig keeps the pressure behind what is asked for"};
+      "pressure_max_kpa of the rig limits the pressure",
+      "pressure_max_kpa of the step limits the pressure",
+      "squeeze_max_kpa of the step limits the pressure",
+      "slew_up_kpa_per_s of the rig limits the rate of the pressure",
+      "slew_down_kpa_per_s of the rig limits the rate of the pressure"};
   return words[static_cast<std::size_t>(limit)];
 }
 

@@ -18,7 +18,7 @@ enum class BindingLimit : std::uint8_t {
 };
 /// Returns "none", "rig_pressure", "step_pressure", "step_squeeze", "rig_slew_up" or "rig_slew_down".
 [[nodiscard]] std::string_view name_of(BindingLimit limit) noexcept;
-/// Returns the message, for example "pressure_max_kpa of the rig keeps the pressure down"; empty for none.
+/// Returns the message, for example "pressure_max_kpa of the rig limits the pressure"; empty for none.
 [[nodiscard]] std::string_view words_of(BindingLimit limit) noexcept;
 
 /// Reports a limit after limits have restricted a command for `moment_s`. It also reports a different limit

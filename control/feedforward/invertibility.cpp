@@ -30,7 +30,7 @@ using model::Inverse;
 using model::Kind;
 using model::Station;
 
-constexpr std::string_view wrong_way_first = ": the model moves the wrong way first";
+constexpr std::string_view wrong_way_first = ": the model has an inverse response";
 constexpr std::string_view usual_cause = "a latency in the data is the usual cause, run `softgrip diagnose`";
 
 constexpr std::string_view creep_alone =

@@ -61,11 +61,11 @@ std::string unit_of(MapReader& map, const std::string& name) {
   choices.emplace_back("none");
   const auto choice = map.optional_choice("unit", choices);
   if (choice && known && choices[*choice] != own) {
-    map.report("unit", "the name " + document::in_backticks(name) + " says another unit, " +
+    map.report("unit", "the name " + document::in_backticks(name) + " states another unit, " +
                            document::in_backticks(own));
   }
   if (!choice && !known && !map.has("unit")) {
-    map.report("unit", "nothing says the unit of " + document::in_backticks(name), unit_hint);
+    map.report("unit", "the unit of " + document::in_backticks(name) + " is not stated", unit_hint);
   }
   if (choice && choices[*choice] == "none") return {};
   return choice ? choices[*choice] : std::string(known ? own : "");
@@ -77,7 +77,7 @@ Parameter read_parameter(const Document& document, const Node::Entry& entry, Pro
   parameter.at = entry.key_at;
   if (!is_name(entry.key)) {
     problems.add(document.problem(entry.key_at,
-                                  document::in_backticks(entry.key) + " is no name for a parameter",
+                                  document::in_backticks(entry.key) + " is not a valid name of a parameter",
                                   "lower-case letters, digits and underscores, as in `squeeze_kpa`"));
   }
   MapReader map(document, entry.value, problems, "parameter " + document::in_backticks(entry.key));
@@ -129,7 +129,7 @@ class Binder {
       refuse(node, "there is no parameter " + document::in_backticks(name),
              name.find_first_of(" +-*/()") == std::string::npos
                  ? hint_of(name, parameters_)
-                 : "a parameter stands alone: nothing is computed");
+                 : "a parameter must be the complete value: expressions are not supported");
       return;
     }
     used_[static_cast<std::size_t>(found - parameters_.begin())] = true;

@@ -66,7 +66,7 @@ class Fitting {
       problems_.warn(source_.problem(step.at,
                                      "step '" + step.name + "': the model of channel '" +
                                          settings_.channels[missed.channel].name +
-                                         "' cannot follow within the limits: it stays up to " +
+                                         "' cannot follow within the limits: it deviates by up to " +
                                          significant(rounded(missed.worst_mm), 6) + " mm from the reference",
                                      "a slower or smaller motion, or wider limits"));
     }
@@ -109,12 +109,12 @@ class Fitting {
     }
     check_times(step);
     if (step.on_contact == OnContact::grip && !is_before_a_grip(step)) {
-      report(step, "on_contact: grip, but no grip step comes behind it", "on_contact: hold");
+      report(step, "on_contact: grip, but no grip step follows", "on_contact: hold");
     }
     if (step.kind == StepKind::grip) {
       gripped_ |= channels;
     } else if (step.kind == StepKind::hold && (gripped_ & channels) == 0) {
-      report(step, "holds what no step before has gripped", "put a grip step before it");
+      report(step, "holds, but no earlier step grips", "put a grip step before it");
     }
   }
 
@@ -155,7 +155,7 @@ class Fitting {
       const double rest_kpa = resting_kpa(channel.limits);
       if (most_kpa < rest_kpa) {
         report(step, "its pressure_max_kpa is below the rest pressure of channel '" + channel.name + "' (" +
-                         significant(rest_kpa, 6) + " kPa), which a command may always return to");
+                         significant(rest_kpa, 6) + " kPa), to which a command may always return");
       }
       const bool by_pressure = step.target.quantity == Target::Quantity::pressure_kpa &&
                                (step.kind == StepKind::move || step.kind == StepKind::grip);
@@ -165,7 +165,8 @@ class Fitting {
     }
     if (!std::isfinite(step.bounds.squeeze_max_kpa)) return;
     if (!channel.displacement_used) {
-      report(step, "channel '" + channel.name + "' does not use its displacement: its squeeze is not known",
+      report(step,
+             "channel '" + channel.name + "' does not use its displacement: its gripping pressure is unknown",
              "bound it by pressure_max_kpa");
     } else if (step.kind == StepKind::grip && step.verify.by == VerifyBy::detection) {
       check_squeeze(step, channel, index);
@@ -183,8 +184,8 @@ class Fitting {
     const double needed_kpa = std::ceil(10 * seen_from * *least_kpa) / 10;
     if (by_kpa >= needed_kpa) return;
     report(step,
-           "presses by " + significant(by_kpa, 6) + " kPa, but channel '" + channel.name +
-               "' sees a part only from " + significant(needed_kpa, 6) + " kPa on",
+           "grips with " + significant(by_kpa, 6) + " kPa, but channel '" + channel.name +
+               "' detects a part only from " + significant(needed_kpa, 6) + " kPa on",
            "a larger " + std::string(squeezes ? "squeeze_kpa" : "squeeze_max_kpa") +
                ", or a smaller detection: margin_mm in the rig file");
   }
@@ -300,7 +301,7 @@ class Fitting {
     }
     report(step,
            "moves channel '" + channel.name + "' below its rest pressure (" + significant(rest_kpa, 6) +
-               " kPa), where neither detection nor on_contact nor squeeze_kpa sees a part",
+               " kPa), where detection, on_contact and squeeze_kpa cannot detect a part",
            step.kind == StepKind::grip
                ? "verify by: position or by: pressure with pressure_max_kpa, without squeeze_kpa"
                : "on_contact: ignore");

@@ -56,7 +56,7 @@ class WithoutADaemon(bench.BenchTest):
         self.write("weak.yaml", recipe.replace("range: [3, 10]", "range: [0.5, 10]"))
         weak = self.softgrip("check", "config/rig.yaml", "weak.yaml", expect=3).stderr
         self.assertRegex(weak, r"weak\.yaml:9:3: with `squeeze_kpa` = 0\.5, the lower end of its range, line \d+ is "
-                               r"wrong: step 'grip': presses by 0\.5 kPa, but channel 'left' sees")
+                               r"wrong: step 'grip': grips with 0\.5 kPa, but channel 'left' detects")
         self.softgrip("check", "weak.yaml")  # some rig may see it
         self.write("strong.yaml", recipe.replace("range: [3, 10]", "range: [3, 12]"))
         self.assertIn("squeeze_max_kpa is below squeeze_kpa", self.softgrip("check", "strong.yaml", expect=3).stderr)

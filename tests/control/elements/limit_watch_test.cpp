@@ -53,7 +53,7 @@ TEST(LimitWatch, TwoLimitsThatTakeTurnsAreToldOnce) {
 TEST(LimitWatch, EveryLimitHasANameAndWords) {
   EXPECT_EQ(name_of(BindingLimit::rig_slew_down), "rig_slew_down");
   EXPECT_EQ(words_of(BindingLimit::rig_slew_up),
-            "slew_up_kpa_per_s of the rig keeps the pressure behind what is asked for");
+            "slew_up_kpa_per_s of the rig limits the rate of the pressure");
   EXPECT_TRUE(words_of(BindingLimit::none).empty());
 }
 

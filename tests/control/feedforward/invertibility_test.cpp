@@ -42,13 +42,13 @@ TEST(Invertibility, ThePublishedModelIsRefusedForBothKinds) {
   ASSERT_FALSE(full);
   EXPECT_EQ(
       full.error().with_advice(),
-      "beta > alpha + 1/k0 (0.1721 > 0.07386 mm/kPa): the model moves the wrong way first; a latency in the "
+      "beta > alpha + 1/k0 (0.1721 > 0.07386 mm/kPa): the model has an inverse response; a latency in the "
       "data is the usual cause, run `softgrip diagnose`");
   const auto part = check(published, FeedforwardKind::bouc_wen);
   ASSERT_FALSE(part);
   EXPECT_EQ(
       part.error().with_advice(),
-      "beta > alpha (0.1721 > 0.07079 mm/kPa): the model moves the wrong way first; a latency in the data is "
+      "beta > alpha (0.1721 > 0.07079 mm/kPa): the model has an inverse response; a latency in the data is "
       "the usual cause, run `softgrip diagnose`");
   EXPECT_TRUE(check(published, FeedforwardKind::none));
 }

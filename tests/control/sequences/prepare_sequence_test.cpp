@@ -121,7 +121,7 @@ INSTANTIATE_TEST_SUITE_P(
                "pressure_min_kpa: 30}, timeout_s: 3, on_fail: vent}\n",
                "does not measure it"},
         Misfit{"hold_of_nothing", "  - hold: {hold_s: 1, reverify_every_s: 0.2, on_fail: vent}\n",
-               "no step before has gripped"},
+               "no earlier step grips"},
         Misfit{"impossible_timeout",
                "  - grip: {channels: [left], pressure_kpa: 40, duration_s: 2, settle_s: 1, verify: {by: "
                "detection, "
@@ -129,13 +129,13 @@ INSTANTIATE_TEST_SUITE_P(
                "not longer than the step's own times, 3.5 s"},
         Misfit{"no_grip_to_go_to",
                "  - move: {channels: [left], displacement_mm: 5, duration_s: 1, on_contact: grip}\n",
-               "no grip step comes behind it"},
+               "no grip step follows"},
         Misfit{"unseen_squeeze",
                "  - grip: {channels: [left], displacement_mm: 15, duration_s: 2, squeeze_kpa: 1, "
                "squeeze_speed_kpa_per_s: 5, settle_s: 0.1, verify: {by: detection, window_s: 0.2}, "
                "timeout_s: 3, "
                "on_fail: vent}\n",
-               "sees a part only from"},
+               "detects a part only from"},
         Misfit{"blind_squeeze",
                "  - move: {channels: [right], pressure_kpa: 10, duration_s: 1, squeeze_max_kpa: 5}\n",
                "bound it by pressure_max_kpa"},

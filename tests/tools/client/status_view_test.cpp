@@ -75,12 +75,11 @@ TEST(StatusView, AReadingThatWasNeverThereIsNotZero) {
 TEST(StatusView, ALimitThatBindsIsALine) {
   Json bound = status();
   bound["channels"][0]["limit"] = "rig_pressure";
-  bound["channels"][0]["limit_text"] = "pressure_max_kpa of the rig keeps the pressure down";
+  bound["channels"][0]["limit_text"] = "pressure_max_kpa of the rig limits the pressure";
   bound["channels"][0]["squeeze_kpa"] = 5.04;
   const std::string text = joined(view_of(bound, {100, false, false}));
   EXPECT_NE(text.find("29.50 kPa, command 30.00, squeeze 5.0\n"), std::string::npos) << text;
-  EXPECT_NE(text.find("                pressure_max_kpa of the rig keeps the pressure down\n"),
-            std::string::npos)
+  EXPECT_NE(text.find("                pressure_max_kpa of the rig limits the pressure\n"), std::string::npos)
       << text;
 }
 
@@ -200,12 +199,12 @@ TEST(StatusView, NothingIsLostAtSixtyColumns) {
   Json full = status();
   for (Json& each : full["channels"]) {
     each["squeeze_kpa"] = 5.0;
-    each["limit_text"] = "slew_down_kpa_per_s of the rig keeps the pressure behind what is asked for";
+    each["limit_text"] = "slew_down_kpa_per_s of the rig limits the rate of the pressure";
     each["saturated"] = true;
   }
-  for (const char* phrase : {"29.50 kPa, command 30.00, squeeze 5.0", "12.25 mm, reference 12.50, error 0.25",
-                             "slewing", "saturated", "keeps the pressure behind what is asked for",
-                             "real time degraded", "12.3 s", "connected"}) {
+  for (const char* phrase :
+       {"29.50 kPa, command 30.00, squeeze 5.0", "12.25 mm, reference 12.50, error 0.25", "slewing",
+        "saturated", "limits the rate of the pressure", "real time degraded", "12.3 s", "connected"}) {
     EXPECT_NE(words_at(60, full).find(phrase), std::string::npos) << phrase << "\n" << words_at(60, full);
   }
 }

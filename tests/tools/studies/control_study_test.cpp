@@ -44,7 +44,7 @@ TEST(ControlStudy, SchemesWithoutAnInverseAreRefusedWithTheReason) {
     EXPECT_EQ(!scheme.refusal.empty(), refused) << scheme.id << ": " << scheme.refusal;
     EXPECT_EQ(scheme.figures.empty(), refused) << scheme.id;
     if (!refused) continue;
-    EXPECT_NE(scheme.refusal.find("wrong way"), std::string::npos);
+    EXPECT_NE(scheme.refusal.find("inverse response"), std::string::npos);
   }
 }
 
