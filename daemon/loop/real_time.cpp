@@ -170,7 +170,8 @@ RealTimeStep set_processors(const std::vector<int>& cpus, std::string_view who) 
     step.detail = fmt::format("{}", fmt::join(cpus, ", "));
   } else {
     step.detail =
-        "the kernel gave another set than asked for (a cgroup's cpuset, or a processor that is offline)";
+        "the kernel applied other processors than requested (a cgroup's cpuset, or a processor that is "
+        "offline)";
   }
   return step;
 }
@@ -235,7 +236,7 @@ RealTimeStep prepare_stack(std::size_t bytes, std::string_view who) {
   if (bytes == 0) return step;
   if (const std::size_t left = stack_left(); bytes > left) {
     step.outcome = Outcome::failed;
-    step.detail = fmt::format("{} KiB asked for, the thread has {} KiB left", bytes / 1024, left / 1024);
+    step.detail = fmt::format("{} KiB requested, the thread has {} KiB left", bytes / 1024, left / 1024);
     return step;
   }
   touch_stack(bytes);
@@ -255,7 +256,7 @@ std::string_view name_of(Outcome outcome) noexcept {
     case Outcome::failed:
       return "failed";
     case Outcome::not_asked:
-      return "not asked for";
+      return "not asked for";  // words-ok: a documented value
   }
   return "?";
 }

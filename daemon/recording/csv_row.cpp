@@ -15,7 +15,9 @@ constexpr double decimals_scale = 1e6;
 constexpr double largest_scaled = 9e18;  // below 2^63
 constexpr std::string_view columns =
     "time_s,channel,pressure_command_kpa,displacement_mm,pressure_kpa,temperature_c,reference_mm,"
-    "feedforward_kpa,feedback_kpa,residual_mm,deficit_mm,age_s,state,step,validity,result,saturated,slewing";
+    "feedforward_kpa,feedback_kpa,residual_mm,"
+    "deficit_mm,"  // words-ok: a documented column
+    "age_s,state,step,validity,result,saturated,slewing";
 constexpr std::string_view pressure_column = "pressure_kpa,", temperature_column = "temperature_c,";
 /// Length of all words in a row except numbers and the channel's name.
 constexpr std::size_t longest_words = 128;

@@ -30,11 +30,11 @@ using enum Severity;
 
 /// In the order of BusEvent::Kind.
 constexpr std::array<Words, 7> bus_words{{
-    {"bus_connected", information, "A session with the board is up: the board answers."},
+    {"bus_connected", information, "Connected to the board: the board responds."},
     {"bus_failed", error, ""},
-    {"bus_recovered", information, "The board answers again."},
-    {"loop_silent", error, "No commands from the loop: the safe outputs are written."},
-    {"loop_back", information, "The loop's commands are written again."},
+    {"bus_recovered", information, "Communication with the board restored."},
+    {"loop_silent", error, "Command time-out: the loop sends no commands, the safe outputs are written."},
+    {"loop_back", information, "Commands resumed: the loop's commands are written again."},
     {"another_client", warning, ""},
     {"bus_not_connected", error, ""},
 }};
@@ -49,8 +49,8 @@ constexpr std::array<Words, 8> panel_words{{
     {"part_away", information, "No part is in position."},
     {"enable_on", information, "The enable output is on."},
     {"enable_off", information, "The enable output is off."},
-    {"loop_hangs", error, "The loop does not tick: the enable output was dropped."},
-    {"gpio_lost", error, "The GPIO chip failed: its lines are lost until the daemon starts again."},
+    {"loop_hangs", error, "Control loop stalled: the enable output was switched off."},
+    {"gpio_lost", error, "The GPIO chip failed: its lines are not available until the daemon restarts."},
 }};
 static_assert(static_cast<std::size_t>(PanelEvent::Kind::gpio_lost) + 1 == panel_words.size());
 
@@ -73,7 +73,7 @@ control::FaultCode refused_because_of(const Event& event) {
 
 void describe_state(const Event& event, const Sequence*, EventEntry& entry) {
   entry.code = control::name_of(static_cast<control::State>(event.detail));
-  entry.text = fmt::format("The state is now {}.", entry.code);
+  entry.text = fmt::format("State: {}.", entry.code);
 }
 
 void describe_fault(const Event& event, const Sequence*, EventEntry& entry) {
@@ -93,14 +93,14 @@ void describe_step(const Event& event, const Sequence* sequence, EventEntry& ent
   entry.code = fmt::format("{}", event.detail);
   const bool known = sequence != nullptr && event.detail < sequence->steps.size();
   const control::Step* step = known ? &sequence->steps[event.detail].step : nullptr;
-  entry.text = step != nullptr ? fmt::format("Step {} begins: {}.", event.detail + 1, step->name)
-                               : fmt::format("Step {} begins.", event.detail + 1);
+  entry.text = step != nullptr ? fmt::format("Step {} started: {}.", event.detail + 1, step->name)
+                               : fmt::format("Step {} started.", event.detail + 1);
 }
 
 void describe_result(const Event& event, const Sequence*, EventEntry& entry) {
   const auto result = static_cast<control::GripResult>(event.detail);
   entry.code = control::title_of(result);
-  entry.text = fmt::format("The grip's result is {}.", entry.code);
+  entry.text = fmt::format("Grip result: {}.", entry.code);
   const bool bad = result == control::GripResult::part_lost || result == control::GripResult::error;
   entry.severity = bad ? Severity::warning : Severity::information;
 }
@@ -117,7 +117,7 @@ void describe_refusal(const Event& event, const Sequence*, EventEntry& entry) {
 void describe_health(const Event& event, const Sequence*, EventEntry& entry) {
   const auto health = static_cast<control::HealthState>(event.detail);
   entry.code = control::name_of(health);
-  entry.text = fmt::format("The model is now {} (residual {:.3g} mm RMS).", entry.code, event.value);
+  entry.text = fmt::format("Model status: {} (residual {:.3g} mm RMS).", entry.code, event.value);
   const bool good = health == control::HealthState::healthy || health == control::HealthState::unknown;
   entry.severity = good ? Severity::information : Severity::warning;
 }
@@ -128,25 +128,25 @@ void describe_contact(const Event& event, const Sequence*, EventEntry& entry) {
   const char* then = "";
   switch (action) {
     case control::OnContact::hold:
-      then = "it stays with the pressure of its first touch";
+      then = "the pressure of first contact is kept";
       break;
     case control::OnContact::grip:
-      then = "it stays with the pressure of its first touch, and the grip begins";
+      then = "the pressure of first contact is kept, and the grip begins";
       break;
     case control::OnContact::fail:
-      then = "it stays with the pressure of its first touch, and the step has failed";
+      then = "the pressure of first contact is kept, and the step has failed";
       break;
     case control::OnContact::ignore:
-      then = "the step goes on nevertheless";
+      then = "the step continues";
       break;
     case control::OnContact::squeeze:
-      then = "it squeezes";
+      then = "the gripping pressure rises";
       break;
     case control::OnContact::close:
-      then = "it closes on to its target, with its feedback held";
+      then = "the finger closes to its target with constant feedback";
       break;
   }
-  entry.text = fmt::format("The finger has touched something at {:.2f} mm: {}.", event.value, then);
+  entry.text = fmt::format("Contact at {:.2f} mm: {}.", event.value, then);
   const bool unexpected = action == control::OnContact::hold || action == control::OnContact::fail;
   entry.severity = unexpected ? Severity::warning : Severity::information;
 }
@@ -156,8 +156,8 @@ void describe_limit(const Event& event, const Sequence*, EventEntry& entry) {
   const auto limit = static_cast<control::BindingLimit>(event.detail);
   entry.code = control::name_of(limit);
   const std::string_view words = control::words_of(limit);
-  entry.text = binds ? fmt::format("The {}, at {:.1f} kPa.", words, event.value)
-                     : fmt::format("No more: the {}.", words);
+  entry.text = binds ? fmt::format("Limit active: {}, now {:.1f} kPa.", words, event.value)
+                     : fmt::format("Limit cleared: {}.", words);
   const bool of_rig = limit == control::BindingLimit::rig_pressure;
   entry.severity = binds && of_rig ? Severity::warning : Severity::information;
 }
@@ -199,7 +199,8 @@ void describe_unsteady(const Event& event, const Sequence*, EventEntry& entry) {
     entry.text = "The reading is steady again.";
     return;
   }
-  entry.text = fmt::format("The reading jumps there and back, by {:.1f} mm at last.", std::abs(event.value));
+  entry.text = fmt::format("The reading is unsteady: it jumps back and forth, last by {:.1f} mm.",
+                           std::abs(event.value));
   entry.severity = Severity::warning;
 }
 
@@ -215,12 +216,13 @@ void describe_not_at_rest(const Event& event, const Sequence*, EventEntry& entry
   const bool moves = static_cast<control::UnsettledReason>(event.detail) == control::UnsettledReason::moves;
   entry.code = moves ? "moves" : "off_model";
   entry.text =
-      moves ? std::string("The finger did not come to rest: nothing was started.")
-            : fmt::format(
-                  "The finger rests {:.1f} mm off its model: nothing was started. Creep that a grip "
-                  "left is gone after a minute or two, what an interrupted grip left after a free_stroke "
-                  "with empty fingers; what stays then is the sensor's zero.",
-                  event.value);
+      moves
+          ? std::string("Start aborted: the finger did not come to rest.")
+          : fmt::format(
+                "Start aborted: at rest, the finger deviates from its model by {:.1f} mm. Wait 2 minutes for "
+                "creep to decay, or run free_stroke with empty fingers. If the deviation remains, check the "
+                "sensor zero.",
+                event.value);
   entry.severity = Severity::warning;
 }
 

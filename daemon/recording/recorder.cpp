@@ -245,7 +245,7 @@ void Recorder::end(const char* state) {
   } else {
     block();
     tell("recording_failed", Severity::error,
-         fmt::format("The recording ended early, control goes on: {}.", error));
+         fmt::format("The recording ended early; control continues: {}.", error));
   }
   show();
   recording_.reset();

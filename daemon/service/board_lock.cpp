@@ -90,8 +90,10 @@ std::string in_brackets(pid_t process) {
 }
 
 std::string taken(const std::string& board, pid_t process) {
-  return fmt::format("{}: another softgrip program drives this board{}; two masters would fight", board,
-                     in_brackets(process));
+  return fmt::format(
+      "{}: another softgrip program drives this board{}; two clients (masters) would overwrite each other's "
+      "outputs",
+      board, in_brackets(process));
 }
 
 /// Returns the state of a process as in /proc: R, S, D, T ...; nothing if it is not visible.
@@ -146,7 +148,7 @@ std::optional<Peer> holder_of(const sockaddr_un& address, socklen_t length) {
 }
 
 std::string standing_still(const std::string& board, pid_t process) {
-  return fmt::format("{}: the softgrip program that holds its lock{} stands still", board,
+  return fmt::format("{}: the softgrip program that holds its lock{} does not run", board,
                      in_brackets(process));
 }
 
@@ -155,8 +157,8 @@ std::string without_right(const std::string& board, const std::optional<Peer>& h
   if (holder && holder->trusted) return standing_still(board, holder->process);
   const std::string who =
       holder ? fmt::format("user {}{}", holder->user, in_brackets(holder->process)) : "an unknown program";
-  return fmt::format("{}: {} occupies the name of its lock without the right to it; this does not count",
-                     board, who);
+  return fmt::format("{}: {} occupies the name of its lock without the right to it; this is ignored", board,
+                     who);
 }
 
 }  // namespace

@@ -124,7 +124,7 @@ void EventPrinter::print_end(const Outcome& outcome) {
   for (std::size_t i = 0; i < outcome.last.channel_count; ++i) {
     logger_->info("{}: {}", outcome.channel_names[i], control::title_of(outcome.last.channels[i].result));
   }
-  logger_->info("{} ticks, {} slips, {:.3f} s", outcome.ticks, outcome.overruns, outcome.wall_s);
+  logger_->info("{} ticks, {} overruns, {:.3f} s", outcome.ticks, outcome.overruns, outcome.wall_s);
   if (!reached_the_board(outcome.ending)) return;
   if (!outcome.recording_error.empty())
     logger_->error("the recording is not whole: {}", outcome.recording_error);

@@ -250,7 +250,7 @@ void RealRun::start() {
   });
   if (parts_.rig.real_time.required && report_.degraded()) {
     outcome_.ending = Ending::real_time_refused;
-    outcome_.message = "real_time: required, and something could not be verified";
+    outcome_.message = "real_time is required, but a setting could not be verified";
   }
   // A loop with a shutdown request before its first tick still sends the safe outputs.
   if (outcome_.ending != Ending::asked) parts_.shared.shutdown_requested.store(true);
@@ -270,7 +270,7 @@ bool RealRun::over(Nanoseconds now) {
 
 std::string RealRun::status_line() {
   const LoopStatistics& loop = parts_.loop_statistics;
-  return fmt::format("{} Hz, {} slips, {} failed exchanges", parts_.rig.settings.rate_hz,
+  return fmt::format("{} Hz, {} overruns, {} failed exchanges", parts_.rig.settings.rate_hz,
                      loop.overruns_took_long.value() + loop.overruns_woken_late.value(),
                      parts_.bus_statistics.failures.value());
 }
@@ -378,7 +378,7 @@ Outcome RealRun::run() {
   parts_.bus.open();
   start();
   if (outcome_.ending == Ending::asked) {
-    parts_.tell("daemon_started", Severity::information, "The loop begins.");
+    parts_.tell("daemon_started", Severity::information, "Control loop started.");
     manager_.ready(status_line());
     guarded([this] { look_after(); });
   }

@@ -47,11 +47,11 @@ struct Arguments {
 void declare(CLI::App& program, Arguments& arguments) {
   program.add_option("--config", arguments.config, "the rig file")->required()->type_name("RIG");
   program.add_flag("--check", arguments.check,
-                   "say what is wrong with the rig file and the sequence, start nothing");
+                   "report the problems of the rig file and the sequence; start nothing");
   program.add_flag(
       "--safe-outputs", arguments.safe_outputs,
       "vent: connect to the board, write the rest pressure of every channel until the board confirms "
-      "it, and end. For ExecStopPost= of the unit: does nothing where $SERVICE_RESULT is success");
+      "it, and end. For ExecStopPost= of the unit: no action if $SERVICE_RESULT is success");
   program
       .add_option(
           "--device", arguments.device,
@@ -80,9 +80,9 @@ void declare(CLI::App& program, Arguments& arguments) {
   program.footer(
       "Exit codes: 0 done, 1 failed, 2 usage, 3 configuration or sequence refused, 4 I/O, 5 the rig's state "
       "does not\n"
-      "allow the sequence, 6 the sequence ended, but not done. SIGINT, SIGTERM and every other signal that\n"
-      "ends a process which is not broken: the safe outputs are written and confirmed, the recording is\n"
-      "closed, then it ends with 0. With --sequence or --duration-s it ends by the same signal instead.\n"
+      "allow the sequence, 6 the sequence was not completed. After SIGINT, SIGTERM or another ending\n"
+      "signal, softgripd writes and confirms the safe outputs, closes the recording and ends with 0.\n"
+      "With --sequence or --duration-s it ends by the same signal instead.\n"
       "The configuration is read once; restart to change it.");
 }
 
@@ -151,8 +151,10 @@ tl::expected<void, std::string> write_histograms(const std::string& path, const 
   return write_file(
       path,
       fmt::format(
-          "{}{}{}{}{}# Ticks: {}\n# Slips, woken late: {}\n# Slips, took long: {}\n# Exchanges: {}\n"
-          "# Failed exchanges: {}\n",
+          "{}{}{}{}{}# Ticks: {}\n"
+          "# Slips, woken late: {}\n"  // words-ok: scripts read this line
+          "# Slips, took long: {}\n"   // words-ok: scripts read this line
+          "# Exchanges: {}\n# Failed exchanges: {}\n",
           loop.wake_up.cyclictest_text("loop wake-up, us"), loop.compute.cyclictest_text("loop compute, us"),
           loop.reading_age.cyclictest_text("reading age, us"), bus.wake_up.cyclictest_text("bus wake-up, us"),
           bus.exchange.cyclictest_text("exchange, us"), loop.ticks.value(), loop.overruns_woken_late.value(),

@@ -19,7 +19,7 @@ std::string bus_lines(const rig::RigFile& rig, const drivers::Board& board) {
   const bool fits = budget.exchange_s <= period_s;
   std::string text =
       fmt::format("bus: {}; configured {:g} Hz: {}\n", budget.explanation, rig.settings.rate_hz,
-                  fits ? "fits" : "DOES NOT FIT, cycles will be without an exchange");
+                  fits ? "fits" : "DOES NOT FIT: some cycles have no exchange");
   const double offset_s = rig.loop.bus_offset_fraction * period_s;
   text += fmt::format(
       "latency: a command is written {:.3g} ms after its tick, a reading is {:.3g} ms old when used\n",
@@ -30,14 +30,14 @@ std::string bus_lines(const rig::RigFile& rig, const drivers::Board& board) {
 std::string watchdog_line(const rig::RigFile& rig, const drivers::Board& board, std::string_view program) {
   if (board.has_watchdog()) {
     const double time_s = seconds(board.watchdog_time().count());
-    std::string text = fmt::format(
-        "watchdog: the board sets safe outputs by itself {:g} s after {} fell silent\n", time_s, program);
+    std::string text =
+        fmt::format("watchdog: the board applies its safe outputs {:g} s after the last message from {}\n",
+                    time_s, program);
     const auto& actions = rig.settings.safety.safe_action;
     if (rig.settings.safety.board_vents_when_silent &&
         std::find(actions.begin(), actions.end(), control::SafeAction::hold) != actions.end())
-      text += fmt::format(
-          "hold: lasts as long as {} runs; {:g} s after its end the watchdog vents what it held\n", program,
-          time_s);
+      text += fmt::format("hold: while {} runs; {:g} s after its end, the watchdog vents the held part\n",
+                          program, time_s);
     return text;
   }
   return fmt::format("watchdog: NONE on the board; accepted in the rig file: \"{}\"\n",
@@ -99,7 +99,8 @@ std::string startup_report(const rig::RigFile& rig, const drivers::Board& board,
   }
   if (rig.gpio) text += gpio_lines(rig);
   if (real_time == nullptr) return text;
-  text += fmt::format("real time: {}\n", real_time->degraded() ? "DEGRADED" : "as asked for");
+  text +=
+      fmt::format("real time: {}\n", real_time->degraded() ? "DEGRADED" : "all requested settings verified");
   std::string_view rest;
   const std::string details = real_time->format();
   for (rest = details; !rest.empty();) {

@@ -53,7 +53,7 @@ SortedJson parse_object(std::string_view line, std::string& problem) {
       std::vector<std::string>& seen = keys[depth == 1 ? 0 : 1];
       const auto key = parsed.get<std::string>();
       if (std::find(seen.begin(), seen.end(), key) != seen.end())
-        problem = "the key '" + key + "' stands twice";
+        problem = "the key '" + key + "' appears twice";
       seen.push_back(key);
     }
     return problem.empty();
@@ -137,7 +137,7 @@ class Reader {
   /// Returns the first problem, including unknown keys.
   [[nodiscard]] std::string finish(std::string_view command) {
     for (const auto& [key, value] : object_.items()) {
-      fail(fmt::format("the command '{}' knows no key '{}'", command, key));
+      fail(fmt::format("the command '{}' has no key '{}'", command, key));
     }
     return problem_;
   }

@@ -179,7 +179,7 @@ void Service::note_result(const StampedEvent& stamped) {
   entry.code = control::title_of(overall);
   entry.request = sequence_request_;
   entry.client = client_of(sequence_request_);
-  entry.text = fmt::format("The result of all fingers is {}.", entry.code);
+  entry.text = fmt::format("Result of all fingers: {}.", entry.code);
   log_.add(std::move(entry));
 }
 

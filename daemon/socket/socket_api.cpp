@@ -111,14 +111,14 @@ Json SocketApi::refusal_of(ClientId client, const ClientRequest& request) const 
   const auto found = clients_.find(client);
   if (found == clients_.end() || found->second.role != Role::operate) {
     return error_json("not_allowed",
-                      "this socket is for looking only; who may move the gripper connects to the other one");
+                      "this socket is read-only; connect to the other socket to move the gripper");
   }
   const bool halts = request.command == Command::stop || request.command == Command::vent;
   const std::string* const other = owner();
   if (halts || request.dry_run || other == nullptr || owner_client() == client) return nullptr;
   Json error = error_json("owned", "'" + *other +
-                                       "' has started the sequence that runs, and is still connected: others "
-                                       "may stop and vent");
+                                       "' has started the running sequence and is still connected: other "
+                                       "clients may only stop and vent");
   error["owner"] = *other;
   return error;
 }

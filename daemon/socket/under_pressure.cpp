@@ -21,10 +21,10 @@ Json under_pressure_json(const std::vector<control::ChannelSettings>& channels, 
   }
   const bool idle = snapshot.state == control::State::idle;
   const char* const command = idle ? "softgrip release" : "softgrip vent";
-  return {
-      {"channels", std::move(pressed)},
-      {"command", command},
-      {"text", fmt::format("Pressure stays on: {}. `{}` lets it down; what is held drops.", list, command)}};
+  return {{"channels", std::move(pressed)},
+          {"command", command},
+          {"text",
+           fmt::format("Fingers are pressurised: {}. `{}` vents them; a held part drops.", list, command)}};
 }
 
 }  // namespace softgrip::daemon

@@ -91,7 +91,7 @@ class Devices(unittest.TestCase):
         self.assertEqual((other / "out_voltage0_powerdown").read_text(), "1\n")
         (self.folder / "iio/iio:device0").unlink()
         (self.folder / "iio/iio:device3").symlink_to(valve)  # its own converter comes back, under another number
-        bench.wait_for("the next session", lambda: "The board answers again" in log.read_text())
+        bench.wait_for("the next session", lambda: "Communication with the board restored" in log.read_text())
 
     @unittest.skipUnless(digital_lines.PRELOADED.exists(), "not built: a sanitizer's runtime must be loaded first")
     def test_a_label_of_two_chips(self):

@@ -172,7 +172,7 @@ class OtherUsers(bench.BenchTest):
         daemon.send(signal.SIGSTOP)
         ended = self.safe_outputs()
         self.assertEqual(ended.returncode, 0, ended.stdout + ended.stderr)
-        self.assertIn("stands still", ended.stdout)
+        self.assertIn("does not run", ended.stdout)
         self.assertEqual(max(self.board.commands_kpa()), 0)
         daemon.kill()
 

@@ -45,7 +45,7 @@ class Pauses(bench.BenchTest):
         for channel in ("left", "right"):
             daemon.wait_for_event("grip_result", code="HOLDING", channel=channel)
         if phase == "releasing":
-            daemon.wait_for_event("step_started", text="Step 4 begins: release.")
+            daemon.wait_for_event("step_started", text="Step 4 started: release.")
 
     def outputs_for(self, emulator, seconds):
         samples, end = [], time.monotonic() + seconds

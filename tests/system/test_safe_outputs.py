@@ -163,7 +163,7 @@ class Hold(bench.BenchTest):
     def test_the_boards_watchdog_ends_it_and_that_is_said(self):
         emulator = self.emulator("--object", "stone")
         check, start, end, outputs_kpa = self.ends_holding(emulator, self.rig(emulator.port))
-        sentence = "hold: lasts as long as softgripd runs; 0.5 s after its end the watchdog vents what it held"
+        sentence = "hold: while softgripd runs; 0.5 s after its end, the watchdog vents the held part"
         self.assertIn(sentence, check)
         self.assertIn(sentence, start)
         self.assertIn("they hold only until the board's watchdog vents them, 0.5 s from now", end)
@@ -176,7 +176,7 @@ class Hold(bench.BenchTest):
         self.addCleanup(emulator.control.close)
         check, start, end, outputs_kpa = self.ends_holding(emulator, rig)
         for text in (check, start, end):
-            self.assertNotIn("vents what it held", text)
+            self.assertNotIn("vents the held part", text)
             self.assertNotIn("hold only until", text)
         self.assertGreater(min(outputs_kpa), 10)
 

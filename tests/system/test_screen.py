@@ -23,7 +23,7 @@ class Screen(bench.BenchTest):
         self.hold()
         self.assertIsNone(self.softgripd.status()["under_pressure"], "a hold is what was asked for")
         stopped = self.softgrip("stop").stdout
-        self.assertRegex(stopped, r"stopping\nPressure stays on: left [\d.]+ kPa, right [\d.]+ kPa\. `softgrip release`")
+        self.assertRegex(stopped, r"stopping\nFingers are pressurised: left [\d.]+ kPa, right [\d.]+ kPa\. `softgrip release`")
         self.assertEqual(self.softgripd.status()["state"], "idle")
         self.assertEqual([one["name"] for one in self.softgripd.status()["under_pressure"]["channels"]],
                          ["left", "right"])

@@ -80,7 +80,7 @@ class FirstRun(bench.BenchTest):
         self.wait_for_state("faulted")
         rig = self.beside("softgrip-rig-again", self.rig_words)
         bench.wait_for("the rig", lambda: "listening" in rig.output())
-        bench.wait_for("the session", lambda: "The board answers again" in self.shell("softgrip events"))
+        bench.wait_for("the session", lambda: "Communication with the board restored" in self.shell("softgrip events"))
         time.sleep(1)  # what a hand on a keyboard takes, at least
         self.assertEqual(self.state(), "faulted", "nothing moves before somebody says so")
         self.shell("softgrip acknowledge")

@@ -41,7 +41,7 @@ class Watch(bench.BenchTest):
         watched.type("y")
         watched.wait_for("started hand_over")
         watched.wait_for("HOLDING by")
-        screen = watched.wait_for("left: The grip's result is HOLDING.")
+        screen = watched.wait_for("left: Grip result: HOLDING.")
         self.assertIn("▁", screen, "a trend")
         watched.type("s")
         screen = watched.wait_for("UNDER PRESSURE")

@@ -8,7 +8,7 @@
 
 namespace softgrip::tools {
 
-/// "   12.340 s  warning  left: The grip's result is NO PART." of an event as the socket API tells it; of one
+/// "   12.340 s  warning  left: Grip result: NO PART." of an event as the socket API tells it; of one
 /// that carries the time of day, "2026-11-21 09:32:05.123  warning  ..." in local time.
 [[nodiscard]] std::string line_of_event(const nlohmann::ordered_json& event);
 
@@ -19,7 +19,7 @@ namespace softgrip::tools {
 /// answers to an acknowledgement.
 [[nodiscard]] std::string sentence_of_acknowledged(const nlohmann::ordered_json& result);
 
-/// line_of_event() for a narrow screen: "09:32:05 !  left: The grip's result is NO PART.", with `!` for a
+/// line_of_event() for a narrow screen: "09:32:05 !  left: Grip result: NO PART.", with `!` for a
 /// warning and `!!` for an error.
 [[nodiscard]] std::string brief_line_of_event(const nlohmann::ordered_json& event);
 

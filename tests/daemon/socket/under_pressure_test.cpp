@@ -44,7 +44,7 @@ TEST_F(UnderPressure, WhatStaysOnIsNamedWithTheCommandThatEndsIt) {
   EXPECT_EQ(idle["channels"][0]["name"], "right");
   EXPECT_EQ(idle["command"], "softgrip release");
   EXPECT_EQ(idle["text"],
-            "Pressure stays on: right 36.0 kPa. `softgrip release` lets it down; what is held drops.");
+            "Fingers are pressurised: right 36.0 kPa. `softgrip release` vents them; a held part drops.");
   snapshot_.state = State::faulted;
   set(33, 36);
   EXPECT_EQ(json()["command"], "softgrip vent") << "a release is refused then";

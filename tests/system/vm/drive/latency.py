@@ -52,7 +52,7 @@ def softgripd(folder):
     done = subprocess.run(["softgripd", "--config", RIG, "--no-socket", "--duration-s", str(TURN_S), "--histograms", path],
                           stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
     expect(done.returncode == 0, f"softgripd: {done.stdout[-600:]}")
-    expect("real time: as asked for" in done.stdout, f"softgripd: {done.stdout}")
+    expect("real time: all requested settings verified" in done.stdout, f"softgripd: {done.stdout}")
     text = path.read_text()
     wake_up = re.search(r"# Histogram \(loop wake-up, us\)\n(.*?)\n#", text, re.DOTALL).group(1)
     slips = sum(int(number) for number in re.findall(r"# Slips, .*: (\d+)", text))
