@@ -135,7 +135,7 @@ class WithADaemon(bench.BenchTest):
                   json.loads(self.softgrip("sequences", "--json").stdout)["sequences"]}
         self.assertEqual(listed["pick_stone"]["parameters"][0],
                          {"name": "squeeze_kpa", "unit": "kpa", "lower": 3, "upper": 10, "default": 5,
-                          "about": "how hard the stone is pressed"})
+                          "about": "gripping pressure on the stone"})
         self.assertEqual(listed["broken"]["problems"][0]["line"], 2)
         names = self.softgrip("sequences", "--names").stdout.split()
         self.assertEqual(names, sorted(path.stem for path in (self.folder / "config/sequences").glob("*.yaml")))
