@@ -25,10 +25,8 @@ struct Node {
   Location at;
   std::string scalar;          ///< the text of a scalar, unquoted
   bool quoted = false;         ///< the scalar was quoted, so it is a text, never a number
-  std::string stands_for;      ///< `$name` if the file contains this parameter in place of the number; or
-                               ///< empty
-  bool refused = false;        ///< already reported or truncated: the node is present but is not checked
-                               ///< again
+  std::string stands_for;      ///< name with `$` if the file has a parameter here; or empty
+  bool refused = false;        ///< already reported or truncated: it is not checked again
   std::vector<Node> items;     ///< items of a sequence
   std::vector<Entry> entries;  ///< entries of a map in the order of the text, with unique keys
 };

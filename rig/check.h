@@ -25,7 +25,7 @@ struct CheckedFile {
   std::string path;
   FileKind kind = FileKind::unknown;
   std::string name;        ///< the value of its key `name`, or empty
-  std::size_t errors = 0;  ///< in this file, not in those that it names
+  std::size_t errors = 0;  ///< errors in this file, not in files that it names
   std::size_t warnings = 0;
   bool passed_over = false;  ///< found in a folder, and of no known kind
 };

@@ -55,8 +55,7 @@ void remember(Context& context, InputFile::Role role, const document::Document& 
 struct BoardKind {
   const char* key;
   void (*read)(Context& context, const document::Node& node);
-  bool after_channels;  ///< the simulated board needs the channels; channels of other boards need the board's
-                        ///< terminals
+  bool after_channels;  ///< simulated boards need the channels; channels of other boards need the board
 };
 constexpr std::array<BoardKind, 4> board_kinds{
     BoardKind{"simulated", read_simulated_board, true}, BoardKind{"modbus_tcp", read_modbus_tcp, false},

@@ -10,9 +10,8 @@
 namespace softgrip::control {
 
 enum class FeedforwardKind : std::uint8_t {
-  none,      ///< PID alone
-  bouc_wen,  ///< inverse of the Bouc-Wen element alone, in parallel with the PID (Zhang et al. 2025, section
-             ///< 5)
+  none,        ///< PID alone
+  bouc_wen,    ///< inverse of the Bouc-Wen element alone (Zhang et al. 2025, section 5)
   full_model,  ///< inverse of the complete chain: implicit solution, lead for lag, preview for delay
   planned,     ///< computed before the run by least squares over the reference; needs no inverse
 };

@@ -11,8 +11,8 @@
 namespace softgrip::control {
 
 /// Counts jumps that reverse. A jump is the change between two readings beyond the change of the model. A
-/// finger moves between nothing and slightly more than its free-motion model. A part that slides, is lost or
-/// is pushed in also makes the finger jump, but in one direction only.
+/// free finger moves at most slightly more than its model. A part that slides, is lost or is pushed in also
+/// makes the finger jump, but in one direction only.
 class JumpWatch {
  public:
   static constexpr double window_s = 1;  ///< time in which the jumps are counted

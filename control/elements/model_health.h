@@ -30,7 +30,7 @@ enum class HealthState : std::uint8_t {
 struct ModelHealthSettings {
   double model_error_mm = 0.4;      ///< > 0
   double correlation_time_s = 4.0;  ///< > 0
-  double noise_mm = 0.05;           ///< > 0; of one reading
+  double noise_mm = 0.05;           ///< > 0; standard deviation of one reading
   double interval_s = 1.0;          ///< > 0; time over which the residual is averaged before a decision
   double allowance_sigma = 0.5;     ///< > 0; half of the shift to detect, in standard deviations per interval
   /// > 0; mean time between false alarms of a healthy model. It determines the decision threshold.

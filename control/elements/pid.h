@@ -14,8 +14,7 @@ namespace softgrip::control {
 /// Method that prevents integrator windup while the command cannot follow the request.
 enum class AntiWindup : std::uint8_t {
   none,              ///< the integrator continues: for comparison only
-  conditional,       ///< the integrator stops while the request is limited and the error would increase it
-                     ///< further
+  conditional,       ///< the integrator stops while it would increase a limited request further
   back_calculation,  ///< the limited part drives the integrator back within tracking_time_s
 };
 

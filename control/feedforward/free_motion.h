@@ -7,10 +7,9 @@
 namespace softgrip::control {
 
 struct FreeMotion {
-  double rest_mm = 0;     ///< at rest under the rest pressure
-  double lowest_mm = 0;   ///< three seconds after the lowest pressure; equal to rest_mm if that is the rest
-                          ///< pressure
-  double highest_mm = 0;  ///< three seconds after the highest pressure
+  double rest_mm = 0;           ///< at rest under the rest pressure
+  double lowest_mm = 0;         ///< three seconds after the lowest pressure
+  double highest_mm = 0;        ///< three seconds after the highest pressure
   double fastest_mm_per_s = 0;  ///< largest speed up or down within the slew limits
 };
 

@@ -17,8 +17,7 @@ struct PressurePlan {
   std::vector<double> pressure_kpa;
   std::vector<double> displacement_mm;  ///< displacement of the model at the same times
   Reference reference;                  ///< the reference that was planned
-  double begin_s = 0;                   ///< time on the plan's clock at which the step with this reference
-                                        ///< begins
+  double begin_s = 0;                   ///< start of the step with this reference, on the plan's clock
   double rmse_mm = 0;                   ///< root mean square difference between model and reference
   double worst_mm = 0;                  ///< largest difference
 

@@ -84,8 +84,8 @@ struct Verify {
   double window_s = 0.3;  ///< time for which the evidence must hold
   double displacement_min_mm = -std::numeric_limits<double>::infinity();  ///< for position; with detection,
   double displacement_max_mm = std::numeric_limits<double>::infinity();   ///< both must agree
-  double pressure_min_kpa = 0;                                            ///< for pressure, grips above rest
-  double pressure_max_kpa = std::numeric_limits<double>::infinity();      ///< for pressure, grips below rest
+  double pressure_min_kpa = 0;                                        ///< by pressure, for grips above rest
+  double pressure_max_kpa = std::numeric_limits<double>::infinity();  ///< by pressure, for grips below rest
   /// Returns true for verification by a pressure below rest.
   [[nodiscard]] bool below() const noexcept { return std::isfinite(pressure_max_kpa); }
 };
@@ -129,8 +129,7 @@ struct Bounds {
 
 /// The gripping pressure of a grip after its first contact.
 struct Squeeze {
-  double by_kpa = 0;           ///< above the command for the free finger at this displacement; 0: only the
-                               ///< target applies
+  double by_kpa = 0;           ///< above the pressure of the free finger there; 0: only the target applies
   double speed_kpa_per_s = 0;  ///< > 0 with by_kpa
 };
 
@@ -144,8 +143,7 @@ struct Step {
   Sine sine;                           ///< for track
   Profile profile;                     ///< for pressure
   double settle_s = 0;                 ///< waiting time after the ramp
-  std::optional<double> tolerance_mm;  ///< for move: must be reached for settle_s, or the step fails at
-                                       ///< timeout_s
+  std::optional<double> tolerance_mm;  ///< for move: the step fails if it is not reached by timeout_s
   Bounds bounds;                       ///< for all kinds but release; for a hold only if it states its own
   OnContact on_contact = OnContact::ignore;
   bool on_contact_stated = false;  ///< the file states it
@@ -181,8 +179,8 @@ struct Sequence {
 struct PreparedStep {
   Step step;
   std::uint32_t channels = 0;      ///< bit i: channel i takes part
-  std::uint16_t release_step = 0;  ///< next step of on_fail: release; the number of steps if there is none
-  std::uint16_t grip_step = 0;     ///< next step of on_contact: grip; the number of steps if there is none
+  std::uint16_t release_step = 0;  ///< step after on_fail: release; the number of steps if none
+  std::uint16_t grip_step = 0;     ///< step after on_contact: grip; the number of steps if none
   /// By channel of the rig, for feedforward `planned`; empty without plans.
   std::vector<PressurePlan> plans;
   /// Returns the plan of a channel; nullptr without one.

@@ -29,7 +29,7 @@ inline constexpr std::size_t phase_count = 4;
 
 /// The action of the outputs if motion must end.
 enum class SafeAction : std::uint8_t {
-  vent,  ///< to the rest pressure: at the slew limit while the loop runs, at once when it leaves
+  vent,  ///< go to rest: at the slew limit while the loop runs, at once when it ends
   hold,  ///< stay at the last command
 };
 /// Returns "vent" or "hold".
@@ -64,8 +64,7 @@ struct FaultSettings {
   std::uint32_t readback_cycles = 5;         ///< consecutive cycles in which the read-back differs
   double readback_tolerance_kpa = 1;         ///< differs: outside the window's commands by more than this
   double readback_delay_s = 0.1;             ///< duration of the window of past commands
-  std::uint32_t pressure_cycles = 0;  ///< consecutive cycles in which the measured pressure differs; 0: not
-                                      ///< checked
+  std::uint32_t pressure_cycles = 0;  ///< consecutive cycles with a wrong measured pressure; 0: not checked
   double pressure_tolerance_kpa = 5;  ///< differs: outside the window's commands by more than this
   double pressure_delay_s = 0.5;      ///< duration of the window of past commands
   bool model_unfit_is_fault = false;  ///< false: model health is only reported

@@ -26,7 +26,7 @@ struct SupervisorInputs {
   Fault fault;  ///< due now
   Fault cause;  ///< present condition that is a fault or may become one
   bool bus_good = false;
-  std::uint32_t ready = 0;    ///< channels with a valid reading, or without use of readings
+  std::uint32_t ready = 0;    ///< channels that have a valid reading or need none
   std::uint32_t at_rest = 0;  ///< channels whose command is the rest pressure
   Phase phase = Phase::idle;  ///< phase of the player
   bool answers = false;       ///< there are grip results to acknowledge

@@ -98,12 +98,9 @@ struct ChannelOutput {
   double temperature_c = 0;    ///< measured, or NaN; only recorded
   double feedforward_kpa = 0;  ///< 0 without tracking
   double feedback_kpa = 0;     ///< 0 without tracking
-  double residual_mm = 0;      ///< reading minus (model + offset) at the time of the reading; NaN without a
-                               ///< valid reading
-  double shortfall_mm = 0;     ///< displacement shortfall against free motion; NaN without displacement
-                               ///< feedback and until the second consecutive valid reading
-  double free_kpa = 0;  ///< command under which the free finger rests at the displacement of the last valid
-                        ///< reading
+  double residual_mm = 0;      ///< reading minus (model + offset) at its time; NaN without a reading
+  double shortfall_mm = 0;     ///< displacement shortfall against free motion; NaN if it is unknown
+  double free_kpa = 0;         ///< command under which the free finger rests at the last valid reading
   /// gripping pressure that corresponds to the displacement shortfall; NaN without displacement feedback
   double squeeze_kpa = 0;
   double age_s = 0;          ///< of the reading
@@ -115,7 +112,7 @@ struct ChannelOutput {
   HealthState health = HealthState::unknown;   ///< of the model
   bool health_changed = false;
   BindingLimit bound_by = BindingLimit::none;  ///< limit that keeps the command noticeably from the request
-  BindingLimit limit = BindingLimit::none;     ///< the same limit, after it has been active for longer than a
+  BindingLimit limit = BindingLimit::none;     ///< the same, after it has been active for longer than a
                                                ///< moment
   bool saturated = false;                      ///< the request was outside the pressure range
   bool slewing = false;                        ///< the request was further away than the slew limits allow
@@ -125,7 +122,7 @@ struct ChannelOutput {
   bool stands_still = false;         ///< the reading is constant for an implausible time for this sensor
   bool unsteady = false;             ///< the reading jumps back and forth repeatedly
   double jump_mm = 0;                ///< last jump
-  bool displacement_beyond = false;  ///< the reading is beyond the displacement range and its margin
+  bool displacement_beyond = false;  ///< the reading is outside the displacement range and its margin
   bool synchronised = false;         ///< resynchronisation was requested and residual_mm has settled
 };
 
@@ -160,8 +157,7 @@ struct Event {
     reading_unsteady,  ///< the reading jumps back and forth repeatedly
     reading_steady,    ///< the reading has been without jumps for a time
     start_checked,     ///< a start would be accepted now
-    not_at_rest,  ///< reason why a start found no rest. detail: UnsettledReason; value: model offset at rest
-                  ///< [mm]
+    not_at_rest,       ///< why a start found no rest. detail: UnsettledReason; value: model offset [mm]
   };
   Kind kind = Kind::state_changed;
   std::uint8_t channel = whole_rig;

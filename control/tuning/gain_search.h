@@ -16,8 +16,7 @@ using GainPoint = std::array<double, 3>;
 struct Simplex {
   GainPoint edges{0.4, 0.4, 0.02};  ///< distances from the start to the other corners
   int iterations = 60;              ///< each costs one or two evaluations
-  double done_share = 0;            ///< the search ends when the corners' costs differ by less than this
-                                    ///< share
+  double done_share = 0;            ///< ends when the corners' costs differ by less than this share
 };
 /// Returns the best corner at the end.
 [[nodiscard]] GainPoint nelder_mead(const std::function<double(const GainPoint&)>& cost,

@@ -49,7 +49,7 @@ struct TrackingResult {
   double worst_mm = 0;
   double pressure_mean_kpa = 0;  ///< mean of the commands
   double pressure_most_kpa = 0;
-  double residual_rms_mm = 0;                 ///< of the running model
+  double residual_rms_mm = 0;                 ///< residual of the running model
   double out_of_reach_share = 0;              ///< share of the ticks
   double cut_share = 0;                       ///< share of the ticks in which limits changed the request
   HealthState health = HealthState::unknown;  ///< the worst state during the run

@@ -24,8 +24,7 @@ struct TuneTask {
   double noise_mm = 0.03;
   double mismatch = 0.05;       ///< largest relative error of each parameter of a finger
   int draws = 6;                ///< number of fingers
-  double most_sensitivity = 2;  ///< largest Ms of each finger; 2 means gain margin 2 and phase margin 29
-                                ///< degrees
+  double most_sensitivity = 2;  ///< largest Ms of each finger; 2: gain margin 2, phase margin 29 degrees
   std::uint64_t seed = 1;
   int iterations = 40;  ///< of the search after the grid
 };

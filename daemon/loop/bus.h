@@ -97,12 +97,11 @@ class Bus {
   std::array<double, control::max_channels> found_kpa_ = BusReport::anything;  // since the last good exchange
   Session session_ = Session::none;
   bool spoken_ = false;                                      // the loop has sent commands at least once
-  control::FaultCode inhibited_ = control::FaultCode::none;  // reason, or none
+  control::FaultCode inhibited_ = control::FaultCode::none;  // why the bus is inhibited, or none
   std::uint32_t unheard_ = 0;                                // steps since the loop's last commands
   std::optional<Nanoseconds> last_good_;                     // start of the last successful exchange
   bool told_failed_ = false;                                 // the present failure has been logged
-  bool told_refused_ = false;                                // the reason why no session can be opened has
-                                                             // been logged
+  bool told_refused_ = false;                                // and the reason why no session can be opened
   std::array<char, sizeof(BusEvent::detail)> told_{};        // the last failure in the log
   bool told_clients_ = false;  // the other client of the board has been logged in this session
   Nanoseconds pause_ = 0;      // pause before the attempt after the next one

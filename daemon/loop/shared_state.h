@@ -36,9 +36,10 @@ struct BusReport {
     return outputs_kpa;
   }();
   std::array<model::Reading, control::max_channels> readings{};
-  /// No output is nearer to rest than this; if it may have either of two sides of rest, this is rest. It is
-  /// the last write. If the board has not confirmed it, it is the nearer to rest of both writes. If the
-  /// board's watchdog has acted, it is the rest pressure. It is infinite before the first write.
+  /// A bound [kPa]: no output is nearer to rest. It is the last write, or, if the board
+  /// has not confirmed that write, the one of the last two writes that is nearer to rest. It is the rest
+  /// pressure if these writes are on different sides of rest, or if the board's watchdog has acted. Infinite
+  /// before the first write.
   std::array<double, control::max_channels> outputs_kpa = anything;
   control::BusHealth health;
 };
@@ -133,8 +134,7 @@ struct SharedState {
   Ring<control::Request> named_stops{128};
   Ring<control::Request> requests{64};
   std::atomic<control::State> state{control::State::starting};  ///< of the last tick
-  std::atomic<bool> under_pressure{false};                      ///< a finger is pressurised without motion,
-                                                                ///< in the last tick
+  std::atomic<bool> under_pressure{false};                      ///< a finger is pressurised without motion
   std::atomic<bool> enable_on{false};                           ///< last written level of the enable output
   InputLevels inputs;
   std::atomic<std::uint64_t> records_dropped{0};  ///< no space: the recorder lagged

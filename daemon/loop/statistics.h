@@ -26,8 +26,8 @@ struct LoopStatistics {
   Histogram compute;      ///< from there to the end of the tick
   Histogram reading_age;  ///< of the oldest channel, at the tick that uses it
   Counter ticks;
-  Counter overruns_woken_late;  ///< because the thread was woken a period late or more
-  Counter overruns_took_long;   ///< because the tick itself did not end in time
+  Counter overruns_woken_late;  ///< overruns because the thread woke a period late or more
+  Counter overruns_took_long;   ///< overruns because a tick took too long
 };
 
 struct BusStatistics {

@@ -71,8 +71,7 @@ struct Outcome {
   std::string recording_error;        ///< reason why record_folder is incomplete; empty: it is complete
   bool safe_state_confirmed = false;  ///< the board confirmed the safe outputs at the end
   bool pressure_left_on = false;      ///< control::pressed() of the safe output of a channel
-  double vents_after_s = 0;  ///< time until the board's watchdog vents the remaining pressure [s]; 0: no
-                             ///< pressure or no watchdog
+  double vents_after_s = 0;           ///< time until the watchdog vents the remaining pressure [s]; 0: never
   int signal = 0;  ///< the first signal that requested the end, before the outputs were safe; 0: none
   std::uint64_t ticks = 0;
   std::uint64_t overruns = 0;

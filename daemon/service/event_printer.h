@@ -39,8 +39,7 @@ class EventPrinter {
   [[nodiscard]] bool passes(const EventEntry& event);
 
   std::shared_ptr<spdlog::logger> logger_;
-  std::shared_ptr<spdlog::details::thread_pool> writer_;  // destroyed first, because its thread writes
-                                                          // through the logger
+  std::shared_ptr<spdlog::details::thread_pool> writer_;  // destroyed first: its thread uses the logger
   std::map<std::string, Flow> flows_;                     // by kind
 };
 

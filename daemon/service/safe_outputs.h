@@ -14,12 +14,10 @@ namespace softgrip::daemon {
 
 /// Result of the attempt.
 enum class SafeOutputsEnd {
-  confirmed,       ///< the board accepted the rest pressure of all channels, and the next exchange confirmed
-                   ///< it
+  confirmed,       ///< the board accepted the rest pressures, and the next exchange confirmed them
   board_holds,     ///< the board's own watchdog has tripped and holds its safe values
   not_needed,      ///< the service manager reports that softgripd ended in order
-  daemon_running,  ///< a daemon responds on the rig's socket, or another program drives the board and would
-                   ///< overwrite the outputs
+  daemon_running,  ///< a daemon responds on the rig's socket, or another program drives the board
   board_silent,    ///< no confirmation within the time
 };
 

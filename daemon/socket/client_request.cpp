@@ -15,8 +15,7 @@ namespace {
 using SortedJson = nlohmann::json;
 using Command = ClientRequest::Command;
 
-constexpr std::uint64_t largest_id = std::uint64_t{1} << 53;  // largest integer that all JSON readers
-                                                              // represent exactly
+constexpr std::uint64_t largest_id = std::uint64_t{1} << 53;  // exact in all JSON readers
 constexpr std::uint64_t largest_request = (std::uint64_t{1} << 32) - 1;
 
 constexpr std::array<std::pair<std::string_view, Command>, 14> commands{{

@@ -48,10 +48,8 @@ struct ClientRequest {
   std::string start_id;
   std::optional<std::uint64_t> request;  ///< for stop: number of the only start that it stops, [1, 2^32)
   std::optional<std::uint64_t> since;    ///< for events and subscribe: only events with a larger id
-  std::string started_at;                ///< for subscribe: start time of the daemon that assigned the ids;
-                                         ///< empty: this one
-  std::string client;                    ///< for hello: name of the client, [1, 64] bytes without control
-                                         ///< characters
+  std::string started_at;                ///< for subscribe: start time of the daemon with these ids
+  std::string client;                    ///< for hello: name, [1, 64] bytes without control characters
   std::uint64_t api = api_version;       ///< for hello: version of the client
   std::uint64_t limit = 100;             ///< for events: [1, 1000]
   bool histograms = false;               ///< for statistics: include the bins

@@ -22,9 +22,9 @@ class Service {
           SequenceStore& sequence_store);
 
   /// Passes a request to the loop. Returns its id, or an empty value if the loop has not taken the last ones
-  /// yet. Vent and stop have separate lanes that pass all other requests, and always return an id. If their
-  /// lane is full, it is the id of a waiting request with the same effect. `client` appears in the resulting
-  /// events; it may be empty.
+  /// yet. Vent and stop have separate queues that are read before all others, and always return an id. If
+  /// their queue is full, it is the id of a waiting request with the same effect. `client` appears in the
+  /// resulting events; it may be empty.
   std::optional<std::uint32_t> submit(control::Request::Kind kind,
                                       std::shared_ptr<const LoadedSequence> sequence = nullptr,
                                       const std::string& client = {});

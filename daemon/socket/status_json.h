@@ -29,7 +29,7 @@ struct StatusSources {
   Nanoseconds origin = 0;
   const RealTimeReport* real_time = nullptr;  ///< absent in virtual time
   const rig::GpioSettings* gpio = nullptr;    ///< absent without digital lines
-  const SharedState* shared = nullptr;        ///< required with gpio
+  const SharedState* shared = nullptr;        ///< required if gpio is set
 };
 
 /// Returns {"code", "name", "channel"} of a fault; the channel is null for the complete rig; null without a

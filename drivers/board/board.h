@@ -19,12 +19,10 @@ enum class BusStatus : std::uint8_t {
   ok,
   disconnected,      ///< no session; reconnect() is due
   timed_out,         ///< the deadline of the exchange passed
-  bad_reply,         ///< wrong unit id, length, transaction id or function; the session cannot be used any
-                     ///< more
+  bad_reply,         ///< wrong unit id, length, transaction id or function; the session must be closed
   exception,         ///< the board answered with a Modbus exception
   write_refused,     ///< the read-back shows that the output did not follow
-  overwritten,       ///< the outputs differ from those of the last exchange: another client writes to the
-                     ///< board
+  overwritten,       ///< another client has written to the board since the last exchange
   watchdog_tripped,  ///< the board's own watchdog holds the outputs at their safe value
   closed_at_once,    ///< the other end accepted the connection and closed it before its first response
 };

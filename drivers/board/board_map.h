@@ -44,7 +44,7 @@ enum class ElectricalUnit : std::uint8_t { volt, milliampere, kilopascal };
 struct RegisterBlock {
   std::uint8_t function = 0;  ///< function code for reading (1-4) or writing (5, 6, 16)
   std::uint16_t address = 0;
-  std::uint16_t count = 0;  ///< number of numbers, not of registers
+  std::uint16_t count = 0;  ///< in numbers, not in registers
   RegisterKind kind = RegisterKind::uint16;
 
   [[nodiscard]] constexpr std::uint16_t registers() const noexcept {
@@ -65,8 +65,7 @@ struct TerminalBlock {
   TwoPoints scaling;   ///< x: raw, y: in `unit`
   double raw_min = 0;  ///< lower end of the converter's range; a write beyond an end is refused
   double raw_max = 0;
-  int bits = 0;                    ///< resolution of the converter over [raw_min, raw_max]; 0: not quantised
-                                   ///< (float)
+  int bits = 0;                    ///< resolution over [raw_min, raw_max]; 0: not quantised (float)
   std::vector<double> error_raws;  ///< raw numbers that are error codes instead of values (inputs)
 };
 
@@ -116,20 +115,18 @@ struct BoardWatchdog {
 
   /// The register that contains the number of clients.
   struct ClientCount {
-    std::uint8_t function = 0;  ///< 3 or 4
+    std::uint8_t function = 0;  ///< function code 3 or 4
     std::uint16_t address = 0;
   };
 
   Kind kind = Kind::none;
-  double timeout_s = 0;                 ///< as configured in the board (by `setup` or by the manufacturer's
-                                        ///< tool)
+  double timeout_s = 0;                 ///< as set in the board (by `setup` or another tool)
   std::vector<double> safe_electrical;  ///< safe value of each output, in the outputs' unit
   Feed feed = Feed::any_request;
   std::vector<std::uint8_t> functions;
   std::optional<FixedWrite> feed_write;
   std::optional<Tripped> tripped;      ///< where the board reports that it tripped
-  std::vector<FixedWrite> clear;       ///< writes that end the tripped state, in this order; empty: any write
-                                       ///< does
+  std::vector<FixedWrite> clear;       ///< writes that end the tripped state in order; empty: any write
   std::optional<ClientCount> clients;  ///< where the board counts its clients, including this program
 
   /// Returns true if requests of a client that only reads also feed the watchdog.

@@ -23,8 +23,7 @@ struct SensorErrorCode {
 struct InputWiring {
   std::size_t input = 0;                       ///< terminal, from 0
   ElectricalUnit unit = ElectricalUnit::volt;  ///< as in the rig file; must equal the board's unit
-  TwoPoints scaling;                           ///< x: V or mA, y: mm, kPa or degrees Celsius; the slope may
-                                               ///< be negative
+  TwoPoints scaling;                           ///< x: V or mA, y: mm, kPa or degrees C; any sign of slope
   double valid_min = 0;  ///< electrical range in which a reading is valid, both ends included
   double valid_max = 0;
   std::vector<SensorErrorCode> error_codes;

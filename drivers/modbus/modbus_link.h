@@ -15,7 +15,7 @@
 #include "drivers/modbus/modbus_reply.h"
 #include "drivers/modbus/modbus_request.h"
 
-struct _modbus;  // NOLINT(bugprone-reserved-identifier): so is libmodbus' modbus_t called
+struct _modbus;  // NOLINT(bugprone-reserved-identifier): the name in libmodbus
 
 namespace softgrip::drivers {
 
@@ -146,8 +146,7 @@ class ModbusLink {
   Nanoseconds first_asked_at_ = 0;
   Nanoseconds asked_at_ = 0;
   unsigned repeats_ = 0;         ///< repetitions of the last request
-  unsigned stale_ = 0;           ///< responses with a transaction id to the previous request that may still
-                                 ///< arrive
+  unsigned stale_ = 0;           ///< late responses to the previous request that may arrive
   Nanoseconds quiet_until_ = 0;  ///< end of the time in which other responses to it may still arrive
   /// libmodbus waits with select(), which accepts no descriptor above 1023. This object reserves a lower one
   /// from the start.

@@ -26,8 +26,7 @@ struct ModbusRequest {
   std::uint16_t address = 0;                   ///< address of the read; for 5, 6 and 16 address of the write
   std::uint16_t count = 0;                     ///< number of bits or registers to read
   std::uint16_t write_address = 0;             ///< for 23: address of the write
-  std::span<const std::uint16_t> values = {};  ///< values to write; for 5 one value, where any number except
-                                               ///< 0 means on
+  std::span<const std::uint16_t> values = {};  ///< values to write; for 5 one value, not 0 means on
 };
 
 /// Sizes of a request and its response without framing, including the function codes [bytes].

@@ -10,7 +10,7 @@
 #include "base/descriptor.h"
 #include "drivers/modbus/modbus_address.h"
 
-struct _modbus;  // NOLINT(bugprone-reserved-identifier): so is libmodbus' modbus_t called
+struct _modbus;  // NOLINT(bugprone-reserved-identifier): the name in libmodbus
 
 namespace softgrip::drivers {
 

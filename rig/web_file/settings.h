@@ -22,9 +22,8 @@ struct Settings {
   std::string address;         ///< numeric
   std::uint16_t port = 0;
   std::size_t max_connections = 64;
-  std::vector<std::string>
-      hosts;           ///< host names, in addition to `localhost`, under which browsers may open the page
-  std::string tokens;  ///< path of the file of tokens; empty: no tokens
+  std::vector<std::string> hosts;  ///< host names of the page in addition to `localhost`
+  std::string tokens;              ///< path of the file of tokens; empty: no tokens
   Role without_token = Role::look;
   double session_idle_s = 1800;  ///< a session without requests and without an open page ends after this time
   double session_s = 43200;      ///< each session ends after this time
