@@ -88,9 +88,8 @@ void check_watchdog_time(Context& context, MapReader& top) {
   const double patience_s = context.rig.settings.faults.bus_down_cycles * context.period_s();
   if (timeout_s > 0 && patience_s >= longest_s) {
     top.report("faults",
-               "`bus_down_cycles` are over after " + written(patience_s) +
-                   " s: by then the board's watchdog (" + written(timeout_s) +
-                   " s, less what an exchange may take) has vented",
+               "`bus_down_cycles` end after " + written(patience_s) + " s, when the board's watchdog (" +
+                   written(timeout_s) + " s, minus the time of an exchange) has already vented",
                "at most " + written(std::ceil(longest_s / context.period_s()) - 1) + " cycles");
   }
   if (timeout_s > 0 && timeout_s < 3 * context.period_s()) {

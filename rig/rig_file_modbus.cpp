@@ -76,7 +76,7 @@ void check_waits(Context& context) {
         wait.at,
         "`" + std::string(wait.key) + "` is not below `" + std::string(wait.deadline) + "` (" +
             written(longest_s) +
-            " s): " + (connecting ? "no session could be opened" : "nothing would ever be repeated"),
+            " s): " + (connecting ? "no session could be opened" : "requests would never be repeated"),
         connecting ? "raise `connect_deadline_s`: it spans connecting, settling and the first requests"
                    : "the deadline spans all requests of an exchange"));
   }

@@ -136,8 +136,8 @@ tl::expected<void, Refusal> check_bouc_wen(const model::Model& model, const Limi
   });
   if (!model::position_of<model::BoucWen>(part)) {
     return tl::unexpected(
-        Refusal{"the model has no `bouc_wen` block, which this feedforward is the inverse of; `full_model` "
-                "is the inverse of the whole chain"});
+        Refusal{"this feedforward is the inverse of a `bouc_wen` block, which the model does not have; "
+                "`full_model` is the inverse of the complete chain"});
   }
   return check_gain(part, limits, tick_s, 0, "");
 }

@@ -86,7 +86,7 @@ bool safe_outputs_needed(const std::string& service_result) noexcept {
 SafeOutputsReport vent_rig(const rig::RigFile& rig) {
   if (daemon_answers(rig.socket.path)) {
     return {SafeOutputsEnd::daemon_running,
-            fmt::format("a daemon answers on {}; use `softgrip vent`", rig.socket.path)};
+            fmt::format("a daemon responds on {}; use `softgrip vent`", rig.socket.path)};
   }
   const auto lock = BoardLock::take(rig, LockPurpose::vent);
   if (!lock) return {SafeOutputsEnd::daemon_running, lock.error()};

@@ -178,7 +178,7 @@ TEST_F(CheckFolder, WhatComparesSeveralPartsIsToldBesideOtherErrors) {
   write_rig({{"watchdog_timeout_s: 0.5", "watchdog_timeout_s: 0.02"}, {"mode: \"0660\"", "mode: \"9999\""}});
   const rig::CheckReport report = check();
   EXPECT_TRUE(says(report, "`mode` must be permissions, found `9999`")) << report.problems.format();
-  EXPECT_TRUE(says(report, "`bus_down_cycles` are over after")) << report.problems.format();
+  EXPECT_TRUE(says(report, "`bus_down_cycles` end after")) << report.problems.format();
 }
 
 }  // namespace

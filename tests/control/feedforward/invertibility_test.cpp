@@ -66,8 +66,8 @@ TEST(Invertibility, PlaysAreAcceptedAsAWholeAlone) {
   ASSERT_FALSE(part);
   EXPECT_EQ(
       part.error().with_advice(),
-      "the model has no `bouc_wen` block, which this feedforward is the inverse of; `full_model` is the "
-      "inverse of the whole chain");
+      "this feedforward is the inverse of a `bouc_wen` block, which the model does not have; `full_model` is "
+      "the inverse of the complete chain");
 }
 
 // Inside their thresholds plays stand still, and only creep moves the finger then.
