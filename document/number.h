@@ -27,7 +27,8 @@ struct Parsed {
 [[nodiscard]] Parsed<bool> parse_boolean(const Node& node);
 
 /// Returns "the decimal mark is a point: 0.5" if a comma between two nodes of one line was probably a decimal
-/// mark, as in `[0,5]` and `{hold_s: 0,5}`; otherwise an empty text. `after` is the location after the comma.
+/// mark. Examples are `[0,5]` and `{hold_s: 0,5}`. Otherwise returns an empty text. `after` is the location
+/// after the comma.
 [[nodiscard]] std::string hint_for_comma(const Node& before, Location after, std::string_view text_after);
 
 /// Returns the kind of a node, for "found ...": "a list", "a map", "nothing", "`text`".

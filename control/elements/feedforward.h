@@ -25,8 +25,8 @@ inline constexpr std::array<std::string_view, 4> feedforward_names{"none", model
 
 struct FeedforwardSettings {
   FeedforwardKind kind = FeedforwardKind::none;
-  /// Time from the computation of a command to the board's output, in addition to the model's valve blocks:
-  /// the bus exchange and the conversion of the board [s]. full_model adds it to its preview. 0 to 1.
+  /// Time from the computation of a command to the board's output [s]: the bus exchange and the conversion of
+  /// the board. The model's valve blocks do not contain it. full_model adds it to its preview. 0 to 1.
   double extra_latency_s = 0;
 };
 

@@ -42,9 +42,10 @@ struct Tuned {
   std::string limited_by;  ///< limiting factor, as text
 };
 
-/// Minimises the tracking error over the fingers within the bound on Ms: a grid search in kp and ki, then the
-/// simplex of Nelder and Mead (Computer Journal 7, 1965) in kp, ki and the derivative time. The filter time
-/// of the derivative is an eighth of the derivative time, at least two ticks.
+/// Minimises the tracking error over the fingers within the bound on Ms. A grid search in kp and ki is
+/// followed by the simplex of Nelder and Mead (Computer Journal 7, 1965). The simplex varies kp, ki and the
+/// derivative time. The filter time of the derivative is an eighth of the derivative time, at least two
+/// ticks.
 [[nodiscard]] Tuned tune(const TuneTask& task);
 
 /// Chooses a sine that the model reaches: mean and amplitude are shares of its displacement at the highest

@@ -108,7 +108,7 @@ void describe_result(const Event& event, const Sequence*, EventEntry& entry) {
 void describe_refusal(const Event& event, const Sequence*, EventEntry& entry) {
   const auto refusal = static_cast<control::RefusalCode>(event.detail);
   entry.code = control::id_of(refusal);
-  // The text may already start with the finger.
+  // The names of channels are not passed: describe() puts the channel before the text.
   entry.text =
       fmt::format("The request was refused. {}", sentences_of(refusal, {refused_because_of(event)}, {}));
   entry.severity = Severity::warning;

@@ -29,7 +29,7 @@ class RoundTrip {
 
 /// Returns the duration of `transactions` consecutive round trips. It uses the measured median, because a
 /// single round trip may be delayed by other load of this machine; the text also states the slowest one.
-/// Without a measurement it uses an assumed round trip, and the text says so.
+/// Without a measurement it uses an assumed round trip, and the text states this.
 [[nodiscard]] Board::Budget tcp_cost(std::size_t transactions, const std::string& plan,
                                      const std::string& host, const RoundTrip& measured);
 

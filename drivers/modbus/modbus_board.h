@@ -27,9 +27,9 @@ struct ModbusSettings {
 /// first, so that the failure of a module without outputs does not prevent writing the others.
 ///
 /// `deadline` limits the complete exchange on CLOCK_BOOTTIME; a reply that arrives in parts does not extend
-/// it. All errors except a Modbus exception close the links, so that a late or duplicated reply cannot be
-/// taken for the response to a later request. exchange() then returns `disconnected` until connect() has
-/// opened new links.
+/// it. All errors except a Modbus exception close the links. A late or duplicated reply can then not be taken
+/// for the response to a later request. exchange() returns `disconnected` until connect() has opened new
+/// links.
 ///
 /// A tripped watchdog is cleared only after connect(): the first exchange writes the commands, clears the
 /// watchdog, writes the commands again and reads. Before that, each exchange returns `watchdog_tripped`.

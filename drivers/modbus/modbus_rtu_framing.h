@@ -12,8 +12,8 @@ namespace softgrip::drivers {
 /// RTU has no transaction id: a response belongs to the request before it, and its bytes do not prove this.
 /// Therefore a request is sent only after the silence of the specification. Bytes without a request end the
 /// link, unless they are fewer than the shortest response. After a failure, a new link first listens as long
-/// as a response may still take. libmodbus does none of this and does not find a response after stray bytes,
-/// so it is not used for receiving here.
+/// as a response may still take. libmodbus does none of this. It also does not find a response after stray
+/// bytes, so this class receives without it.
 class ModbusRtuFraming : public ModbusLink {
  protected:
   ModbusRtuFraming(_modbus* context, const LinkHabits& habits, bool on_network, Nanoseconds character,
