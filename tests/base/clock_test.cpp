@@ -16,7 +16,8 @@ namespace {
 
 constexpr int no_such_namespace = 77;
 
-/// In a namespace in which the machine has slept for a day since it was booted; the exit code of `body`.
+/// Runs `body` in a time namespace in which the machine has slept for a day since it was booted. Returns the
+/// exit code of `body`.
 int after_a_day_asleep(int (*body)()) {
   std::fflush(nullptr);
   const pid_t outer = fork();
@@ -26,7 +27,7 @@ int after_a_day_asleep(int (*body)()) {
     const std::string text = "boottime 86400 0\n";
     if (offsets < 0 || write(offsets, text.data(), text.size()) < 0) _exit(no_such_namespace);
     close(offsets);
-    // Only its children are in it.
+    // The new time namespace contains only the children of this process, not the process itself.
     const pid_t inner = fork();
     if (inner == 0) _exit(body());
     int status = 0;
@@ -51,7 +52,7 @@ TEST(MonotonicClock, GoesOnWhileTheMachineSleeps) {
     const Nanoseconds ahead = clock.now() - monotonic();
     if (ahead < day - ns_per_s || ahead > day + ns_per_s) return 1;
     if (time_asleep() != day) return 2;
-    alarm(10);  // who sleeps by the other clock sleeps for a day
+    alarm(10);  // With CLOCK_MONOTONIC the sleep would last a day.
     const Nanoseconds due = clock.now() + ns_per_s / 50;
     clock.sleep_until(due);
     return clock.now() >= due ? 0 : 3;

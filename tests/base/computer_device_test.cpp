@@ -11,7 +11,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A tree like /sys: devices in folders of their buses, and a folder of symbolic links to all of one kind.
+/// A folder tree like /sys: each device has a folder below its bus, and another folder has a symbolic link to
+/// every device.
 class ComputerDeviceTest : public testing::Test {
  protected:
   void add(const std::string& node, const std::string& place) {

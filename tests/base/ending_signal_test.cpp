@@ -11,7 +11,7 @@
 namespace softgrip::ending_signal_test {
 namespace {
 
-/// How a child that does `body` ended.
+/// Runs `body` in a child process and returns the wait status of the child.
 int status_of(const std::function<void()>& body) {
   const pid_t child = ::fork();
   if (child == 0) {

@@ -85,7 +85,7 @@ TEST_F(FileWritingTest, ANewFileHasThePermissionsThatTheUmaskLeaves) {
   EXPECT_EQ(now.st_mode & 07777U, 0640U);
 }
 
-/// Another user's link in a shared folder could name any file of ours.
+/// Another user could place a link in a shared folder that leads to one of our files.
 TEST_F(FileWritingTest, ALinkInThePlaceOfAResultIsReplacedAndNotFollowed) {
   const fs::path link = folder_ / "result.csv";
   fs::create_symlink("rig.yaml", link);
@@ -121,7 +121,7 @@ TEST_F(FileWritingTest, AFolderInThePlaceOfTheFileIsAnError) {
   EXPECT_EQ(count(), 2U);
 }
 
-/// As on a full disk: the kernel takes only so many bytes.
+/// Limits the size of files to 1000 bytes, so that a write fails as on a full disk.
 class SmallFiles {
  public:
   explicit SmallFiles(void (*handler)(int)) : handler_(std::signal(SIGXFSZ, handler)) {

@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 class FilesTest : public testing::Test {
  protected:
   [[nodiscard]] std::string at(const std::string& name) const { return scratch_.path() + "/" + name; }
-  /// The path of a new file with this text.
+  /// Writes `text` to a new file and returns its path.
   [[nodiscard]] std::string file(const std::string& name, const std::string& text) const {
     std::ofstream(at(name)) << text;
     return at(name);
@@ -44,7 +44,7 @@ TEST_F(FilesTest, AFileThatGivesNoSizeIsReadToItsEndAndWithinTheBound) {
   EXPECT_FALSE(read_file("/proc/self/status", 100));
 }
 
-/// On a reader that waits for a writer this test does not end.
+/// If the function under test waited for a writer, this test would not end.
 TEST_F(FilesTest, APipeIsRefusedWithoutWaiting) {
   ASSERT_EQ(::mkfifo(at("pipe").c_str(), 0600), 0);
   const auto text = read_file(at("pipe"), 100);
@@ -64,7 +64,7 @@ TEST_F(FilesTest, DevicesSocketsAndFoldersAreRefused) {
   EXPECT_EQ(open_regular(scratch_.path()).error(), "Is a directory");
 }
 
-/// What a process with a lease on the file makes of every open() that waits.
+/// While a process has a lease on a file, every blocking open() of this file waits.
 TEST_F(FilesTest, AFileThatAnotherProcessHasLeasedIsRefusedWithoutWaiting) {
   const std::string path = file("leased", "text");
   auto* const before = std::signal(SIGIO, SIG_IGN);

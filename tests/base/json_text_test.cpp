@@ -25,7 +25,7 @@ TEST(ParseJson, WhatIsNotJsonIsDiscarded) {
     EXPECT_TRUE(parse_json<Json>(text).is_discarded()) << text;
 }
 
-/// Copying or printing all levels would end the process.
+/// Without the limit, copying or printing all levels would overflow the stack and end the process.
 TEST(ParseJson, ManyLevelsAreCutOff) {
   const Json json = parse_json<Json>(nested(1'000'000));
   const Json copy = json;  // NOLINT(performance-unnecessary-copy-initialization): the copy is the test

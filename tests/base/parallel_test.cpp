@@ -8,7 +8,7 @@
 
 #include "base/cancellation.h"
 
-// GCC 12 takes a new std::stop_source for one that is not initialised.
+// GCC 12 wrongly reports that a new std::stop_source is not initialised.
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
 
 namespace softgrip::parallel_test {
@@ -16,7 +16,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// How many threads have been within it at a time.
+/// Counts how many threads are inside visit() at the same time.
 class Crowd {
  public:
   void visit() {
@@ -79,11 +79,12 @@ TEST(ParallelFor, LoopsWithinALoopShareItsThreads) {
     });
   }
   EXPECT_EQ(leaves, 15);
-  // One that waited for others goes on before the thread that had its place has ended.
+  // A thread that waited for others continues before the thread that replaced it has ended, so three can run
+  // for a moment.
   EXPECT_LE(crowd.most(), 3);
 }
 
-/// Whether two items of a loop are worked on at a time.
+/// Returns true if two items of a loop run at the same time.
 bool side_by_side() {
   std::atomic<int> inside{0};
   std::atomic<bool> met{false};
@@ -133,7 +134,7 @@ TEST(ParallelFor, PassesAnExceptionOnWhenAllIsDone) {
                  std::runtime_error);
     ASSERT_EQ(done, 7);
   }
-  // And the thread is there again.
+  // The thread has been returned to the budget.
   EXPECT_EQ(ThreadBudget::current()->take(5), 1U);
   ThreadBudget::current()->give_back(1);
 }

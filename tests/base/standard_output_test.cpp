@@ -11,7 +11,7 @@
 namespace softgrip::standard_output_test {
 namespace {
 
-/// In a child, because it breaks its standard output.
+/// To be called in a child process, because it redirects the standard output.
 int end_of_a_program_that_prints_to(const char* path, ExitCode code) {
   const Descriptor target(::open(path, O_WRONLY | O_CLOEXEC));
   ::dup2(target.get(), STDOUT_FILENO);
