@@ -1,5 +1,6 @@
-// Broken configurations, each with all that must be said of it: broken/NAME.yaml is named after what it
-// guards, NAME.expected holds the messages, NAME.also names a file to be checked together with it.
+// Broken configurations. Each broken/NAME.yaml is named after the error that it contains. NAME.expected holds
+// all messages that the check must print. NAME.also, if present, names files that are checked together with
+// it.
 
 #include <gtest/gtest.h>
 
@@ -30,7 +31,7 @@ std::vector<std::string> names() {
   return result;
 }
 
-/// Checked from tests/config, so that messages carry short names.
+/// Runs the check in tests/config, so that the messages contain short paths.
 rig::CheckReport check(const std::string& name) {
   std::filesystem::current_path(folder);
   std::vector<std::string> paths{"broken/" + name + ".yaml"};

@@ -1,4 +1,4 @@
-// The configurations that are shipped: accepted without a warning, and fit for each other.
+// The shipped configurations are accepted without a warning, and they fit each other.
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -18,7 +18,7 @@ std::vector<std::string> shipped() {
   std::vector<std::string> paths;
   const std::filesystem::path config = std::filesystem::path(SOFTGRIP_SOURCE_DIR) / "config";
   for (const auto& entry : std::filesystem::recursive_directory_iterator(config)) {
-    // The sequence of that folder needs a vacuum, which the other rigs refuse.
+    // The sequence in config/vacuum needs a vacuum, which the other rigs refuse.
     const bool vacuum = entry.path().string().find("/config/vacuum/") != std::string::npos;
     if (!vacuum && entry.path().extension() == ".yaml") paths.push_back(entry.path().string());
   }
@@ -54,7 +54,7 @@ TEST(Examples, OfEveryKindAreThere) {
   }
 }
 
-/// All keys below a node, but for those that the file's author chose.
+/// Collects all keys below a node, except the channel names that the author of the file chose.
 void collect_keys(const document::Node& node, std::set<std::string>& keys) {
   for (const document::Node::Entry& entry : node.entries) {
     if (entry.key != "left" && entry.key != "right") keys.insert(entry.key);
@@ -107,14 +107,14 @@ TEST(Check, AFolderIsAllThatIsInItAndEachFileOnce) {
   EXPECT_FALSE(report.has_rig);
 }
 
-/// A folder with these files, which goes with it.
+/// A folder that contains the given files and is removed after the test.
 class CheckFolder : public ::testing::Test {
  protected:
   CheckFolder() { std::filesystem::create_directories(folder_ / "sub/.hidden"); }
   ~CheckFolder() override { std::filesystem::remove_all(folder_); }
   void write(const std::string& name, const std::string& text) { std::ofstream(folder_ / name) << text; }
   using Changes = std::vector<std::pair<std::string, std::string>>;
-  /// The shipped simulated rig with texts in the place of others.
+  /// Writes the shipped simulated rig after replacing the given texts.
   void write_rig(Changes changes) {
     std::ostringstream read;
     read << std::ifstream(config_ / "rig.yaml").rdbuf();

@@ -1,4 +1,4 @@
-// What the shipped rigs are read into, and that nothing in them may be absent or wrong unnoticed.
+// Reads the shipped rigs and compares the values. No key in them may be missing or wrong without an error.
 
 #include "rig/rig_file.h"
 
@@ -117,7 +117,7 @@ TEST(RigFile, AVacuumIsSimulatedWithinTheValvesRange) {
       << simulated.detail();
 }
 
-/// The text of a shipped rig with texts in the place of others, read as if it stood there.
+/// Reads the text of a shipped rig after the given replacements, as if the result were in the original file.
 rig::RigReading edited(const std::string& name, const std::vector<std::pair<std::string, std::string>>& edits,
                        Problems& problems) {
   Problems parsing;
@@ -130,7 +130,8 @@ rig::RigReading edited(const std::string& name, const std::vector<std::pair<std:
   return rig::read_rig_so_far(document::parse(shipped(name), text, problems), problems);
 }
 
-/// Two converters of one name and two others of this computer, as far as a rig file is judged by them.
+/// Two converters with the same name and one with another name, in a folder tree like that of this computer's
+/// devices.
 class Converters : public ::testing::Test {
  protected:
   Converters() {
@@ -144,7 +145,8 @@ class Converters : public ::testing::Test {
     std::filesystem::create_directory_symlink(folder, root_ / node);
     std::ofstream(folder / "name") << name << "\n";
   }
-  /// The problems of the shipped rig with these words for the two valves' converters.
+  /// Returns the problems of the shipped rig if the converters of its two valves are named `first` and
+  /// `second`.
   [[nodiscard]] std::string problems_of(const std::string& first, const std::string& second) const {
     Problems problems;
     const auto reading = edited("rig_iio.yaml",
@@ -280,7 +282,8 @@ TEST(RestPressure, OfTheBoardsWatchdogIsThatOfTheChannel) {
       << "within 1 % of the range: " << problems.format();
 }
 
-// The limits bind the daemon only: a board that writes more gives more, as far as its valve goes.
+// The limits apply to the daemon only. The board can write a pressure beyond them, up to the range of the
+// valve.
 TEST(RestPressure, OfTheBoardsWatchdogIsNotBeyondTheLimits) {
   using Edits = std::vector<std::pair<std::string, std::string>>;
   const auto with = [](Edits edits, const Edits& more) {
@@ -385,14 +388,15 @@ void for_each_entry(Node& node, const std::string& path, const Use& use) {
   for (Node& item : node.items) for_each_entry(item, path + "-.", use);
 }
 
-/// Where a document without its entry at `path` is refused, with the problems; nothing if it is accepted.
+/// Returns the problems for which a document is refused, or nullopt if it is accepted.
 std::optional<std::string> refusal(const Document& document) {
   Problems problems;
   if (rig::read_rig(document, problems)) return std::nullopt;
   return problems.format();
 }
 
-/// The key is in the text; of what channels share, one below it may be there instead.
+/// Returns true if the text names the key. If channels share the entry, the text may name a key below it
+/// instead.
 bool is_named(const Node::Entry& entry, const std::string& text) {
   return text.find("`" + entry.key + "`") != std::string::npos ||
          std::any_of(entry.value.entries.begin(), entry.value.entries.end(),
@@ -435,7 +439,7 @@ TEST_P(EveryKey, IsRefusedWhenItsValueIsNonsense) {
     nonsense.kind = Node::Kind::scalar;
     nonsense.at = taken.at;
     nonsense.scalar = "non sense/..";
-    // Any text is a path.
+    // For these keys every text is valid, so an empty text is used.
     const std::set<std::string> free{"recorder.directory", "socket.path", "socket.sequence_directory"};
     if (free.contains(path)) nonsense.scalar.clear();
     owner.entries[index].value = nonsense;
