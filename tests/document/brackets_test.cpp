@@ -7,7 +7,8 @@
 namespace softgrip::document::brackets_test {
 namespace {
 
-/// "[1:5 {2:3": what is open at the end of a text.
+/// Returns the brackets that are still open at the end of a text with their line and column, for example
+/// "[1:5 {2:3".
 std::string open_at_end(const std::string& text) {
   std::string out;
   for (const Bracket& bracket : open_brackets(text, {100, 1})) {

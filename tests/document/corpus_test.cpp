@@ -1,4 +1,4 @@
-// The fuzzer's corpus, replayed in every build: what it found interesting stays harmless.
+// Runs the fuzzer's corpus in every build: no input may crash the parser again.
 
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@ TEST(Corpus, IsHarmless) {
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     std::ifstream file(entry.path(), std::ios::binary);
     const std::string text{std::istreambuf_iterator<char>(file), {}};
-    const std::string whole = text + text;  // a second document, a line without its end
+    const std::string whole = text + text;  // adds a second document, or a line without an end of line
     for (const std::string& input : {text, whole, text.substr(text.size() / 2)}) {
       LLVMFuzzerTestOneInput(reinterpret_cast<const std::uint8_t*>(input.data()), input.size());
     }

@@ -1,4 +1,4 @@
-// Texts to numbers: exactly, without a locale, and with a hint where a text is none.
+// Converts texts to numbers: exactly, independent of the locale, and with a hint if a text is not a number.
 
 #include "document/number.h"
 #include "base/numbers.h"

@@ -1,4 +1,4 @@
-// What a text may be, and where it says that it may not.
+// Which texts the parser accepts, and at which line and column it reports an error.
 
 #include <gtest/gtest.h>
 #include <pthread.h>
@@ -114,7 +114,7 @@ TEST(Parse, BytesMustBeUtf8AndPrintable) {
   EXPECT_EQ(problems_of(std::string("a: \0b\n", 6)),
             (Lines{"1:4: the text contains the control character \\x00"}));
   EXPECT_EQ(problems_of("a: \x1b[31m\n"), (Lines{"1:4: the text contains the control character \\x1b"}));
-  // The parser takes U+0004 for the end of the file: what follows would go unseen.
+  // The YAML parser treats U+0004 as the end of the file, so it would ignore the text after it.
   EXPECT_EQ(problems_of("a: 1\n\x04: 2\n"), (Lines{"2:1: the text contains the control character \\x04"}));
   EXPECT_EQ(problems_of("\xEF\xBB\xBF"
                         "a: 1\n"),
@@ -146,7 +146,7 @@ TEST(Parse, SyntaxErrorsSayWhatWasOpen) {
 }
 
 TEST(Parse, AnOpenQuoteDoesNotSwallowTheRestOfTheFile) {
-  // The parser itself accepts an end of file in a quoted text that follows a line break.
+  // The YAML parser itself accepts the end of the file within a quoted text if a line break precedes it.
   for (const char* const text : {"a: 'open\n", "a: \"open\nb: 2\n\n", "a: \"open \\\"\n", "a: 'it''s\n"}) {
     EXPECT_EQ(problems_of(text), (Lines{"1:4: a quote is opened here but never closed"})) << text;
   }
@@ -182,7 +182,7 @@ TEST(Parse, BoundsAreExact) {
 void parse_on_small_stack(const std::string& text) {
   pthread_attr_t attributes;
   ASSERT_EQ(pthread_attr_init(&attributes), 0);
-  // Sanitizers enlarge frames; their own threads need more.
+  // 512 KiB, because sanitizers enlarge the stack frames and need stack for their own threads.
   ASSERT_EQ(pthread_attr_setstacksize(&attributes, 512 * 1024), 0);
   pthread_t thread{};
   auto run = [](void* argument) -> void* {
@@ -250,7 +250,7 @@ TEST(ParseFile, StopsReadingAtTheBound) {
   const ScratchFolder scratch;
   const std::string path = scratch.path() + "/large.yaml";
   std::ofstream(path) << "a: 1\n";
-  std::filesystem::resize_file(path, std::uintmax_t{1} << 40U);  // sparse: more than any memory holds
+  std::filesystem::resize_file(path, std::uintmax_t{1} << 40U);  // a sparse file, larger than any memory
   Problems problems;
   static_cast<void>(parse_file(path, problems));
   EXPECT_EQ(lines_of(problems),

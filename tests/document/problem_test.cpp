@@ -1,4 +1,4 @@
-// How problems are shown.
+// How a problem is formatted for the user.
 
 #include "document/problem.h"
 
@@ -124,7 +124,7 @@ TEST(Shown, ControlCharactersAreVisible) {
 TEST(Nearest, FindsSlipsOfTheFingerOnly) {
   const std::vector<std::string> keys{"pressure_min_kpa", "pressure_max_kpa", "name", "rate_hz"};
   EXPECT_EQ(nearest("presure_max_kpa", keys), "pressure_max_kpa");
-  EXPECT_EQ(nearest("nmae", keys), "");  // two changes in four letters
+  EXPECT_EQ(nearest("nmae", keys), "");  // too far: two changes in four letters
   EXPECT_EQ(nearest("nam", keys), "name");
   EXPECT_EQ(nearest("rate_hertz", keys), "rate_hz");
   EXPECT_EQ(nearest("temperature", keys), "");

@@ -1,5 +1,5 @@
 #pragma once
-// What a parse says of a text, for the tests of documents.
+// The problems that parsing a text reports, for the tests of documents.
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 
 namespace softgrip::document {
 
-/// "2:10: message" of each problem.
+/// Returns each problem as "line:column: message", for example "2:10: message".
 inline std::vector<std::string> lines_of(const Problems& problems) {
   std::vector<std::string> lines;
   for (const Problem& problem : problems.list()) {

@@ -1,4 +1,4 @@
-// Typed access: every getter, every kind of mistake, all of them in one pass.
+// Tests every getter with every kind of mistake. All mistakes of a document are reported in one pass.
 
 #include "document/reader.h"
 
@@ -13,7 +13,8 @@ namespace {
 
 using Use = std::function<void(MapReader&)>;
 
-/// What using a reader on `text` reports, as "line:column: message | hint".
+/// Returns the problems that `use` reports when it reads `text`, as "line:column: message
+/// hint".
 Lines reported(const std::string& text, const Use& use) {
   Problems problems;
   const Document document = parse("test.yaml", text, problems);
@@ -196,7 +197,7 @@ TEST(Reader, ADocumentCutShortLacksNothing) {
 }
 
 TEST(Reader, AWordThatTheSyntaxErrorAddedToTheLastValueIsNotJudged) {
-  // To the parser the value of `delay_s` is "1 name" up to the second colon.
+  // The YAML parser takes "1 name", the text up to the second colon, as the value of `delay_s`.
   EXPECT_EQ(reported("delay_s: 1\n  name: x\n", use_delay).size(), 1U);
 }
 

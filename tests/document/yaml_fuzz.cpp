@@ -1,4 +1,5 @@
-// Whatever the bytes: parsing, every getter, every message. Run with -dict=yaml.dict corpus/.
+// For all inputs: parses the bytes, calls every getter and formats every message. Run with -dict=yaml.dict
+// corpus/.
 
 #include <cstddef>
 #include <cstdint>
@@ -16,7 +17,7 @@ using softgrip::document::MapReader;
 using softgrip::document::Node;
 using softgrip::document::Problems;
 
-/// What must hold of any tree: within the bounds, keys unique, places inside the text.
+/// Aborts if a tree exceeds the bounds, has two equal keys in a map, or has a position outside the text.
 void check(const Node& node, int depth, std::size_t& nodes) {
   if (++nodes > softgrip::document::Bounds{}.nodes || depth > softgrip::document::Bounds{}.depth)
     std::abort();
@@ -30,7 +31,7 @@ void check(const Node& node, int depth, std::size_t& nodes) {
   }
 }
 
-/// A reader that knows some keys, so that all kinds of hints are made.
+/// Reads some known keys of each map, so that all kinds of hints occur.
 void read(const Document& document, const Node& node, Problems& problems) {
   {
     MapReader reader(document, node, problems, "the map");
