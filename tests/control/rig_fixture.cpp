@@ -100,8 +100,8 @@ const TickOutput& SimulatedRig::tick() {
   return output_;
 }
 
-/// Always: inside the pressure range, inside the slew limits; away from rest only while a sequence may move
-/// it.
+/// Checks in every tick that each command is inside its pressure range and its slew limits, and moves away
+/// from rest only while a sequence may move it.
 void SimulatedRig::check_commands(const TickOutput& before) {
   constexpr double rounding = 1e-9;
   for (std::size_t i = 0; i < settings_.channels.size(); ++i) {
@@ -112,7 +112,7 @@ void SimulatedRig::check_commands(const TickOutput& before) {
     EXPECT_LE(command, limits.pressure_max_kpa);
     const double rest = resting_kpa(limits);
     const double from = first_ ? rest : before.channels[i].command_kpa;
-    // A pressure that is gone need not be vented.
+    // A pressure that is already lost need not be vented.
     const bool toward_rest = no_further(rest, command, from) == command;
     if (!inhibits(bus_fault) || !toward_rest) {
       EXPECT_LE(command - from, limits.slew_up_kpa_per_s / settings_.rate_hz + rounding) << "at " << time_s();

@@ -1,6 +1,6 @@
 #pragma once
-// A rig for tests: two fingers of the bench twin behind a board without delay, an optional stone between
-// them, and every fault that a test may want.
+// A simulated rig for tests: two fingers of bench_twin behind a board without delay, an optional stone
+// between them, and all faults that the tests inject.
 
 #include <array>
 #include <cstddef>
@@ -18,55 +18,58 @@
 
 namespace softgrip::control {
 
-/// A rig that is controlled: plants, board, controller, in virtual time.
+/// A controlled rig in virtual time: plants, board and controller.
 class SimulatedRig {
  public:
-  /// The plants are `truth`; the controller believes what the settings say.
+  /// The plants follow `truth`; the controller uses the models in the settings.
   explicit SimulatedRig(const RigSettings& settings, std::uint64_t seed = 1,
                         const model::Model& truth = twin());
 
-  /// A stone stops both fingers at `position_mm`. Nothing: it is pulled out, at a hand's speed.
+  /// Puts a stone at `position_mm`, which stops both fingers. With nullopt, the stone is pulled out at the
+  /// speed of a hand.
   void stone(std::optional<double> position_mm);
   bool stone_only_left = false;  ///< the right finger closes past it
-  double yields = 0.1;           ///< share of the free motion that is left beyond it
+  double yields = 0.1;           ///< the share of the free motion that remains beyond the stone
 
-  // Faults; each stays until it is taken back.
-  bool wire_cut = false;    ///< no exchange succeeds; the board vents after its watchdog time
-  bool board_vents = true;  ///< its watchdog puts the outputs to the rest pressure
-  bool bus_quiet = false;   ///< the bus has reported nothing since the tick before
+  // Faults. Each remains until the test resets it.
+  bool wire_cut = false;    ///< no exchange succeeds; the board vents after its watchdog time-out
+  bool board_vents = true;  ///< the board's watchdog puts the outputs to the rest pressure
+  bool bus_quiet = false;   ///< the bus has sent no report since the previous tick
   bool emergency_stop = false;
   bool inputs_lost = false;
   bool interlock_open = false;
   std::uint32_t overrun_cycles = 0;  ///< for the next tick only
   FaultCode bus_fault = FaultCode::none;
-  std::vector<double> outputs_kpa;  ///< what the bus says of the outputs; empty: nothing
+  std::vector<double> outputs_kpa;  ///< the outputs that the bus reports; empty: no report
   struct OfChannel {
-    std::optional<model::Validity> validity;  ///< the driver says so
+    std::optional<model::Validity> validity;  ///< reported by the driver
     double offset_mm = 0;                     ///< added to the reading
-    std::optional<double> frozen_mm;          ///< the reading stays here
+    std::optional<double> frozen_mm;          ///< the reading keeps this value
     double readback_offset_kpa = 0;
     double pressure_offset_kpa = 0;
-    bool no_pressure = false;  ///< the monitor is gone: NaN
+    bool no_pressure = false;  ///< the pressure reading is missing: NaN
   };
   std::array<OfChannel, 2> fault;
 
-  /// Called with true just before and false just after every RigController::tick.
+  /// Called with true immediately before and with false immediately after every RigController::tick.
   void (*around_tick)(bool begins) = [](bool) {};
 
-  /// For the next tick only.
+  /// Sends a request for the next tick only.
   void request(Request::Kind kind, const PreparedSequence* sequence = nullptr);
-  /// Sends a request with the number that it states.
+  /// Sends a request with the number that it contains.
   void request(const Request& request) { request_ = request; }
-  /// The whole process pauses for this duration.
+  /// Pauses the whole process for this duration.
   void pause(double seconds) { now_ += static_cast<Nanoseconds>(std::llround(seconds * 1e9)); }
-  /// One period; all invariants of the commands are checked.
+  /// Runs one period and checks all invariants of the commands.
   const TickOutput& tick();
   void run(double seconds);
-  /// Ticks until the state is `state`, at most `seconds`; false if it never was.
+  /// Runs ticks until the state is `state`, for at most `seconds`. Returns false if this state is not
+  /// reached.
   bool run_until(State state, double seconds);
-  /// Ticks until the step with this index runs, at most `seconds`.
+  /// Runs ticks until the step with this index runs, for at most `seconds`.
   bool run_until_step(std::uint16_t step, double seconds);
-  /// Ticks until it is idle, starts the sequence, and ticks until the step with this index runs.
+  /// Runs ticks until the state is idle, starts the sequence, and runs ticks until the step with this index
+  /// runs.
   bool start_until_step(const PreparedSequence& sequence, std::uint16_t step, double seconds = 20);
 
   [[nodiscard]] const TickOutput& output() const { return output_; }
@@ -79,7 +82,7 @@ class SimulatedRig {
   /// All events so far.
   std::vector<Event> events;
   [[nodiscard]] std::size_t count(Event::Kind kind) const;
-  /// The last event of a kind that answers the last request, if any.
+  /// Returns the last event of this kind that answers the last request, if there is one.
   [[nodiscard]] std::optional<Event> answer(Event::Kind kind) const;
 
  private:

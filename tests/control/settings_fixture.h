@@ -12,16 +12,18 @@ namespace softgrip::control {
 /// config/models/bench_twin.yaml, read once.
 const model::Model& twin();
 
-/// Two channels, left and right, full_model with a mild PID; vent everywhere but hold while holding.
+/// Two channels, left and right, with full_model and low PID gains. The safe action is hold in the phase
+/// holding and vent in all others.
 RigSettings two_finger_settings();
-/// two_finger_settings() from -40 to 60 kPa with the rest pressure 0 kPa, and down to -30 mm.
+/// two_finger_settings() with a range from -40 to 60 kPa, the rest pressure 0 kPa, and displacements down to
+/// -30 mm.
 RigSettings vacuum_settings();
 
-/// A sequence out of YAML text, fitted to a rig; the test fails when it does not fit.
+/// Reads a sequence from YAML text and prepares it for a rig. The test fails if the rig refuses it.
 PreparedSequence sequence_of(const std::string& yaml, const RigSettings& settings);
-/// One of config/sequences/, fitted to a rig.
+/// Reads a sequence of config/sequences/ and prepares it for a rig.
 PreparedSequence example_sequence(const std::string& name, const RigSettings& settings);
-/// The one of config/vacuum/, fitted to a rig.
+/// Reads the sequence of config/vacuum/ and prepares it for a rig.
 PreparedSequence vacuum_grip(const RigSettings& settings);
 
 }  // namespace softgrip::control

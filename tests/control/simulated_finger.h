@@ -1,5 +1,6 @@
 #pragma once
-// A finger to control: a model of its own, stepped finer than the controller, read and written as a board is.
+// A simulated finger with its own model. The model has a smaller time step than the controller, and the
+// finger is read and written like a board.
 
 #include <cmath>
 #include <cstdint>
@@ -16,7 +17,7 @@ namespace softgrip::control::sim {
 inline constexpr double tick_s = 0.005;
 inline constexpr Nanoseconds tick_ns = 5'000'000;
 
-/// A model of config/models/.
+/// Reads a model of config/models/.
 inline model::Model model_named(const std::string& name) {
   document::Problems problems;
   auto model =
@@ -25,7 +26,7 @@ inline model::Model model_named(const std::string& name) {
   return *model;
 }
 
-/// Settings for the twin as a rig file would give them.
+/// Returns the settings of bench_twin that a rig file would contain.
 inline ChannelSettings twin_settings() {
   ChannelSettings settings;
   settings.name = "left";
@@ -37,14 +38,14 @@ inline ChannelSettings twin_settings() {
   return settings;
 }
 
-/// The board and the finger. write() puts a command out and reads, as one exchange does; the reading is there
-/// for the next tick, one tick old.
+/// The board and the finger. write() sends a command and reads the sensor, like one exchange. The next tick
+/// uses this reading, which is then one tick old.
 class SimulatedFinger {
  public:
   SimulatedFinger(const model::Model& model, double noise_mm, std::uint64_t seed)
       : chain_(model, {}, tick_s / sub_steps), noise_mm_(noise_mm), random_(seed) {}
 
-  /// One tick of a held command; returns the reading at its start.
+  /// Runs one tick with a held command and returns the reading at its start.
   model::Reading write(double command_kpa, Nanoseconds now) {
     chain_.step(0, command_kpa);
     model::Reading reading;
@@ -55,7 +56,7 @@ class SimulatedFinger {
     for (int i = 0; i < sub_steps; ++i) chain_.step(tick_s / sub_steps, command_kpa);
     return reading;
   }
-  /// Where the finger really is at the end of the last tick.
+  /// Returns the true displacement [mm] at the end of the last tick.
   [[nodiscard]] double displacement_mm() const { return chain_.after(model::Station::load); }
 
  private:

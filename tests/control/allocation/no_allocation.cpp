@@ -1,4 +1,4 @@
-// A tick of one channel allocates nothing, in all its states.
+// A tick of one channel allocates no memory, in any of its states.
 
 #include <gtest/gtest.h>
 
@@ -45,7 +45,7 @@ TEST(ChannelControllerAllocation, NoTickAllocates) {
       if (k % 700 == 0) input.now += 7 * sim::tick_ns;
       input.demand.time_s = k * sim::tick_s;
       controller.tick(input, output);
-      test::count_allocations(false);  // the finger is not what is tested
+      test::count_allocations(false);  // only the controller is tested, not the simulated finger
       input.reading = finger.write(output.command_kpa, input.now);
       test::count_allocations(true);
     }

@@ -1,4 +1,4 @@
-// A tick of the whole rig allocates nothing, in any state.
+// A tick of the whole rig allocates no memory, in any state.
 
 #include <gtest/gtest.h>
 
@@ -45,7 +45,7 @@ TEST(TickAllocation, NoneInAnyState) {
   EXPECT_EQ(test::allocations(), before);
 }
 
-// Planned motion, the grip that is not planned for (backing off), another start.
+// Covers planned motion, a grip whose retry backs off without a plan, and a second start.
 TEST(TickAllocation, NoneOfAPlan) {
   RigSettings settings = two_finger_settings();
   for (ChannelSettings& channel : settings.channels) channel.feedforward.kind = FeedforwardKind::planned;

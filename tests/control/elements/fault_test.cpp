@@ -68,7 +68,7 @@ std::string refusal_table() {
   return out.str();
 }
 
-/// The table of docs/reference/faults.md.
+/// Writes the table of docs/reference/faults.md.
 std::string table() {
   std::ostringstream out;
   out << "| code | name | meaning | usual cause | what to do | latches within |\n|---|---|---|---|---|---|\n";

@@ -7,7 +7,8 @@
 namespace softgrip::control::follow_watch_test {
 namespace {
 
-/// The model goes from 5 mm to 5 + `expected` mm, the finger from 4 to 4 + `share` of that.
+/// Moves the model from 5 mm by `expected_mm` and the finger from 4 mm by `share` of that. Returns true if
+/// the watch then reports that the finger is held.
 bool held_after(double expected_mm, double share) {
   FollowWatch watch;
   for (int i = 0; i <= 100; ++i) {

@@ -101,20 +101,20 @@ TEST(HoldWatch, IntervalsWithoutReadingsSayNothing) {
   }
 }
 
-/// The twin with every parameter off by up to `share`.
+/// bench_twin after each parameter has been multiplied by a random factor between 1 - share and 1 + share.
 model::Model perturbed(double share, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   std::uniform_real_distribution<double> off(1 - share, 1 + share);
   model::Model model = twin();
   for (model::BlockSpec& block : model.blocks) {
     for (double& value : block.values) {
-      value *= std::round(value) == value && value < 10 ? 1 : off(random);  // not the exponent
+      value *= std::round(value) == value && value < 10 ? 1 : off(random);  // except the exponent
     }
   }
   return model;
 }
 
-/// RMSE of the running model over tp1 with free fingers.
+/// Returns the RMSE of the running model during signal tp1 with free fingers.
 double free_rmse_mm(const RigSettings& settings, const model::Model& truth) {
   const PreparedSequence tp1 =
       sequence_of("name: x\nsteps:\n  - pressure: {signal: tp1, scale: 0.9}\n", settings);
@@ -131,7 +131,8 @@ double free_rmse_mm(const RigSettings& settings, const model::Model& truth) {
   return std::sqrt(sum / count);
 }
 
-/// With a margin of three times the model's RMSE, as the rule says, a wrong model costs no wrong answer.
+/// With a margin of three times the RMSE of the model, as the rule requires, an inaccurate model causes no
+/// wrong grip result.
 TEST(GripDetection, AMarginOfThreeTimesTheRmseIsEnoughForModelsThatAreOff) {
   double worst_mm = 0;
   for (std::uint64_t seed = 1; seed <= 25; ++seed) {

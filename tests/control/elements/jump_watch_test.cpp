@@ -13,11 +13,12 @@ namespace {
 
 constexpr double tick_s = 0.01;
 
-/// Runs readings of a finger whose model moves as `model` says and that reads `model` + `off`.
+/// Feeds the watch with readings of a finger. The model moves as `model` states, and the reading is `model` +
+/// `off`.
 class Watched {
  public:
   using Value = std::function<double(double)>;
-  /// True if it was unsteady at any time.
+  /// Returns true if the watch reported an unsteady reading at any time.
   bool run(
       double seconds, const Value& off, const Value& model = [](double) { return 5.0; }) {
     bool ever = false;
@@ -33,7 +34,7 @@ class Watched {
   double time_s_ = 1;
 };
 
-/// 5 mm for every other `interval_s`.
+/// Square wave: 0 mm and 5 mm in turn, each for `interval_s`.
 double square(double time_s, double interval_s) {
   return std::fmod(time_s, 2 * interval_s) < interval_s ? 0 : 5;
 }

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double tick_s = 0.005;
 
-/// Returns the reports while `binds(time)` states the limit that is active.
+/// Returns all reports of a run in which `binds(time)` returns the active limit.
 template <class Binds>
 std::vector<std::string> told(double seconds, Binds&& binds) {
   LimitWatch watch;

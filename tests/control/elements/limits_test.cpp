@@ -109,7 +109,7 @@ TEST(Limits, ACeilingDoesNotEvacuate) {
   EXPECT_FALSE(limit(vacuum, 0, -30, 1, -20).capped);
 }
 
-// No request makes the command exceed its range or its slew.
+// The command stays within its range and its slew limits for all requests.
 TEST(Limits, NeverExceededUnderRandomRequests) {
   const unsigned seed = 4711;
   SCOPED_TRACE(testing::Message() << "seed " << seed);

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double tick_s = 0.005;
 
-// Fixed here, so that the arithmetic of the tests does not move with the defaults.
+// The settings are stated here, so that a change of the defaults does not change the numbers in these tests.
 ModelHealthSettings short_intervals() {
   ModelHealthSettings settings;
   settings.model_error_mm = 0.2;
@@ -22,7 +22,7 @@ ModelHealthSettings short_intervals() {
   return settings;
 }
 
-// The residual that the settings call healthy, sample by sample.
+// Generates samples of the residual that the settings describe as healthy.
 class HealthyResidual {
  public:
   HealthyResidual(const ModelHealthSettings& settings, unsigned seed)
@@ -42,7 +42,7 @@ class HealthyResidual {
   double keep_, drive_mm_, noise_mm_, slow_mm_;
 };
 
-// Mean run length of a two-sided CUSUM of standard normal values by simulation.
+// Simulates the mean run length of a two-sided CUSUM of standard normal values.
 double simulated_run_length(double allowance, double threshold, int runs, std::mt19937_64& random) {
   std::normal_distribution<double> normal;
   double total = 0;
@@ -59,7 +59,8 @@ double simulated_run_length(double allowance, double threshold, int runs, std::m
 }
 
 TEST(ModelHealth, RunLengthFormulaAgreesWithTheTablesAndWithSimulation) {
-  // Montgomery, Introduction to Statistical Quality Control: allowance 0.5, thresholds 4 and 5: 168 and 465.
+  // Source: Montgomery, Introduction to Statistical Quality Control. With the allowance 0.5, the thresholds 4
+  // and 5 give 168 and 465.
   EXPECT_NEAR(cusum_run_length(0.5, 4), 168, 0.02 * 168);
   EXPECT_NEAR(cusum_run_length(0.5, 5), 465, 0.02 * 465);
   const unsigned seed = 11;
@@ -67,7 +68,7 @@ TEST(ModelHealth, RunLengthFormulaAgreesWithTheTablesAndWithSimulation) {
   std::mt19937_64 random(seed);
   for (const double threshold : {3.0, 5.0, 6.0}) {
     const double stated = cusum_run_length(0.5, threshold);
-    // 2000 runs: the mean of a nearly geometric length is known to 2.2 % (one standard error).
+    // 2000 runs: the run length is nearly geometric, so the standard error of its mean is 2.2 %.
     EXPECT_NEAR(simulated_run_length(0.5, threshold, 2000, random), stated, 0.08 * stated);
   }
 }
@@ -102,10 +103,11 @@ TEST(ModelHealth, WhitenerGivesIndependentStandardNormalInnovations) {
   }
 }
 
-// The rate that is stated is the rate that comes, on a residual that is autocorrelated sample by sample.
+// The measured false-alarm rate equals the stated rate, although successive samples of the residual are
+// correlated.
 TEST(ModelHealth, FalseAlarmsComeAtTheStatedRate) {
   ModelHealthSettings settings = short_intervals();
-  settings.false_alarm_interval_s = 100;  // 200 intervals: short, so that alarms can be counted
+  settings.false_alarm_interval_s = 100;  // 200 intervals: short, so that the test can count alarms
   settings.unfit_mm = 1e9;
   double seconds = 0;
   constexpr int runs = 1000;
@@ -117,12 +119,12 @@ TEST(ModelHealth, FalseAlarmsComeAtTheStatedRate) {
       seconds += tick_s;
     }
   }
-  // One standard error of the mean of 1000 nearly exponential times is 3.2 %.
+  // The standard error of the mean of 1000 nearly exponential times is 3.2 %.
   EXPECT_NEAR(seconds / runs, settings.false_alarm_interval_s, 0.1 * settings.false_alarm_interval_s)
       << "seeds 1 to " << runs;
 }
 
-// Without the whitening the same threshold would cry wolf: why it is there.
+// Without whitening, the same threshold would give many more false alarms.
 TEST(ModelHealth, ACusumOfThePlainResidualWouldAlarmFarMoreOften) {
   ModelHealthSettings settings = short_intervals();
   settings.correlation_time_s = 5;
@@ -144,7 +146,7 @@ TEST(ModelHealth, ACusumOfThePlainResidualWouldAlarmFarMoreOften) {
 }
 
 TEST(ModelHealth, FindsAnAgeingFinger) {
-  const ModelHealthSettings settings = short_intervals();  // one false alarm in 1000 h
+  const ModelHealthSettings settings = short_intervals();  // average time between false alarms: 1000 h
   HealthyResidual residual(settings, 5);
   ModelHealth health(settings, tick_s);
   for (int i = 0; i < 12000; ++i) health.observe(residual.next());
@@ -156,7 +158,7 @@ TEST(ModelHealth, FindsAnAgeingFinger) {
   }
   EXPECT_EQ(health.state(), HealthState::suspect);
   EXPECT_LT(ticks * tick_s, 60);
-  // and is healthy again when the model fits again
+  // The state becomes healthy again when the model fits again.
   for (int i = 0; i < 40000; ++i) health.observe(residual.next());
   EXPECT_EQ(health.state(), HealthState::healthy);
 }
@@ -180,7 +182,7 @@ TEST(ModelHealth, GapsAreNotCounted) {
   ModelHealth health(settings, tick_s);
   for (int i = 0; i < 10000; ++i) health.skip();
   EXPECT_EQ(health.state(), HealthState::unknown);
-  // A quarter of the readings is not enough for an interval.
+  // An interval needs more than a quarter of its readings.
   for (int i = 0; i < 10000; ++i) i % 4 == 0 ? health.observe(50) : health.skip();
   EXPECT_EQ(health.state(), HealthState::unknown);
 }

@@ -14,14 +14,14 @@ namespace {
 constexpr double tick_s = 0.005;
 constexpr PidSettings typical{2, 8, 0.1, 0.02, 1, AntiWindup::back_calculation, 0.2};
 
-// A finger without hysteresis: 0.4 mm/kPa behind 0.3 s.
+// A finger without hysteresis: gain 0.4 mm/kPa, time constant 0.3 s.
 struct Finger {
   double y_mm = 0;
   void step(double command_kpa) { y_mm += (0.4 * command_kpa - y_mm) * -std::expm1(-tick_s / 0.3); }
 };
 
-// Seconds until the finger stays within 0.3 mm of a reference in reach, after `saturated_s` with one that is
-// out of reach; with a feedforward that commands its share of either.
+// Returns the time [s] until the finger stays within 0.3 mm of a reachable reference. Before, the reference
+// is unreachable for `saturated_s`. The feedforward commands its share of both references.
 double recovery_s(AntiWindup anti_windup, double feedforward_share, double saturated_s,
                   const LimitSettings& limits) {
   PidSettings settings = typical;
@@ -33,7 +33,7 @@ double recovery_s(AntiWindup anti_windup, double feedforward_share, double satur
   pid.align(0);
   const int saturated = static_cast<int>(saturated_s / tick_s);
   for (int i = 0; i < saturated + 12000; ++i) {
-    const double reference = i < saturated ? 40 : 16;  // 40 mm needs 100 kPa
+    const double reference = i < saturated ? 40 : 16;  // the unreachable 40 mm would need 100 kPa
     const double feedforward = feedforward_share * reference / 0.4;
     const double request = feedforward + pid.step(reference, finger.y_mm, feedforward);
     command = limit(limits, request, command, tick_s).command_kpa;
@@ -55,7 +55,7 @@ TEST(Pid, IntegralIsTheTrapezoid) {
   double exact = 0;
   for (int i = 0; i <= 1000; ++i) {
     const double t = i * tick_s;
-    (void)pid.step(2 * t, 0, 0);  // the integral of a straight error is exact
+    (void)pid.step(2 * t, 0, 0);  // the trapezoidal integral of a linear error is exact
     exact = 3 * t * t;
   }
   EXPECT_NEAR(pid.integral_kpa(), exact, 1e-9);
@@ -102,7 +102,7 @@ TEST(Pid, AnAlignedStartContinuesTheCommand) {
   pid.align(31.7);
   const double feedforward = 12;
   EXPECT_NEAR(feedforward + pid.step(20, 3, feedforward), 31.7, 1e-12);
-  // And from there on it moves only as fast as its gains say.
+  // From this point the command changes only as fast as the gains of the PID allow.
   const double next = feedforward + pid.step(20, 3, feedforward);
   EXPECT_NEAR(next, 31.7 + 8 * tick_s * 17, 1e-9);
 }

@@ -80,7 +80,7 @@ TEST(Plausibility, AFrozenReadingIsFoundOnlyWhileTheCommandMoves) {
   EXPECT_EQ(moving.next(5.001, 40), Validity::valid) << "it moves again";
 }
 
-// Against a part a finger stands still as well; a sensor with noise does not.
+// A finger that is stopped by a part also stays in place, but the reading of a noisy sensor still varies.
 TEST(Plausibility, ALivelySensorThatRepeatsItselfStandsStillAndIsFrozenWhereTheFreeFingerMoves) {
   for (const bool lively : {true, false}) {
     Channel channel;

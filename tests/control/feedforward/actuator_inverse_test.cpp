@@ -22,13 +22,14 @@ namespace {
 using sim::model_named;
 using sim::tick_s;
 
-// Smooth and within what 60 kPa can do: slow and fast parts, minor loops.
+// A smooth displacement that 60 kPa can reach, with slow and fast parts and minor loops.
 double wanted_mm(double t) {
   const double rise = 1 - std::exp(-t * t);
   return rise * (12 - 4 * std::cos(0.7 * t) - 2 * std::cos(2.3 * t + 0.4) + 0.6 * std::sin(9 * t));
 }
 
-/// Twelve generalised plays, seven branches of creep, creep that depends on the pressure and a bend.
+/// An actuator of twelve generalised plays, seven creep branches, creep that depends on the pressure, and a
+/// nonlinear gain.
 model::Model play_body() {
   model::Model m;
   std::vector<double> plays{0, 0.2, -0.1, 50, 0, 0.15}, ladder{1e9};
@@ -84,7 +85,8 @@ TEST(ActuatorInverse, FollowedByTheChainItIsTheIdentity) {
   EXPECT_GT(highest, 15) << "the reference is too easy";
 }
 
-// Every exponent and branch count, from any state, up and down, by small and by large steps.
+// Solves for all exponents and branch counts, from random states, upwards and downwards, with small and large
+// steps.
 TEST(ActuatorInverse, SolvesFromRandomStates) {
   const unsigned seed = 99;
   SCOPED_TRACE(::testing::Message() << "seed " << seed);
@@ -112,8 +114,8 @@ TEST(ActuatorInverse, SolvesFromRandomStates) {
   }
 }
 
-// Stops and bends, where a step along the slope leads far out: a wall in the way, a bend either way, a soft
-// stretch between.
+// Stops and nonlinear gains, at which a step along the slope overshoots: a stop, a curvature of either sign,
+// and a soft section between them.
 TEST(ActuatorInverse, SolvesAcrossKinksFromRandomStates) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> pressure(0, 60), curvature(-4, 4), place(0, 12);
@@ -137,7 +139,8 @@ TEST(ActuatorInverse, SolvesAcrossKinksFromRandomStates) {
   }
 }
 
-// The slope has a kink where the pressure turns: the last, unchecked step of the iteration must not cross it.
+// The slope has a kink at the pressure at which the direction changes. The last step of the iteration is not
+// checked, so it must not cross the kink.
 TEST(ActuatorInverse, ATurnRightBesideTheGuessIsExactToo) {
   ActuatorInverse inverse(body_of(model_named("bench_twin")), tick_s);
   for (const double pressure : {20.0, 40.0 - 2e-6, 40.0 - 1e-6, 40.0}) inverse.advance(pressure);
@@ -151,7 +154,7 @@ TEST(ActuatorInverse, OutOfReachIsTheBoundAndNoWindUp) {
   const model::Model body = body_of(model_named("bench_twin"));
   ActuatorInverse inverse(body, tick_s);
   for (int k = 0; k < 400; ++k) inverse.advance(0.15 * std::min(k, 300));
-  // Vented, the creep leaves the finger above 0 for a while: 0 mm is out of reach.
+  // After the vent, creep keeps the finger above 0 mm for a while, so 0 mm is out of reach.
   int out_of_reach = 0;
   for (int k = 0; k < 4000; ++k) {
     const auto solution = inverse.solve(k < 3000 ? 0 : 5, 0, 60);
@@ -170,9 +173,10 @@ TEST(ActuatorInverse, OutOfReachIsTheBoundAndNoWindUp) {
   EXPECT_EQ(high.pressure_kpa, 60);
 }
 
-// The explicit form p[k] = (y[k] + h[k-1]) / alpha, as it is often written down, is a fixed-point iteration
-// with loop gain beta/alpha near h = 0. Of the published model that is 2.43: it runs away until the
-// hysteresis state levels off, and beyond all bounds as soon as the reference turns.
+// The explicit form p[k] = (y[k] + h[k-1]) / alpha, which is common in the literature, is a fixed-point
+// iteration with the loop gain beta/alpha near h = 0. For the published model the loop gain is 2.43. The
+// iteration diverges until the hysteretic state saturates, and without bound when the reference changes its
+// direction.
 struct ExplicitInverse {
   double alpha, beta, gamma, eta;
   double p_kpa = 0, h_mm = 0;
@@ -195,7 +199,8 @@ TEST(ActuatorInverse, TheExplicitMultiplicativeInverseDiverges) {
   for (int k = 0; k < 40; ++k) published.step(0.009);
   EXPECT_FALSE(std::abs(published.p_kpa) < 1e6) << "a micrometre less";
 
-  // With beta/alpha = 0.81 of the twin it converges, by a fifth of the way per tick: late on a ramp.
+  // For bench_twin beta/alpha = 0.81. The iteration converges, but by only a fifth of the remaining distance
+  // per tick, so it lags on a ramp.
   ExplicitInverse twin{0.21105, 0.1713, 0.01625, 0.02428};
   for (int k = 0; k <= 60; ++k) twin.step(0.01 * k);
   EXPECT_NEAR(twin.alpha * twin.p_kpa - twin.h_mm, 0.6, 0.1);

@@ -28,7 +28,7 @@ model::Model with_value(const model::Model& model, const std::string& path, doub
   return model::with_values(model, values);
 }
 
-/// From rest to 6 mm, then the sine of the studies.
+/// Moves from rest to 6 mm, then follows the sine of the tracking studies.
 Reference sine_reference(double frequency_hz) {
   Reference reference;
   reference.start(0, 0);
@@ -45,7 +45,8 @@ struct Outcome {
   int out_of_reach = 0;
 };
 
-/// The feedforward alone in front of a finger that is what the model says: the error is the feedforward's.
+/// Runs the feedforward without a PID on a finger that equals the model. All error is caused by the
+/// feedforward.
 Outcome run_alone(const model::Model& model, const FeedforwardSettings& settings, const Reference& reference,
                   double finger_late_s = 0) {
   Feedforward feedforward(model, settings, limits, tick_s);
@@ -98,12 +99,12 @@ TEST(FullModelFeedforward, LooksAheadByAllDeadTime) {
 
 TEST(FullModelFeedforward, WithoutALagTheHoldsHalfSampleIsCompensated) {
   const model::Model fast = model::without_block(model_named("bench_twin"), *model::find_block("valve_lag"));
-  // The remaining error is the staircase of the held command itself: half a step of the steepest stretch.
+  // The remaining error is caused by the held command: at most half a step, where the reference is steepest.
   const Outcome run = run_alone(fast, {FeedforwardKind::full_model, 0}, sine_reference(0.1));
   EXPECT_LT(run.worst_mm, 0.02);
 }
 
-// Filling and venting each with a lag of its own, before and behind the sensor of the pressure.
+// Filling and venting have different lags, before and behind the pressure sensor.
 TEST(FullModelFeedforward, TracksThroughLagsThatDifferByDirection) {
   model::Model model = model::without_block(model_named("bench_twin"), *model::find_block("valve_lag"));
   model =
@@ -114,8 +115,8 @@ TEST(FullModelFeedforward, TracksThroughLagsThatDifferByDirection) {
   EXPECT_EQ(run.out_of_reach, 0);
 }
 
-// The effects of an electro-pneumatic regulator on the command alone, and a dead band as wide as a worn
-// linkage's.
+// bench_twin with the blocks of an electro-pneumatic regulator on the command only, and with the dead band of
+// a worn linkage.
 model::Model regulated_twin() {
   model::Model model = model::without_block(model_named("bench_twin"), *model::find_block("valve_lag"));
   model = model::with_block(model, model::block_of<model::ValveDeadband>({{"band_kpa", 1.2}}));
@@ -134,7 +135,7 @@ TEST(FullModelFeedforward, TracksThroughADeadBandAndARegulator) {
   EXPECT_LT(run.worst_mm, 0.01);
 }
 
-// The ports, their integral and the dead band are where the commands before left them.
+// The openings, the integral and the dead band start in the state in which the earlier commands left them.
 TEST(FullModelFeedforward, TakesOverARegulatorAndADeadBandAsTheyStand) {
   const model::Model model = regulated_twin();
   RunningModel running(model, tick_s, 0, 0.1);
@@ -162,7 +163,7 @@ TEST(FullModelFeedforward, TakesOverARegulatorAndADeadBandAsTheyStand) {
   EXPECT_LT(worst_mm, 0.05);
 }
 
-// The command includes the pressure that is lost on the way.
+// The command compensates for the pressure that is lost in the line.
 TEST(FullModelFeedforward, TracksThroughALineThatLeaks) {
   const model::Model twin = model_named("bench_twin");
   const Reference sine = sine_reference(0.1);
@@ -217,7 +218,7 @@ TEST(FullModelFeedforward, OutOfReachSaysSoAndResumesWithoutWindUp) {
   reference.start(0, 0);
   (void)reference.ramp_for(18, 2);
   (void)reference.hold_for(10);
-  (void)reference.ramp_for(0, 0.6);  // faster than creep lets it fall at 0 kPa
+  (void)reference.ramp_for(0, 0.6);  // faster than creep decays at 0 kPa
   (void)reference.hold_for(5);
   (void)reference.ramp_for(10, 2);
   (void)reference.hold_for(2);
@@ -255,7 +256,7 @@ TEST(FullModelFeedforward, ASaturatingValveBoundsThePlan) {
   EXPECT_GT(run.out_of_reach, 100);
 }
 
-// A corner or a jump in the reference must not make the plan ring.
+// A corner or a jump in the reference must not make the planned command oscillate.
 TEST(FullModelFeedforward, AJumpOfTheReferenceDoesNotRing) {
   const model::Model twin = model_named("bench_twin");
   for (const double slew : {60.0, 120.0, 400.0}) {
@@ -296,8 +297,7 @@ TEST(FullModelFeedforward, AJumpOfTheReferenceDoesNotRing) {
   }
 }
 
-/// A channel whose feedforward follows `reference` from rest, tick by tick, in front of a finger that is the
-/// model.
+/// A feedforward that follows `reference` from rest, tick by tick, on a finger that equals the model.
 struct Follower {
   Follower(const model::Model& model, const Reference& followed)
       : reference(followed),
@@ -309,7 +309,7 @@ struct Follower {
   [[nodiscard]] FeedforwardQuery query() const { return {&reference, time_s(), offset_mm}; }
   [[nodiscard]] double time_s() const { return ticks * tick_s; }
 
-  /// The command of one tick.
+  /// Returns the command of one tick.
   double tick() {
     const double command = feedforward.step(query()).pressure_kpa;
     finger.step(0, command);
@@ -325,8 +325,8 @@ struct Follower {
   int ticks = 0;
 };
 
-// Where something follows the pressure at once and something creeps, the easier of the two carries a jump;
-// where nothing creeps, what follows at once does.
+// If one part of the finger follows the pressure at once and another part creeps, the part that needs less
+// pressure performs the jump. Without creep, the elastic part performs it.
 TEST(FullModelFeedforward, AJumpTakesAsLongAsTheEasierWayThere) {
   const model::Model twin = model_named("bench_twin");
   struct Case {
@@ -348,7 +348,7 @@ TEST(FullModelFeedforward, AJumpTakesAsLongAsTheEasierWayThere) {
   }
 }
 
-// The finger goes on as it went and turns to the new reference from there.
+// The finger continues its motion and turns to the new reference from there.
 TEST(FullModelFeedforward, AJumpInMotionDoesNotKick) {
   Reference reference;
   reference.start(0, 0);
@@ -357,7 +357,7 @@ TEST(FullModelFeedforward, AJumpInMotionDoesNotKick) {
   Follower follower(model_named("bench_twin"), reference);
   double before = 0, last = 0, worst = 0;
   while (follower.time_s() < 1.8) {
-    // In the middle of the ramp the finger turns out to be elsewhere than the model predicts.
+    // In the middle of the ramp the finger is moved 2 mm away from the prediction of the model.
     if (follower.time_s() > 1.1) follower.offset_mm = 2;
     const double command = follower.tick();
     if (follower.time_s() > 0.7) worst = std::max(worst, std::abs(command - 2 * last + before));

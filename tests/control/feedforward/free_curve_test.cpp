@@ -14,7 +14,7 @@ using sim::tick_s;
 
 const LimitSettings limits = sim::twin_settings().limits;
 
-/// Where a free finger is `seconds` after a jump from 0 to a command.
+/// Returns the displacement [mm] of a free finger `seconds` after the command has jumped from 0.
 double rests_at_mm(const model::Model& model, double command_kpa, double seconds) {
   model::Chain<double> chain(model, {}, tick_s);
   chain.step(0, command_kpa);
@@ -62,7 +62,8 @@ TEST(FreeCurve, AModelThatDoesNotMoveNeedsTheLowestCommand) {
   EXPECT_NEAR(curve.command_kpa(0), limits.pressure_min_kpa, 1e-6);
 }
 
-// A finger that falls where the pressure rises has one rest that is above all before it: the first.
+// The displacement of this finger decreases when the pressure rises, so the first point of the curve is the
+// highest.
 TEST(FreeCurve, AModelThatMovesBackwardsNeedsTheLowestCommandToo) {
   model::Model backwards = model::only(model_named("bench_twin"),
                                        [](const model::BlockInfo& info) { return info.id == "bouc_wen"; });

@@ -70,7 +70,7 @@ TEST(Invertibility, PlaysAreAcceptedAsAWholeAlone) {
       "the inverse of the complete chain");
 }
 
-// Inside their thresholds plays stand still, and only creep moves the finger then.
+// Within their thresholds, plays do not move. Only creep moves the finger there.
 TEST(Invertibility, PlaysWithoutAnElasticPartAreRefused) {
   const model::Model creep =
       model::with_block({}, {model::block_type<model::KelvinVoigt>(), {1e9, 40, 20, 40, 200}});
@@ -88,7 +88,8 @@ TEST(Invertibility, PlaysWithoutAnElasticPartAreRefused) {
   EXPECT_TRUE(check(with_plays(0), FeedforwardKind::full_model));
 }
 
-// Positive where it starts and negative where hysteresis takes it: only the walk through the range finds it.
+// The gain is positive at the start and becomes negative by hysteresis within the range. Only the evaluation
+// of the whole range detects this.
 TEST(Invertibility, AGainThatTurnsNegativeInsideTheRangeIsFound) {
   const model::Model twin = model_named("bench_twin");
   const model::Model hidden = with_value(twin, "bouc_wen.alpha_mm_per_kpa", 0.1800);
@@ -97,13 +98,13 @@ TEST(Invertibility, AGainThatTurnsNegativeInsideTheRangeIsFound) {
   EXPECT_NE(refused.error().text.find("the instantaneous gain is -"), std::string::npos)
       << refused.error().text;
   EXPECT_NE(refused.error().text.find("kPa while the pressure"), std::string::npos) << refused.error().text;
-  // In a smaller range the same model never gets there.
+  // In a smaller range the gain of the same model remains positive.
   LimitSettings small = limits;
   small.pressure_max_kpa = 5;
   EXPECT_TRUE(check_feedforward(hidden, {FeedforwardKind::full_model, 0}, small, sim::tick_s));
 }
 
-// A loop that turns more steeply at one end may have no inverse at that end alone.
+// A hysteresis loop with different slopes at its ends may lack an inverse at one end only.
 TEST(Invertibility, AGainThatIsNegativeOneWayOnlyIsFoundAndTheWayIsNamed) {
   const auto skewed = [](double epsilon_per_kpa) {
     model::Model even = with_value(model_named("bench_twin"), "bouc_wen.eta_per_kpa", 0.02);
@@ -140,8 +141,8 @@ TEST(Invertibility, WhatIsMissingIsNamed) {
   EXPECT_FALSE(check(valve_only, FeedforwardKind::full_model));
 }
 
-// For all present and future blocks: those in the way of the pressure either have an inverse that the
-// feedforward knows, or the refusal names them.
+// For each block of the catalogue that is between the command and the displacement, either the feedforward
+// knows an inverse or the refusal names the block.
 TEST(Invertibility, EveryBlockIsUndoneOrNamed) {
   const model::Model twin = model_named("bench_twin");
   for (std::size_t type = 0; type < model::catalogue().size(); ++type) {
@@ -162,7 +163,7 @@ TEST(Invertibility, EveryBlockIsUndoneOrNamed) {
   }
 }
 
-// Blocks that do not exist yet.
+// Tests blocks that are not in the catalogue.
 TEST(Invertibility, WhatFullModelCannotUndoIsNamedWhereverItStands) {
   using enum model::Inverse;
   const auto block = [](std::string_view id, model::Station station, model::Inverse inverse) {
@@ -177,7 +178,7 @@ TEST(Invertibility, WhatFullModelCannotUndoIsNamedWhereverItStands) {
     for (const model::Station station : {model::Station::actuator, model::Station::load}) {
       EXPECT_EQ(named(station, inverse), inverse != implicit && inverse != ignored);
     }
-    // A lag, a dead band or a bound of the valve is undone where it is known.
+    // The feedforward knows the inverse of a lag, a dead band or a bound of the valve.
     EXPECT_EQ(named(model::Station::valve, inverse), inverse == lead || inverse == play || inverse == bound);
   }
   const std::array three{block("first", model::Station::valve, lead),

@@ -34,7 +34,7 @@ TEST(InvertiblePart, TheBlockInTheWayIsLeftOutAndNothingElse) {
   EXPECT_EQ(part->model.blocks, twin.blocks);
 }
 
-/// Of the two springs and the loop of the published finger only the loop is in the way.
+/// The published finger has creep with two branches and a hysteresis loop. Only the loop has no inverse.
 TEST(InvertiblePart, OfThePublishedFingerItIsTheCreepAlone) {
   const model::Model published = model_named("zhang2025");
   const auto part = invertible_part(published, limits, sim::tick_s);

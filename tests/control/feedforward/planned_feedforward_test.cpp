@@ -1,4 +1,5 @@
-// The feedforward that reads a plan: what it does on it, beside it, without it, and whenever that changes.
+// Tests the feedforward that follows a plan: on the plan, off the plan, without a plan, and at each change
+// between them.
 
 #include <gtest/gtest.h>
 
@@ -18,8 +19,8 @@ constexpr LimitSettings limits{0, 60, 400, 400, 0, 25, 1};
 constexpr FeedforwardSettings planned{FeedforwardKind::planned, 0};
 constexpr double fade_s = 3;
 
-/// A plan that is poor but easy to recognise: the pressure rises by `kpa_per_s` from `from_kpa`, the
-/// reference stays at `reference_mm`, and the model is stated to be there.
+/// A plan that is inaccurate but easy to recognise: the pressure rises by `kpa_per_s` from `from_kpa`. The
+/// reference and the displacement of the model are both `reference_mm` throughout.
 PressurePlan plan_of(double from_kpa, double kpa_per_s, double reference_mm) {
   PressurePlan plan;
   plan.step_s = 0.1;
@@ -36,18 +37,18 @@ class PlannedFeedforwardTest : public testing::Test {
   void enter(double command_kpa) {
     feedforward_.enter(RunningModel(model_, tick_s, 0, 0.1), query_, command_kpa);
   }
-  /// The step of this tick, and on to the next.
+  /// Returns the step of this tick and advances the time by one tick.
   FeedforwardStep step() {
     const FeedforwardStep result = feedforward_.step(query_);
     query_.time_s += tick_s;
     return result;
   }
-  /// After `duration_s` more.
+  /// Returns the step after `duration_s` more.
   FeedforwardStep step_for(double duration_s) {
     for (int i = 0; i + 1 < std::lround(duration_s / tick_s); ++i) (void)step();
     return step();
   }
-  /// The planned command now, all dead time and half a tick ahead.
+  /// Returns the planned command for now: the plan's value the dead time plus half a tick ahead.
   [[nodiscard]] double on_plan(const PressurePlan& plan) const {
     return plan.at(query_.time_s - query_.plan_origin_s + plan_ahead_s(model_, planned, tick_s));
   }
@@ -100,7 +101,7 @@ TEST_F(PlannedFeedforwardTest, APlanForAnotherWayIsLeftAlone) {
   }
 }
 
-// A plan that ends, begins, or is exchanged for another, whose clock may have begun elsewhere.
+// A plan ends, begins, or is replaced by a plan whose clock has another origin.
 TEST_F(PlannedFeedforwardTest, NoChangeOfItsSourceIsAStep) {
   reference_.start(0, 5);
   const PressurePlan low = plan_of(8, 0, 5), high = plan_of(30, 1, 5);
@@ -121,7 +122,8 @@ TEST_F(PlannedFeedforwardTest, NoChangeOfItsSourceIsAStep) {
   }
 }
 
-// Where the reference jumps, one clock may already be behind the jump by a rounding and the other not.
+// At a jump of the reference, a rounding error of the time may place one clock behind the jump and the other
+// before it.
 TEST_F(PlannedFeedforwardTest, ClocksThatDifferByARoundingFollowTheSamePlan) {
   for (const double rounding_s : {-1e-9, 0.0, 1e-9}) {
     SCOPED_TRACE(rounding_s);

@@ -36,7 +36,7 @@ TEST(SettledLine, IsTheSlopeBetweenTheLimitsWhereverTheyBegin) {
   EXPECT_NEAR(line.pressure_kpa(at_highest_mm), 60, 1e-9);
 }
 
-// A plan is made for the position of the finger, not for the reading of a late or noisy sensor.
+// A plan is computed for the true position of the finger, so dead time, sensor and noise are not included.
 TEST(SettledLine, KnowsNeitherDeadTimeNorSensorNorNoise) {
   const model::Model twin = sim::model_named("bench_twin");
   model::Model shown = twin;

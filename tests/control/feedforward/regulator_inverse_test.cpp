@@ -9,10 +9,11 @@ namespace softgrip::control::regulator_inverse_test {
 namespace {
 
 constexpr double tick_s = 0.005;
-/// Filling, venting, overlap, integral, full opening: as softgrip identifies them on textbook valves.
+/// Time constants of filling and venting, overlap, integral gain and full opening, with the values that
+/// softgrip identifies on textbook valves.
 constexpr model::RegulatorNumbers<double> usual{0.015, 0.022, 0.4, 0.3, 15};
 
-/// The pressure after a tick of a held command.
+/// Returns the pressure after one tick of a held command.
 double held(model::RegulatedPressure<double>& regulated, double command_kpa) {
   regulated.step(model::Segment<double>::straight(tick_s, command_kpa, command_kpa),
                  [](const model::Segment<double>&) {});
@@ -60,7 +61,8 @@ TEST(RegulatorInverse, AsksForNoMoreThanAPortOpens) {
   EXPECT_NEAR(held(valve, 100), reached_kpa, 1e-9) << "no command does more";
 }
 
-// Commands that go from edge to edge of the overlap are noise where nothing is to move.
+// If the pressure need not change, a command that jumps from one edge of the overlap to the other is only
+// noise.
 TEST(RegulatorInverse, APressureThatStandsDoesNotHaveTheOverlapPassed) {
   const RegulatorInverse inverse(model::RegulatedPressure<double>(usual), tick_s);
   EXPECT_NEAR(inverse.command_for(1e-5) - inverse.command_for(-1e-5), 0, 0.05 * usual.overlap_kpa);

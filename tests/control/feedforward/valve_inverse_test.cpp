@@ -39,11 +39,13 @@ double wanted_kpa(double t) {
 }
 
 struct Course {
-  double worst_kpa = 0;           ///< between where the pressure is and where it was wanted
-  double worst_expected_kpa = 0;  ///< between where it is and what the inverse said
+  double worst_kpa = 0;  ///< largest difference between the pressure and the requested pressure
+  double worst_expected_kpa =
+      0;  ///< largest difference between the pressure and the prediction of the inverse
 };
 
-/// A pressure is wanted tick by tick; the chain of the same blocks shows where it came.
+/// Requests a pressure in each tick, and simulates the chain of the same blocks to get the resulting
+/// pressure.
 Course course_through(const model::Model& model) {
   model::Chain<double> chain(model, {}, tick_s);
   chain.reset(wanted_kpa(0));
@@ -79,7 +81,7 @@ TEST(ValveInverse, BringsThePressureWhereItIsWanted) {
   }
 }
 
-// A dead band behind a lag is compensated by neither half a band of the command nor any other number.
+// A dead band behind a lag has no exact inverse, so the command is not corrected for it.
 TEST(ValveInverse, ADeadBandBehindALagIsLeftAlone) {
   const double now_kpa = 10, next_kpa = 10.2;
   EXPECT_EQ(ValveInverse(valve_with({lag, band}), tick_s).command_for(now_kpa, next_kpa),
@@ -94,8 +96,8 @@ TEST(ValveInverse, GoesOnFromWhereTheValveStands) {
   for (int k = 0; k < 400; ++k) running.advance(wanted_kpa(k * tick_s));
   ValveInverse inverse(model, tick_s);
   inverse.take_over(running.valve());
-  for (const double within_kpa :
-       {0.03, 1e-3}) {  // it learns from the first tick how fast the valve vents here
+  // In the first tick the inverse learns how fast the valve vents, so the second tick is more accurate.
+  for (const double within_kpa : {0.03, 1e-3}) {
     const double now_kpa = running.pressure_kpa(), next_kpa = now_kpa - 0.2;
     const double command_kpa = inverse.command_for(now_kpa, next_kpa);
     running.advance(command_kpa);

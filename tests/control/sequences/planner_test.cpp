@@ -23,7 +23,7 @@ using sim::tick_s;
 
 constexpr LimitSettings limits{0, 60, 400, 400, 0, 30, 1};
 
-/// From 0 to where a sine begins, and a second later that sine.
+/// Moves from 0 to the first value of a sine and follows the sine from 1 s later.
 struct Motion {
   double begins_mm = 6;
   double after_s = 3;
@@ -41,7 +41,7 @@ Reference sine_reference(double frequency_hz, double cycles, const Motion& motio
   return reference;
 }
 
-/// The largest miss of a finger that is the model, driven by the plan, from `from_s` on.
+/// Returns the largest error from `from_s` on of a finger that equals the model and is driven by the plan.
 double worst_mm(const model::Model& model, const PressurePlan& plan, const Reference& reference,
                 double from_s) {
   constexpr double fine_s = 0.001;
@@ -73,8 +73,9 @@ TEST(Planner, FollowsThePublishedModelWhichHasNone) {
   EXPECT_LT(worst_mm(published, plan, reference, 0.5), 0.1);
 }
 
-// Between 11 and 19 mm. On a sine down to 6 mm the search stops up to 1.8 mm short, in part where a full vent
-// passes below the reference; with the plays replaced by an elastic gain it does not.
+// The reference is between 11 and 19 mm. On a sine down to 6 mm the search ends with errors of up to 1.8 mm,
+// in part because even a full vent passes below the reference. If the plays are replaced by an elastic gain,
+// it does not.
 TEST(Planner, FollowsAMeasuredArmOfPlaysWhereItUnloadsLittle) {
   LimitSettings wide = limits;
   wide.pressure_max_kpa = 110;
@@ -89,7 +90,8 @@ TEST(Planner, FollowsAMeasuredArmOfPlaysWhereItUnloadsLittle) {
   EXPECT_LT(plan.rmse_mm, 0.02);
 }
 
-// Windows that begin anywhere in the cycle, the command turning inside them.
+// The planning windows begin at different points of the cycle, and the command changes its direction within
+// them.
 TEST(Planner, DoesNotComeToRestAtACorner) {
   for (const char* name : {"bench_twin", "zhang2025"}) {
     for (const double frequency : {0.05, 0.1, 0.13, 0.2}) {
@@ -101,9 +103,9 @@ TEST(Planner, DoesNotComeToRestAtACorner) {
   }
 }
 
-/// Creep that takes hours makes the settled gain thrice what the finger has within a motion, and the command
-/// in proportion to it a third of what is needed: at such a friction's corners no search came back from
-/// there.
+/// The settled gain includes creep that takes hours and is three times the gain within a motion. A command in
+/// proportion to the settled gain is therefore a third of the required command. From there the search did not
+/// converge at the corners of this friction.
 TEST(Planner, IsNotMisledByTheGainOfCreepThatTakesHours) {
   model::Model finger = model::with_block({}, {*model::find_block("asymmetric_valve_lag"), {0.0374, 0.0374}});
   finger = model::with_block(std::move(finger), {*model::find_block("prandtl_ishlinskii"),
@@ -138,8 +140,8 @@ TEST(Planner, StaysWithinPressureAndSlew) {
   }
 }
 
-// A reference that is out of reach for a while must not spoil the plan after it; the plan prepares for it
-// before.
+// The reference is out of reach for a while. This must not disturb the plan after it, and the plan must
+// prepare for it in advance.
 TEST(Planner, UsesItsForesightWhereTheSlewIsShort) {
   LimitSettings slow = limits;
   slow.slew_up_kpa_per_s = 30;
@@ -155,8 +157,8 @@ TEST(Planner, UsesItsForesightWhereTheSlewIsShort) {
   EXPECT_LT(plan.miss_mm(9.5), 0.05) << "half a per cent of the step is left after 3.4 s";
 }
 
-// Down to 0 mm and faster than creep lets go: nothing follows that, and the lowest pressure bounds the
-// search.
+// The reference goes down to 0 mm faster than the creep recovers. No finger can follow it, so the lower
+// pressure limit bounds the search.
 TEST(Planner, BesideItsLowerBoundItIsBetterThanTheSettledLine) {
   const model::Model twin = model_named("bench_twin");
   const Reference reference = sine_reference(0.5, 4, {15, 2, 8, 8});
@@ -174,7 +176,7 @@ TEST(Planner, BesideItsLowerBoundItIsBetterThanTheSettledLine) {
   EXPECT_LT(plan.rmse_mm, 0.85 * std::sqrt(squares / static_cast<double>(plan.pressure_kpa.size() - 1)));
 }
 
-/// How much a command turns, from rest at its first value.
+/// Returns the sum of the changes of slope of a command that starts at rest at its first value.
 double bend_of(const std::vector<double>& pressure_kpa) {
   double sum = 0;
   for (std::size_t i = 1; i < pressure_kpa.size(); ++i) {
@@ -184,7 +186,7 @@ double bend_of(const std::vector<double>& pressure_kpa) {
   return sum;
 }
 
-// Below its threshold the finger rests at every pressure, and no command misses less than another.
+// Below its threshold the finger does not move at any pressure, so all commands have the same error.
 TEST(Planner, WhereNothingMovesTheFingerItTakesTheCalmerCommand) {
   const model::Model dead = model::with_block(
       model_named("bench_twin"), model::block_of<model::ActuatorThreshold>({{"threshold_kpa", 20}}));
@@ -216,9 +218,9 @@ double processor_time_s(const std::function<void()>& work) {
   return static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
 }
 
-// Counted in what the machine needs to simulate the model over the same motion at 1 ms, in the same run: how
-// fast it is, and beside whom, does not count. 350, 1,650 and 3,350 as it is; a second per ten of motion is
-// what a user waits for the last on a machine on which a step of that model takes 29 ns.
+// The duration is counted in simulations of the model over the same motion at 1 ms, measured in the same run.
+// So the speed and the load of the machine do not matter. Today's counts are 350, 1,650 and 3,350. If a step
+// of the last model takes 29 ns, planning it takes one second per ten seconds of motion.
 TEST(Planner, TakesLessThanFourThousandSimulationsOfTheMotion) {
   LimitSettings narrow = limits;
   narrow.pressure_max_kpa = 30;

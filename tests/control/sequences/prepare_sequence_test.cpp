@@ -71,7 +71,7 @@ class MisfitSequence : public testing::TestWithParam<Misfit> {};
 
 TEST_P(MisfitSequence, IsRefusedAtItsStep) {
   RigSettings settings = two_finger_settings();
-  settings.channels[1].displacement_used = false;  // right is blind
+  settings.channels[1].displacement_used = false;  // right has no displacement feedback
   settings.channels[0].pressure_measured = false;  // left measures no pressure
   document::Problems problems;
   const std::string text = std::string("name: x\nsteps:\n") + GetParam().steps;

@@ -1,5 +1,5 @@
-// For all bytes: reading a sequence and fitting it to a rig ends, and what is accepted is within bounds.
-// Seeds: config/sequences/, dictionary: tests/document/yaml.dict.
+// For all bytes, reading a sequence and preparing it for a rig ends, and all values of an accepted sequence
+// are within their bounds. Seeds: config/sequences/, dictionary: tests/document/yaml.dict.
 
 #include <cmath>
 #include <cstddef>

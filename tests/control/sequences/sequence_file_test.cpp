@@ -130,7 +130,7 @@ std::string with_steps(int count) {
   return text;
 }
 
-/// A grip that verifies as given.
+/// Returns a grip step with the given keys of the verification.
 std::string with_verify(const std::string& verify) {
   return with_step("grip: {pressure_kpa: 5, settle_s: 0" + verify + ", timeout_s: 9, on_fail: vent}");
 }
@@ -138,8 +138,8 @@ std::string with_verify(const std::string& verify) {
 struct Broken {
   const char* what;
   std::string text;
-  int line;             ///< of the first problem
-  std::string message;  ///< that some problem contains
+  int line;             ///< line of the first problem
+  std::string message;  ///< text that at least one problem contains
 };
 
 class BrokenSequence : public testing::TestWithParam<Broken> {};

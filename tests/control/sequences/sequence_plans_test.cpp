@@ -1,5 +1,5 @@
-// Planned feedforward from a sequence to the loop: the plans of a prepared sequence, and what the rig does
-// with them when all goes as planned and when it does not.
+// Tests planned feedforward from the sequence to the control loop: the plans of a prepared sequence, and how
+// the rig follows them with and without disturbances.
 
 #include "control/sequences/sequence_plans.h"
 #include "control/sequences/prepare_sequence.h"
@@ -18,7 +18,8 @@
 namespace softgrip::control::sequence_plans_test {
 namespace {
 
-/// Gains of `softgrip tune --model config/models/zhang2025.yaml --feedforward planned` and `... none`.
+/// Gains printed by `softgrip tune --model config/models/zhang2025.yaml --feedforward planned` and `...
+/// none`.
 constexpr PidSettings for_planned{3.067, 12.68, 0, 0.01, 1, AntiWindup::back_calculation, 0.5};
 constexpr PidSettings for_pid_alone{4.402, 13.79, 0, 0.01, 1, AntiWindup::back_calculation, 0.5};
 /// PID gains for bench_twin.
@@ -39,7 +40,7 @@ RigSettings planned_rig(const char* model) {
   return rig_with(model, FeedforwardKind::planned, model[0] == 'z' ? for_planned : twin_gains);
 }
 
-/// Error of the finger itself against the reference, while a step runs [mm].
+/// Returns the RMSE [mm] between the true displacement of the finger and the reference during a step.
 double tracking_rmse_mm(const RigSettings& settings, const char* truth, const char* sequence,
                         std::uint16_t step) {
   const PreparedSequence prepared = example_sequence(sequence, settings);
@@ -170,7 +171,7 @@ TEST(SequencePlans, ARigWithAnotherModelOrSlewNeedsOthers) {
   EXPECT_NE(rig_key(one), rig_key(other));
 }
 
-/// The steepest way up and down of a plan, and its extremes.
+/// The largest slopes up and down of a plan, and its lowest and highest pressure.
 struct PlanShape {
   double up_kpa_per_s = 0, down_kpa_per_s = 0, lowest_kpa = 1e9, highest_kpa = -1e9;
 };
@@ -190,7 +191,7 @@ PlanShape shape_of(const PreparedSequence& sequence, std::size_t channel) {
   return shape;
 }
 
-// Fingers that are alike are planned for once; any difference gives each a plan within its own limits.
+// Two equal fingers share one plan. If they differ in any setting, each has a plan within its own limits.
 TEST(SequencePlans, AFingersPlanKeepsItsOwnLimitsHoweverAlikeItsNeighbourIs) {
   const std::string moves =
       "name: x\nsteps:\n  - move: {displacement_mm: 12, duration_s: 1}\n"
@@ -246,7 +247,7 @@ TEST(SequencePlans, OnlyPlannedFingersArePlannedFor) {
   EXPECT_EQ(move.steps[0].plan_of(7), nullptr) << "no such channel";
 }
 
-// A stone in the way, nothing there with a retry (which backs off outside any plan), then the next grip.
+// Grips a stone, then grips without a part with a retry (which backs off outside any plan), then grips again.
 TEST(SequencePlans, EveryGripHasItsAnswer) {
   for (const char* model : {"zhang2025", "bench_twin"}) {
     SCOPED_TRACE(model);
@@ -267,10 +268,10 @@ TEST(SequencePlans, EveryGripHasItsAnswer) {
   }
 }
 
-/// The largest change of a command from tick to tick while `running`, and where the finger is at the end.
+/// The largest change of a command between two ticks while `running`, and the largest error at the end.
 struct Motion {
   double jump_kpa = 0;
-  double worst_mm = 0;  ///< of reference minus finger
+  double worst_mm = 0;  ///< largest |reference - finger|
 };
 Motion watch(SimulatedRig& rig, double seconds) {
   Motion motion;
@@ -292,7 +293,8 @@ steps:
   - move: {displacement_mm: 15, duration_s: 3, settle_s: 3}
 )";
 
-// The sensor's zero is off by 1.5 mm: the plan, made for a finger at its zero, is corrected by as much.
+// The zero of the sensor is off by 1.5 mm. The plan assumes no offset, so the feedforward must correct it
+// by 1.5 mm.
 TEST(SequencePlans, AFingerThatStandsOffItsModelArrivesAllTheSame) {
   for (const char* model : {"zhang2025", "bench_twin"}) {
     SCOPED_TRACE(model);
@@ -310,7 +312,7 @@ TEST(SequencePlans, AFingerThatStandsOffItsModelArrivesAllTheSame) {
   }
 }
 
-/// A sequence that was stopped half way leaves the finger inflated; the next one starts from there.
+/// Stops a sequence half way, which leaves the finger inflated, and starts the next sequence from there.
 Motion from_half_way(RigSettings settings, const char* truth) {
   settings.safety.safe_action.fill(SafeAction::hold);
   const PreparedSequence move = sequence_of(slow_move, settings);
@@ -357,7 +359,7 @@ TEST(SequencePlans, BackingOffIsBumpless) {
   }
 }
 
-// A prediction of a model in one tick cannot reach the loop as a value that is not a number.
+// A model whose prediction is not finite in one tick must not cause a command that is not finite.
 TEST(PlannedFeedforward, WithoutAPlanItFollowsAtTheSettledGainFromWhereItIs) {
   const model::Model twin = sim::model_named("bench_twin");
   const LimitSettings limits{0, 60, 400, 400, 0, 30, 1};

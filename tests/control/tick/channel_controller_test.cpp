@@ -17,7 +17,7 @@ using sim::tick_s;
 using sim::twin_settings;
 using Mode = ChannelDemand::Mode;
 
-/// A controller and a finger on one clock.
+/// A controller and a finger with a common clock.
 class Rig {
  public:
   explicit Rig(const ChannelSettings& settings, double noise_mm = 0, std::uint64_t seed = 1)
@@ -28,7 +28,7 @@ class Rig {
     exchange();
   }
 
-  /// One tick with what is demanded; the exchange follows at once, as on the rig.
+  /// Runs one tick with the current demand; the exchange follows at once, as on a rig.
   ChannelOutput tick() {
     now += tick_ns;
     input.now = now;
@@ -53,7 +53,7 @@ class Rig {
     input.demand.pressure_kpa = pressure_kpa;
   }
   [[nodiscard]] double time_s() const { return static_cast<double>(now) * 1e-9; }
-  /// Reference minus finger, now.
+  /// Returns reference minus true displacement [mm].
   [[nodiscard]] double error_mm() const {
     return input.demand.reference->at(time_s() + tick_s).value - finger.displacement_mm();
   }
@@ -71,7 +71,7 @@ class Rig {
 Reference ramp_and_sine(double from_s) {
   Reference reference;
   reference.start(from_s, 0);
-  (void)reference.hold_for(0.2);  // longer than the preview: nothing can come sooner
+  (void)reference.hold_for(0.2);  // longer than the preview, so that no motion starts earlier
   (void)reference.ramp_for(6, 2);
   (void)reference.hold_for(1);
   (void)reference.sine(13, 7, 0.1, 3);
@@ -116,7 +116,7 @@ TEST(ChannelController, EveryChangeOfModeIsBumpless) {
   Rig rig(twin_settings(), 0.02);
   Reference reference;
   double before = 0;
-  // One tick of what each mode may do by itself: here 1 kPa is half of the slew limit.
+  // In one tick no mode may change the command by more than 1 kPa, half of the slew limit.
   const auto expect_smooth = [&](const char* what) {
     rig.run(0.05, [&] {
       EXPECT_NEAR(rig.last.command_kpa, before, 1.0) << what;
@@ -249,7 +249,7 @@ TEST(ChannelController, AGapInTheReadingsHoldsTheFeedbackAndGoesOn) {
 }
 
 TEST(ChannelController, ResynchronisingFollowsAFingerThatIsNotWhereTheModelIs) {
-  // The controller starts again under a finger that still creeps, with a zero that is off.
+  // The controller restarts while the finger still creeps, and the sensor zero is off.
   ChannelSettings settings = twin_settings();
   Rig rig(settings, 0.02);
   rig.press(30);
@@ -303,7 +303,7 @@ TEST(ChannelController, SlippedTicksAreCaughtUp) {
   const Reference reference = ramp_and_sine(rig.time_s());
   rig.track(reference);
   rig.run(5);
-  // Three periods pass without a tick: the board holds its output.
+  // Three periods pass without a tick, and the board holds its output.
   for (int i = 0; i < 3; ++i) {
     rig.now += tick_ns;
     rig.input.reading = rig.finger.write(rig.last.command_kpa, rig.now);
@@ -328,7 +328,7 @@ TEST(ChannelController, AnUnusedDisplacementIsNeverActedOn) {
   EXPECT_TRUE(rig.tick().synchronised);
 }
 
-// For all demands and readings, the command is a number inside the range and the slew limits.
+// For all demands and readings, the command is a finite number within the range and the slew limits.
 TEST(ChannelController, LimitsAreNeverExceededUnderRandomDemands) {
   for (const FeedforwardKind kind :
        {FeedforwardKind::none, FeedforwardKind::bouc_wen, FeedforwardKind::full_model}) {

@@ -1,4 +1,4 @@
-// The demand of one channel in the tick in which a step begins, before it has played any of it.
+// The demand of one channel in the tick in which a step begins, before any of the step has been played.
 
 #include "control/tick/channel_player.h"
 
@@ -22,7 +22,7 @@ Step step_of(StepKind kind) {
   return step;
 }
 
-/// A finger that is `shortfall_mm` short of its free motion.
+/// The output of a channel whose finger has a displacement shortfall of `shortfall_mm` from its free motion.
 ChannelOutput short_by(double shortfall_mm) {
   ChannelOutput seen;
   seen.validity = model::Validity::valid;
@@ -31,7 +31,7 @@ ChannelOutput short_by(double shortfall_mm) {
   return seen;
 }
 
-/// Touches something, and has answered nothing.
+/// A player whose finger touches a part and has no grip result yet.
 ChannelPlayer touching(const Step& closing) {
   ChannelPlayer player(traits);
   player.reset();
@@ -54,8 +54,8 @@ TEST(ChannelPlayer, AProfileBeginsWithItsFirstPressure) {
   EXPECT_EQ(player.demand(7.25).pressure_kpa, 21);
 }
 
-// Feedback that went on against a part would wind up a squeeze; without a part to hold it must not stand
-// still.
+// Integral feedback against a part would increase the gripping pressure, so it is held. If no part is to be
+// gripped or held, it must continue.
 TEST(ChannelPlayer, FeedbackIsHeldByATouchOnlyWhileSomethingIsGrippedOrHeld) {
   const Step grip = step_of(StepKind::grip);
   for (const StepKind kind : {StepKind::move, StepKind::grip, StepKind::hold, StepKind::release,
@@ -78,7 +78,7 @@ TEST(ChannelPlayer, FeedbackIsHeldByATouchOnlyWhileSomethingIsGrippedOrHeld) {
   }
 }
 
-/// A finger that touches something under a command.
+/// The output of a channel whose finger touches a part under this command.
 ChannelOutput touching_under(double command_kpa, double free_kpa) {
   ChannelOutput seen = short_by(2);
   seen.command_kpa = command_kpa;
@@ -112,7 +112,7 @@ TEST(ChannelPlayer, ASqueezeDoesNotEvacuate) {
   ASSERT_EQ(player.take_contact(), OnContact::squeeze);
   (void)player.tick(0.06, touching_under(10, 8));
   EXPECT_NEAR(player.demand(0.06).pressure_kpa, 10.3, 0.2);
-  (void)player.tick(0.07, touching_under(10, -20));  // something pushes the finger back beyond rest
+  (void)player.tick(0.07, touching_under(10, -20));  // an external force pushes the finger back beyond rest
   EXPECT_EQ(player.demand(0.07).pressure_kpa, 0);
 }
 

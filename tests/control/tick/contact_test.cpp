@@ -1,5 +1,4 @@
-// Grips that are gentle: what a finger does that touches something, and that it never squeezes by more than
-// its step allows.
+// Gentle grips: how a finger behaves in contact. Its gripping pressure never exceeds the limit of its step.
 
 #include <gtest/gtest.h>
 
@@ -16,12 +15,13 @@
 namespace softgrip::control::contact_test {
 namespace {
 
-/// Largest addition of noise and of the last bit of a filter to a bound [kPa].
+/// Largest amount [kPa] by which noise and filter rounding may exceed a bound.
 constexpr double tolerance_kpa = 0.4;
 
 class ContactTest : public testing::Test {
  protected:
-  /// The pressure at the left finger above what it would need to rest where it is, by its true place.
+  /// Returns the gripping pressure of the left finger: its pressure minus the free-motion pressure at its
+  /// true displacement.
   [[nodiscard]] double squeeze_kpa(const SimulatedRig& rig) const {
     return rig.output().channels[0].pressure_kpa - curve.command_kpa(rig.plant_mm(0));
   }
@@ -30,7 +30,7 @@ class ContactTest : public testing::Test {
     rig.request(Request::Kind::start, &sequence);
     ASSERT_TRUE(rig.run_until(State::running, 5));
   }
-  /// Runs to the end of the sequence; returns the largest squeeze.
+  /// Runs the sequence to its end and returns the largest gripping pressure.
   double play(SimulatedRig& rig, const PreparedSequence& sequence, double seconds = 60) {
     start(rig, sequence);
     double most = 0;
@@ -147,7 +147,7 @@ TEST_F(ContactTest, AMoveMayPressOnAndIsBoundedByItsPressure) {
   EXPECT_GE(rig.count(Event::Kind::limit_binds), 1U) << "it binds for longer than a moment";
 }
 
-// One line per limit of the rig file and of a step: which of them is reported when it lasts.
+// One line for each limit of the rig file and of a step. Each is reported if it lasts.
 TEST_F(ContactTest, EveryLimitThatLastsIsAnEvent) {
   const auto told = [](const SimulatedRig& rig) {
     std::set<std::string> names;
@@ -199,7 +199,8 @@ TEST_F(ContactTest, FreeMotionsMeetNothing) {
   EXPECT_EQ(rig.count(Event::Kind::limit_binds), 0U);
 }
 
-// The finger stands still as it would before a part. Wherever the sensor freezes, nothing is held.
+// A frozen reading looks like a finger that is stopped by a part. At any time of the freeze, the result must
+// not be HOLDING.
 TEST_F(ContactTest, ASensorThatFreezesIsNoPart) {
   for (const char* name : {"pick_stone", "hand_over", "pick_screw", "empty_grip"}) {
     const PreparedSequence sequence = example_sequence(name, settings);

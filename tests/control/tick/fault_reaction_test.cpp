@@ -1,4 +1,5 @@
-// Every fault in every phase: latched within its bound, outputs as chosen, nothing moves again by itself.
+// Injects every fault in every phase. Each latches within its bound, the outputs take the configured action,
+// and no motion restarts by itself.
 
 #include <gtest/gtest.h>
 
@@ -90,7 +91,7 @@ const std::vector<PhaseCase> phase_cases{{"idle", Phase::idle, -1, 0.5},
                                          {"holding", Phase::holding, 2, 1.0},
                                          {"releasing", Phase::releasing, 3, 0.2}};
 
-/// Below its rest pressure the rig plays vacuum_grip, which has no approach.
+/// Below its rest pressure the rig plays vacuum_grip, which has no approach phase.
 const std::vector<PhaseCase> vacuum_phases{{"idle", Phase::idle, -1, 0.5},
                                            {"evacuating", Phase::closing, 0, 0.4},
                                            {"gripping", Phase::closing, 0, 1.2},
@@ -101,11 +102,11 @@ using Parameters = std::tuple<std::size_t, std::size_t, SafeAction, bool>;
 
 class FaultReaction : public testing::TestWithParam<Parameters> {
  protected:
-  /// A rig with a stone, in the phase, about to break.
+  /// Brings a rig with a stone into this phase. The test then injects the fault.
   void reach(SimulatedRig& rig, const PhaseCase& phase) {
     rig.stone(12);
     ASSERT_TRUE(rig.run_until(State::idle, 1));
-    rig.run(1.5);  // from then on a pressure has no excuse
+    rig.run(1.5);  // longer than any transient, so that from now on a wrong pressure is a fault
     if (phase.step >= 0) {
       rig.request(Request::Kind::start, &pick);
       ASSERT_TRUE(rig.run_until_step(static_cast<std::uint16_t>(phase.step), 30));
@@ -143,7 +144,7 @@ TEST_P(FaultReaction, LatchesActsAndStaysUntilAcknowledged) {
     EXPECT_EQ(rig.result(0), GripResult::error);
   }
 
-  rig.run(1);  // SimulatedRig checks that no command moves away from rest meanwhile
+  rig.run(1);  // SimulatedRig checks that no command moves away from rest during this second
   const bool vents = fault.always_vents || action == SafeAction::vent;
   for (std::size_t i = 0; i < 2; ++i) {
     EXPECT_NEAR(rig.board_kpa(i), vents ? 0 : at_latch_kpa, 1.5);
@@ -170,7 +171,7 @@ TEST_P(FaultReaction, LatchesActsAndStaysUntilAcknowledged) {
   EXPECT_EQ(rig.output().channels[0].command_kpa, rest_kpa) << "acknowledging moves nothing";
   EXPECT_EQ(rig.result(0), GripResult::none);
 
-  if (rest_kpa != 0) {  // a held finger: what it holds is unknown, so it is vented before it grips again
+  if (rest_kpa != 0) {  // a held finger may hold a part, so the test vents it before it grips again
     rig.request(Request::Kind::vent);
     ASSERT_TRUE(rig.run_until(State::idle, 2));
   }
@@ -205,7 +206,7 @@ class SingleFault : public testing::Test {
   RigSettings settings = base();
 };
 
-// As many cycles as the rig file says, neither one more nor one less.
+// The fault latches after exactly the number of cycles that the rig file states.
 TEST_F(SingleFault, CyclesAreCountedOneByOne) {
   const auto ticks_until_fault = [&](const auto& inject) {
     SimulatedRig rig(settings);
@@ -226,7 +227,7 @@ TEST_F(SingleFault, CyclesAreCountedOneByOne) {
       << "what is read after a tick is seen in the next";
 }
 
-// The count of a deviation that disappears now and then starts from 0 again.
+// A single correct readback resets the count of deviations to 0.
 TEST_F(SingleFault, AReadbackThatIsRightInBetweenIsNoFault) {
   SimulatedRig rig(settings);
   ASSERT_TRUE(rig.run_until(State::idle, 1));
@@ -247,7 +248,7 @@ TEST_F(SingleFault, AFrozenReadingIsFoundWhileTheCommandMoves) {
 }
 
 TEST_F(SingleFault, ABurstLineIsNoPart) {
-  // The finger stands still as it would before a part. Without the pressure's word this is HOLDING.
+  // The finger is stopped as by a part. Without the check of the pressure, the result would be HOLDING.
   SimulatedRig rig(settings);
   const PreparedSequence pick = example_sequence("pick_stone", settings);
   start(rig, pick);
@@ -329,7 +330,7 @@ TEST_F(SingleFault, AnUnfitModelIsAFaultOnlyWhereTheRigFileSaysSo) {
 
 TEST_F(SingleFault, ACommandThatIsNoNumberNeverLeaves) {
   settings.channels[0].pid.kp_kpa_per_mm = std::numeric_limits<double>::quiet_NaN();
-  SimulatedRig rig(settings);  // checks that every command is finite and within its limits
+  SimulatedRig rig(settings);  // SimulatedRig checks that every command is finite and within its limits
   ASSERT_TRUE(rig.run_until(State::idle, 1));
   const PreparedSequence track = example_sequence("track_sine", settings);
   rig.request(Request::Kind::start, &track);
@@ -501,7 +502,7 @@ TEST_F(SingleFault, ABriefDropoutIsBridged) {
   EXPECT_EQ(rig.result(0), GripResult::holding);
 }
 
-// The time of its last step can pass in a pause in which the board vents.
+// The end time of the last step can pass during a pause in which the board vents.
 TEST(FaultAfterAPause, ASequenceDoesNotEndBeforeTheFirstExchangeAfterAPause) {
   const RigSettings settings = two_finger_settings();
   const PreparedSequence brief =

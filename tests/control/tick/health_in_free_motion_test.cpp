@@ -1,4 +1,4 @@
-// Model health is judged in free motion alone: a part raises no alarm, a finger that has changed does.
+// Model health is evaluated in free motion only: a part causes no alarm, a changed finger does.
 
 #include <gtest/gtest.h>
 
@@ -26,7 +26,7 @@ class HealthInFreeMotionTest : public testing::Test {
     }
     return false;
   }
-  /// A finger whose creep springs are stiffer by this factor.
+  /// Returns bench_twin with creep springs that are `times` as stiff.
   static model::Model stiffer(double times) {
     model::Model model = twin();
     auto values = model::flat_values(model);

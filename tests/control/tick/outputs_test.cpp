@@ -1,4 +1,4 @@
-// The outputs are not always those that were commanded, and readings from before a gap are out of date.
+// The outputs can differ from the commands, and readings from before a gap are out of date.
 
 #include <gtest/gtest.h>
 
@@ -27,7 +27,7 @@ TEST_F(Outputs, ACommandThatNeverReachedTheBoardIsForgottenWithItsSequence) {
   close_on_stone(rig);
   const double last_kpa = command(rig);
   ASSERT_GT(last_kpa, 5);
-  rig.outputs_kpa = {last_kpa - 0.5, 0.5};  // the right one is far behind
+  rig.outputs_kpa = {last_kpa - 0.5, 0.5};  // the right output is far behind its command
   rig.request(Request::Kind::stop);
   rig.tick();
   EXPECT_DOUBLE_EQ(command(rig), last_kpa - 0.5);
@@ -43,7 +43,7 @@ TEST_F(Outputs, WhileASequenceRunsItIsTheSequenceThatCommands) {
   SimulatedRig rig(settings);
   close_on_stone(rig);
   const double last_kpa = command(rig);
-  rig.outputs_kpa = {last_kpa - 1, last_kpa - 1};  // the report of one exchange ago
+  rig.outputs_kpa = {last_kpa - 1, last_kpa - 1};  // the report of the previous exchange
   rig.tick();
   EXPECT_GT(command(rig), last_kpa - 1);
 }
@@ -128,7 +128,7 @@ TEST_F(Outputs, AFaultThatIsBackAfterItWasAcknowledgedIsToldAgain) {
     rig.emergency_stop = true;
     rig.tick();
     rig.emergency_stop = false;
-    rig.bus_fault = FaultCode::bus_down;  // the second one
+    rig.bus_fault = FaultCode::bus_down;  // the second fault
     rig.run(0.5);
     EXPECT_EQ(rig.count(Event::Kind::fault_latched), 2U) << "round " << round;
     rig.bus_fault = FaultCode::none;

@@ -1,4 +1,5 @@
-// Requests in every state: what they do, what refuses them, and that each is answered in its tick.
+// Sends every request in every state: checks its effect, its refusals, and that it is answered in the same
+// tick.
 
 #include <gtest/gtest.h>
 
@@ -176,7 +177,7 @@ TEST_F(Requests, AStopOfOneStartThatPassesItKeepsItFromBeginning) {
       return event.kind == Event::Kind::request_refused && event.request == id;
     });
   };
-  // Both starts wait in the loop's lane, and a stop of the second passes them.
+  // Both starts wait in the queue of the loop, and a stop of the second start overtakes them.
   rig.request({Request::Kind::stop, 9, nullptr, 7});
   rig.tick();
   rig.request({Request::Kind::start, 7, &pick});
@@ -253,7 +254,7 @@ TEST_F(Requests, AFingerThatDoesNotComeToRestIsNotStarted) {
   rig.request(Request::Kind::start, &pick);
   const double began = rig.time_s();
   for (bool up = false; rig.time_s() - began < settings.rest_timeout_s + 1; up = !up) {
-    rig.fault[0].offset_mm = up ? 0.5 : -0.5;  // a person shakes it
+    rig.fault[0].offset_mm = up ? 0.5 : -0.5;  // a person shakes the finger
     rig.run(0.1);
     ASSERT_NE(rig.output().state, State::running);
   }

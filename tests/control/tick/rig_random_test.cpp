@@ -1,5 +1,5 @@
-// The promises hold under random requests and faults. The seed of a failure is printed and can
-// be given back in SOFTGRIP_SEED.
+// The promises hold for random requests and faults. A failure prints its seed; set SOFTGRIP_SEED to this seed
+// to repeat it.
 
 #include <gtest/gtest.h>
 
@@ -41,7 +41,7 @@ class Chaos {
     return std::uniform_int_distribution<Number>(lowest, highest)(random_);
   }
 
-  /// Every third rig goes to both sides of its rest pressure, every sixth rests at 10 kPa.
+  /// Every third rig can go above and below its rest pressure; every sixth has the rest pressure 10 kPa.
   RigSettings make_settings(std::uint64_t seed) {
     RigSettings settings = seed % 3 == 0 ? vacuum_settings() : two_finger_settings();
     if (seed % 6 == 0) {
@@ -56,7 +56,7 @@ class Chaos {
     return settings;
   }
 
-  /// Mostly removes faults, so that sequences get far.
+  /// Changes the faults. Most calls remove faults, so that sequences can progress.
   void change_the_world() {
     rig_.wire_cut = chance(0.05);
     rig_.emergency_stop = chance(0.05);
@@ -89,7 +89,7 @@ class Chaos {
   void step(Request::Kind asked) {
     const TickOutput before = rig_.output();
     const std::size_t told = rig_.events.size();
-    const TickOutput& now = rig_.tick();  // checks the commands
+    const TickOutput& now = rig_.tick();  // SimulatedRig checks the commands
     if (before.state == State::faulted && now.state != State::faulted) {
       EXPECT_EQ(asked, Request::Kind::acknowledge) << "at " << rig_.time_s();
     }
@@ -137,7 +137,7 @@ TEST(RandomRig, KeepsItsPromises) {
     starts += chaos.rig().count(Event::Kind::sequence_started);
     ASSERT_FALSE(HasFailure()) << "seed " << seed;
   }
-  if (seeds.size() > 1) {  // the chaos reached what it is about
+  if (seeds.size() > 1) {  // enough grips, faults and starts have occurred
     EXPECT_GT(grips, 500U);
     EXPECT_GT(faults, 500U);
     EXPECT_GT(starts, 500U);

@@ -1,4 +1,4 @@
-// Every state that the supervisor can get into, by every combination of what can happen in a tick.
+// Visits every state of the supervisor, by all combinations of inputs of a tick.
 
 #include "control/tick/supervisor.h"
 
@@ -17,7 +17,7 @@ namespace {
 
 using Kind = Request::Kind;
 
-/// One tick's surroundings.
+/// The inputs of one tick.
 struct Tick {
   Kind request = Kind::none;
   FaultCode fault = FaultCode::none;
@@ -28,8 +28,8 @@ struct Tick {
   bool interlock_open = false;
   Phase phase = Phase::idle;
   Rest rest = Rest::pending;
-  bool sequence_ends = false;  // after the tick, if one runs
-  std::uint32_t of_start = 0;  // of a stop
+  bool sequence_ends = false;  // after the tick, if a sequence runs
+  std::uint32_t of_start = 0;  // the start that a stop names
 };
 
 constexpr std::uint32_t own_start = 2;
@@ -60,7 +60,7 @@ std::vector<Tick> all_ticks() {
   return ticks;
 }
 
-/// The object's bytes are its state: it is plain values throughout.
+/// The bytes of the object are its state, because all its members are plain values.
 static_assert(std::is_trivially_copyable_v<Supervisor>);
 std::string bytes_of(const Supervisor& supervisor) {
   std::string bytes(sizeof supervisor, '\0');
@@ -72,11 +72,11 @@ class SupervisorSearch : public testing::Test {
  protected:
   SupervisorSearch() { sequence_.interlock = Interlock::always; }
 
-  /// Takes a tick, and says what the supervisor broke by it.
+  /// Runs one tick and returns the rule that the supervisor violated, or an empty text.
   std::string step(Supervisor& supervisor, const Tick& tick) {
     const State before = supervisor.state();
     TickInput input;
-    // A start is always newer than what would overtake it; that is a test of its own.
+    // A start is always newer than a request that would overtake it; another test covers this case.
     const bool names_one = tick.request == Kind::start || tick.request == Kind::check;
     const std::uint32_t id = tick.of_start != 0 ? own_start + 1 : names_one ? own_start : 1;
     input.request = {tick.request, id, names_one ? &sequence_ : nullptr, tick.of_start};

@@ -1,5 +1,5 @@
-// A sensor that jumps there and back is reported, and is a fault if the rig file requests it; a part that
-// slides is not.
+// A sensor whose reading jumps back and forth is reported. It is a fault if the rig file requests this. A
+// sliding part is not reported.
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@ namespace {
 
 class UnsteadyTest : public testing::Test {
  protected:
-  /// The left sensor is 5 mm off in every other tenth of a second.
+  /// Adds 5 mm to the left reading in every second interval of 0.1 s.
   static void jump(SimulatedRig& rig, double seconds) {
     for (const double end_s = rig.time_s() + seconds; rig.time_s() < end_s;) {
       rig.fault[0].offset_mm = std::fmod(rig.time_s(), 0.2) < 0.1 ? 5 : 0;

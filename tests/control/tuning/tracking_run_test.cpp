@@ -20,7 +20,7 @@ namespace {
 using sim::model_named;
 using sim::tick_s;
 
-/// The gains that the search of bench/tracking_study.cpp finds for every scheme at Ms <= 2.
+/// The gains that bench/tracking_study.cpp finds for all feedforwards at Ms <= 2.
 constexpr PidSettings found{2.7, 13, 0, 0.02, 1, AntiWindup::back_calculation, 0.5};
 
 constexpr LimitSettings to_60_kpa{0, 60};
@@ -79,7 +79,7 @@ TEST(TrackingRun, ItsTraceIsWhatTheErrorsAreTakenOf) {
     worst = std::max(worst, std::abs(error));
     squares += error * error;
   }
-  // The errors are taken in the middle of every tick, too.
+  // The RMSE also uses the errors in the middle of each tick.
   EXPECT_LE(worst, result.worst_mm);
   EXPECT_NEAR(std::sqrt(squares / static_cast<double>(trace.time_s.size())), result.rmse_mm,
               0.1 * result.rmse_mm);
@@ -108,7 +108,8 @@ TEST(TrackingRun, OneSeedOneResult) {
   EXPECT_NE(first.rmse_mm, track(run).rmse_mm);
 }
 
-// The share of models off by so much that are not called healthy: the rate that model_health.h states.
+// The share of models with this scatter that are not called healthy. Compared with the rate that
+// model_health.h states.
 TEST(TrackingRun, ModelHealthToleratesAFewPercentAndNotTwenty) {
   const auto not_healthy = [](double scatter) {
     int count = 0;
@@ -130,7 +131,8 @@ TEST(TrackingRun, ModelHealthToleratesAFewPercentAndNotTwenty) {
   EXPECT_EQ(not_healthy(0.20), 23);
 }
 
-// 1/(c s) behind a dead time under a gain: |L| = 1 at K/c, phase there -90 degrees - dead time.
+// For a plant 1/(c s) with a dead time and the gain K, |L| = 1 at K/c, where the phase is -90 degrees minus
+// that of the dead time.
 TEST(LoopMargins, AgreeWithAnIntegratorByHand) {
   model::Model model = model::without_block(model_named("bench_twin"), *model::find_block("bouc_wen"));
   model = model::without_block(model, *model::find_block("valve_lag"));
@@ -149,7 +151,7 @@ TEST(LoopMargins, AgreeWithAnIntegratorByHand) {
       loop_margins(model, {5, 0, 0, 0.02, 1, AntiWindup::none, 1}, to_60_kpa, tick_s, tick_s);
   EXPECT_NEAR(half.crossover_hz, 5 / (2 * M_PI), 0.01);
   EXPECT_GT(half.sensitivity, 1.5);
-  // The stability limit of an integrator with a dead time is K L = pi/2.
+  // An integrator with a dead time is stable up to K L = pi/2.
   const double limit = M_PI / 2 / dead_s;
   EXPECT_TRUE(std::isfinite(
       loop_margins(model, {0.98 * limit, 0, 0, 0.02, 1, AntiWindup::none, 1}, to_60_kpa, tick_s, tick_s)
@@ -159,7 +161,7 @@ TEST(LoopMargins, AgreeWithAnIntegratorByHand) {
           .sensitivity));
 }
 
-/// The smallest slope either way while a finger is loaded and unloaded twice.
+/// Returns the smallest slope, for rising and falling pressure, while a finger is loaded and unloaded twice.
 double smallest_gain(const model::Model& model, double pressure_max_kpa) {
   constexpr int steps = 1000;
   constexpr double aside_kpa = 1e-4;
@@ -177,7 +179,7 @@ double smallest_gain(const model::Model& model, double pressure_max_kpa) {
   return smallest;
 }
 
-/// This finger is stiffest at the very end of its second unloading, 2.7 times as stiff as anywhere before it.
+/// This finger is stiffest at the end of its second unloading: 2.7 times as stiff as anywhere before.
 model::Model stiff_at_its_end() {
   model::Model model = model::with_block({}, model::block_of<model::BoucWen>({{"alpha_mm_per_kpa", 0.39},
                                                                               {"beta_mm_per_kpa", 0.158},
@@ -192,8 +194,8 @@ model::Model stiff_at_its_end() {
   return model;
 }
 
-// Under an integrator alone |L| = ki gain / (2 pi f): the crossover says what the smallest gain was taken to
-// be.
+// With integral control alone, |L| = ki gain / (2 pi f). The crossover frequency therefore shows which
+// smallest gain the function used.
 TEST(LoopMargins, AreThoseOfTheStiffestPlaceOfTwoCycles) {
   const model::Model model = stiff_at_its_end();
   const double gain = smallest_gain(model, 60);
