@@ -1,4 +1,5 @@
-// What holds for every block of the catalogue, whatever it does. A new block is tested here without a line.
+// Properties that every block of the catalogue must have. A new block is tested here without a change of this
+// file.
 
 #include <gtest/gtest.h>
 
@@ -19,7 +20,7 @@ namespace {
 constexpr double tick_s = 5e-3;
 constexpr SignalName signal = SignalName::tp2;
 
-/// Every block type in turn, with its id for messages.
+/// Calls `check` for every block type; a failure shows the id of the block.
 template <class Check>
 void for_every_block(Check&& check) {
   for (std::size_t type = 0; type < catalogue().size(); ++type) {
@@ -28,18 +29,18 @@ void for_every_block(Check&& check) {
   }
 }
 
-/// The twin with this block in it, at its typical values.
+/// Returns bench_twin with this block, which has its default values.
 Model twin_with(std::size_t type) {
   const Model twin = preset("bench_twin");
   return position_of(twin, type) ? twin : with_block(twin, default_block(type));
 }
 
-/// Draws numbers once per sample.
+/// Returns true if the block draws a random number per sample.
 bool is_random(std::size_t type) {
   return type == block_type<SensorNoise>() || type == block_type<Outliers>();
 }
 
-/// Surroundings that wake every block.
+/// Returns surroundings in which every block has an effect.
 Surroundings around(double time_s) {
   return {time_s, 450 + 40 * std::sin(0.3 * time_s), 24 + 3 * std::cos(0.2 * time_s)};
 }
@@ -61,7 +62,7 @@ TEST(EveryBlock, DoesNothingAtItsNeutralValues) {
   });
 }
 
-// What a block passes on joins without a gap and lasts as long as what it got.
+// The output segments of a block join without a gap, and their duration is that of the input.
 TEST(EveryBlock, KeepsTimeAndContinuity) {
   for (std::size_t type = 0; type < catalogue().size(); ++type) {
     const Model model{"one", "test", {default_block(type)}};
@@ -100,7 +101,7 @@ TEST(EveryBlock, KeepsTimeAndContinuity) {
   }
 }
 
-// A held command after reset() changes nothing while the surroundings stay as they are.
+// After reset(), a held command does not change the reading while the surroundings remain constant.
 TEST(EveryBlock, RestsAfterReset) {
   for_every_block([](std::size_t type) {
     if (is_random(type)) return;
@@ -118,10 +119,10 @@ TEST(EveryBlock, RestsAfterReset) {
   });
 }
 
-// A command that is straight over a step may be given in halves. Blocks that say that they are exact are; of
-// the others, what a step of 5 ms leaves must be small.
+// A linear command can be given as one step or as two halves. Blocks that are documented as exact return the
+// same result. For the others the difference after a step of 5 ms must be small.
 TEST(EveryBlock, StepsInHalvesAsInOne) {
-  // Both lags are exact for straight input; here they stand behind another one.
+  // Alone, both lags are exact for a linear input; here another lag precedes them.
   const std::vector<std::size_t> approximate{block_type<AsymmetricValveLag>(),
                                              block_type<ChamberLag>(),
                                              block_type<PressureRegulator>(),
@@ -139,7 +140,8 @@ TEST(EveryBlock, StepsInHalvesAsInOne) {
                                              block_type<Backlash>(),
                                              block_type<SensorLag>()};
   for_every_block([&](std::size_t type) {
-    // The slope of a clock offset is that of the last step. Its own test states the error.
+    // A clock offset uses the slope of the last step, so halves differ; the error is tested in
+    // clock_offset_test.cpp.
     if (is_random(type) || type == block_type<ClockOffset>()) return;
     const double tolerance_mm = std::ranges::count(approximate, type) == 0 ? 1e-8 : 2e-4;
     Chain<double> whole(twin_with(type)), halves(twin_with(type));
@@ -152,7 +154,7 @@ TEST(EveryBlock, StepsInHalvesAsInOne) {
   });
 }
 
-// A corner of the pressure inside the sample is seen by the step alone.
+// Only step() handles a corner of the pressure within the sample.
 TEST(EveryBlock, ForetellsWhatItsStepGives) {
   for_every_block([](std::size_t type) {
     const BlockInfo& info = catalogue()[type].info;

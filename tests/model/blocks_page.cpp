@@ -1,6 +1,6 @@
-// docs/reference/blocks.md, written from the catalogue.
+// Writes docs/reference/blocks.md from the catalogue.
 //   model_blocks_page            prints the page
-//   model_blocks_page --check    1 when the file in the source tree differs from it
+//   model_blocks_page --check    exits with 1 if the file in the source tree differs from the page
 //   model_blocks_page --write    writes the file
 
 #include <fstream>

@@ -1,5 +1,5 @@
-// The same chain under automatic differentiation: derivatives of the reading with respect to every parameter,
-// against central differences, and the trial evaluation of the inverse against the step.
+// Automatic differentiation of the chain: compares the derivative of the reading with respect to each
+// parameter with central differences, and peek(), which the inverse uses, with step().
 
 #include <ceres/jet.h>
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ constexpr int most_parameters = 20;
 using Jet = ceres::Jet<double, most_parameters>;
 constexpr double dt = 5e-3;
 
-// Surroundings that wake every block.
+// Returns surroundings in which every block has an effect.
 Surroundings around(double time_s) {
   Surroundings s;
   s.time_s = time_s;
@@ -49,7 +49,7 @@ std::vector<Jet> readings_with_derivatives(const Model& model, SignalName signal
   return y;
 }
 
-// Numbers that choose or draw; a fit must not free them.
+// Returns true for parameters that select a variant or control random numbers; a fit must not change them.
 bool has_no_derivative(const std::string& path) {
   return path == "bouc_wen.exponent" || path == "sensor_noise.correlation_time_s" ||
          path == "outliers.probability" || path == "quantisation.step_mm";
@@ -69,8 +69,8 @@ void expect_derivatives_agree(const Model& model, SignalName signal) {
     down[k] -= h;
     const std::vector<double> y_up = readings(with_values(model, up), signal, 0);
     const std::vector<double> y_down = readings(with_values(model, down), signal, 0);
-    // At a kink (a corner of the signal, a contact that begins) the two one-sided differences disagree and
-    // the derivative is that of one side.
+    // At a kink (a corner of the signal, or a contact that begins) the two one-sided differences differ, and
+    // the derivative equals one of them.
     double largest = 0;
     double outside = 0;
     for (std::size_t i = 0; i < plain.size(); ++i) {
@@ -90,7 +90,8 @@ TEST(ChainDerivatives, PublishedModelOnTriangles) {
   expect_derivatives_agree(preset("zhang2025"), SignalName::tp1);
 }
 
-// The delay is off the grid: on it the response to a kink has two one-sided derivatives.
+// The delay is not a multiple of the sample time. If it were, the response to a kink would have two one-sided
+// derivatives.
 TEST(ChainDerivatives, TwinWithFractionalDelayAndLag) {
   Model twin = preset("bench_twin");
   twin.blocks[0].values[0] = 0.1317;
@@ -120,14 +121,15 @@ TEST(ChainDerivatives, EveryBlockInTheTwin) {
     expect_derivatives_agree(with_block(twin, default_block(type)), SignalName::tp2);
   }
   expect_derivatives_agree(with_block(twin, {*find_block("pressure_saturation"), {41.3}}), SignalName::tp2);
-  // Off the grid: on it the response to a jump has two one-sided derivatives.
+  // The band does not end at a sample. If it did, the response to a jump would have two one-sided
+  // derivatives.
   expect_derivatives_agree(with_block(twin, {block_type<ValveStiction>(), {2.37}}), SignalName::tp2);
-  // So much that the derivative stands out of the rounding of the differences.
+  // The values are so large that the derivative exceeds the rounding errors of the differences.
   expect_derivatives_agree(with_block(twin, {block_type<RateDependentLevelling>(), {3.0, 20.0, 0.05}}),
                            SignalName::tp2);
 }
 
-// With an effect at zero the fit must see how to leave it.
+// If the value of an effect is 0, its derivative must still show a fit in which direction to change it.
 TEST(ChainDerivatives, NeutralValuesHaveThem) {
   const Model twin = preset("bench_twin");
   for (const std::string id : {"supply_sag",
@@ -172,9 +174,10 @@ TEST(ChainDerivatives, NeutralValuesHaveThem) {
 
 constexpr double derivative_tolerance = 1e-5;
 
-// How far a trial's derivative lies outside its two one-sided differences. At a kink (the pressure turns, the
-// contact begins) these disagree and the derivative is that of one side. Where they disagree a kink may also
-// lie a little beside p, so that neither difference is the slope at p: nearer ones judge the same derivative.
+// Returns by how much the derivative of peek() is outside the interval between its two one-sided differences.
+// At a kink (the pressure turns, or a contact begins) these differ, and the derivative equals one of them. A
+// kink may also be close to p, so that neither difference is the slope at p. Then smaller differences are
+// tried.
 double outside_of_differences(Chain<double>& chain, double p, const Surroundings& now,
                               const Dual<double>& trial) {
   double outside = 0;
@@ -189,7 +192,7 @@ double outside_of_differences(Chain<double>& chain, double p, const Surroundings
 }
 
 TEST(ChainPeek, IsWhatTheStepWillGive) {
-  // The preset actuators bare, with a contact, and with every block that is undone implicitly.
+  // The actuators of the presets alone, with a contact, and with every block that has an implicit inverse.
   std::vector<Model> models{preset("zhang2025"), preset("bench_twin"),
                             with_block(preset("zhang2025"), {*find_block("contact"), {9.0, 1.5}})};
   Model smooth = preset("bench_twin");
@@ -197,7 +200,7 @@ TEST(ChainPeek, IsWhatTheStepWillGive) {
   for (std::size_t type = 0; type < catalogue().size(); ++type) {
     if (position_of(all, type)) continue;
     BlockSpec block = default_block(type);
-    // At a corner inside a sample the rate of the pressure is not the sample's: the step alone sees it.
+    // At a corner within a sample the rate of the pressure is not constant; only step() handles this.
     if (type == block_type<RateDependentWidth>()) block = neutral_block(type);
     all = with_block(all, block);
     const BlockInfo& info = catalogue()[type].info;
@@ -207,7 +210,7 @@ TEST(ChainPeek, IsWhatTheStepWillGive) {
   }
   models.push_back(smooth);
   models.push_back(all);
-  // A corner inside the sample (a threshold that is passed) is seen by the step alone.
+  // Only step() handles a corner within the sample, such as a threshold that is crossed.
   const std::size_t with_corners = models.size() - 1;
   for (std::size_t m = 0; m < models.size(); ++m) {
     const double tolerance = m == with_corners ? 1e-4 : 1e-12;

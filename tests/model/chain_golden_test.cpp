@@ -1,5 +1,5 @@
-// The chain against numbers that scipy computed from the continuous equations: golden/make_golden.py, which
-// writes down signals and parameters on its own, so that a slip in a preset or a signal shows as well.
+// Compares the chain with results that SciPy computed from the continuous equations. golden/make_golden.py
+// states signals and parameters independently, so the test also detects an error in a preset or a signal.
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,5 @@
-// The chain against CVODE on the same piecewise-linear command: below 1e-6 mm at any sample time.
+// Compares the chain with CVODE for the same piecewise linear command: the difference is below 1e-6 mm at any
+// sample time.
 
 #include <gtest/gtest.h>
 
@@ -74,8 +75,8 @@ INSTANTIATE_TEST_SUITE_P(
              std::to_string(static_cast<int>(param.param.rate_hz)) + "Hz";
     });
 
-// The other exponents, on the twin without its delay (so that jumps of the slope are sampled), with gamma and
-// eta scaled so that the state levels off at the same size.
+// Tests the other exponents on bench_twin without its delay (so that jumps of the slope coincide with
+// samples). gamma and eta are scaled so that the state saturates at the same value.
 TEST(ChainReferenceExponents, AgreeAtOneKilohertz) {
   for (const int exponent : {2, 3, 4}) {
     Model model = preset("bench_twin");
@@ -99,7 +100,8 @@ TEST(ChainReferenceFractionalDelay, AgreesOffTheGrid) {
   }
 }
 
-// 44 kPa up, then down, each within one sample of 10 ms, and the displacement 100 times finer.
+// A step of 44 kPa up, then down, each within one sample of 10 ms. The displacement is computed with a 100
+// times smaller step.
 constexpr double sample_s = 0.01;
 constexpr std::size_t finer = 100, samples = 60;
 
@@ -115,7 +117,7 @@ std::vector<double> displacement_mm(const Model& model) {
   return integrate(physics_of(model), command_kpa, sample_s / finer);
 }
 
-/// Of z'' = acceleration(z, z', y) at the samples, by the classical Runge-Kutta method.
+/// Solves z'' = acceleration(z, z', y) with the classical Runge-Kutta method and returns z at the samples.
 template <class Acceleration>
 std::vector<double> followed_mm(const std::vector<double>& y, Acceleration&& acceleration) {
   const double h = sample_s / finer;

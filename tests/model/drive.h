@@ -1,5 +1,5 @@
 #pragma once
-// Driving single blocks and whole chains from tests.
+// Functions that drive single blocks and whole chains in tests.
 
 #include <cmath>
 #include <span>
@@ -10,14 +10,14 @@
 
 namespace softgrip::model::testing {
 
-/// A block from a list of its values.
+/// Creates a block from a list of its parameter values.
 template <class Block>
 Block make(std::initializer_list<double> values, double sample_time_s = 0) {
   const std::vector<double> list(values);
   return Block(std::span<const double>(list), Preparation{sample_time_s, 1});
 }
 
-/// What a pressure or displacement block passes on for one segment.
+/// Returns the output segments of a pressure or displacement block for one input segment.
 template <class Block>
 std::vector<Segment<double>> pass(Block& block, const Segment<double>& in, const Surroundings& around = {}) {
   std::vector<Segment<double>> out;
@@ -25,8 +25,8 @@ std::vector<Segment<double>> pass(Block& block, const Segment<double>& in, const
   return out;
 }
 
-/// Steps a pressure or displacement block along straight pieces of length dt through `values` (the first one
-/// from `from`) and returns its output after each.
+/// Drives a pressure or displacement block through `values` along linear segments of length dt; the first
+/// segment starts at `from`. Returns the output after each segment.
 template <class Block>
 std::vector<double> drive(Block& block, double from, std::span<const double> values, double dt) {
   std::vector<double> out;
@@ -38,7 +38,8 @@ std::vector<double> drive(Block& block, double from, std::span<const double> val
   return out;
 }
 
-/// The same for an element.
+/// Drives an element along a linear segment from `from` to `to` [kPa] of dt [s]. Sets `from` to `to` and
+/// returns the output.
 template <class Block>
 double move(Block& element, double& from, double to, double dt) {
   element.step(Segment<double>::straight(dt, from, to), {});

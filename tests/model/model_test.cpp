@@ -36,7 +36,8 @@ TEST(Catalogue, EveryDeclarationIsSound) {
   }
 }
 
-// mm/kPa is _mm_per_kpa, 1/mm^2 is _per_mm2, degC is _c, nothing is nothing.
+// Returns the ending of a key for a unit: _mm_per_kpa for mm/kPa, _per_mm2 for 1/mm^2, _c for degC, empty for
+// no unit.
 std::string ending_of(const std::string& unit) {
   std::string ending = unit.empty() ? "" : "_" + unit;
   for (const auto& [written, named] : {std::pair<std::string, std::string>{"degC", "C"},
@@ -101,7 +102,7 @@ TEST(Model, BlocksFindTheirPlace) {
   EXPECT_TRUE(validate(model).empty());
   EXPECT_EQ(*position_of(model, "valve_lag"), 0u);
   EXPECT_EQ(*position_of(model, "sensor_noise"), 4u);
-  EXPECT_EQ(*position_of(model, "quantisation"), 5u);  // last, though it came first
+  EXPECT_EQ(*position_of(model, "quantisation"), 5u);  // last in the chain, although it was first in the list
   EXPECT_FALSE(position_of(model, "transport_delay"));
   EXPECT_FALSE(position_of(without_block(model, *find_block("contact")), "contact"));
 }
@@ -111,7 +112,7 @@ TEST(Model, SaysWhatIsWrong) {
   EXPECT_EQ(validate(Model{}).size(), 1u);  // no element
   Model model = preset("bench_twin");
   model.blocks.push_back({lag, {0.1}});
-  EXPECT_EQ(validate(model).size(), 2u);  // order, twice
+  EXPECT_EQ(validate(model).size(), 2u);  // two errors: the block is repeated and in the wrong order
   model = preset("zhang2025");
   model.blocks[0].values[4] = 1.5;
   EXPECT_EQ(validate(model).size(), 1u);

@@ -1,5 +1,5 @@
 #pragma once
-// The preset models, loaded from their files as users load them.
+// The preset models, read from their files in the same way as a user's model.
 
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@ inline Model preset(const std::string& name) {
   return *model;
 }
 
-/// One value of a model by its path.
+/// Returns one value of a model by its path, or 0 if the model does not have it.
 inline double number(const Model& model, std::string_view path) {
   const auto index = find_path(model, path);
   return index ? flat_values(model)[*index] : 0.0;

@@ -12,10 +12,10 @@
 namespace softgrip::model::testing {
 namespace {
 
-// State: p, h, x1.. xn. With no lag the pressure is the command itself and p is not integrated.
+// The state is p, h, x1 .. xn. Without a lag the pressure equals the command, and p is not integrated.
 struct Problem {
   const Physics& physics;
-  double from_s = 0, from_kpa = 0, slope = 0;  // the delayed command on the current straight stretch
+  double from_s = 0, from_kpa = 0, slope = 0;  // the delayed command on the current linear segment
 
   [[nodiscard]] double command(double t) const { return from_kpa + slope * (t - from_s); }
 };
@@ -47,7 +47,7 @@ std::vector<double> integrate(const Physics& physics, const std::vector<double>&
   const double dt = sample_time_s;
   const std::size_t count = command_kpa.size();
   const double end_s = dt * static_cast<double>(count - 1);
-  // The straight stretches of the delayed command: times at which its slope changes.
+  // The delayed command consists of linear segments; these are the times at which its slope changes.
   struct Corner {
     double at_s, kpa;
   };

@@ -1,13 +1,13 @@
 #pragma once
-// The continuous equations of the chain's core, integrated by SUNDIALS CVODE: a referee that shares no
-// formula with model/. Valve delay and lag, Bouc-Wen and Kelvin-Voigt; the rest of the chain is not in it.
+// Reference solution: SUNDIALS CVODE integrates the continuous equations, with no formula from model/. It
+// includes valve delay and lag, Bouc-Wen and Kelvin-Voigt, but not the other blocks of the chain.
 
 #include <functional>
 #include <vector>
 
 namespace softgrip::model::testing {
 
-/// The numbers of the equations, in the units of the model files.
+/// The parameters of the equations, in the units of the model files.
 struct Physics {
   double delay_s = 0, lag_s = 0;
   double alpha = 0, beta = 0, gamma = 0, eta = 0;
@@ -16,8 +16,8 @@ struct Physics {
   std::vector<double> k, c;
 };
 
-/// Displacement at times i * sample_time_s for a command that is piecewise linear between the given samples
-/// (the first one from rest at 0). Relative tolerance 1e-12.
+/// Returns the displacement at the times i * sample_time_s. The command is piecewise linear between the given
+/// samples and starts from rest at 0. The relative tolerance is 1e-12.
 [[nodiscard]] std::vector<double> integrate(const Physics& physics, const std::vector<double>& command_kpa,
                                             double sample_time_s);
 

@@ -13,7 +13,7 @@
 namespace softgrip::model::testing::asymmetric_bouc_wen_test {
 namespace {
 
-// alpha, beta, gamma, eta, exponent of the element that is skewed.
+// Parameters alpha, beta, gamma, eta and exponent of the skewed element.
 const std::vector<std::vector<double>> materials{
     {0.35, 0.2, 0.03, 0.05, 1}, {0.35, 0.2, -0.02, 0.05, 1}, {0.211, 0.171, 0.004, 0.006, 2}};
 
@@ -25,7 +25,7 @@ Model skewed(const std::vector<double>& material, double delta_per_kpa, double e
 
 const std::vector<double> turns{40, 12, 33, -15, 8, -3, 60, 0, 25, 0};
 
-// The equation as it stands in the papers, by Runge-Kutta in steps of 1/200 kPa.
+// Integrates the published equation with the Runge-Kutta method in steps of 1/200 kPa.
 double integrated(const std::vector<double>& v, const BoucWenSkew<double>& skew,
                   const std::vector<double>& turning_points,
                   const std::function<void(double p, double y)>& at) {
@@ -57,7 +57,7 @@ TEST(AsymmetricBoucWen, SkewsTheChainsBoucWenByItsEquation) {
       const double delta = share * std::min(material[3], material[2] + material[3]);
       Chain<double> chain(skewed(material, delta));
       integrated(material, {delta, 0, 0}, turns, [&](double p, double y) {
-        // 2e-5 is what the integration of the kink at h = 0 leaves.
+        // The integration of the kink at h = 0 has an error of 2e-5.
         ASSERT_NEAR(chain.step(1.0, p), y, 2e-5) << "exponent " << material[4] << " at " << p;
       });
     }
@@ -76,7 +76,7 @@ TEST(AsymmetricBoucWen, LoadingAndUnloadingHaveNumbersOfTheirOwn) {
   }
 }
 
-// Whatever the numbers: what has levelled off one way shrinks on the way back.
+// For all parameters, a state that has saturated in one direction decreases when the pressure returns.
 TEST(AsymmetricBoucWen, NoSkewLetsTheStateGrowOnTheWayBack) {
   for (const std::vector<double>& material : materials) {
     for (const double epsilon : {-5.0, 5.0}) {
@@ -112,7 +112,7 @@ TEST(AsymmetricBoucWen, SkewLeavesNoTraceAtZero) {
   }
 }
 
-// What the inverse asks of the chain knows of the skew.
+// peek(), which the inverse uses, includes the skew.
 TEST(AsymmetricBoucWen, PeekKnowsOfTheSkew) {
   for (const std::vector<double>& material : materials) {
     Chain<double> chain(skewed(material, -0.7 * material[3], 0.2 * material[3], -0.1));
@@ -126,7 +126,7 @@ TEST(AsymmetricBoucWen, PeekKnowsOfTheSkew) {
   }
 }
 
-// On loading alone delta is a part of gamma + eta; the way back tells them apart.
+// During the first loading, delta acts like a part of gamma + eta. Only unloading distinguishes them.
 TEST(AsymmetricBoucWen, FirstLoadingSeesTheSkewAsPartOfTheSum) {
   const std::vector<double> other{0.35, 0.2, 0.02, 0.04, 1};
   Chain<double> a(skewed({0.35, 0.2, 0.03, 0.05, 1}, -0.02));

@@ -13,7 +13,8 @@ namespace {
 
 using Block = BoucWen<double>;
 
-// alpha, beta, gamma, eta, exponent; eta above |gamma|, so that a closed loop cannot give energy back.
+// Parameters alpha, beta, gamma, eta and exponent. eta exceeds |gamma|, so a closed loop cannot produce
+// energy.
 const std::vector<std::vector<double>> materials{{0.211, 0.171, 0.016, 0.024, 1},
                                                  {0.35, 0.2, -0.02, 0.05, 1},
                                                  {0.211, 0.171, 0.004, 0.006, 2},
@@ -57,7 +58,7 @@ TEST(BoucWen, StepSizeDoesNotMatter) {
 }
 
 TEST(BoucWen, SolvesItsEquation) {
-  // dh/dp by differences of the closed form against the right-hand side, off the sign changes.
+  // Compares finite differences of the closed form with the equation for dh/dp, away from the sign changes.
   for (const auto& v : materials) {
     Block block = make_material(v);
     double from = 0;
@@ -93,7 +94,7 @@ TEST(BoucWen, StateStaysBounded) {
 }
 
 TEST(BoucWen, ClosedLoopsDissipate) {
-  // Work of the pressure over a closed loop, after it has settled: never negative, positive with eta.
+  // The work of the pressure over a settled closed loop is never negative, and is positive if eta is.
   for (const auto& v : materials) {
     Block block = make_material(v);
     double from = 0;

@@ -15,7 +15,7 @@ TEST(ClockOffset, AStraightMotionIsReadAheadOfTime) {
   EXPECT_NEAR(block.output(), 3 + 5 * (0.02 * 50 + 0.12), 1e-12);
 }
 
-// The slope of a step is that of its middle: the error falls with the length of the steps.
+// The block uses the slope at the middle of the last step, so its error is proportional to the step length.
 TEST(ClockOffset, AParabolaIsReadWithAnErrorInProportionToTheStep) {
   constexpr double lead_s = 0.12;
   for (const double step_s : {0.02, 0.01, 0.005}) {

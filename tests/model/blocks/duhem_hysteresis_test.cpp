@@ -36,7 +36,7 @@ TEST(DuhemHysteresis, NeitherTimeNorStepSizeMatters) {
   }
 }
 
-// A symmetric loop, settled between 10 and 50 kPa, falls on itself when it is turned about its centre.
+// Measures how far a settled loop between 10 and 50 kPa deviates from point symmetry; 0 if it is symmetric.
 double asymmetry(double unloading_kpa, double loading_kpa) {
   Block block = make<Block>({0.05, unloading_kpa, loading_kpa});
   double from = 0;

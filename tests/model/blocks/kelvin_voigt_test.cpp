@@ -71,7 +71,8 @@ TEST(KelvinVoigt, StepSizeDoesNotMatter) {
 }
 
 TEST(KelvinVoigt, AnyBranchBetweenSpringAndDashpot) {
-  // tau far below dt: part of the spring. tau far above: a dashpot, p t / c. No stiffness: the same exactly.
+  // A very short time constant makes a branch a part of the spring. A very long one makes it a dashpot: p t /
+  // c. A branch without stiffness is exactly this dashpot.
   Block spring = make<Block>({1e9, 5.0, 1e-9});
   double from = 0;
   EXPECT_NEAR(move(spring, from, 30, 0.01), 6.0, 1e-6);
@@ -87,7 +88,8 @@ TEST(KelvinVoigt, AnyBranchBetweenSpringAndDashpot) {
 }
 
 TEST(KelvinVoigt, SeesTheParabolaThroughBeginEndAndMean) {
-  // u(s) = 10 s + 8 s (1 - s) over one second: 10/2 + 8/6 on average; compared with 2000 straight pieces.
+  // The input u(s) = 10 s + 8 s (1 - s) over 1 s has the mean 10/2 + 8/6. The result is compared with 2000
+  // linear segments.
   Block curved(two_branches, Preparation{}), pieces(two_branches, Preparation{});
   const Segment<double> out = curved.step({1.0, 0.0, 10.0, 5.0 + 8.0 / 6.0}, {});
   double from = 0, integral = 0;

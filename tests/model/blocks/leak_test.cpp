@@ -15,13 +15,14 @@ namespace {
 using Block = Leak<double>;
 constexpr double atmosphere_kpa = LineLoss<double>::atmosphere_kpa;
 
-/// ISO 6358-1, absolute pressures, a critical ratio of a half, per conductance.
+/// Returns the flow of ISO 6358-1 per unit of conductance, for absolute pressures and a critical pressure
+/// ratio of 0.5.
 double flow(double from_kpa, double to_kpa) {
   const double ratio = std::max(to_kpa / from_kpa, 0.5);
   return from_kpa * std::sqrt(1 - std::pow((ratio - 0.5) / 0.5, 2));
 }
 
-/// The gauge pressure at the finger from which as much flows out as comes, by bisection of both flows.
+/// Returns the gauge pressure at the finger at which inflow equals outflow, found by bisection.
 double balanced_kpa(double before_kpa, double conductance_ratio) {
   double low = 0, high = before_kpa;
   for (int i = 0; i < 100; ++i) {

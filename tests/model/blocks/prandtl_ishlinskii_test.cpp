@@ -53,7 +53,8 @@ TEST(PrandtlIshlinskii, ATrainedFingerLoadsAsItWillAgain) {
 }
 
 TEST(PrandtlIshlinskii, ReturnsOnTheSameCurveTwiceAsLarge) {
-  // Masing's rule: from a reversal every branch is the initial curve, doubled in both directions.
+  // Masing's rule: from a reversal on, a branch is the initial loading curve scaled by two in both
+  // directions.
   Block virgin = fresh();
   Block back = fresh();
   back.step(straight(0, 60), {});
@@ -112,7 +113,7 @@ TEST(PrandtlIshlinskii, MeanIsThatOfManySmallSteps) {
 }
 
 TEST(PrandtlIshlinskii, GivesNoEnergyAway) {
-  // Around a closed loop the work of the pressure on the displacement is never negative.
+  // The work of the pressure on the displacement over a closed loop is never negative.
   std::mt19937_64 random(13);
   std::uniform_real_distribution<double> pressure(0, 60);
   std::vector<double> bent = operators;
@@ -136,7 +137,7 @@ TEST(PrandtlIshlinskii, GivesNoEnergyAway) {
   }
 }
 
-/// What generalised plays are: plays of what their envelopes make of the pressure, and one curve without.
+/// Generalised plays equal ordinary plays whose input is the envelope function of the pressure.
 TEST(PrandtlIshlinskii, BentEnvelopesAreAPressureOfTheirOwn) {
   const double bend = 0.3, skew = -0.15, end_kpa = 50;
   const auto seen_kpa = [&](double p) {

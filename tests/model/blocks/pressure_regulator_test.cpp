@@ -16,8 +16,8 @@ namespace {
 
 using Block = PressureRegulator<double>;
 
-/// The equations in steps of two microseconds: a referee that knows no exponential, with the flow of ISO 6358
-/// written down once more.
+/// Reference: integrates the equations in steps of 2 us without exponential functions, with its own code for
+/// the flow of ISO 6358.
 class SmallSteps {
  public:
   SmallSteps(double filling_s, double venting_s, double overlap, double integral_s, double full)
@@ -53,7 +53,7 @@ class SmallSteps {
   double integral_ = 0;
 };
 
-/// Steps as a board holds them, and ramps of up to 600 kPa/s.
+/// The input consists of held steps, as from a board, and of ramps of up to 600 kPa/s.
 TEST(PressureRegulator, MeetsASmallStepIntegrator) {
   std::mt19937_64 random(31);
   std::uniform_real_distribution<double> pressure(0, 60), duration(0.1, 0.4);
@@ -68,7 +68,8 @@ TEST(PressureRegulator, MeetsASmallStepIntegrator) {
     worst = std::max(worst, std::abs(block.output() - referee.pressure_));
     at = to;
   }
-  // Where the integral begins to move again within a step: a fifth of a percent of the largest jump.
+  // The largest error, 0.2 % of the largest jump, occurs in steps within which the integral begins to change
+  // again.
   EXPECT_LT(worst, 0.002 * 62) << "seed 31";
 }
 
@@ -78,7 +79,7 @@ TEST(PressureRegulator, StandsStillWithinItsOverlapUntilTheIntegralHasGrown) {
   pass(block, Segment<double>::straight(0, 20, 20.4));
   pass(block, Segment<double>::straight(0.05, 20.4, 20.4));
   EXPECT_EQ(block.output(), 20);
-  // 0.4 + 0.4 t / 0.4 s reaches 0.5 after 0.1 s.
+  // The integral 0.4 + 0.4 t / 0.4 s reaches the overlap of 0.5 after 0.1 s.
   pass(block, Segment<double>::straight(0.04, 20.4, 20.4));
   EXPECT_EQ(block.output(), 20);
   pass(block, Segment<double>::straight(0.5, 20.4, 20.4));

@@ -18,7 +18,7 @@ TEST(PseudoElasticSoftening, FirstLoadingIsFreeOfIt) {
   EXPECT_EQ(block.largest_kpa(), 40);
 }
 
-// The inverse is the formula of the source, which needs no solving.
+// Compares the output with the published formula, which is the inverse and needs no iteration.
 TEST(PseudoElasticSoftening, ObeysTheSourcesFormulaBelowTheLargestLoad) {
   Block block = make<Block>({0.01, 10.0});
   drive(block, 0, std::vector<double>{40}, 1.0);
@@ -37,10 +37,10 @@ TEST(PseudoElasticSoftening, GoesTheSameWayBackAndJoinsTheFirstLoading) {
   EXPECT_NEAR(out[3], out[1], 1e-12);
   EXPECT_NEAR(out[4], 40, 1e-12);
   EXPECT_EQ(out[5], 45);
-  EXPECT_GT(out[6], out[1]);  // the larger load has softened it more
+  EXPECT_GT(out[6], out[1]);  // the larger load has softened the finger more
 }
 
-// So strong and narrow that a factor on the pressure would fall while the pressure rises.
+// With these parameters, a factor on the pressure would decrease faster than the pressure rises.
 TEST(PseudoElasticSoftening, RisesWithThePressureWhateverItsNumbers) {
   Block block = make<Block>({0.5, 0.5});
   drive(block, 0, std::vector<double>{50}, 1.0);

@@ -21,7 +21,7 @@ struct Move {
 };
 const std::vector<Move> moves{{40, 1}, {40, 0.5}, {12, 0.2}, {33, 3}, {5, 0.1}, {5, 1}, {50, 0.01}, {0, 2}};
 
-// The equation in steps of 10 microseconds; the chain takes that of each step's beginning.
+// Integrates the equation in steps of 10 us. The chain uses the rate at the beginning of each step.
 TEST(RateDependentLevelling, LevelsTheChainsBoucWenOffByItsEquation) {
   for (const double levelling : {1.5, -0.6}) {
     Chain<double> chain(levelled(levelling));

@@ -32,7 +32,7 @@ double rms(const std::vector<double>& x) {
   return std::sqrt(sum / static_cast<double>(x.size()));
 }
 
-// 100000 draws: the standard error of the mean is 0.003, of the rms 0.0022, of a correlation 0.003.
+// With 100000 draws the standard error is 0.003 for the mean, 0.0022 for the RMS and 0.003 for a correlation.
 TEST(SensorNoise, HasItsRmsAndIsWhite) {
   const std::vector<double> x = readings({0.05, 0.0}, 7, 100000, 0.001);
   double mean = 0, fourth = 0;
@@ -63,7 +63,7 @@ TEST(SensorNoise, SameSeedSameNoiseOtherSeedOtherNoise) {
 }
 
 TEST(SensorNoise, GoldenFirstNumbers) {
-  // Guards recordings against a generator that changes under them.
+  // Detects a change of the random generator, which would change the recordings.
   const auto x = readings({1.0, 0.0}, 1, 3, 0.01);
   EXPECT_NEAR(x[0], normal_at(1, 0), 0);
   EXPECT_NEAR(uniform_at(1, 0), 0.03401170130434644, 1e-16);

@@ -13,7 +13,7 @@ namespace {
 
 using Block = TransportDelay<double>;
 
-// A piecewise-linear signal through corners at multiples of dt, at any time.
+// Returns the value at time t of a piecewise linear signal with corners at multiples of dt.
 double between(const std::vector<double>& corners, double dt, double t) {
   if (t <= 0) return corners.front();
   const auto i = static_cast<std::size_t>(t / dt);
@@ -61,7 +61,7 @@ TEST(TransportDelay, PiecesSumToTheSampleAndJoin) {
     ASSERT_NEAR(sum, dt, 1e-12);
     mean_in += 0.5 * (corners[i - 1] + corners[i]) * dt;
   }
-  // What went in and not yet out is in the line: flush it with zeros.
+  // The delay line still contains the last part of the input, so zeros are fed until it is empty.
   for (const Segment<double>& s : pass(block, Segment<double>::straight(0, corners.back(), 0))) {
     mean_out += s.mean * s.duration_s;
   }
@@ -82,7 +82,8 @@ TEST(TransportDelay, AKinkInsideASampleMakesTwoSegments) {
 }
 
 TEST(TransportDelay, OnTheGridASampleStaysOneSegment) {
-  // Rounding in 0.13 - 26 * 0.005 must leave no slivers behind that every later sample is cut by.
+  // The rounding error of 0.13 - 26 * 0.005 must not create a very short segment that splits every later
+  // sample.
   for (const double delay : {0.13, 0.3, 0.07, 0.005}) {
     Block block = make<Block>({delay});
     for (int i = 0; i < 1000; ++i) {
@@ -93,7 +94,7 @@ TEST(TransportDelay, OnTheGridASampleStaysOneSegment) {
 }
 
 TEST(TransportDelay, AHeldOutputArrivesAsJumps) {
-  // Delay of exactly three samples: the jump comes out at the start of the fourth.
+  // With a delay of exactly three samples, the jump appears at the start of the fourth.
   for (const double sample_time : {0.0, 0.1}) {
     Block block = make<Block>({0.3}, sample_time);
     std::vector<double> after;

@@ -26,7 +26,7 @@ TEST(ValveLag, StepAndRampResponsesAreTheTextbookOnes) {
 }
 
 TEST(ValveLag, MeanIsExact) {
-  // tau (y1 - y0) = dt (mean(u) - mean(y)), whatever the shape.
+  // For every input, tau (y1 - y0) = dt (mean(u) - mean(y)).
   Block block = make<Block>({0.05});
   double from = 0;
   for (const double to : {5.0, 9.0, 9.0, 2.0, 1.0, 30.0}) {
@@ -45,10 +45,10 @@ TEST(ValveLag, TurnsWhereItMeetsTheInput) {
   const auto out = pass(block, Segment<double>::straight(0.2, 20, 0));
   ASSERT_EQ(out.size(), 2u);
   const double turn = out[0].duration_s;
-  EXPECT_NEAR(out[0].end, 20 - 100 * turn, 1e-12);  // on the input
+  EXPECT_NEAR(out[0].end, 20 - 100 * turn, 1e-12);  // the maximum lies on the input line
   EXPECT_GT(out[0].end, out[0].begin);
   EXPECT_LT(out[1].end, out[1].begin);
-  // The peak is one: the output at the turn is above any other.
+  // At any other time the output is lower than at the maximum.
   for (const double t : {turn * 0.9, turn * 1.1}) {
     Block other = make<Block>({0.05});
     pass(other, Segment<double>::straight(0.2, 0, 20));

@@ -1,5 +1,5 @@
-// Fuzz target of the model file: any bytes are a model, which then survives being written and read, or a
-// refusal.
+// Fuzz target of the model file. All bytes are either refused, or they are a model that is equal after it has
+// been written and read again.
 //
 //   scripts/fuzz.sh model_file_fuzz 30
 

@@ -26,7 +26,7 @@ Outcome read(const std::string& text) {
   return outcome;
 }
 
-// A number of any size inside the bounds, with all its digits.
+// Returns a random value of any magnitude within the bounds, with all its digits.
 double random_value(const ParameterSpec& spec, std::mt19937& generator) {
   if (spec.whole)
     return std::floor(std::uniform_real_distribution<double>(spec.lower, spec.upper + 1)(generator));
@@ -111,7 +111,7 @@ TEST(ModelFile, PresetsHoldTheNumbersOfTheirSources) {
   EXPECT_EQ(number(twin, "kelvin_voigt.c1_kpa_s_per_mm"), 299.8);
 }
 
-/// What a file means whose actuator has a spring and, before or behind it, these blocks.
+/// Reads a model file whose actuator has a spring and that has these blocks at this station.
 Outcome read_with(const std::string& station, const std::string& block) {
   const std::string spring =
       "actuator:\n  - kelvin_voigt: {k0_kpa_per_mm: 5, k1_kpa_per_mm: 5, c1_kpa_s_per_mm: 5}\n";
@@ -120,14 +120,14 @@ Outcome read_with(const std::string& station, const std::string& block) {
   return read("name: old\nsource: before\n" + spring + station + ":\n" + item);
 }
 
-/// The blocks beside the spring.
+/// Returns the blocks of that file without the spring.
 std::vector<BlockSpec> blocks_of(const std::string& station, const std::string& block) {
   const Outcome outcome = read_with(station, block);
   if (!outcome.model) throw std::runtime_error(block + "\n" + outcome.problems.format());
   return without_block<KelvinVoigt>(*outcome.model).blocks;
 }
 
-// Parameters that came to a block later: older files say what they always said.
+// Parameters that were added later are optional, so that older files keep their meaning.
 TEST(ModelFile, LaterParametersMayBeLeftOut) {
   EXPECT_EQ(blocks_of("sensor", "sensor_wander: {wander_sin_mm: 0.1}"),
             (std::vector<BlockSpec>{{block_type<SensorWander>(), {0.1, 0, 300}}}));
@@ -141,7 +141,8 @@ struct Earlier {
   std::vector<BlockSpec> means;
 };
 
-// A file names an earlier block under one station: what it became stands there, and it became several.
+// An earlier block was split into several blocks. All of them are at one station, because a file names the
+// earlier block at one station.
 TEST(ModelFile, EarlierBlocksBecameBlocksOfOneStation) {
   EXPECT_EQ(find_earlier_block("valve_lag"), nullptr);
   for (const char* id :
@@ -154,7 +155,7 @@ TEST(ModelFile, EarlierBlocksBecameBlocksOfOneStation) {
   }
 }
 
-// Blocks that held several mechanisms: a file of then is read into what they became.
+// Earlier blocks contained several mechanisms. A file with such a block is read into the present blocks.
 TEST(ModelFile, EarlierBlocksAreReadIntoWhatTheyBecame) {
   const std::vector<Earlier> files{
       {"valve", "valve_deadband: {band_kpa: 2}", {{block_type<ValveDeadband>(), {2}}}},
@@ -207,7 +208,7 @@ TEST(ModelFile, EarlierBlocksAreReadIntoWhatTheyBecame) {
   for (const Earlier& file : files) EXPECT_EQ(blocks_of(file.station, file.text), file.means) << file.text;
 }
 
-// Gains that were added multiply now.
+// The gains of these two parts were once added; the present blocks multiply them.
 TEST(ModelFile, EarlierBlocksThatMeanSomethingElseTogetherAreRefused) {
   const Outcome outcome = read_with("actuator", "ageing: {gain_per_h: 0.1, run_in: 0.2, run_in_time_s: 40}");
   EXPECT_FALSE(outcome.model);
