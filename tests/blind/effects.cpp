@@ -1,4 +1,4 @@
-// Which effects there are, and how large they may be.
+// The list of the effects, and the largest physical size of each.
 #include <algorithm>
 #include <random>
 #include <stdexcept>

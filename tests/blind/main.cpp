@@ -1,14 +1,15 @@
-// blind-world: writes the logs of one world, and its truth elsewhere.
+// blind-world writes the logs of one simulated world, and the true effects to another place.
 //
 //   blind-world --seed N --out DIR --truth FILE [--cause ID[,ID]] [--strength X] [--poor] [--pressure]
 //               [--campaign N] [--zero-mm Z] [--warmer-c D] [--runs N] [--variation X] [--closed-loop]
 //               [--command CSV ... --log FILE] [--gauge CSV --log FILE]
 //
-// DIR gets log_1.csv ... in the project's log format and nothing else. With --command the same world answers
-// further commands after its campaign, in the order given, and writes the last answer as one log.
+// DIR receives log_1.csv ... in the project's log format and no other file. With --command the same world
+// plays further commands after its campaign, in the given order, and writes the last response as one log.
 // With --campaign the same finger is driven by other waveforms, with other noise; Z is added to every
-// reading, D to every temperature. With --gauge somebody then holds the sensor's target at the positions of
-// that file (first column, mm), and what the sensor shows is written beside them.
+// reading, D to every temperature. With
+// --gauge an operator then holds the sensor's target at the positions in the first column of that file [mm],
+// and the readings are written next to them.
 // --runs is the number of logs [3; 1 with --poor]. --variation is the strength of the run-to-run variation
 // (variation.h) [0]; --list-runs prints the runs that it draws. With --closed-loop a controller plays the
 // commands of all logs.
@@ -108,7 +109,7 @@ blind::Base scattered(std::uint64_t seed) {
   return base;
 }
 
-// The commands become the references of a controller, which sees the zero of the sensor.
+// Uses the commands as references of a controller whose sensor has this zero offset.
 void close_loop(blind::LogInput& log, const blind::Sensor& sensor, double mm_per_kpa, double zero_mm,
                 std::uint64_t seed) {
   log.offset_mm += zero_mm;
@@ -194,7 +195,8 @@ double duration_s(const std::vector<blind::LogInput>& logs) {
 void write_truth(const std::string& path, const Arguments& a, const blind::Effects& effects,
                  const std::map<std::string, blind::Scaled>& scaled, const blind::Sensor& sensor) {
   std::ofstream file(path);
-  // All digits: six leave a frequency farther from the truth than what ten minutes of logs determine.
+  // All digits are written: with six digits, the rounding error of a frequency would exceed the accuracy of
+  // an estimate from ten minutes of logs.
   file.precision(std::numeric_limits<double>::max_digits10);
   file << "{\"seed\": " << a.seed << ", \"strength\": " << a.strength << ", \"noise_mm\": " << sensor.noise_mm
        << ", \"effects\": {";

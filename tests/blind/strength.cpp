@@ -7,7 +7,7 @@
 namespace blind {
 namespace {
 
-constexpr double coarse_step_s = 0.0025;  // enough to measure a strength; the logs use the fine step
+constexpr double coarse_step_s = 0.0025;  // accurate enough to measure a strength; the logs use the fine step
 
 std::vector<double> flat(const Base& base, const Effects& effects, const std::vector<LogInput>& logs,
                          std::uint64_t seed) {
@@ -46,7 +46,7 @@ void subtract(std::vector<double>& from, const std::vector<double>& direction, d
   for (std::size_t k = 0; k < from.size(); ++k) from[k] -= factor * direction[k];
 }
 
-// Gram-Schmidt, twice for orthogonality to rounding.
+// Gram-Schmidt orthonormalisation, applied twice so that the vectors are orthogonal to rounding.
 void orthonormalise(std::vector<std::vector<double>>& directions) {
   for (std::size_t i = 0; i < directions.size(); ++i) {
     for (int pass = 0; pass < 2; ++pass)

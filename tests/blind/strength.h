@@ -1,5 +1,5 @@
 #pragma once
-// How large an effect must be so that a recalibrated model without it misses by a wanted amount.
+// Scales an effect so that a refitted model without it has a requested error.
 
 #include <string>
 #include <vector>
@@ -8,18 +8,18 @@
 
 namespace blind {
 
-/// RMS [mm] over the campaign of what the effect adds to the displacement and no small change of the base
-/// parameters and of the zero can take away (linear projection on finite differences).
+/// Returns the part of an effect's change of the displacement [mm RMS over the campaign] that no small change
+/// of the base parameters and of the zero can explain (linear projection on finite differences).
 double excess_mm(const Base& base, const Effects& effects, const std::vector<LogInput>& logs,
                  std::uint64_t seed);
 
 struct Scaled {
   Effect effect;
   double excess_mm = 0;   ///< reached
-  bool reachable = true;  ///< false: even the largest physical effect stays below
+  bool reachable = true;  ///< false: even the largest physical effect is below the target
 };
 
-/// The effect `id` scaled to `target_mm` of excess.
+/// Returns the effect `id`, scaled to an excess of `target_mm`.
 Scaled scale_to(const std::string& id, double target_mm, const Base& base, const std::vector<LogInput>& logs,
                 std::uint64_t seed);
 

@@ -14,7 +14,7 @@ constexpr double log_s = 80;
 constexpr double working_kpa = 58;
 constexpr double pi = std::numbers::pi;
 
-// Appends samples until the command says stop.
+// Appends segments to a sampled command.
 class Pen {
  public:
   explicit Pen(std::vector<double>& out) : out_(out) { out_.push_back(0); }
@@ -45,7 +45,8 @@ std::vector<double> triangles(std::mt19937_64& random) {
   Pen pen(out);
   std::uniform_real_distribution<double> unit(0, 1);
   pen.hold(1.5);
-  for (const double peak : {14.0, 25.0, 36.0, 47.0}) {  // an amplitude ladder: the virgin loads come first
+  for (const double peak :
+       {14.0, 25.0, 36.0, 47.0}) {  // increasing amplitudes, so that first loadings come first
     pen.line(peak * (1 + 0.1 * (unit(random) - 0.5)), 1.5);
     pen.line(0, 1.5);
   }
@@ -127,7 +128,7 @@ LogInput surrounded(std::vector<double> command_kpa, double rate, double campaig
 
 namespace {
 
-// A run's log: the command at the run's rate, after the unrecorded pulse.
+// Returns the log of a run: the command at the rate of the run, after the unrecorded pulse.
 LogInput varied(std::vector<double> command, const variation::Run& run, double start_s,
                 const Campaign& campaign) {
   const double rate = run.rate_hz > 0 ? run.rate_hz : rate_hz;

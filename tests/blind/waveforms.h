@@ -1,5 +1,5 @@
 #pragma once
-// What the person at the rig played: commands, temperature and supply of a campaign, drawn by seed.
+// The inputs of a campaign, drawn by a seed: commands, temperature and supply pressure.
 
 #include <cstdint>
 #include <vector>
@@ -15,11 +15,11 @@ struct Campaign {
   double span_mm = 0;    // of the finger; needed with a variation
 };
 
-/// Logs of three kinds in turn: triangles of many amplitudes and rates with minor loops; a staircase with
-/// holds and a rest; sines over a decade of rates, sharp steps, rest and repeat.
+/// Draws logs with three kinds of commands in turn: triangles with many amplitudes, rates and minor loops;
+/// steps with holds and a rest; sines over a decade of rates with sharp steps, a rest and a repetition.
 std::vector<LogInput> draw_campaign(const Campaign& campaign);
 
-/// A log that answers a given command: the same surroundings, going on where the campaign ended.
+/// Returns a log with a given command. Temperature and supply continue where the campaign ended.
 LogInput surrounded(std::vector<double> command_kpa, double rate_hz, double campaign_start_s,
                     std::uint64_t seed);
 

@@ -75,13 +75,13 @@ struct Numbers {
       modulation, modulation_hz, stops_mm, crosstalk_mm, recovery;
 };
 
-// What survives from log to log.
+// The state that continues from one log to the next.
 struct Memory {
   double largest_kpa = 0;
   double campaign_s = 0;
 };
 
-// Relaxation toward a target that moves linearly over the step, by the classical Runge-Kutta method.
+// Relaxes x toward a target that changes linearly during the step, with the classical Runge-Kutta method.
 double relax(double x, double from, double to, double tau, double dt) {
   const auto f = [&](double share, double value) { return (from + share * (to - from) - value) / tau; };
   const double k1 = f(0, x), k2 = f(0.5, x + 0.5 * dt * k1), k3 = f(0.5, x + 0.5 * dt * k2),
@@ -95,7 +95,7 @@ class Rig {
       double offset_mm = 0)
       : base_(base), n_(n), memory_(memory), gain_(gain), offset_mm_(offset_mm), random_(seed) {}
 
-  // One fine step: the command goes linearly from `from` to `to`.
+  // Simulates one fine step, in which the command changes linearly from `from` to `to`.
   void step(double from, double to, double temperature, double supply, double dt) {
     const double wanted = valve(from, to, supply, dt);
     const double share_before = std::max(0.0, pressure_ - n_.threshold_kpa);
@@ -113,7 +113,7 @@ class Rig {
 
   double pressure() const { return pressure_; }
 
-  // The target is taken from the finger and held there; whatever the sensor remembers has settled.
+  // The target is removed from the finger and held at this position. All dynamics of the sensor have settled.
   void hold_target(double position_mm) { seen_mm_ = position_mm; }
   void wait(double duration_s) { memory_.campaign_s += duration_s; }
 
@@ -221,7 +221,7 @@ class Rig {
     moved_mm_ = y;
   }
 
-  // Somebody touches the finger now and then: steps of random size that decay.
+  // A person touches the finger now and then: steps of random size that decay.
   double bumps() {
     if (memory_.campaign_s >= next_bump_s_) {
       next_bump_s_ = memory_.campaign_s + 4 + 10 * uniform_(random_);
@@ -244,7 +244,7 @@ class Rig {
          mode_v_ = 0, mode_target_ = 0, played_ = 0, bump_ = 0, next_bump_s_ = 3;
 };
 
-// Follows a log's reference; without one the commands stay as they are.
+// Follows the reference of a log. Without a reference the commands do not change.
 class Follower {
  public:
   Follower(const Base& base, const LogInput& log) : log_(log) {
@@ -252,7 +252,7 @@ class Follower {
       controller_.emplace(span_mm(base, largest_command_kpa) / largest_command_kpa, largest_command_kpa,
                           log.rate_hz);
   }
-  // The command of the sample after `k`, whose clean reading is `y`.
+  // Sets the command of the sample after `k`, whose reading without noise is `y`.
   void decide(std::size_t k, double y, std::vector<double>& command) {
     if (!controller_ || k < log_.unrecorded || k + 1 >= command.size()) return;
     const double seen = quantised(y + log_.noise_mm[k - log_.unrecorded], Sensor{}.step_mm);

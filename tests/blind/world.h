@@ -1,6 +1,7 @@
 #pragma once
-// A world that may hide an effect: an actuator of its own, integrated by its own method at a fine step.
-// This program links nothing of the project. Its equations follow the vocabulary of causes, not the blocks.
+// A world that may contain a hidden effect. It has its own actuator model, which it integrates with its own
+// method and a fine step. This program links no code of the project. Its equations follow the definitions of
+// the causes, not the blocks.
 
 #include <cstdint>
 #include <map>
@@ -20,7 +21,8 @@ struct Base {
   double slow_gain = 0.056, slow_tau = 13.7;
 };
 
-/// The hidden effects: id -> its numbers by name. Ids of the cause vocabulary, or of outside_ids().
+/// The hidden effects: a map from the id of an effect to its numbers by name. The id is one of the causes or
+/// of outside_ids().
 using Effect = std::map<std::string, double>;
 using Effects = std::map<std::string, Effect>;
 
@@ -30,7 +32,7 @@ struct Sensor {
   double pressure_noise_kpa = 0.05;
 };
 
-/// What surrounds one log, one value per sample of the command.
+/// The inputs of one log, one value per sample of the command.
 struct LogInput {
   double rate_hz = 100;
   std::vector<double> command_kpa;  // linear between samples
@@ -38,7 +40,7 @@ struct LogInput {
   std::vector<double> supply_kpa;
   // Run-to-run variation (variation.h).
   double gain = 1, offset_mm = 0;
-  std::size_t unrecorded = 0;  // first samples, before the recording begins
+  std::size_t unrecorded = 0;  // number of first samples that precede the recording
   // Closed loop: a controller follows the reference from the first recorded sample on. Its sensor adds
   // `noise_mm`, one value per recorded sample.
   std::vector<double> reference_mm, noise_mm;
@@ -50,43 +52,45 @@ struct LogOutput {
   std::vector<double> displacement_mm;  // before noise and quantisation
 };
 
-/// Simulates the logs of one campaign in order. Every log starts at rest; the largest load so far, age and
-/// drift run on from log to log. `step_s` is the integration step; it divides the sample period.
+/// Simulates the logs of one campaign in order. Every log starts at rest; largest load, age and drift
+/// continue from log to log. `step_s` is the integration step; it must divide the sample period.
 std::vector<LogOutput> simulate(const Base& base, const Effects& effects, const std::vector<LogInput>& logs,
                                 std::uint64_t seed, double step_s = 0.0005);
 
-/// Somebody holds the sensor's target at known positions, one after the other, and reads.
+/// A gauge check: an operator holds the sensor's target at known positions, one after the other, and reads
+/// the sensor.
 struct GaugeWork {
-  double placing_mm = 0.01;  // standard deviation of where the target really is
-  double every_s = 20;       // from one position to the next
+  double placing_mm = 0.01;  // standard deviation of the target's true position
+  double every_s = 20;       // time between two positions
   double rate_hz = 100;
-  std::size_t samples = 200;  // that are averaged at each position
+  std::size_t samples = 200;  // number of readings that are averaged at each position
 };
 
-/// The samples of each position, before noise and quantisation. `start_s` is the campaign's time by then:
-/// drift, disturbances and wrong samples go on.
+/// Returns the samples of each position, before noise and quantisation. `start_s` is the time of the campaign
+/// at the start of the check. Drift, disturbances and wrong samples continue during the check.
 std::vector<std::vector<double>> held_at(const Effects& effects, const std::vector<double>& positions_mm,
                                          double start_s, std::uint64_t seed, const GaugeWork& work);
 
 /// Removes the unrecorded samples of a log.
 void drop_unrecorded(LogInput& in, LogOutput& out);
 
-/// The largest displacement of the actuator without effects, when the pressure rises to `pressure_kpa` and
-/// falls again.
+/// Returns the largest displacement of the actuator without effects while the pressure rises to
+/// `pressure_kpa` and falls again.
 double span_mm(const Base& base, double pressure_kpa);
 
-/// White noise; deterministic in the seed.
+/// Draws white noise; the seed determines it.
 std::vector<double> noise(std::size_t samples, double rms, std::uint64_t seed);
 double quantised(double value, double step);
 
-/// Noise, then quantisation; deterministic in the seed.
+/// Adds noise, then quantises; the seed determines the noise.
 std::vector<double> measured(const std::vector<double>& clean, double rms, double step, std::uint64_t seed);
 
 const std::vector<std::string>& library_ids();
 const std::vector<std::string>& outside_ids();
 
-/// An effect's numbers at amplitude 0 < s <= 1 (1: the largest that is physical), the rest drawn by seed.
-/// `span_mm` and `campaign_s` are the campaign's displacement span and duration.
+/// Returns the numbers of an effect at amplitude 0 < s <= 1, where 1 is the largest physical size. The seed
+/// draws the other numbers. `span_mm` and `campaign_s` are the displacement span and the duration of the
+/// campaign.
 Effect draw_effect(const std::string& id, double s, std::uint64_t seed, double span_mm, double campaign_s);
 
 }  // namespace blind

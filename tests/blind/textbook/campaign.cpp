@@ -1,4 +1,4 @@
-// The commands of a campaign and what surrounds them.
+// The commands of a campaign, with temperature and supply pressure.
 #include <algorithm>
 #include <cmath>
 #include <random>
@@ -71,7 +71,7 @@ std::vector<double> sines(std::mt19937_64& random, double rate_hz) {
 using Draw = std::vector<double> (*)(std::mt19937_64&, double);
 constexpr Draw kinds[] = {triangles, stairs, sines};
 
-// One drawn run: its input signal, and how it differs from the others.
+// One drawn run: its input signal, and its differences from the other runs.
 struct Drawn {
   variation::Run run;
   double rate_hz;
@@ -87,7 +87,7 @@ Log surrounded(const Drawn& drawn, double start_s, double phase, double span_mm)
   for (std::size_t k = 0; k < log.command_kpa.size(); ++k) {
     const double t = start_s + static_cast<double>(k) / drawn.rate_hz;
     log.temperature_c.push_back(22 + 3 * std::sin(2 * pi * t / 140 + phase) + drawn.run.warmer_c);
-    // a compressor's cycle
+    // the supply pressure during the cycle of a compressor
     log.supply_kpa.push_back(drawn.run.supply * (200 - 25 * std::abs(std::sin(pi * t / 23 + phase))));
   }
   log.gain = drawn.run.gain;

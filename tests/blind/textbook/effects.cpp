@@ -1,4 +1,4 @@
-// What is hidden, as numbers.
+// The numerical values of the hidden effects.
 #include <algorithm>
 #include <cmath>
 #include <random>
@@ -68,7 +68,7 @@ Numbers draw_effect(const std::string& id, double s, const Setting& setting, std
   if (id == "outliers") return {{"share", between(0.002, 0.01)}, {"size_mm", span * s}};
   if (id == "leak") return {{"conductance", 2 * setting.world.valve.tube_conductance * s}};
   if (id == "blocked_line")
-    return {{"share", 0.95 * s}};  // of a change, not of a finger: not in library_ids()
+    return {{"share", 0.95 * s}};  // a cause of a change, not of a model error: not in library_ids()
   throw std::invalid_argument("unknown cause " + id);
 }
 

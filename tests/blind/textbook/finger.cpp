@@ -11,7 +11,7 @@ namespace {
 constexpr std::array<double, 3> prony_tau_s{0.3, 6, 120};
 constexpr std::size_t plays = 10, slips = 8;
 
-// Mooney-Rivlin, uniaxial, incompressible, nominal stress over its initial slope of 3 (C1 + C2) ... C2 =
+// Mooney-Rivlin rubber, uniaxial and incompressible: nominal stress divided by its initial slope, with C2 =
 // C1/4.
 double rubber_stress(double stretch) noexcept {
   return 2 * (0.8 + 0.2 / stretch) * (stretch - 1 / (stretch * stretch)) / 6;
@@ -69,7 +69,7 @@ Finger::Finger(const FingerNumbers& numbers) : numbers_(numbers) {
     full_ = held.raw(working_kpa * std::min(1.0, i * 1.0 / stairs), long_s);
 }
 
-// Generalised play (Krasnosel'skii and Pokrovskii): both envelopes are the same bent function, shifted.
+// Generalised play (Krasnosel'skii and Pokrovskii): both envelopes are the same nonlinear function, shifted.
 double Finger::play(double q) noexcept {
   const double bent = q + numbers_.envelope * q * q * (1 - 0.5 * q);
   double sum = 0;
@@ -81,7 +81,8 @@ double Finger::play(double q) noexcept {
   return sum;
 }
 
-// A spring in parallel with Coulomb elements, driven by force: K y + sum clamp(k (y - anchor), +-f) = q.
+// Maxwell-slip model: a spring in parallel with Coulomb elements, driven by a force. Solves K y + sum clamp(k
+// (y - anchor), +-f) = q.
 double Finger::maxwell_slip(double q) noexcept {
   constexpr double stiffness = 0.6 / slips;
   const auto limit = [this](std::size_t i) {
@@ -104,9 +105,9 @@ double Finger::maxwell_slip(double q) noexcept {
   return balance_;
 }
 
-// Relays that switch on at a and off at b <= a, weight 2 (1 + envelope b), over 0 <= b <= a. Those that are
-// on lie below a staircase whose corners are the input's remembered turning points: highest, lowest, next
-// highest, ...
+// Preisach model: relays switch on at a and off at b, with 0 <= b <= a and the weight 2 (1 + envelope b). The
+// relays that are on lie below a stepped line in the (a, b) plane. Its corners are the remembered turning
+// points of the input: the highest, the lowest after it, the next highest and so on.
 double Finger::preisach(double q) noexcept {
   const auto triangle = [this](double high, double low) {
     const double d = high - low;
@@ -114,11 +115,11 @@ double Finger::preisach(double q) noexcept {
   };
   q = std::max(0.0, q);
   const bool rising = q > input_;
-  // memory_ ends with a peak while the input falls and with a trough (or with nothing) while it rises.
+  // While the input falls, memory_ ends with a maximum; while it rises, it ends with a minimum or is empty.
   if (rising == (memory_.size() % 2 == 1)) memory_.push_back(input_);
   input_ = q;
   while (memory_.size() >= 2) {
-    const double before = memory_[memory_.size() - 2];  // the turning point that wipes out the last two
+    const double before = memory_[memory_.size() - 2];  // beyond this turning point the last two are erased
     if (rising ? q < before : q > before) break;
     memory_.resize(memory_.size() - 2);
   }
@@ -132,7 +133,7 @@ double Finger::preisach(double q) noexcept {
   return (1 - 2 * numbers_.width) * q + 2 * numbers_.width * sum;
 }
 
-// Slices of a tube that bends: pressure on a section that grows against rubber with a Prony series.
+// Slices of a bending tube. The pressure acts on a growing cross-section, against rubber with a Prony series.
 double Finger::tube(double q, double step_s) noexcept {
   const double pull = 0.25 * std::max(0.0, q);
   double bend = 0;

@@ -1,5 +1,6 @@
 #pragma once
-// Soft fingers of five makes, each with its own hysteresis, creep over decades and slight curvature.
+// Soft fingers of five makes. Each has its own hysteresis, creep with time constants over several decades,
+// and a slight curvature.
 
 #include <array>
 #include <cstdint>
@@ -12,35 +13,36 @@ inline constexpr double working_kpa = 60;
 
 struct FingerNumbers {
   std::string make = "play";  // play, maxwell_slip, preisach, hyperelastic_tube, fractional
-  double span_mm = 16;        // at working_kpa, held until nothing creeps any more
-  double width = 0.1;         // of the hysteretic part; 0: no loops
+  double span_mm = 16;        // displacement at working_kpa after all creep has ended
+  double width = 0.1;         // width of the hysteresis; 0: no loops
   double curvature = 0.1;
   double creep = 0.15;           // share of the creeping part
   double creep_tilt = 0;         // weight of the branch with time constant tau: tau^tilt
-  double envelope = 0.1;         // how far the loops are bent (generalised play, Preisach density)
+  double envelope = 0.1;         // nonlinearity of the loops (generalised play, Preisach density)
   double longest_creep_s = 1e9;  // branches slower than this are left out
 };
 
 const std::vector<std::string>& makes();
 FingerNumbers draw_finger(const std::string& make, std::uint64_t seed);
 
-/// What differs from finger to finger of one make, and within which bounds it is drawn.
+/// A number that differs between fingers of one make, with the bounds within which it is drawn.
 struct OwnNumber {
   double FingerNumbers::*member;
   double low, high;
 };
-/// Width, curvature, creep and its tilt: what a recalibrated twin may take up.
+/// Width, curvature, creep and its tilt: the numbers that a refitted model may absorb.
 std::vector<OwnNumber> own_numbers(const std::string& make);
 
-/// Starts without load and without memory.
+/// A finger that starts without load and without memory.
 class Finger {
  public:
   explicit Finger(const FingerNumbers& numbers);
-  /// Displacement [mm] after `step_s` at `pressure_kpa` (gauge).
+  /// Returns the displacement [mm] after `step_s` at the gauge pressure `pressure_kpa`.
   double step(double pressure_kpa, double step_s);
 
  private:
-  static constexpr std::size_t branches = 16;  // 0.02 to 2000 s: five decades, three to a decade
+  // time constants from 0.02 to 2000 s: five decades, three branches per decade
+  static constexpr std::size_t branches = 16;
   static constexpr std::size_t slices = 8;
   double raw(double pressure_kpa, double step_s);
   double play(double q) noexcept;
@@ -51,10 +53,10 @@ class Finger {
 
   FingerNumbers numbers_;
   std::array<double, branches> weight_{}, tau_s_{}, branch_{};
-  double full_ = 1;             // what `raw` reaches at working_kpa after a long hold
+  double full_ = 1;             // value of raw() at working_kpa after a long hold
   std::vector<double> memory_;  // plays, anchors of the slip elements, or turning points of the input
-  double input_ = 0;            // of the relays, before this step
-  double balance_ = 0;          // strain of the slip elements' spring
+  double input_ = 0;            // input of the relays before this step
+  double balance_ = 0;          // strain of the spring of the Maxwell-slip model
   std::array<double, slices> stretch_{}, thickness_{};
   std::array<std::array<double, 3>, slices> relaxed_{};
 };

@@ -1,15 +1,16 @@
-// textbook-world: writes the logs of one world of textbook physics, and its truth elsewhere.
+// textbook-world writes the logs of one simulated world of textbook physics, and the true effects to another
+// place.
 //
 //   textbook-world --seed N --out DIR --truth FILE [--make NAME] [--cause ID[,ID...]] [--strength X] [--poor]
 //                  [--campaign N] [--pressure] [--no-temperature] [--no-supply] [--zero-mm Z] [--warmer-c D]
 //                  [--runs N] [--variation X] [--closed-loop] [--rate-hz R]
 //   textbook-world --list | --makes | --probe flow|rest|hold|loops|relays|span|creep
 //
-// Without --make the seed chooses. A strength is the excess error (strength.h) over the noise of 0.04 mm, per
-// cause. With --campaign the same finger and valve are driven by other waveforms, with other noise. Z is
-// added to every reading, D to every temperature. --runs is the number of logs [3; 1 with --poor].
-// --variation is the strength of the run-to-run variation (variation.h) [0]; it also draws the rate. With
-// --closed-loop a controller plays the commands of all logs.
+// Without --make, the seed chooses the make. The strength of a cause is its excess error (strength.h) divided
+// by the noise of 0.04 mm. With --campaign the same finger and valve are driven by other waveforms, with
+// other noise. Z is added to every reading, D to every temperature. --runs is the number of logs [3; 1 with
+// --poor]. --variation is the strength of the run-to-run variation (variation.h) [0]; it also draws the rate.
+// With --closed-loop a controller plays the commands of all logs.
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
@@ -31,7 +32,8 @@ namespace {
 
 constexpr double noise_mm = 0.04, step_mm = 0.01, pressure_noise_kpa = 0.05, supply_noise_kpa = 0.3,
                  temperature_noise_c = 0.05;
-// White noise of 0.04 mm hides much less than this over the 15,000 samples of a campaign.
+// Mechanisms above this size are visible: over the 15,000 samples of a campaign, white noise of 0.04 mm hides
+// only much smaller ones.
 constexpr double visible_mm = noise_mm / 4;
 
 struct Arguments {
@@ -42,7 +44,7 @@ struct Arguments {
   bool pressure = false, temperature = true, supply = true, list = false, makes = false, closed_loop = false;
 };
 
-// The valve's step goes into a sample a whole number of times.
+// The sample time must be a whole multiple of the valve's time step.
 double rate(const std::string& value) {
   const double rate_hz = std::stod(value);
   if (rate_hz != 50 && rate_hz != 100 && rate_hz != 200 && rate_hz != 400)
@@ -106,7 +108,7 @@ Arguments arguments(int argc, char** argv) {
   return a;
 }
 
-// Draws the noise of the sensors, one sample after another.
+// Draws the noise of the sensors for successive samples.
 class Noise {
  public:
   explicit Noise(std::uint64_t seed) : random_(seed) {}
@@ -124,7 +126,7 @@ class Noise {
   std::normal_distribution<double> normal_{0, 1};
 };
 
-// The commands become the references of a controller, which sees the readings that are written.
+// Uses the commands as references of a controller, which reads the same noisy readings as the log.
 void close_loop(textbook::Log& log, const textbook::World& world, double zero_mm, std::uint64_t seed) {
   Noise noise(seed);
   for (std::size_t k = log.unrecorded; k < log.command_kpa.size(); ++k)
@@ -164,7 +166,8 @@ void write_log(const std::string& path, const textbook::Log& log, const textbook
 void write_truth(const Arguments& a, const textbook::World& world, const std::map<std::string, double>& own,
                  const std::map<std::string, textbook::Scaled>& hidden) {
   std::ofstream file(a.truth);
-  // All digits: six leave a frequency farther from the truth than what ten minutes of logs determine.
+  // All digits are written: with six digits, the rounding error of a frequency would exceed the accuracy of
+  // an estimate from ten minutes of logs.
   file.precision(std::numeric_limits<double>::max_digits10);
   file << "{\"seed\": " << a.seed << ", \"strength\": " << a.strength << ", \"noise_mm\": " << noise_mm
        << ", \"make\": \"" << world.finger.make << "\", \"span_mm\": " << world.finger.span_mm

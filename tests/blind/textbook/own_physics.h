@@ -1,5 +1,6 @@
 #pragma once
-// What a world has without an effect, as causes of the vocabulary: to name it is a finding, not a false name.
+// The physics of a world without a hidden effect, as causes of the vocabulary. If a diagnosis names one of
+// them, this is a finding and not a false name.
 
 #include <map>
 #include <string>
@@ -9,22 +10,22 @@
 
 namespace textbook {
 
-/// id -> what it changes of the displacement [mm RMS], for everything that changes more than `visible_mm`.
-/// Found by taking the mechanism out of the world (or by fitting its rival), never by what a diagnosis likes
-/// to say:
+/// Returns a map from the id of a cause to its change of the displacement [mm RMS], for each that changes
+/// more than `visible_mm`. The change is computed by removing the mechanism from the world, or by fitting the
+/// competing model. It does not depend on the results of a diagnosis:
 ///
 ///   slow_creep             creep slower than `slowest_twin_s`, beyond zero and gain
-///   hysteresis_shape       the loops as a whole (none of the makes is a Bouc-Wen element), beyond zero and
-///   gain stiffening, sensor_nonlinearity  how far the middle of the settled loop is from a straight line
-///   asymmetric_hysteresis  how unlike the lower and the upper half of the settled loop are in width
-///   valve_lag              the valve against one whose pressure is the command
-///   transport_delay        what a dead time brings beside the best first-order lag for the valve's pressure
-///   valve_deadband         the valve against one without overlap and pilot hysteresis
-///   supply_sag             the supply's swing against a steady supply
+///   hysteresis_shape       the loops as a whole, beyond zero and gain (no make has a Bouc-Wen element)
+///   stiffening, sensor_nonlinearity  distance of the middle of the settled loop from a line
+///   asymmetric_hysteresis  difference in width between the lower and the upper half of the settled loop
+///   valve_lag              the valve, compared with one whose pressure equals the command
+///   transport_delay        a dead time in addition to the best first-order lag of the valve's pressure
+///   valve_deadband         the valve, compared with one without overlap and pilot hysteresis
+///   supply_sag             the varying supply, compared with a constant supply
 std::map<std::string, double> own_physics(const World& world, const std::vector<Log>& logs,
                                           std::uint64_t seed, double visible_mm);
 
-/// Slower than any branch of a twin of two branches that was identified from such logs (given.yaml: 10 s).
+/// Slower than each branch of a two-branch model that was identified from such logs (given.yaml: 10 s).
 inline constexpr double slowest_twin_s = 15;
 
 }  // namespace textbook

@@ -24,7 +24,8 @@ void probe_rest() {
   }
 }
 
-// The true pressure a minute after a step up or down to a level, and how far it still wanders in ten seconds.
+// Prints the true pressure one minute after a step to a level, from below and above, and its change in the
+// next ten seconds.
 void probe_hold() {
   std::puts("seed,command_kpa,pressure_kpa,wander_kpa");
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
@@ -42,7 +43,7 @@ void probe_hold() {
   }
 }
 
-// What a finger reaches at working pressure after a very long hold, beside its span.
+// Prints the displacement at working pressure after a very long hold next to the nominal span.
 void probe_span() {
   std::puts("make,seed,span_mm,displacement_mm");
   for (const std::string& make : makes()) {
@@ -57,7 +58,8 @@ void probe_span() {
   }
 }
 
-// Up to 55, a minor loop 20 -> 40 -> 20 on the way down, then on: the loop must leave no trace.
+// Compares an unloading from 55 kPa with and without a minor loop 20 -> 40 -> 20. After the minor loop, both
+// must be equal.
 void probe_loops() {
   std::puts("make,place,displacement_mm");
   for (const char* make : {"play", "maxwell_slip", "preisach"}) {
@@ -88,7 +90,8 @@ void probe_loops() {
   }
 }
 
-// A wandering pressure and what the relays make of it, so that they can be counted one by one elsewhere.
+// Prints a varying pressure and the output of the relays, so that another program can count the relays one by
+// one.
 void probe_relays() {
   FingerNumbers numbers = draw_finger("preisach", 1);
   numbers.creep = numbers.curvature = 0;

@@ -1,11 +1,11 @@
 #pragma once
-// What a test asks of a part alone: tables on the standard output.
+// Tests of single parts, which print tables on the standard output.
 
 #include <string>
 
 namespace textbook {
 
-/// flow, rest, hold, loops, relays, span or creep; throws std::invalid_argument for anything else.
+/// `name` is flow, rest, hold, loops, relays, span or creep. Throws std::invalid_argument for any other name.
 void probe(const std::string& name);
 
 }  // namespace textbook

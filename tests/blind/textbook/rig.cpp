@@ -1,12 +1,12 @@
-// textbook-rig: fingers of one textbook world behind the board of config/boards/softgrip-sim.yaml, in real
-// time.
+// textbook-rig simulates fingers of one textbook world behind the board of config/boards/softgrip-sim.yaml,
+// in real time.
 //
 //   textbook-rig --seed N --make NAME [--fingers 3]
 //
-// Listens on a free port of the loopback and prints it: "listening on 127.0.0.1:PORT". All fingers are the
-// same finger, each behind a valve of its own, so that controllers can be compared side by side. Output i
+// Listens on a free port of the loopback interface and prints it: "listening on 127.0.0.1:PORT". All fingers
+// are equal, and each has its own valve, so that controllers can be compared at the same time. Output i
 // commands finger i (0 to 10 V: 0 to 100 kPa); input i is its sensor (0 to 10 V: -5 to 45 mm), input 4 + i
-// its pressure. Ends when its client has gone.
+// its pressure. Ends when its client disconnects.
 #include <arpa/inet.h>
 #include <modbus/modbus.h>
 #include <unistd.h>
@@ -58,7 +58,7 @@ Arguments arguments(int argc, char** argv) {
   return a;
 }
 
-/// One finger and its valve, followed from one moment to the next under a command that stands.
+/// One finger and its valve, simulated in steps of a constant command.
 class Plant {
  public:
   explicit Plant(const textbook::World& world) : valve_(world.valve), finger_(world.finger) {}
@@ -95,7 +95,7 @@ class Rig {
 
   modbus_mapping_t* mapping() const { return mapping_.get(); }
 
-  /// Everything that happened since the last call, and what the converters see of it now.
+  /// Simulates the time since the last call, and updates the inputs of the board.
   void follow() {
     const auto now = std::chrono::steady_clock::now();
     for (; at_ + step_ <= now; at_ += step_) {
@@ -111,7 +111,8 @@ class Rig {
   }
 
  private:
-  // The higher word first; libmodbus has changed what its own conversions do.
+  // The high word comes first. This function does not use the conversions of libmodbus, because they have
+  // changed between versions.
   double volts(int at, std::size_t i) const {
     const std::uint16_t* words = registers_of(at, i);
     return static_cast<double>(std::bit_cast<float>((static_cast<std::uint32_t>(words[0]) << 16) | words[1]));

@@ -1,5 +1,5 @@
 #pragma once
-// How strong an effect is in a world, and how large it must be to be of a wanted strength.
+// The strength of an effect in a world, and the scaling of an effect to a requested strength.
 
 #include <string>
 #include <vector>
@@ -8,41 +8,42 @@
 
 namespace textbook {
 
-/// What a linear change of a few own numbers takes away from a difference of displacements. A zero and a gain
-/// may become anything; every other number stays within its bounds.
+/// Computes how much of a difference of displacements a linear change of a few numbers of the finger cannot
+/// explain. Zero and gain are unbounded; every other number stays within its bounds.
 class Recalibration {
  public:
-  /// Zero and gain alone.
+  /// Starts with zero and gain only.
   explicit Recalibration(const std::vector<double>& displacement_mm);
-  /// `change_mm`: what one unit of a number changes; it may move by `low` .. `high` units.
+  /// Adds a number: one unit of it changes the displacement by `change_mm`, and it may change by `low` to
+  /// `high` units.
   void add(std::vector<double> change_mm, double low, double high);
-  /// RMS [mm] of what is left of `difference_mm`.
+  /// Returns the RMS [mm] of the unexplained part of `difference_mm`.
   double left_mm(const std::vector<double>& difference_mm) const;
 
  private:
   struct Direction {
-    std::vector<double> unit;  // of length one
+    std::vector<double> unit;  // unit vector
     double low, high;
   };
   std::vector<Direction> directions_;
-  std::vector<std::vector<double>> products_;  // of every direction with every other
+  std::vector<std::vector<double>> products_;  // scalar products of all directions
 };
 
 struct Scaled {
   Numbers numbers;
   double excess_mm = 0;
-  bool reachable = true;  // the excess is within 15 % of what was wanted
+  bool reachable = true;  // true if the excess is within 15 % of the target
 };
 
-/// An effect's strength is the RMS over the campaign of what it adds to the displacement and the recalibrated
-/// twin does not take up: its zero and gain may become anything, its finger's own numbers (own_numbers) what
-/// fingers of its make have. A leak counts whole: the measured pressure shows it, while displacements take it
-/// for a gain.
+/// The strength of an effect is the part of its change of the displacement that a refitted model cannot
+/// explain, as RMS over the campaign. In the refit, zero and gain are unbounded, and the finger's numbers
+/// (own_numbers) stay within the bounds of its make. A leak counts in full: the measured pressure shows it,
+/// although in the displacement it looks like a gain.
 class Excess {
  public:
   Excess(const World& world, const std::vector<Log>& logs, std::uint64_t seed);
   double of_mm(const Effects& effects) const;
-  /// The smallest amplitude that gives `target_mm`; the one that comes nearest where none does.
+  /// Returns the smallest amplitude that gives `target_mm`, or the nearest if none does.
   Scaled scaled(const std::string& id, double target_mm) const;
 
  private:

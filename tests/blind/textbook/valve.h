@@ -1,15 +1,16 @@
 #pragma once
-// An electro-pneumatic regulator by the textbooks: ISO 6358 ports on a spool, a tube, the finger's volume.
-// Pressures are absolute, in kPa; volumes in dm3; conductances in dm3/(s kPa) at the reference state.
+// An electro-pneumatic regulator from textbook equations: ISO 6358 ports on a spool, a tube, the volume of
+// the finger. Pressures are absolute, in kPa; volumes in dm3; conductances in dm3/(s kPa) at the reference
+// state.
 
 namespace textbook {
 
 inline constexpr double atmosphere_kpa = 101.325;
 inline constexpr double reference_kpa = 100;  // ISO 8778
 
-/// ISO 6358-1: flow [dm3/s at the reference state] from `from_kpa` to `to_kpa`, negative the other way.
-/// Choked at and below the critical ratio `b`; linear above a ratio of 0.995, where the standard's slope is
-/// infinite.
+/// Returns the flow of ISO 6358-1 [dm3/s at the reference state] from `from_kpa` to `to_kpa`, negative in the
+/// other direction. The flow is choked at and below the critical pressure ratio `b`. It is linear above a
+/// ratio of 0.995, where the slope of the standard is infinite.
 double flow_dm3_s(double conductance, double b, double from_kpa, double to_kpa) noexcept;
 
 struct ValveNumbers {
@@ -20,21 +21,21 @@ struct ValveNumbers {
   double valve_volume_dm3 = 0.02, finger_volume_dm3 = 0.08;
   double proportional_per_kpa = 0.08, integral_per_kpa_s = 0.25;
   double spool_lag_s = 0.012;
-  double overlap = 0.04;               // of the spool's travel, to either side
-  double pilot_hysteresis_kpa = 0.15;  // half the width
+  double overlap = 0.04;               // as a share of the spool's travel, to either side
+  double pilot_hysteresis_kpa = 0.15;  // half the width of the hysteresis
 };
 
 /// Isothermal chambers: V dp/dt = reference pressure x flow.
 class Valve {
  public:
   explicit Valve(const ValveNumbers& numbers) noexcept : numbers_(numbers) {}
-  /// One step of `step_s` (at most 0.25 ms with the default numbers).
+  /// Simulates one step of `step_s` (at most 0.25 ms with the default numbers).
   void step(double command_kpa, double supply_kpa, double step_s) noexcept;
   double gauge_kpa() const noexcept { return finger_kpa_ - atmosphere_kpa; }
   double air_kpa_dm3() const noexcept {
     return valve_kpa_ * numbers_.valve_volume_dm3 + finger_kpa_ * numbers_.finger_volume_dm3;
   }
-  /// Pressures for tests; the spool is then held shut when `shut`.
+  /// Sets the pressures, for tests. If `shut`, the spool then remains closed.
   void set(double valve_kpa, double finger_kpa, bool shut) noexcept;
 
  private:

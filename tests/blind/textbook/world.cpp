@@ -14,8 +14,8 @@ constexpr double valve_step_s = 0.00025;
 constexpr int finger_steps = 5;     // per sample
 constexpr double supply_kpa = 200;  // nominal, gauge
 
-// The numbers of the effects, each looked up once: a world is simulated in millions of steps. 0 where there
-// is none.
+// The numbers of the effects, looked up once, because a world is simulated in millions of steps. A missing
+// effect has the number 0.
 struct Hidden {
   const Effects& effects;
 
@@ -70,7 +70,7 @@ struct Hidden {
   }
 };
 
-// What runs on from log to log.
+// The state that continues from one log to the next.
 struct Age {
   double time_s = 0, largest_kpa = 0;
 };
@@ -79,7 +79,7 @@ struct Age {
 class Asked {
  public:
   Asked(const Hidden& hidden, const Log& log) : h_(hidden), log_(log) {}
-  // At sample `k`, in the order of the samples; uses no later command.
+  // Returns the setpoint at sample `k`. Must be called in the order of the samples; uses no later command.
   double at(std::size_t k, const std::vector<double>& command) {
     const double place = std::max(0.0, static_cast<double>(k) - h_.transport_delay_delay_s * log_.rate_hz);
     const auto low = static_cast<std::size_t>(place);
@@ -108,7 +108,7 @@ ValveNumbers numbers_of(const World& world, const Hidden& hidden) {
   return numbers;
 }
 
-// From the command to the pressure at the finger.
+// The line from the command to the pressure at the finger.
 class Line {
  public:
   Line(const World& world, const Hidden& hidden, const Log& log, const std::vector<double>& command)
@@ -118,7 +118,7 @@ class Line {
         asked_(hidden, log),
         now_(asked_.at(0, command)) {}
   double gauge_kpa() const { return perfect_ ? now_ : valve_.gauge_kpa(); }
-  // From sample `k` to the one after it, or on from the last.
+  // Simulates from sample `k` to the next one. After the last sample the setpoint remains constant.
   void advance(std::size_t k, const std::vector<double>& command) {
     const double next = k + 1 < command.size() ? asked_.at(k + 1, command) : now_;
     const int steps = perfect_ ? 0 : static_cast<int>(std::lround(1 / (log_.rate_hz * valve_step_s)));
@@ -152,7 +152,7 @@ class Body {
   Body(const World& world, const Hidden& hidden, Age& age, const Log& log)
       : h_(hidden), age_(age), log_(log), finger_(world.finger), span_(world.finger.span_mm) {}
 
-  // The displacement at sample `k`, to which the pressure has gone linearly.
+  // Returns the displacement at sample `k`. The pressure changes linearly since the previous sample.
   double sample(std::size_t k, double pressure_kpa) {
     double y = 0;
     for (int i = 1; i <= finger_steps; ++i) {
@@ -194,7 +194,7 @@ class Body {
       const double below = 1 - std::exp(-(age_.largest_kpa - p) / h_.stress_softening_range_kpa);
       y *= 1 + h_.stress_softening_share * below * age_.largest_kpa / working_kpa;
     }
-    const double per_mm = h_.stiffening_per_mm;  // the span is kept
+    const double per_mm = h_.stiffening_per_mm;  // a finger that stiffens keeps its span
     return y * (1 + per_mm * span_) / (1 + per_mm * std::max(0.0, y));
   }
   double loaded(double y, double dt) {
@@ -243,7 +243,7 @@ class Body {
   double last_ = 0, friction_ = 0, slow_ = 0, crescent_ = 0, speed_ = 0, moved_ = 0, carried_ = 0, seen_ = 0;
 };
 
-// Single wrong samples of the sensor.
+// Adds single wrong readings of the sensor.
 class WrongSamples {
  public:
   WrongSamples(const Hidden& hidden, std::uint64_t seed) : h_(hidden), random_(seed * 2147483647 + 11) {}
@@ -258,14 +258,14 @@ class WrongSamples {
   std::uniform_real_distribution<double> chance_{0, 1};
 };
 
-// Follows a log's reference; without one the commands stay as they are.
+// Follows the reference of a log. Without a reference the commands do not change.
 class Follower {
  public:
   Follower(const World& world, const Log& log) : log_(log) {
     if (!log.reference_mm.empty())
       controller_.emplace(world.finger.span_mm / working_kpa, working_kpa, log.rate_hz);
   }
-  // The command of the sample after `k`, whose clean reading is `y`.
+  // Sets the command of the sample after `k`, whose reading without noise is `y`.
   void decide(std::size_t k, double y, std::vector<double>& command) {
     if (!controller_ || k < log_.unrecorded || k + 1 >= command.size()) return;
     command[k + 1] = controller_->step(log_.reference_mm[k + 1], y + log_.noise_mm[k - log_.unrecorded]);

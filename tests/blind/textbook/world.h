@@ -1,5 +1,5 @@
 #pragma once
-// Worlds of textbook physics: a valve, a finger, effects on top, a campaign of logs, all drawn by a seed.
+// Worlds of textbook physics: a valve, a finger, added effects and a campaign of logs, all drawn by a seed.
 
 #include <cstdint>
 #include <map>
@@ -16,23 +16,25 @@ using Effects = std::map<std::string, Numbers>;
 
 struct Log {
   double rate_hz = 100;
-  std::vector<double> command_kpa, temperature_c, supply_kpa;  // one value per sample, gauge
+  std::vector<double> command_kpa, temperature_c,
+      supply_kpa;  // one value per sample; supply as gauge pressure
   // Run-to-run variation (variation.h).
   double gain = 1, offset_mm = 0;
-  std::size_t unrecorded = 0;  // first samples, before the recording begins
+  std::size_t unrecorded = 0;  // number of first samples that precede the recording
   // Closed loop: a controller follows the reference from the first recorded sample on. Its sensor adds
   // `noise_mm`, one value per recorded sample.
   std::vector<double> reference_mm, noise_mm;
 };
 
 struct Answer {
-  std::vector<double> command_kpa, pressure_kpa, displacement_mm;  // as played; at the finger; before noise
+  // the command as played; the pressure at the finger; the displacement before noise
+  std::vector<double> command_kpa, pressure_kpa, displacement_mm;
 };
 
 struct World {
   ValveNumbers valve;
   FingerNumbers finger;
-  bool perfect_valve = false;  // the pressure is the command
+  bool perfect_valve = false;  // the pressure equals the command
 };
 
 World draw_world(const std::string& make, std::uint64_t seed);
@@ -44,37 +46,39 @@ struct Campaign {
   double span_mm = 0;    // of the finger; needed with a variation
 };
 
-/// Logs of three kinds in turn: triangles, stairs, sines on sines.
+/// Draws logs with three kinds of commands in turn: triangles, steps, sums of sines.
 std::vector<Log> draw_campaign(const Campaign& campaign);
 /// Removes the unrecorded samples of a log.
 void drop_unrecorded(Log& log, Answer& answer);
 double duration_s(const std::vector<Log>& logs);
 
-/// Every log starts at rest; age, drift and the largest load run on. The valve is stepped at 0.25 ms.
+/// Simulates all logs. Every log starts at rest; age, drift and the largest load continue from log to log.
+/// The time step of the valve is 0.25 ms.
 std::vector<Answer> simulate(const World& world, const Effects& effects, const std::vector<Log>& logs,
                              std::uint64_t seed);
 
-/// The pressures at the finger alone, log by log: what takes most of a simulation's time, and is the same
-/// under every effect that does not act on pressure.
+/// The pressures at the finger only, log by log. They take most of the time of a simulation, and they are
+/// equal for all effects that do not act on the pressure.
 using Pressures = std::vector<std::vector<double>>;  // gauge, kPa
 Pressures simulate_pressures(const World& world, const Effects& effects, const std::vector<Log>& logs);
 bool acts_on_pressure(const Effects& effects);
 
-/// The displacements of all logs under such pressures, one after the other.
+/// Returns the displacements of all logs for these pressures, concatenated.
 std::vector<double> displacements(const World& world, const Effects& effects, const std::vector<Log>& logs,
                                   std::uint64_t seed, const Pressures& pressures);
 std::vector<double> displacements(const World& world, const Effects& effects, const std::vector<Log>& logs,
                                   std::uint64_t seed);
 
-/// What an effect may be drawn for: the world, how far it moves and how long it is watched.
+/// The conditions for which an effect is drawn: the world, its range of motion and the duration of the
+/// campaign.
 struct Setting {
   World world;
-  double largest_mm = 0;  // of its campaign, without effects
+  double largest_mm = 0;  // largest displacement of the campaign, without effects
   double campaign_s = 0;
 };
 
 const std::vector<std::string>& library_ids();
-/// What an effect's numbers are at amplitude 0 < s <= 1; the rest is drawn by the seed.
+/// Returns the numbers of an effect at amplitude 0 < s <= 1. The seed draws the numbers that have no size.
 Numbers draw_effect(const std::string& id, double s, const Setting& setting, std::uint64_t seed);
 
 }  // namespace textbook

@@ -12,7 +12,8 @@
 namespace softgrip::model::testing::rate_dependent_width_test {
 namespace {
 
-// A Bouc-Wen element whose loop becomes wider with the rate; `levelling` also makes its saturation
+// A Bouc-Wen element whose loop becomes wider with the rate. The second parameter also makes its saturation
+// rate-dependent.
 // rate-dependent.
 Model widened(double growth, double levelling = 0) {
   Model model{"widened", "test", {BlockSpec{block_type<BoucWen>(), {0.35, 0.2, 0.03, 0.05, 1}}}};
