@@ -21,7 +21,7 @@ State moved(const State& x, const State& k, double dt) {
   return {x[0] + dt * k[0], x[1] + dt * k[1], x[2] + dt * k[2]};
 }
 
-/// One step with the pressure going straight from p at `rate`.
+/// Integrates one step in which the pressure changes linearly from p at `rate`.
 State stepped(const IntegratedFinger& f, const State& x, double p, double rate, double dt) {
   const State k1 = slope(f, x, p, rate);
   const State k2 = slope(f, moved(x, k1, dt / 2), p + rate * dt / 2, rate);

@@ -1,6 +1,6 @@
 #pragma once
-// A finger integrated by a program that shares nothing with model/: the equations as the literature writes
-// them, Runge and Kutta's fourth-order method in time, steps fifty times finer than the samples.
+// A finger that is integrated by a program without any code of model/. It uses the equations of the
+// literature and the classical fourth-order Runge-Kutta method with 50 steps per sample.
 
 #include <cstdint>
 
@@ -15,11 +15,11 @@ struct IntegratedFinger {
   double k0 = 310, k1 = 17, c1 = 215, k2 = 3.7, c2 = 1.9;        // kPa/mm, kPa s/mm
 };
 
-/// The finger's answer to a signal from rest, with white noise.
+/// Returns the response of the finger to a signal from rest, with white noise.
 [[nodiscard]] Log integrated(const IntegratedFinger& finger, model::SignalName signal, double rate_hz,
                              double noise_mm, std::uint64_t seed);
 
-/// The pressure behind the valve of a model for the command of a log.
+/// Returns the pressure behind the valve of a model for the command of a log.
 [[nodiscard]] std::vector<double> pressures_behind(const model::Model& model, const Log& log);
 
 }  // namespace softgrip::sysid

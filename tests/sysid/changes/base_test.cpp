@@ -20,7 +20,7 @@ Base base_of(const std::vector<Log>& healthy) {
   return fit_base(make_records(healthy, {}), Judged::displacement, Drive::command, {});
 }
 
-/// What the base leaves of other logs, but for every log's zero.
+/// Returns the RMS [mm] of the residual of the base on other logs, after removing the mean of each log.
 double left_of_mm(const Base& base, const std::vector<Log>& logs) {
   const std::vector<Record> records = make_records(logs, {});
   const std::vector<std::vector<double>> left = residuals_of(base, records);
@@ -35,7 +35,8 @@ double left_of_mm(const Base& base, const std::vector<Log>& logs) {
   return std::sqrt(sum / count);
 }
 
-/// What no filter bank of the drive can know must not be learnt by heart from the blocks around.
+/// A zero that drifts does not follow the command. The filter bank must not fit it from the neighbouring
+/// blocks.
 TEST(Base, LeavesOfAnotherDayWhatItLeavesOfHealthyLogsHeldOut) {
   const test::Finger wandering{.wander_mm = 0.1};
   const Base base = base_of(test::logs_of(wandering, 1));
@@ -63,7 +64,7 @@ TEST(Base, WhatAValveDoesIsJudgedInShorterBinsThanAFinger) {
   EXPECT_DOUBLE_EQ(fit_base(behind_it, Judged::displacement, Drive::measured, {}).bin_s, 0.05);
 }
 
-/// The same logs of a finger behind a regulator that is no lag.
+/// Returns the logs with the readings of a finger behind a regulator whose response is not a first-order lag.
 std::vector<Log> behind_a_narrow_port(std::vector<Log> logs) {
   const Regulator narrow{
       .play_kpa = 0.3, .dead_kpa = 0.9, .full_kpa = 20, .port_per_s = 0.5, .tube_per_s = 2};
@@ -95,7 +96,7 @@ TEST(Base, OfAPressureThatFollowsAtOnceADelayOfHalfASampleIsTheMeanOfTwo) {
   const std::vector<Record> records = pressure_records(test::logs_of({}, 1, true), false);
   const Base base = fit_base(records, Judged::pressure, Drive::command, {});
   Extension late;
-  late.valve.push_back({model::block_type<model::TransportDelay>(), {0.01}});  // sampled at 50 Hz
+  late.valve.push_back({model::block_type<model::TransportDelay>(), {0.01}});  // half of the sample time
   Record between = records[0];
   for (std::size_t i = 1; i < between.size(); ++i)
     between.drive_kpa[i] = 0.5 * (records[0].drive_kpa[i] + records[0].drive_kpa[i - 1]);
@@ -104,7 +105,7 @@ TEST(Base, OfAPressureThatFollowsAtOnceADelayOfHalfASampleIsTheMeanOfTwo) {
   for (std::size_t i = 1; i < p.size(); ++i) ASSERT_NEAR(p[i], expected[i], 1e-6) << i;
 }
 
-/// A base whose filter bank is no small part of what it says.
+/// A base whose filter bank is a large part of its prediction.
 Base with_a_large_filter_part() {
   Base base = base_of(test::logs_of({}, 1));
   const Record& record = base.records.front();

@@ -34,8 +34,8 @@ TEST(Bins, AThinnedRecordThatEndsSoonerGoesOnWithItsLastValue) {
 
 constexpr double innovation = 0.5;
 
-/// 2 runs of an autoregression of order 1 about a zero, with the standard deviation `innovation` in each
-/// step.
+/// Two runs of a first-order autoregressive process about the mean `zero`. The standard deviation of each
+/// step is `innovation`.
 Binned autoregression(double weight, double zero, unsigned seed) {
   std::mt19937 random(seed);
   std::normal_distribution<double> normal(0, innovation);

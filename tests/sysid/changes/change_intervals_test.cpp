@@ -27,7 +27,7 @@ double width(const std::optional<Interval>& interval) {
   return interval ? interval->upper - interval->lower : 0;
 }
 
-// The judge is the scatter itself: other inputs, other noise.
+// The interval is compared with the scatter of the estimate over other inputs and other noise.
 TEST_F(ChangeIntervals, AreAsWideAsTheNumberScattersAndHoldIt) {
   constexpr double delay_s = 0.06;
   constexpr int draws = 30;
@@ -45,7 +45,7 @@ TEST_F(ChangeIntervals, AreAsWideAsTheNumberScattersAndHoldIt) {
   }
   const double scatter = std::sqrt((squares - sum * sum / draws) / (draws - 1));
   RecordProperty("held", held);
-  EXPECT_GE(held, 25) << "of " << draws;  // of 95 %, fewer than 25 come once in 5000
+  EXPECT_GE(held, 25) << "of " << draws;  // with 95 % coverage, fewer than 25 occur once in 5000
   EXPECT_GT(widths, 0.6 * 2 * 1.96 * scatter);
   EXPECT_LT(widths, 2.5 * 2 * 1.96 * scatter);
 }
@@ -62,10 +62,10 @@ TEST_F(ChangeIntervals, AreWiderWhereHealthyUnitsDifferInTheSameNumber) {
   };
   const double alone = width(intervals_of(later, {delay}, {})[0].numbers.at(0));
   const double between = width(intervals_of(later, {delay}, {unit(0.01, 1), unit(0.02, 1)})[0].numbers.at(0));
-  // The mean square of 0.01 and 0.02 s, for another run beside the mean of two.
+  // The mean square of 0.01 and 0.02 s, times 1.5: the difference between one run and the mean of two.
   const double expected = 2 * 1.96 * std::sqrt(0.00025 * 1.5);
   EXPECT_NEAR(between, std::hypot(alone, expected), 1e-3 * between);
-  // A fit that improves nothing there says nothing of runs.
+  // A healthy fit that does not reduce the error contains no information about the differences between runs.
   EXPECT_DOUBLE_EQ(width(intervals_of(later, {delay}, {unit(0.04, -0.1)})[0].numbers.at(0)), alone);
 }
 
@@ -90,7 +90,7 @@ TEST_F(ChangeIntervals, AreWiderBesideAnEffectThatLooksAlike) {
 TEST_F(ChangeIntervals, OfANumberThatNothingShowsThereIsNone) {
   const LaterReadings later = readings({}, 5);
   FittedEffect stop = fitted(later, "pressure_saturation");
-  stop.numbers.at(0) = stop.effect.numbers[0].upper;  // far above what was asked for
+  stop.numbers.at(0) = stop.effect.numbers[0].upper;  // far above the commanded pressures
   const EffectIntervals intervals = intervals_of(later, {stop}, {}).front();
   EXPECT_FALSE(intervals.numbers.at(0));
   EXPECT_FALSE(intervals.size);

@@ -39,7 +39,7 @@ TEST_F(ChangeSearch, ALineThatFillsAndEmptiesAlikeIsALagOfTheValve) {
   std::vector<Effect> effects = effects_for(base_, later.records(), {}, true);
   std::erase_if(effects, [](const Effect& e) { return e.id != "valve_lag" && e.id != "blocked_line"; });
   std::reverse(effects.begin(), effects.end());
-  // As much as healthy runs may show.
+  // The errors that healthy runs may show.
   const Tolerance tolerance({{{"valve_lag", 0.05}, {"blocked_line", 0.05}}}, 2);
   std::vector<ScoredEffect> ranked = ranked_effects(later, effects, {}, tolerance, 1);
   ASSERT_EQ(ranked.size(), 2U);
@@ -52,7 +52,7 @@ TEST_F(ChangeSearch, OfThoseThatTakeAsMuchTheOneWithFewestNumbersIsFirst) {
   const LaterReadings later = readings({.delay_s = 0.02});
   std::vector<Effect> effects = effects_for(base_, later.records(), {}, true);
   std::erase_if(effects, [](const Effect& e) { return e.id != "transport_delay"; });
-  // The same with a number that does nothing, and a little more.
+  // Adds a number without effect and a slightly larger gain to the delay.
   Effect dearer = effects.front();
   dearer.id = "dearer";
   dearer.numbers.push_back({"idle", "", 1, 0, 1});
@@ -71,7 +71,7 @@ TEST_F(ChangeSearch, OfThoseThatTakeAsMuchTheOneWithFewestNumbersIsFirst) {
   EXPECT_EQ(ranked[0].fit.fitted.effect.id, "transport_delay");
 }
 
-/// One that gains so much with so many numbers.
+/// Returns an effect with this error reduction and this number of fitted numbers.
 ScoredEffect scored(const char* id, double gain, std::size_t numbers, std::size_t nuisance = 0) {
   ScoredEffect scored;
   scored.gain = gain;

@@ -32,7 +32,7 @@ TEST(Change, AnotherInputAndAnotherZeroAreNoChange) {
   EXPECT_NEAR(d.readings.back().zero_mm, 0.4, 0.03);
 }
 
-/// A weight changes gain and zero at once; a gain alone is no weight.
+/// A payload changes gain and zero at the same time. If only the gain changed, a payload is no alternative.
 TEST(Change, AnotherGainBesideAnotherZeroMayBeAWeight) {
   const auto may_be_a_weight = [](const Finger& later) {
     const ChangeDiagnosis d = changed(later);
@@ -46,7 +46,7 @@ TEST(Change, AnotherGainBesideAnotherZeroMayBeAWeight) {
   EXPECT_FALSE(may_be_a_weight({.gain = 0.2 * 0.95}));
 }
 
-/// The diagnosis of later logs in which each reading is that of another sample.
+/// Returns the diagnosis of later logs in which the reading of sample i is that of sample `sample(i)`.
 ChangeDiagnosis read_at(std::size_t (*sample)(std::size_t)) {
   std::vector<Log> later = logs_of({}, 5);
   for (Log& log : later) {
@@ -66,8 +66,8 @@ TEST(Change, AReadingThatIsUpdatedTooRarelyIsSampling) {
   EXPECT_NEAR(d.causes[0].size.value, 0.2, 1e-3);
 }
 
-/// With a hum in 3 of 5 s, and single readings between that are off by 2 amplitudes of it: no outliers,
-/// unless the noise is taken for smaller than it is.
+/// Adds an alternating error in 3 of 5 s, and in the other 2 s single errors of twice its amplitude. These
+/// are outliers only if the noise is underestimated.
 std::vector<Log> humming(std::vector<Log> logs) {
   constexpr std::size_t per_s = 50;
   for (Log& log : logs) {
@@ -154,7 +154,7 @@ TEST(Change, AGainThatFollowsTheTemperatureNeedNotBeWhatItWasOnTheHealthyDay) {
   ASSERT_FALSE(d->causes.empty()) << change_sentence(*d);
   EXPECT_EQ(d->causes[0].id, "thermal_gain");
   EXPECT_EQ(d->causes.size(), 1U);
-  // Of the gain at the healthy logs' 24 degrees.
+  // relative to the gain at the 24 degrees of the healthy logs
   EXPECT_NEAR(d->causes[0].size.value, 100 * 0.01 / (1 + 0.01 * (24 - 15)), 0.1);
 }
 
@@ -170,7 +170,7 @@ TEST(Change, AStopIsAContactAndItsSizeIsWhatIsMissingAtFullPressure) {
   const ChangeCause& cause = d.causes[0];
   const bool named = cause.id == "contact" || cause.id == "sensor_saturation";
   EXPECT_TRUE(named) << cause.id;
-  // What is missing in the tenth of the pressures below the highest.
+  // Mean displacement shortfall at pressures of at least 90 % of the highest.
   const std::vector<Log> stopped = logs_of({.stop_mm = 7}, 5), free = logs_of({}, 5);
   double highest_kpa = 0, missing_mm = 0, count = 0;
   for (const Log& log : free)
@@ -217,7 +217,8 @@ TEST(Change, ASensorThatEndsJustBelowTheLargestReadingIsFound) {
   for (const Log& log : logs_of({}, 5))
     largest_mm =
         std::max(largest_mm, *std::max_element(log.displacement_mm.begin(), log.displacement_mm.end()));
-  // So near that a first look at another end, sized to what it takes, cuts nothing.
+  // This limit is so close that the first start value of the search, which is estimated from the error, is
+  // above all readings.
   const double end_mm = largest_mm - 0.25;
   const ChangeDiagnosis d = changed({.stop_mm = end_mm});
   ASSERT_FALSE(d.causes.empty()) << change_sentence(d);
@@ -235,9 +236,9 @@ TEST(Change, ALeakIsSeenInThePressureAndNotInTheFinger) {
   EXPECT_EQ(d.causes.size(), 1U);
 }
 
-/// Logs whose pressure a regulator makes by rules of its own: what its error and that error's integral ask
-/// for, beyond a dead zone, fills a chamber, which empties through a narrow tube into the finger; and a leak
-/// empties that.
+/// Replaces the pressure of the logs by that of a regulator with its own equations. Beyond a dead zone, the
+/// error and its integral open a port to a chamber. The chamber empties through a narrow tube into the
+/// finger, and a leak empties the finger.
 std::vector<Log> behind_a_regulator(std::vector<Log> logs, double tube_per_s, double leak_per_s) {
   std::mt19937 random(static_cast<unsigned>(1000 * leak_per_s + tube_per_s));
   std::normal_distribution<double> noise(0, 0.03);
@@ -265,7 +266,7 @@ std::vector<Log> behind_a_regulator(std::vector<Log> logs, double tube_per_s, do
 }
 
 ChangeDiagnosis changed_behind_a_regulator(double tube_per_s, double leak_per_s) {
-  // A small leak is worth a minute of each log.
+  // A small leak needs one minute of each log.
   const auto d = diagnose_change(behind_a_regulator(logs_of({}, 1, true, 3000), 40, 0),
                                  behind_a_regulator(logs_of({}, 5, true, 3000), tube_per_s, leak_per_s));
   EXPECT_TRUE(d) << d.error();
@@ -278,7 +279,8 @@ TEST(Change, ALeakThatARegulatorMakesUpForIsSeenWhereItsPortsOpen) {
   EXPECT_EQ(d.causes[0].id, "leak");
   EXPECT_EQ(d.causes[0].fitted.effect.form, "leak_past_a_regulator");
   EXPECT_EQ(d.causes.size(), 1U) << change_sentence(d);
-  // 0.2 a second of the 58 kPa that it goes to; by another law of flow, no more than its order is told.
+  // The leak loses 0.2 per second of the 58 kPa that the pressure reaches. The law of flow differs from that
+  // of the diagnosis, so only the order of magnitude can agree.
   EXPECT_GT(d.causes[0].size.value, 0.5 * 0.2 * 58);
   EXPECT_LT(d.causes[0].size.value, 2 * 0.2 * 58);
 }
@@ -289,7 +291,7 @@ TEST(Change, ATubeThatThrottlesMoreBehindARegulatorIsABlockedLine) {
   EXPECT_EQ(d.causes[0].id, "blocked_line");
 }
 
-/// Logs whose pressure a regulator of the program's own law makes.
+/// Returns logs whose pressure is simulated with the program's own regulator model.
 std::vector<Log> regulated_logs(unsigned first_seed, const Regulator& regulator) {
   std::mt19937 random(first_seed);
   std::normal_distribution<double> noise(0, 0.03);
@@ -373,7 +375,7 @@ TEST(Change, ThePageSaysWhatToDoAndShowsTheMisfit) {
   EXPECT_NE(html.find(interval_text(d.causes[0])), std::string::npos) << interval_text(d.causes[0]);
   EXPECT_NE(html.find(std::string(next_steps("ageing")[1]).substr(0, 30)), std::string::npos);
   ASSERT_EQ(page.figures().size(), 3U);
-  EXPECT_EQ(page.figures()[0].charts.size(), 2U);  // a log each
+  EXPECT_EQ(page.figures()[0].charts.size(), 2U);  // one chart per log
   const Chart& runs = page.figures()[1].charts[0][0];
   EXPECT_EQ(runs.x.categories.size(), d.readings.back().runs.size());
   EXPECT_EQ(runs.series.size(), 2U);
@@ -387,8 +389,8 @@ TEST(Change, TooLittleIsRefused) {
   EXPECT_FALSE(diagnose_change({}, logs_of({}, 5)));
 }
 
-/// A lag of 0.01 s is larger than each healthy run's error and smaller than what another healthy run may
-/// leave. That suffices only where healthy runs begin as the later one does.
+/// A lag of 0.01 s has a larger error than each healthy run, but a smaller one than another healthy run may
+/// have. This rejects a change only if the healthy runs start like the later run.
 TEST(Change, AnotherStartNeedsALargerError) {
   const std::vector<Log> healthy{log_of({}, 1), log_of({}, 2), log_of({}, 3)};
   const Log at_rest = log_of({.valve_lag_s = 0.01}, 5);

@@ -1,4 +1,4 @@
-// softgrip baseline and softgrip diagnose --healthy as a user calls them.
+// Runs softgrip baseline and softgrip diagnose --healthy as a user does.
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>

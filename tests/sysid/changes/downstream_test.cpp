@@ -63,14 +63,15 @@ TEST(Downstream, IsWhatTheWholeChainShowsBitForBit) {
       whole = model::with_block(std::move(whole), blocks.back());
     }
     if (!is_downstream(blocks, base(), record)) {
-      EXPECT_STREQ(chain.back(), "ageing");  // it stands in front of the contact
+      EXPECT_STREQ(chain.back(), "ageing");  // this block precedes the contact
       continue;
     }
     EXPECT_EQ(downstream(blocks, record, plain), walked(whole, record));
   }
 }
 
-// Whatever blocks there are or will be: what says that it shows at samples does.
+// For every block of the catalogue that reports that it can be applied to samples, the result is that of the
+// whole model.
 TEST(Downstream, HoldsForEveryBlockThatSaysSo) {
   const Record record = waving();
   const std::vector<double> plain = walked(base(), record);

@@ -27,7 +27,8 @@ Record waving() {
   return record;
 }
 
-/// What a model leaves: a share of the drive half a second ago, and something of its own.
+/// The residual of a model: a share of the command behind a lag of 0.5 s, plus a part that does not follow
+/// the command.
 Binned left_of(const Record& record, double share) {
   const std::vector<double> drive = binned(record, lagged(record, record.drive_kpa, 0.5), bin_s);
   Binned left{{}};
@@ -64,7 +65,7 @@ TEST(FilterFit, OfWhatDoesNotFollowTheDriveIsNone) {
   }
 }
 
-/// A model that was fitted to a unit says nothing of how it predicts that unit.
+/// A model that was fitted to a unit must not be used to judge the prediction of this unit.
 TEST(FilterFit, EachUnitIsJudgedByTheModelThatWasFittedWithoutIt) {
   const std::vector<Record> records{waving()};
   const Units units(records);

@@ -1,6 +1,6 @@
 #pragma once
-// A finger for tests of changes, by formulas that are not the model's: an elastic part, one with play, one
-// that creeps, behind a valve that follows at once.
+// A simulated finger for tests of changes. Its formulas differ from those of the models: an elastic part, a
+// part with play and a creeping part, behind a valve without dynamics.
 
 #include <algorithm>
 #include <cmath>
@@ -15,19 +15,21 @@ namespace softgrip::sysid::test {
 
 struct Finger {
   double gain = 0.2;     ///< mm/kPa
-  double stop_mm = 1e9;  ///< it goes no farther
+  double stop_mm = 1e9;  ///< largest displacement [mm]
   double zero_mm = 0;
-  double lost_kpa_per_s = 0;  ///< while the command stands still, up to 1.5 kPa
+  double lost_kpa_per_s = 0;  ///< while the command is constant, up to a loss of 1.5 kPa
   double delay_s = 0;
   double valve_lag_s = 0;
-  double per_c = 0;  ///< the gain's slope, nothing at 15 degrees
+  double per_c = 0;  ///< relative change of the gain per degree, from 15 degrees on
   bool with_temperature = false;
-  double bend_per_mm = 0;  ///< gives way less the farther it is bent, as far as before at 12 mm
-  double crescent_mm = 0;  ///< width of a loop that goes up along a parabola and down along a line
-  double wander_mm = 0;    ///< the zero goes to and fro within a quarter of a minute, never twice alike
+  double bend_per_mm = 0;  ///< stiffens with the displacement; at 12 mm the displacement is unchanged
+  double crescent_mm =
+      0;  ///< width of a loop whose rising branch is a parabola and whose falling branch is a line
+  double wander_mm =
+      0;  ///< drift of the zero, with a different random course in each log and a period of about 15 s
 };
 
-/// Triangles of several heights with a hold on top, drawn by `seed`.
+/// Returns a command of triangles with several heights and a hold at the top, drawn by `seed`.
 inline std::vector<double> command_kpa(unsigned seed, std::size_t samples, double rate_hz) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> height(20, 58), time(1.5, 4);
@@ -46,16 +48,16 @@ inline std::vector<double> command_kpa(unsigned seed, std::size_t samples, doubl
   return out;
 }
 
-/// A first-order lag of a pressure that goes straight from one sample to the next, which is what a record
-/// states of its command.
-/// @param lagged_kpa, from_kpa  at the sample before. @param to_kpa  at this sample.
+/// Returns a pressure behind a first-order lag. The pressure is linear between two samples, as a record
+/// states its command.
+/// @param lagged_kpa, from_kpa  values at the previous sample. @param to_kpa  value at this sample.
 inline double lagged_kpa(double lagged_kpa, double from_kpa, double to_kpa, double step_s, double lag_s) {
   if (lag_s <= 0) return to_kpa;
   const double behind_kpa = lag_s * (to_kpa - from_kpa) / step_s;
   return to_kpa - behind_kpa + (lagged_kpa - from_kpa + behind_kpa) * std::exp(-step_s / lag_s);
 }
 
-/// @param samples  at 50 Hz.
+/// @param samples  number of samples at 50 Hz.
 inline Log log_of(const Finger& finger, unsigned seed, bool with_pressure = false,
                   std::size_t samples = 2000) {
   constexpr double rate_hz = 50;

@@ -15,7 +15,7 @@ TEST(NextSteps, EveryCauseHasTwoThingsToDoAndPlainWords) {
   std::vector<std::string_view> ids;
   for (const CauseWithoutBlock& cause : causes_without_block) ids.push_back(cause.id);
   for (const Cause& cause : all_causes()) {
-    // Of a base, and what a leak may be taken for: no changes.
+    // These two are no changes: one is a cause of a model error only, the other is an alternative to a leak.
     if (cause.id != "hysteresis_shape" && cause.id != "pressure_scale") ids.push_back(cause.id);
   }
   for (const std::string_view id : ids) {
@@ -32,7 +32,8 @@ TEST(NextSteps, ASizeThatIsANumberIsOneOfTheCausesBlock) {
   std::size_t numbers = 0;
   for (const Cause& cause : all_causes()) {
     const SizedBy size = sized_by(cause.id);
-    if (size.of != SizedBy::Of::number || cause.id == leak.id) continue;  // a leak's is of its own search
+    // the size of a leak comes from its own search
+    if (size.of != SizedBy::Of::number || cause.id == leak.id) continue;
     ++numbers;
     EXPECT_FALSE(size.unit.empty()) << cause.id;
     const bool known = std::any_of(cause.forms.begin(), cause.forms.end(), [&](const CauseForm& form) {

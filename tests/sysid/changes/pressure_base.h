@@ -1,5 +1,5 @@
 #pragma once
-// A base of the pressure, which is its filter bank alone: quick to fit.
+// A base of the pressure that consists of its filter bank only, so that it is fitted quickly.
 
 #include <gtest/gtest.h>
 

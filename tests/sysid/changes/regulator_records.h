@@ -1,5 +1,5 @@
 #pragma once
-// Commands as records, for tests of regulators.
+// Records with given commands, for tests of regulators.
 
 #include <cmath>
 #include <vector>

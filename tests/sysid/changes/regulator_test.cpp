@@ -15,7 +15,7 @@ namespace {
 using test::record_of;
 using test::rms;
 
-/// A step up after half a second.
+/// A step up after 0.5 s.
 Record step_record() {
   std::vector<double> command(600, 50.0);
   std::fill(command.begin(), command.begin() + 50, 0.0);
@@ -37,7 +37,7 @@ TEST(Regulator, APortThatIsOpenFillsByWhatStandsBeforeIt) {
   const Regulator narrow{.port_per_s = 0.3, .tube_per_s = 30, .spool_lag_s = 0, .chamber_share = 0};
   record.supply_kpa.assign(record.size(), 500.0);
   const std::vector<double> p = regulated(narrow, record, record.drive_kpa);
-  // Choked, nearly all the way: 601 kPa by 0.3 a second.
+  // Choked flow, almost until the end: 0.3 per second of the absolute pressure of 601 kPa.
   EXPECT_NEAR(p[60] - p[55], 0.05 * 0.3 * 601.3, 0.5);
   record.supply_kpa.assign(record.size(), 300.0);
   EXPECT_NEAR(regulated(narrow, record, record.drive_kpa)[60], 401.3 / 601.3 * p[60], 0.5);
@@ -54,7 +54,8 @@ TEST(Regulator, WhilePortsAreShutALeakEmptiesTheFinger) {
   EXPECT_NEAR(regulated(shut, record, record.drive_kpa).back(), 50, 1e-9);
 }
 
-/// Samples of 1 s are simulated in 50 steps each, samples of 0.1 s in 50 as well: ten times finer.
+/// Each sample is simulated in 50 steps, for samples of 1 s as for samples of 0.1 s. Ten times finer steps
+/// must not change the result.
 TEST(Regulator, SlowSamplesNeedNoFinerSteps) {
   const Record slow = record_of(test::command_kpa(3, 120, 1), 1);
   constexpr std::size_t parts = 10;
@@ -74,7 +75,7 @@ TEST(Regulator, AnswersForALeakWhereItsPortsOpen) {
   const std::vector<double> tight = regulated(regulator, record, record.drive_kpa);
   regulator.leak_per_s = 0.1;
   const std::vector<double> leaking = regulated(regulator, record, record.drive_kpa);
-  EXPECT_NEAR(leaking.back(), tight.back(), 0.3);  // of 13 kPa that it loses a second
+  EXPECT_NEAR(leaking.back(), tight.back(), 0.3);  // although it loses 13 kPa/s
   EXPECT_LT(leaking[70], tight[70] - 0.2);
 }
 
@@ -109,7 +110,7 @@ TEST(Regulator, AChamberBeforeTheTubeIsFilledFirst) {
   EXPECT_NEAR(soon(0) / soon(1), 2, 0.1);
 }
 
-/// Another program's valve by the same standard, in small explicit steps, is the referee.
+/// Reference: the valve of tests/blind/textbook, which implements the same standard, in small explicit steps.
 std::vector<double> textbook_pressure(const textbook::ValveNumbers& numbers, const Record& record) {
   constexpr double step_s = 0.00025;
   textbook::Valve valve(numbers);
@@ -146,7 +147,7 @@ TEST(Regulator, AnswersAsAnotherProgramsValveByTheSameStandard) {
       const double far_kpa = rms(record.drive_kpa, p);
       EXPECT_GT(far_kpa, 0.3);
       EXPECT_LT(rms(regulated(regulator, record, record.drive_kpa), p), 0.08 * far_kpa) << leak;
-      // Steps as small as the referee's leave no more than what both make of a step.
+      // With steps as small as those of the reference, the difference must become small.
       constexpr std::size_t parts = 40;
       const Record fine = finer_record(record, parts);
       const std::vector<double> at_all = regulated(regulator, fine, fine.drive_kpa);

@@ -1,5 +1,5 @@
 #pragma once
-// A campaign of known commands, and residuals of known kind for it.
+// A campaign with known commands, and residuals of a known kind for it.
 
 #include <cmath>
 #include <limits>
@@ -11,7 +11,7 @@
 
 namespace softgrip::sysid {
 
-/// Triangles of several amplitudes and rates with holds and rests, `logs` logs of a minute at 50 Hz.
+/// Returns `logs` logs of one minute at 50 Hz: triangles with several amplitudes and rates, holds and rests.
 inline std::vector<Record> known_campaign(std::size_t logs) {
   std::vector<Record> records;
   double largest = 0;
@@ -28,7 +28,7 @@ inline std::vector<Record> known_campaign(std::size_t logs) {
       const double peak = 20.0 + 5.0 * static_cast<double>((cycle + k) % 5);
       const double rise_s = cycle % 2 == 0 ? 1.0 : 2.5;
       const double phase = t - 10 * static_cast<double>(cycle);
-      // Up, two seconds of hold, down, rest.
+      // Rise, hold for 2 s, fall, rest.
       double p = 0;
       if (phase < rise_s) {
         p = peak * phase / rise_s;
@@ -59,7 +59,8 @@ inline ByRecord readings_of(const std::vector<Record>& records) {
   return readings;
 }
 
-/// Noise of standard deviation `deviation` that resembles itself by `correlation` from sample to sample.
+/// Returns noise with this standard deviation and with the correlation `correlation` between successive
+/// samples.
 inline ByRecord noise_for(const std::vector<Record>& records, double deviation, double correlation,
                           std::uint64_t seed) {
   std::mt19937_64 random(seed);

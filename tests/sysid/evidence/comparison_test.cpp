@@ -7,7 +7,8 @@
 namespace softgrip::sysid::comparison_test {
 namespace {
 
-/// Blocks of ten rows whose mean difference per row is `mean`, with this spread between blocks.
+/// Blocks of ten rows with the mean difference `mean` per row and the standard deviation `spread` between
+/// blocks.
 PairedLosses losses(double mean, double spread, std::size_t blocks, unsigned seed) {
   std::mt19937 random(seed);
   std::normal_distribution<double> normal(mean, spread);

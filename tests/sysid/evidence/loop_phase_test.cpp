@@ -14,9 +14,9 @@ struct Signals {
   std::vector<double> command, reading;
 };
 
-/// A flow behind a valve, held at 0 by a controller with a proportional and an integral part.
-/// @param band  by how much the command must change before the valve moves, and then jumps.
-/// @param wave  height of a disturbance of the flow.
+/// A flow behind a valve that a PI controller holds at 0.
+/// @param band  change of the command at which the valve breaks free and jumps.
+/// @param wave  amplitude of a disturbance of the flow.
 Signals loop(double band, double wave, double proportional, double integral, unsigned seed) {
   std::mt19937 random(seed);
   std::normal_distribution<double> noise(0, 0.01);
@@ -35,7 +35,7 @@ Signals loop(double band, double wave, double proportional, double integral, uns
   return signals;
 }
 
-/// A planned course of the command, and a finger that lags behind it.
+/// A planned command, and a finger that follows it with a lag.
 Signals planned(double lag_share, unsigned seed) {
   std::mt19937 random(seed);
   std::normal_distribution<double> noise(0, 0.01);
@@ -75,7 +75,8 @@ TEST(LoopPhase, APlannedCommandIsNoLoopHoweverLateTheFingerIs) {
   }
 }
 
-/// Its correlation with the reading is one-sided, as odd as that of a valve that sticks.
+/// The cross-correlation of command and reading is one-sided, so its odd part is as large as that of a valve
+/// that sticks.
 TEST(LoopPhase, ARandomCommandIsNoLoop) {
   std::mt19937 random(9);
   std::normal_distribution<double> normal(0, 1);

@@ -24,12 +24,12 @@ TEST(Tolerance, OfOneRunIsThreeTimesInRootMeanSquareAndFallsWithMoreRuns) {
 }
 
 TEST(Tolerance, AnotherRunOfTheSameKindExceedsItInOneOfTwenty) {
-  // Runs that differ in three directions by the same spread: 4,000 sets of runs, seed 1.
+  // Runs that differ in three directions with the same standard deviation: 4,000 sets of runs, seed 1.
   std::mt19937 random(1);
   std::normal_distribution<double> normal(0, 1);
   using Run = std::array<double, 3>;
   const auto run = [&] { return Run{normal(random), normal(random), normal(random)}; };
-  // The squared error of a run that the mean of others predicts.
+  // The squared error of a run that is predicted by the mean of the others.
   const auto improvement = [](const Run& predicted, const std::vector<Run>& runs, std::size_t left_out) {
     const auto others = static_cast<double>(runs.size() - (left_out < runs.size() ? 1 : 0));
     double sum = 0;

@@ -18,7 +18,7 @@ struct Predicted {
       {simulated(twin, SignalName::tp1, 50, 0.05, 1), simulated(twin, SignalName::steps, 50, 0.05, 2)}, {});
   FitPoint point{twin, rest_starts(twin, records)};
 
-  /// The readings are the model's own, `off_mm` below its prediction.
+  /// The readings equal the prediction of the model. The start states have the offset `off_mm`.
   explicit Predicted(double off_mm) {
     for (std::size_t r = 0; r < records.size(); ++r) {
       records[r].reading_mm = predict(twin, records[r], point.starts[r]);
@@ -42,7 +42,7 @@ TEST(HeldOutLosses, OfAModelThatIsOffByAMillimetreAreOneInEveryBlock) {
 TEST(HeldOutLosses, AreThoseOfAFitThatNeverSawTheBlock) {
   const Predicted exact(0);
   const Division division = divide_into_fifths(exact.records);
-  // A "fit" that is wrong by as much as it has readings of the second log's last block.
+  // The offset of this "fit" equals the number of readings that it sees in the last block of the second log.
   const Block last = division.blocks.back();
   const BlockLosses losses = held_out_losses(exact.records, division, [&](const std::vector<Record>& rest) {
     double seen = 0;

@@ -43,7 +43,7 @@ Model three_branches() {
   kv.insert(kv.end(), {5.0, 0.5});
   return model;
 }
-/// gamma > eta: the state levels off faster than it comes back, and crosses zero steeply.
+/// gamma > eta: the hysteretic state saturates faster than it returns, and crosses zero with a steep slope.
 Model odd_hysteresis() {
   Model model = loaded("zhang2025");
   model.blocks[0].values[2] = -0.01;
@@ -101,7 +101,8 @@ std::vector<std::size_t> all_but_the_exponent(const Model& model) {
 
 class BothWays : public ::testing::TestWithParam<World> {};
 
-/// The chain by automatic differentiation and the closed form are two programs for one set of equations.
+/// The chain with automatic differentiation and the closed form are two implementations of the same
+/// equations.
 TEST_P(BothWays, ValuesAndDerivativesAgree) {
   const World& world = GetParam();
   const std::vector<Record> records = records_of(world);
@@ -124,7 +125,8 @@ TEST_P(BothWays, ValuesAndDerivativesAgree) {
   ASSERT_TRUE(separable->evaluate(z, r2, j2));
   double worst = 0;
   for (std::size_t i = 0; i < rows; ++i) worst = std::max(worst, std::abs(r1[i] - r2[i]));
-  // A lag's turn inside a sample reaches creep as two parabolas in the chain and as one here.
+  // When a lag reverses within a sample, the chain uses two parabolas for the creep, but the closed form uses
+  // one.
   const bool lagged = model::position_of(world.model, "valve_lag").has_value();
   EXPECT_LT(worst, lagged ? 1e-6 : 1e-9) << "mm";
   for (std::size_t c = 0; c < z.size(); ++c) {
@@ -153,7 +155,7 @@ TEST_P(BothWays, ValuesWithoutDerivativesAreTheSame) {
   }
 }
 
-// Records and groups of derivatives that are walked through side by side.
+// Records and groups of derivatives are evaluated in parallel.
 TEST_P(BothWays, AreBitForBitTheSameOnMoreThreads) {
   const World& world = GetParam();
   const std::vector<Record> records = records_of(world);
@@ -176,7 +178,7 @@ TEST_P(BothWays, AreBitForBitTheSameOnMoreThreads) {
 INSTANTIATE_TEST_SUITE_P(Worlds, BothWays, testing::ValuesIn(worlds()),
                          [](const auto& world) { return world.param.name; });
 
-/// Against central differences of the model itself: what is called a derivative is one.
+/// Compares the derivatives with central differences of the model.
 TEST(ChainResiduals, DerivativesAreThoseOfTheModel) {
   World world{"TwinUnknownStart", bench_twin(), true, false, true};
   const std::vector<Record> records = records_of(world);
@@ -209,7 +211,8 @@ TEST(ChainResiduals, DerivativesAreThoseOfTheModel) {
   }
 }
 
-/// A measured pressure begins a little beside zero, and a soft spring has settled far away there.
+/// A measured pressure begins slightly below zero. There, the rest position of a soft spring is far from
+/// zero.
 TEST(SeparableResiduals, AgreeWithTheModelWhereABranchHasNextToNoSpring) {
   for (const double stiffness : {1e-3, 1e-9, 1e-14, 0.0}) {
     Model model = loaded("zhang2025");

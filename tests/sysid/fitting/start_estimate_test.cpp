@@ -25,7 +25,7 @@ using model::SignalName;
 
 constexpr double noise_mm = 0.05, rate_hz = 50;
 
-/// Play operators, creep over two decades and a dead time.
+/// Play operators, creep over two decades, and a dead time.
 model::Model play_finger() {
   model::Model m;
   m.name = "play_finger";
@@ -45,7 +45,7 @@ Record whole(const model::Model& finger, SignalName signal, RecordOptions option
   return make_records({simulated(finger, signal, rate_hz, noise_mm, 11)}, options).front();
 }
 
-/// The rest of a run from a sample on, as a log of its own.
+/// Returns the part of a run from sample `first` on as a separate log.
 Record cut(const model::Model& finger, SignalName signal, std::size_t first, RecordOptions options = {}) {
   const Log log = simulated(finger, signal, rate_hz, noise_mm, 11);
   return make_records({slice(log, first, log.size())}, options).front();
@@ -55,8 +55,8 @@ double error_mm(const model::Model& finger, const Record& record, const StartSta
   return rms(residual(record, predict(finger, record, start)));
 }
 
-/// Ten moments at equal distances, and each moment at which the pressure is back at 0, with 3 s and more to
-/// come.
+/// Returns ten sample numbers at equal distances, and each at which the pressure has returned to 0. At least
+/// 3 s follow.
 std::vector<std::size_t> moments_to_cut(const Record& record) {
   constexpr std::size_t cuts = 10;
   std::vector<std::size_t> moments;
@@ -121,8 +121,9 @@ TEST(EstimatedStart, OfARunFromRestIsRest) {
   }
 }
 
-/// Strokes between two pressures, of a finger with a hysteresis that needs many of them. The first stroke of
-/// the log does not show with which state it began: the model errs, and any state explains it.
+/// Cycles between two pressures. The hysteresis of this finger needs many cycles to settle. The first half
+/// cycle of the log does not show the initial state, because the model has an error that any state could
+/// explain.
 TEST(EstimatedStart, AnActuatorInItsCycleIsPredictedInItsCycle) {
   model::Model finger;
   finger.name = "slow_to_cycle";
@@ -140,7 +141,7 @@ TEST(EstimatedStart, AnActuatorInItsCycleIsPredictedInItsCycle) {
   }
   Record record = make_records({log}, {}).front();
   log.displacement_mm = predict(finger, record, StartState{});
-  // From 35 kPa on, in the thirteenth stroke; readings that lag, as no part of the model does.
+  // The log starts at 35 kPa in the thirteenth cycle. The readings have a lag that the model lacks.
   Log late = slice(log, 4807, log.size());
   double lagging = late.displacement_mm.front();
   for (double& y : late.displacement_mm) y = lagging += 0.2 * (y - lagging);
@@ -152,7 +153,8 @@ TEST(EstimatedStart, AnActuatorInItsCycleIsPredictedInItsCycle) {
   EXPECT_LT(error_mm(finger, record, start), 0.15 * span_mm);
 }
 
-/// A model without the delay errs by 1 mm and more on a ramp: that is no sign of another start.
+/// A model without the delay has an error of at least 1 mm on a ramp. This error must not be explained by
+/// another start state.
 TEST(EstimatedStart, AnErrorOfTheModelIsNotTakenForAStart) {
   const model::Model finger = loaded("bench_twin");
   model::Model without_delay = finger;
@@ -170,10 +172,10 @@ TEST(EstimatedStart, OfAKnownRestHasNoHysteresisAndNoCreep) {
   EXPECT_FALSE(is_at_rest(estimated_start(finger, unknown), unknown));
 }
 
-/// A log may be cut at any moment, in motion or without pressure between two cycles. What is left of it is
-/// predicted with an error that is larger than that of the same readings in the complete log by 3 % of the
-/// span, in the root mean square over the moments, and by 8 % at most. The model has no error: all of this is
-/// the estimate's.
+/// A log may be cut at any time, also in motion or without pressure between two cycles. The prediction of the
+/// rest may then have a larger error than the prediction of the same readings in the complete log. The
+/// increase is at most 3 % of the span as RMS over the cuts, and at most 8 % for one cut. The model is exact,
+/// so the increase is caused by the estimated start only.
 TEST(EstimatedStart, ALogThatIsCutAnywhereIsPredictedNearlyAsWell) {
   for (const model::Model& finger : fingers()) {
     for (const SignalName signal : {SignalName::tp1, SignalName::sp2}) {

@@ -1,4 +1,4 @@
-// softgrip identify and validate as a user calls them: exit codes, files, nothing written on refusal.
+// Runs softgrip identify and validate as a user does: exit codes, files, and no output file after a refusal.
 
 #include <algorithm>
 #include <filesystem>
@@ -73,7 +73,7 @@ TEST_F(Command, EveryScoreSaysWhatDrivesTheModel) {
   }
 }
 
-/// Cut where the pressure is 0 between two cycles, a log looks as if it began at rest.
+/// If a log is cut where the pressure is 0 between two cycles, it seems to begin at rest.
 TEST_F(Command, BeginDecidesWhatIsEstimatedOfAStart) {
   const Log log = simulated(loaded("bench_twin"), model::SignalName::tp1, 50, 0.05, 7);
   std::size_t first = log.size() / 4;
@@ -138,7 +138,7 @@ TEST_F(Command, WhatALogProbablyDoesNotMeanIsWarnedOf) {
               std::string::npos);
 }
 
-/// From the last rest before the highest pressure up to it.
+/// Returns the part of the log from the last rest before the highest pressure to this pressure.
 Log loading() {
   const Log whole = simulated(loaded("zhang2025"), model::SignalName::tp1, 20, 0.05, 7);
   const std::vector<double>& kpa = whole.pressure_command_kpa;
@@ -148,7 +148,7 @@ Log loading() {
   return slice(whole, begin, end);
 }
 
-/// The first lines of an output, up to an empty one.
+/// Returns the first lines of an output, up to an empty line.
 std::string first_lines(const std::string& text) {
   return text.substr(0, text.find("\n\n"));
 }
@@ -180,7 +180,7 @@ TEST_F(Command, OutliersAreNamedFirstAndNotFitted) {
   EXPECT_NE(validated["warnings"].dump().find("are outliers, left out"), std::string::npos);
 }
 
-/// Its creep has next to no end: a short log does not show that, a long one does.
+/// The creep of this model has almost no limit. A short log does not show this, but a long one does.
 TEST_F(Command, APredictionThatDivergesIsNotAcceptable) {
   write_log("tp1.csv", model::SignalName::tp1);
   write("loading.csv", format_log(loading()));
@@ -200,7 +200,7 @@ TEST_F(Command, APredictionThatDivergesIsNotAcceptable) {
       << read("out.txt");
 }
 
-/// 9999 is beyond every displacement in mm, but not because of a unit.
+/// 9999 exceeds every displacement in mm, but the reason is not the unit.
 TEST_F(Command, ALargeCodeIsNoUnit) {
   Log log = simulated(loaded("zhang2025"), model::SignalName::tp1, 20, 0.05, 7);
   log.displacement_mm[30] = log.displacement_mm[50] = 9999;

@@ -25,7 +25,7 @@ const Estimate& find(const std::vector<Estimate>& list, std::string_view name) {
   throw std::runtime_error("no estimate " + std::string(name));
 }
 
-/// The combinations of the truth, each within `widths` half-widths of its interval.
+/// Expects that each combination of the true parameters is within `widths` half-widths of its interval.
 void expect_truth(const Identification& result, const Model& truth, double widths) {
   for (const Combination& c : combinations_of(truth)) {
     const Estimate& e = find(result.combinations, c.name);
@@ -66,7 +66,7 @@ TEST(Identify, FindsLatencyWhereTheStructureHasIt) {
   expect_truth(*result, truth, 2);
 }
 
-/// The founding finding: without the latency in the structure, the hysteresis takes its place.
+/// The main result of the project: if the structure lacks the latency, the hysteresis block absorbs it.
 TEST(Identify, WithoutLatencyTheTwinLooksNotInvertible) {
   const auto logs = two_logs(loaded("bench_twin"));
   const auto result = identify(logs, base_model(logs, 2));
@@ -77,7 +77,8 @@ TEST(Identify, WithoutLatencyTheTwinLooksNotInvertible) {
                           [](const std::string& w) { return w.find("latency") != std::string::npos; }));
 }
 
-/// Data from a program that shares nothing with the model's: another method, another step.
+/// Uses data from a program with another integration method and another step, which shares no code with the
+/// models.
 TEST(Identify, FindsWhatAnIndependentIntegratorSimulated) {
   const IntegratedFinger finger;
   const std::vector<Log> logs{integrated(finger, SignalName::tp1, 50, 0.05, 21),
@@ -153,8 +154,8 @@ TEST(Identify, AParameterThatDoesNotExistIsRefused) {
   EXPECT_NE(result.error().find("bouc_wen.delta"), std::string::npos);
 }
 
-/// A log cut out of the middle of a run, with the sensor's zero off: hysteresis, creep and offset are in
-/// states that nobody recorded.
+/// A log from the middle of a run with an offset of the sensor zero. The states of hysteresis, creep and
+/// offset at its start are unknown.
 TEST(Identify, EstimatesTheStateInWhichALogBegins) {
   const Model truth = loaded("zhang2025");
   std::vector<Log> logs;
@@ -233,7 +234,7 @@ TEST(Identify, AsManyBranchesAsAskedFor) {
   EXPECT_NEAR(time_constants[1], 1.5, 0.1);
 }
 
-/// A chain that has no closed form goes through automatic differentiation, and finds its block all the same.
+/// A chain without a closed form is fitted with automatic differentiation, and its block is found as well.
 TEST(Identify, AnyBlockCanBeFitted) {
   Model truth = loaded("zhang2025");
   model::BlockSpec contact = model::default_block(*model::find_block("contact"));
@@ -276,7 +277,7 @@ TEST(Identify, WhatIsHeldOutIsNotFitted) {
   ASSERT_TRUE(result);
   EXPECT_NEAR(result->rmse_mm, 0.05, 0.02 * 0.05);
   ASSERT_EQ(result->held_out.size(), 2U);
-  // Of the last 30 %, the last 25 % are off by 4 mm.
+  // Within the last 30 % of the log, the last 25 % have an error of 4 mm.
   EXPECT_NEAR(result->held_out[0].rmse_mm, 4 * std::sqrt(25.0 / 30), 0.1);
 }
 
@@ -321,8 +322,8 @@ TEST(Identify, ProfilesAgreeWithIntervalsWhereTheDataAreStrong) {
   }
 }
 
-/// A small cousin of bench/sysid_coverage: fits scattered truths under white and correlated noise and counts
-/// how often the interval holds the truth.
+/// A small version of bench/sysid_coverage: fits scattered true models with white and correlated noise, and
+/// counts how often the interval contains the true value.
 TEST(Identify, IntervalsHoldTheTruthAsOftenAsTheySay) {
   std::size_t inside = 0;
   std::size_t trials = 0;

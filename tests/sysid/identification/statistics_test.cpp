@@ -1,4 +1,4 @@
-// Noise model, quantiles, bounded least squares, scores.
+// Tests noise model, quantiles, bounded least squares and scores.
 
 #include <cmath>
 #include <random>
@@ -47,7 +47,7 @@ TEST(NoiseModel, GapsAndSeveralSeriesDoNotMix) {
   EXPECT_NEAR(fit_noise(autocovariance_of({first, second})).lag1_correlation, 0.8, 0.02);
 }
 
-/// Against a fine search over a grid.
+/// Compares the result with a fine grid search.
 TEST(BoundedSolve, FindsTheConstrainedMinimum) {
   std::mt19937_64 random(4);
   std::normal_distribution<double> normal;

@@ -11,7 +11,7 @@
 namespace softgrip::sysid::clock_test {
 namespace {
 
-/// 500 values that step by `step` from `begin` and fall back by `period` where they reach `limit`.
+/// Returns 500 values that increase by `step` from `begin`, and decrease by `period` when they reach `limit`.
 std::vector<double> counter(double begin, double step, double limit, double period) {
   std::vector<double> values;
   for (int i = 0; i < 500; ++i) {

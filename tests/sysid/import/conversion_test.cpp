@@ -12,7 +12,7 @@
 namespace softgrip::sysid::conversion_test {
 namespace {
 
-/// 200 samples, command up and down twice; `row` writes one.
+/// A table of 200 samples in which the command rises and falls twice. `row` writes one line.
 template <class Row>
 std::string text_of(const std::string& header, Row row) {
   std::string text = header + "\n";
@@ -232,7 +232,7 @@ TEST(Propose, LeavesWhatIsGivenAlone) {
   EXPECT_EQ(proposal.guessed, (std::vector<Role>{Role::time, Role::displacement}));
 }
 
-/// Line 22 cannot be split into the cells of the header, and the cell of line 40 is no number.
+/// Line 22 has more cells than the header, and a cell in line 40 is not a number.
 TEST(Convert, LinesThatAreLeftOutHaveAFateBesideTwoTimes) {
   const std::string text = text_of("t_set_s,set_kpa,t_tip_s,tip_mm", [](int i, double p, double y) {
     if (i == 20) return std::string("0.2,3,0.2,4,5");
@@ -253,11 +253,12 @@ TEST(Convert, LinesThatAreLeftOutHaveAFateBesideTwoTimes) {
   const auto result = convert(*table, propose(*table, mapping, true).mapping, problems);
   ASSERT_TRUE(result) << problems.format();
   EXPECT_TRUE(result->account.balanced());
-  // Each row of the table counts once for each of its times, the line that is no row once.
+  // Each row of the table counts once for each of its two times; the line with the wrong number of cells
+  // counts once.
   EXPECT_EQ(result->account.left_out[static_cast<std::size_t>(LeftOut::bad_line)], 3U);
 }
 
-/// @param broken  data row with a cell that is no number, or -1.
+/// @param broken  number of the row with a cell that is not a number, or -1.
 std::string note_of_overflow(int broken) {
   const std::string text = text_of("t_ms,set_kpa,tip_mm", [broken](int i, double p, double y) {
     return std::to_string((i * 10 + 65000) % 65536) + "," + shortest(p) + "," +

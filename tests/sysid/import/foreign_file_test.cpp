@@ -11,7 +11,7 @@
 #include "sysid/import/hdf5_table.h"
 #include "sysid/import/mat_table.h"
 
-// Values of MATLAB and HDF5 files are held against the truth by tests/system/test_import.py.
+// tests/system/test_import.py compares the values of MATLAB and HDF5 files with the true values.
 namespace softgrip::sysid::foreign_file_test {
 namespace {
 
@@ -34,7 +34,8 @@ TEST(ArrayCollector, MatricesBecomeColumnsWhicheverWayTheyLie) {
 }
 
 TEST(Gunzipped, IsBoundedAndSaysWhatIsWrong) {
-  // printf 'hello hello' | gzip -n
+  // the output of: printf 'hello hello'
+  // gzip -n
   const std::string packed(
       "\x1f\x8b\x08\x00\x00\x00\x00\x00\x02\x03\xcb\x48\xcd\xc9\xc9\x57\xc8\x00\x91\x00\x40\xa6\x2d\x01\x0b"
       "\x00\x00\x00",
@@ -69,7 +70,7 @@ TEST(ForeignFile, BrokenBinariesAreRefusedAndMissingOnesUnreadable) {
   EXPECT_TRUE(unreadable);
 }
 
-/// On a reader that waits for a writer this test does not end.
+/// If the function under test waited for a writer, this test would not end.
 TEST(ForeignFile, APipeIsUnreadableAndNotWaitedFor) {
   const ScratchFolder scratch;
   const std::string pipe = scratch.path() + "/log.csv";

@@ -1,4 +1,5 @@
-// Generated files in many dialects, clocks and states of damage: each row, column and option has a fate.
+// Generates files in many dialects, with different clocks and damages. The import must account for each row,
+// column and option.
 
 #include <gtest/gtest.h>
 
@@ -61,7 +62,7 @@ std::string clock_name(Clock clock) {
   return clock == Clock::epoch ? "timestamp" : "Time";
 }
 
-/// One generated file and all that must come of it.
+/// A generated file and the expected result of its import.
 struct Generated {
   std::string text;
   std::string about;
@@ -69,10 +70,10 @@ struct Generated {
   std::size_t rows = 0;
   std::map<LeftOut, std::size_t> left_out;
   std::size_t joined = 0;
-  std::map<std::int64_t, double> readings;  ///< by time in ms, where the log must have one
-  std::map<std::int64_t, double> commands;  ///< by time in ms, where the file has one
+  std::map<std::int64_t, double> readings;  ///< by time [ms], where the log must have a reading
+  std::map<std::int64_t, double> commands;  ///< by time [ms], where the file has a command
   std::vector<std::string> unused;
-  std::vector<std::string> second_times;  ///< among these
+  std::vector<std::string> second_times;  ///< those of them that look like a time
   std::vector<std::string> idle;
 };
 
@@ -240,7 +241,7 @@ void check_rows(const Generated& file, const ImportedLog& result) {
   EXPECT_EQ(sum, file.rows);
 }
 
-/// Every value of the file that is not counted as left out is in the log at its own time.
+/// Every value of the file that is not counted as left out must be in the log at its own time.
 void check_values(const Generated& file, const Log& log) {
   std::size_t readings = 0;
   double held = 0;
@@ -282,7 +283,8 @@ TEST(ImportAccount, EachRowColumnAndOptionOfGeneratedFilesHasAFate) {
   }
 }
 
-/// What cannot be read for certain is refused with its line, never shortened.
+/// If a time cannot be read with certainty, the import refuses the file and names the line. It must not
+/// shorten the log.
 TEST(ImportAccount, AClockThatIsSetBackIsRefused) {
   for (unsigned seed = 0; seed < 50; ++seed) {
     std::mt19937 random(seed);

@@ -1,6 +1,6 @@
-// Fuzz target of the foreign text tables, workbooks, LabVIEW and MCAP files: any bytes are a table or a
-// refusal, what is proposed for it can be said by options and a mapping file, and what is converted is a log
-// that can be read.
+// Fuzz target of external text tables, workbooks, LabVIEW and MCAP files. All bytes are either refused, or
+// they are a table. The proposed mapping of a table can be written as options and as a mapping file. A
+// converted table is a valid log.
 //
 //   scripts/fuzz.sh import_fuzz 30
 

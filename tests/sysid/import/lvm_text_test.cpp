@@ -75,7 +75,7 @@ TEST(Lvm, WhatDiffersOrIsCutOffIsNamed) {
   EXPECT_FALSE(is_lvm("LabVIEW Measurement\nx\n"));
 }
 
-/// Like every other text.
+/// A LabVIEW text has the same bounds as every other text.
 TEST(Lvm, HasTheBoundsOfAText) {
   document::Problems problems;
   const std::string bytes = header("One") + section("12:00:00,0", "0\t1\t2\n1\t3\t4\n");

@@ -14,7 +14,7 @@ TableColumn column(const std::string& name, std::vector<double> values) {
   return made;
 }
 
-/// The seconds of two columns, or of the first one alone.
+/// Returns the combined seconds of two columns, or those of the first column alone.
 std::vector<double> combined(const TableColumn& seconds, const TableColumn& rest, bool& is_one_time) {
   std::vector<TableColumn> columns{rest, seconds};
   std::vector<std::string> notes;

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-// Whole files in the layouts of the format: tests/system/foreign_files.py.
+// tests/system/foreign_files.py writes whole files in the layouts of the format.
 namespace softgrip::sysid::tdms_table_test {
 namespace {
 
@@ -28,7 +28,7 @@ std::string segment(std::uint32_t flags, const std::string& metadata, const std:
          bytes_of(static_cast<std::uint64_t>(metadata.size())) + metadata + raw;
 }
 
-/// The metadata of a channel with `count` values and without properties.
+/// Returns the metadata of a channel with `count` values and without properties.
 std::string channel(const std::string& path, std::uint32_t type, std::uint64_t count) {
   return text_of(path) + bytes_of(std::uint32_t{20}) + bytes_of(type) + bytes_of(std::uint32_t{1}) +
          bytes_of(count) + bytes_of(std::uint32_t{0});
@@ -67,7 +67,7 @@ TEST(TdmsTable, ReadsNumbersByTheirTypes) {
 }
 
 TEST(TdmsTable, MetadataHoldsUntilItChanges) {
-  // The second segment has no metadata; in the third only the count of one channel changes.
+  // The second segment has no metadata. In the third segment, only the count of one channel changes.
   const std::string values =
       bytes_of(3.5) + bytes_of(4.5) + bytes_of(std::int32_t{9}) + bytes_of(std::int32_t{10});
   const std::string change =
@@ -80,7 +80,7 @@ TEST(TdmsTable, MetadataHoldsUntilItChanges) {
   EXPECT_EQ(table.columns[1].values, (std::vector<double>{-7, 8, 9, 10, 11}));
 }
 
-/// Metadata without a new list changes the channels that it names and keeps the others.
+/// Metadata without a new channel list changes the channels that it names and keeps the others.
 TEST(TdmsTable, ChangedMetadataKeepsTheOtherChannels) {
   const auto more = [](std::uint64_t count, double first, std::int32_t second) {
     std::string values;
@@ -119,7 +119,7 @@ TEST(TdmsTable, KeepsTheCompleteSegmentsOfAFileThatIsCutOff) {
                                 (bytes < 28 ? "first bytes" : "metadata") + ": its " + std::to_string(bytes) +
                                 " bytes are left out");
   }
-  // 1 of 2 values of the first channel, and a part of the second: 2 rows are lost.
+  // The file ends after 1 of 2 values of the first channel, so 2 rows of this segment are lost.
   const ForeignTable blocks = cut_at(28 + metadata.size() + 12);
   EXPECT_EQ(blocks.columns[1].values, (std::vector<double>{-7, 8}));
   EXPECT_EQ(notes(blocks), "incomplete rows or blocks of values are left out: 12 bytes");
@@ -156,7 +156,7 @@ TEST(TdmsTable, RefusesMoreValuesThanTheLimit) {
             std::string::npos);
 }
 
-/// Bytes that are cut off or changed are a table or a refusal.
+/// Bytes that are truncated or changed are either refused, or they are a table.
 TEST(TdmsTable, SurvivesDamage) {
   const std::string good = two_channels() + two_channels();
   std::mt19937 random(5);

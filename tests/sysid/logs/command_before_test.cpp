@@ -11,8 +11,8 @@ namespace {
 
 constexpr double interval_s = 0.02;
 
-/// Set from `idle_kpa` to 60 kPa two samples before the log begins, held for 4 s, then a slow wave; the
-/// pressure follows with a lag of 0.3 s, read `offset_kpa` too high.
+/// The command steps from `idle_kpa` to 60 kPa two samples before the log begins. It is held for 4 s, and a
+/// slow cosine follows. The pressure follows with a lag of 0.3 s, and its reading is `offset_kpa` too high.
 Log begun_at_a_step(double idle_kpa, double offset_kpa = 0) {
   Log log;
   double pressure_kpa = idle_kpa;
@@ -64,11 +64,11 @@ Log unmeasured(Log log) {
 }
 
 TEST(CommandBefore, WithoutMeasuredPressureTheDisplacementShowsFromWhichEndItCame) {
-  const auto [least, most] = std::pair{20.0, 60.0};  // of the wave behind the hold
+  const auto [least, most] = std::pair{20.0, 60.0};  // lowest and highest command of the cosine
   const auto risen = pressure_before_kpa(unmeasured(begun_at_a_step(7)));
   ASSERT_TRUE(risen);
   EXPECT_NEAR(*risen, least, 0.1);
-  Log lowered = begun_at_a_step(60);  // from 60 to 20 kPa as it begins
+  Log lowered = begun_at_a_step(60);  // from 60 to 20 kPa at the start of the log
   for (std::size_t i = 0; i < lowered.size(); ++i) {
     lowered.pressure_command_kpa[i] = 80 - lowered.pressure_command_kpa[i];
     const double settling = std::exp(-interval_s * static_cast<double>(i) / 0.3);

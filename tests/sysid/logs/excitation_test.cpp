@@ -11,7 +11,7 @@ namespace {
 
 using Missing = std::vector<Excitation>;
 
-/// A command at 50 Hz for 40 s.
+/// A log with this command at 50 Hz for 40 s.
 template <class Command>
 Log commanded(Command kpa_at) {
   Log log;
@@ -24,7 +24,7 @@ Log commanded(Command kpa_at) {
   return log;
 }
 
-/// Up to `peak_kpa` and back within 8 s, then 2 s of rest.
+/// Rises to `peak_kpa` and falls within 8 s, then rests for 2 s.
 double triangle(double t, double peak_kpa) {
   return peak_kpa * std::max(0.0, 1 - std::abs(std::fmod(t, 10) / 4 - 1));
 }
@@ -43,7 +43,7 @@ TEST(MissingExcitation, OfOneAmplitude) {
             Missing{Excitation::amplitudes});
 }
 
-/// The steps of a staircase are no peaks: the pressure does not fall behind them.
+/// The steps of a stepped command are not counted as peaks, because the pressure does not fall after them.
 TEST(MissingExcitation, OfAStaircaseWithOnePeak) {
   const auto stairs = [](double t) { return 8 * std::floor(std::max(0.0, 20 - std::abs(t - 20)) / 4); };
   EXPECT_EQ(missing_excitation({commanded(stairs)}), Missing{Excitation::amplitudes});
@@ -59,7 +59,7 @@ TEST(MissingExcitation, OtherLogsMayContainIt) {
   EXPECT_EQ(missing_excitation({ramp, triangles}), Missing{});
 }
 
-/// A vacuum finger is loaded downwards.
+/// For a vacuum finger, loading means a decrease of the pressure.
 TEST(MissingExcitation, OfAVacuumIsThatOfAPressure) {
   for (const double peak_kpa : {-40.0, 40.0}) {
     EXPECT_EQ(missing_excitation({commanded([&](double t) { return peak_kpa * t / 40; })}),

@@ -18,7 +18,7 @@ namespace {
 
 using document::Problems;
 
-/// A good log: 100 samples of one slow triangle, with hysteresis enough to look like one.
+/// A valid log: 100 samples of one slow triangle, with enough hysteresis to be a plausible finger.
 Log good_log() {
   Log log;
   for (int i = 0; i < 100; ++i) {
@@ -33,7 +33,7 @@ std::string good_text() {
   return format_log(good_log());
 }
 
-/// The good log with line `number` (from 1) replaced.
+/// Returns the valid log with line `number` (from 1) replaced.
 std::string with_line(int number, const std::string& line) {
   std::string text = good_text();
   std::size_t begin = 0;
@@ -50,10 +50,10 @@ LogOptions channel_named(const std::string& channel) {
 struct Bad {
   std::string name;
   std::string text;
-  int line;             ///< of the first problem
-  int column;           ///< of the first problem
-  std::string message;  ///< part of it
-  std::string hint;     ///< part of it
+  int line;             ///< line of the first problem
+  int column;           ///< column of the first problem
+  std::string message;  ///< a part of the message
+  std::string hint;     ///< a part of the hint
   LogOptions options = {};
 };
 
@@ -189,7 +189,7 @@ TEST(Log, TextAndBackLosesNothing) {
   EXPECT_EQ(format_log(*back), format_log(log));
 }
 
-/// A text with another name for the column of the readings.
+/// Returns a text in which the column of the readings has another name.
 std::string with_readings_called(const std::string& name, std::string text) {
   const std::string usual = "displacement_mm";
   return text.replace(text.find(usual), usual.size(), name);
@@ -270,7 +270,7 @@ TEST(Log, AcceptsWhatSpreadsheetsWrite) {
   EXPECT_TRUE(parse_log("good.csv", text, problems)) << problems.format();
 }
 
-/// A good log with a further column, the same cell in every row but those that `other` names by line.
+/// Returns a valid log with an additional column. All rows have the same cell, except the lines in `other`.
 std::string with_column(const std::string& name, const std::string& cell,
                         const std::map<int, std::string>& other = {}) {
   std::istringstream in(good_text());

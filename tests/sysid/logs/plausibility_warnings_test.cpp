@@ -52,7 +52,7 @@ TEST(PlausibilityWarnings, SignScaleAndOrder) {
             std::string::npos);
 }
 
-/// Of a pressure and of a vacuum, in each unit that is far from kPa.
+/// Tests a pressure and a vacuum in each unit whose values differ strongly from those in kPa.
 TEST(PlausibilityWarnings, AUnitThatIsFarFromKpaIsNamed) {
   const auto warnings = [](double peak, double mm) {
     Log log;
@@ -78,7 +78,7 @@ TEST(PlausibilityWarnings, AUnitThatIsFarFromKpaIsNamed) {
   }
 }
 
-/// With the largest value of its column and what states the unit.
+/// The warning names the largest value of the column and the reason why the unit seems wrong.
 TEST(PlausibilityWarnings, AUnitIsNamedWithItsColumn) {
   Log log = simulated(loaded("bench_twin"), model::SignalName::tp1, 50, 0.05, 7);
   const std::vector<double> kpa = log.pressure_command_kpa;

@@ -11,7 +11,7 @@
 namespace softgrip::sysid::resampled_record_test {
 namespace {
 
-/// A parabola in time at 1 kHz, 4 s, with noise.
+/// A parabola in time with noise: 4 s at 1 kHz.
 Record parabola(double noise_mm) {
   std::mt19937_64 random(20261122);
   std::normal_distribution<double> noise(0, 1);
@@ -29,7 +29,7 @@ Record parabola(double noise_mm) {
   return record;
 }
 
-/// A command at 100 Hz, without readings.
+/// A record with this command at 100 Hz and without readings.
 Record commanded(const std::vector<double>& drive_kpa) {
   Record record;
   for (std::size_t i = 0; i < drive_kpa.size(); ++i) {
@@ -43,7 +43,7 @@ Record commanded(const std::vector<double>& drive_kpa) {
   return record;
 }
 
-/// The integral of the command [kPa s].
+/// Returns the integral of the command [kPa s].
 double integral_kpa_s(const Record& record) {
   double sum = 0;
   for (std::size_t i = 1; i < record.size(); ++i) {
@@ -93,7 +93,8 @@ TEST(AveragedRecord, KeepsTheMotionAndItsTimes) {
     const double t_s = averaged.time_s[i];
     EXPECT_NEAR(t_s, 0.010 * static_cast<double>(i), 1e-12);
     EXPECT_NEAR(averaged.drive_kpa[i], 10 * t_s, 1e-9);
-    // Nine readings, 1 ms apart: what a parabola gains by them is its curvature times their mean square.
+    // The mean of nine readings at 1 ms exceeds a parabola by half its second derivative times the mean
+    // square of the time offsets.
     EXPECT_NEAR(averaged.reading_mm[i], 2 * t_s * t_s, 2 * 6.7e-6);
   }
 }
@@ -122,7 +123,7 @@ TEST(AveragedRecord, ThatIsSparseEnoughStaysAsItIs) {
 }
 
 TEST(AveragedRecord, ACampaignKeepsAboutAsManyReadingsAsWanted) {
-  const std::vector<Record> campaign{parabola(0), parabola(0)};  // 4001 readings each
+  const std::vector<Record> campaign{parabola(0), parabola(0)};  // each has 4001 readings
   EXPECT_EQ(averaged_to_count(campaign, 8002, 1).front().size(), 4001U) << "few enough";
   const std::vector<Record> averaged = averaged_to_count(campaign, 800, 1);
   ASSERT_EQ(averaged.size(), 2U);
@@ -135,7 +136,7 @@ TEST(StridedRecord, LeavesOutReadingsButTellsMotionsApartLikeTheLog) {
   EXPECT_NEAR(averaged_to(parabola(0), 0.02).finest_interval_s, 0.02, 1e-12) << "a mean blurs what is faster";
 }
 
-/// A ramp at 1 kHz, 4 s.
+/// A ramp: 4 s at 1 kHz.
 Record ramp() {
   Record record;
   for (int i = 0; i <= 4000; ++i) {

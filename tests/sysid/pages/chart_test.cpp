@@ -87,7 +87,7 @@ TEST(Thinning, KeepsEveryExtreme) {
   }
   EXPECT_EQ(highest, 50);
   EXPECT_EQ(lowest, -60);
-  // Column by column, what is drawn reaches as far as the data.
+  // In each pixel column, the drawn curve has the same minimum and maximum as the data.
   std::vector<std::pair<double, double>> data(700, {1e9, -1e9});
   auto drawn = data;
   for (const Pixel& p : curve) {
@@ -195,7 +195,7 @@ TEST(Chart, UnitsOfAxesAreDrawnInWords) {
   EXPECT_NE(to_svg(a_chart()).find(">displacement in millimetres<"), std::string::npos);
 }
 
-// Half a million noisy readings on a loop would be megabytes if every one that is told apart were drawn.
+// If every distinct point were drawn, 600,000 noisy readings would give a file of several megabytes.
 TEST(Chart, AnyLengthOfLogMakesASmallPicture) {
   std::mt19937_64 random(3);
   std::normal_distribution<double> noise;
@@ -224,7 +224,7 @@ TEST(Chart, BothColourSchemesAreInTheFileAndColoursAreThereWithoutThem) {
 TEST(Chart, WhatColourTellsApartDashesTellApart) {
   Chart chart = a_chart();
   chart.series.front().dash = Dash::dotted;
-  // In the curve and in the legend.
+  // once in the curve and once in the legend
   EXPECT_EQ(count(to_svg(chart), "stroke-dasharray=\"1.5 2.5\""), 2U);
 }
 

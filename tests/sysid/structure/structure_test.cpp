@@ -33,8 +33,8 @@ namespace {
 
 using model::SignalName;
 
-/// A finger of plays, creep over three decades, a bend, and a valve that vents slowly. Its thresholds and
-/// time constants stand on no grid of the fit.
+/// A finger of play operators, creep over three decades and a nonlinear gain, behind a valve that vents
+/// slowly. Its thresholds and time constants are not on the grid of the fit.
 model::Model play_finger() {
   model::Model m;
   m.name = "play_finger";
@@ -48,7 +48,7 @@ model::Model play_finger() {
   return model::with_block(std::move(m), {model::block_type<model::Characteristic>(), {0.6, 25}});
 }
 
-/// play_finger() with generalised plays.
+/// Returns play_finger() with generalised plays.
 model::Model bent_play_finger() {
   model::Model m = play_finger();
   std::vector<double>& values = m.blocks[*model::position_of<model::PrandtlIshlinskii>(m)].values;
@@ -63,7 +63,8 @@ Log scaled(Log log, double mm) {
   return log;
 }
 
-/// The rest of a log as a model predicts it from its start, against the truth without noise.
+/// Predicts the rest of a log from its start and returns the RMSE [mm] against the true displacement without
+/// noise.
 double continuation_rmse_mm(const model::Model& truth, const model::Model& found, SignalName signal,
                             double share) {
   const Log log = simulated(truth, signal, 100, 0, 1);
@@ -123,7 +124,7 @@ TEST(PublishedElement, RefittedWithoutABlockItStaysWhereItWas) {
 }
 
 TEST(StructureProjection, WeightsAreNeverNegative) {
-  // A reading that falls where a play would rise: the best weight is none.
+  // A reading that falls while a play would rise: the best weight of each play is 0.
   std::vector<Record> records = make_records({simulated(play_finger(), SignalName::tp1, 50, 0.03, 3)}, {});
   for (double& y : records[0].reading_mm) y = -y;
   const BaseStructure structure{.characteristic = false};
@@ -154,7 +155,7 @@ TEST(WithoutWandering, TakesADriftAwayAndLeavesWhatTheFingerDoes) {
     return moved;
   };
   const std::vector<double> of_steady = moved_mm(steady), of_drifting = moved_mm(drifting);
-  // Slow creep and a drift are alike in part; beyond that part the drift alone is taken.
+  // Slow creep and a drift are similar in part. Except for this part, only the drift must be removed.
   EXPECT_LT(rms(of_steady), 0.3 * drift_mm);
   std::vector<double> missed(of_drifting.size());
   for (std::size_t i = 0; i < missed.size(); ++i) {
@@ -228,7 +229,8 @@ TEST(IdentifyStructure, FindsAFingerOfPlays) {
   }
 }
 
-/// What a bend behind the operators and creep that depends on the pressure do not make up for.
+/// A nonlinear gain behind the operators and creep that depends on the pressure cannot replace generalised
+/// plays.
 TEST(IdentifyStructure, FindsTheBentEnvelopesOfGeneralisedPlays) {
   const std::vector<Log> logs{simulated(bent_play_finger(), SignalName::tp1, 100, 0.03, 5),
                               simulated(bent_play_finger(), SignalName::sp2, 100, 0.03, 6)};
@@ -256,11 +258,13 @@ TEST(IdentifyStructure, FindsThatAFingerWasLoadedBefore) {
   EXPECT_LT(found->rmse_mm, 1.4 * 0.03);
   const auto block = model::position_of<model::PrandtlIshlinskii>(found->model);
   ASSERT_TRUE(block);
-  // Beyond twice the largest threshold every operator has been dragged along, and more is the same.
+  // Beyond twice the largest threshold all operators are dragged along, so a larger earlier pressure has the
+  // same effect.
   EXPECT_GT(found->model.blocks[*block].values.front(), 30);
 }
 
-/// From the command alone a regulator's overlap is seen in the finger; a lag is not taken for one.
+/// Without a measured pressure, the overlap of a regulator is visible in the displacement. A lag must not be
+/// mistaken for it.
 TEST(IdentifyStructure, FindsTheRegulatorBehindTheCommand) {
   model::Model regulated =
       model::without_block(play_finger(), model::block_type<model::AsymmetricValveLag>());
@@ -281,7 +285,7 @@ TEST(IdentifyStructure, FindsTheRegulatorBehindTheCommand) {
   }
 }
 
-/// A lag more than the plays' finger has, in which FindsAFingerOfPlays finds none.
+/// A finger with one more lag than play_finger(), for which FindsAFingerOfPlays finds no such lag.
 TEST(IdentifyStructure, FindsASecondLag) {
   const model::Model slower =
       model::with_block(play_finger(), {model::block_type<model::ValveLag>(), {0.12}});
@@ -313,7 +317,7 @@ TEST(IdentifyStructure, FindsAResonance) {
   EXPECT_GT(without->heldout_rmse_mm, 2 * found->rmse_mm);
 }
 
-/// The first 20 s are fitted: one stroke from an idle pressure, which begins with the log.
+/// The first 20 s are fitted. They contain one cycle from an idle pressure, which starts with the log.
 TEST(IdentifyStructure, OneStrokeFromAnIdlePressureIsNoUnsettledCreep) {
   constexpr double idle_kpa = 7;
   const model::Model finger = play_finger();
@@ -340,7 +344,7 @@ TEST(IdentifyStructure, OneStrokeFromAnIdlePressureIsNoUnsettledCreep) {
 
 TEST(SimplestStart, WhatTheCallerStatesAndWhatRestDoesNotExplainStays) {
   const Log whole = simulated(play_finger(), SignalName::tp1, 100, 0.03, 15);
-  Log late;  // without its first 3 s: in the middle of a rise, after others
+  Log late;  // without its first 3 s: it starts during a rise, after other cycles
   late.name = "late";
   for (std::size_t i = 300; i < whole.size(); ++i) {
     late.time_s.push_back(whole.time_s[i] - whole.time_s[300]);
@@ -370,8 +374,8 @@ TEST(IdentifyStructure, TheAnswerDoesNotDependOnTheUnit) {
 }
 
 TEST(IdentifyStructure, NeverEndsAboveItsOwnRelaxation) {
-  // All weights free and the search's numbers those of the truth: a linear problem, whose minimum no fit of
-  // the same structure may miss by more than the ridge costs.
+  // With free weights and the true nonlinear numbers, the problem is linear. A fit of the same structure must
+  // reach its minimum, except for the cost of the regularisation.
   const std::vector<Log> logs{simulated(play_finger(), SignalName::tp1, 100, 0.03, 8)};
   const std::vector<Record> records = make_records(logs, {});
   const StructureGrid grid = grid_for(records);
@@ -386,7 +390,7 @@ TEST(IdentifyStructure, NeverEndsAboveItsOwnRelaxation) {
 }
 
 TEST(IdentifyStructure, HasTwoStagesWhereThePressureWasMeasured) {
-  // The valve's blocks give the measured pressure, the rest the displacement.
+  // The blocks of the valve produce the measured pressure, the other blocks the displacement.
   const model::Model whole = play_finger();
   Log log = simulated(whole, SignalName::tp1, 100, 0.03, 9);
   const model::Model valve =

@@ -1,4 +1,4 @@
-// What holds of every cause in the registry.
+// Properties that every cause in the registry must have.
 
 #include "sysid/diagnosis/causes/cause.h"
 
@@ -25,7 +25,7 @@ Scales typical_scales() {
   return s;
 }
 
-/// The twin without its valve, with a block.
+/// Returns bench_twin with this block in place of its valve.
 model::Model with(const model::BlockSpec& block) {
   const model::Model twin = model::testing::preset("bench_twin");
   return model::with_block(
@@ -49,7 +49,7 @@ class Causes : public ::testing::TestWithParam<Cause> {
   const Cause& cause = GetParam();
   const Scales scales = typical_scales();
 
-  /// check(form, start) for every start of every form.
+  /// Calls check(form, start) for every start of every form.
   template <class Check>
   void each_start(Check check) {
     for (const CauseForm& form : cause.forms) {
@@ -94,7 +94,7 @@ TEST_P(Causes, StartWithinWhatAFitMayDo) {
   });
 }
 
-// More than three numbers at once meet almost any curve; a form that takes them says so.
+// A form with more than three free numbers can fit almost any curve, so it must be marked as a free form.
 TEST_P(Causes, MoveFewNumbers) {
   each_start([&](const CauseForm& form, const model::BlockSpec& start) {
     std::size_t fitted = 0;
@@ -131,7 +131,8 @@ TEST_P(Causes, SayWhichColumnTheyNeed) {
   EXPECT_EQ(unanswerable(cause, driven).empty(), cause.station != model::Station::valve);
 }
 
-// A twin, and what a gauge can tell, stand one at the sensor and one before it.
+// If two causes are indistinguishable, or if a gauge distinguishes them, one is at the sensor and the other
+// before it.
 TEST_P(Causes, HaveCounterpartsAtTheOtherEnd) {
   const auto at_sensor = [](const Cause& c) { return c.station == model::Station::sensor; };
   for (const Cause& other : sensor_counterparts(cause))
@@ -167,7 +168,7 @@ TEST(Registry, CoversTheCatalogue) {
   }));
 }
 
-// Where a block would be something else by another name, a fit may not go.
+// The range of a fit excludes values at which a block would describe another cause.
 TEST(Ranges, KeepCausesWhatTheyAreCalled) {
   const Scales scales = typical_scales();
   const auto range = [&](std::string_view id, std::string_view parameter) {
@@ -182,7 +183,8 @@ TEST(Ranges, KeepCausesWhatTheyAreCalled) {
   EXPECT_LE(range("rate_dependent_hysteresis", "width_kpa").upper, scales.largest_kpa);
   EXPECT_LE(range("inertia", "damping_ratio").upper, std::sqrt(0.5));
   EXPECT_GE(range("contact", "position_mm").lower, 0.01 * scales.span_mm);
-  EXPECT_GE(range("slow_creep", "time_constant_s").lower, 16.0);  // the twin's slowest branch: 16.5 s
+  EXPECT_GE(range("slow_creep", "time_constant_s").lower,
+            16.0);  // the slowest branch of bench_twin has 16.5 s
   EXPECT_GE(range("periodic_disturbance", "frequency_hz").lower, 0.2 - 1e-12);
 }
 

@@ -1,4 +1,5 @@
-// What no command can tell apart is listed together, whichever form meets the data better.
+// Two causes that no command can distinguish are listed together, regardless of which form fits the data
+// better.
 
 #include "sysid/diagnosis/causes/indistinguishable.h"
 
@@ -42,7 +43,8 @@ TEST(Indistinguishable, AreNoneWhereMemoryStandsBetweenThem) {
     EXPECT_TRUE(indistinguishable_from(cause("stiffening"), with(loaded("bench_twin"), id))) << id;
 }
 
-/// A rig whose finger stiffens more sharply than the catalogue's form: a bent scale meets it better.
+/// A finger that stiffens more sharply than the catalogue's form, so that a nonlinear sensor fits the data
+/// better.
 class BentRig : public ::testing::Test {
  protected:
   static Selection select() {
@@ -64,7 +66,7 @@ class BentRig : public ::testing::Test {
     return select_causes(data, std::move(base), 0.03, divide(data.records, 8), one);
   }
 
-  /// Selected once for all tests.
+  /// The selection is computed once for all tests.
   static const Selection& selected() {
     static const Selection selection = select();
     return selection;
@@ -81,7 +83,7 @@ TEST_F(BentRig, IsNotGivenOneNameOfTheTwo) {
       std::count_if(chosen.alternatives.begin(), chosen.alternatives.end(),
                     [&](const Cause& alternative) { return alternative == indistinguishable; });
   EXPECT_EQ(listed, 1);
-  // The form of one of them alone would have stood: that is what the rule is for.
+  // Without the rule for indistinguishable causes, only the form that fits better would have been named.
   const auto score = std::find_if(chosen.candidates.begin(), chosen.candidates.end(),
                                   [&](const CandidateScore& s) { return s.cause == indistinguishable; });
   ASSERT_NE(score, chosen.candidates.end());

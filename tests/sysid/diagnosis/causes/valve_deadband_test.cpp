@@ -8,7 +8,7 @@
 namespace softgrip::sysid::valve_deadband_test {
 namespace {
 
-// Bands of a valve that jumps: wherever the true band is, a start is near enough to keep step with it.
+// For each band of a valve that sticks and jumps, one of the start values is close enough to fit its jumps.
 TEST(ValveDeadband, NoStaircaseIsMissed) {
   Scales scales;
   scales.largest_kpa = 40;

@@ -29,7 +29,7 @@ const ConditionEvidence& of(const ResidualEvidence& evidence, const std::string&
 }
 
 struct FalseAlarms {
-  std::map<std::string, int> below_5_percent;  ///< by condition, unadjusted
+  std::map<std::string, int> below_5_percent;  ///< number per condition, with unadjusted p-values
   double mean_p = 0;
   int any_clear = 0;
   int line = 0;
@@ -60,7 +60,7 @@ FalseAlarms count_alarms(double correlation) {
   return alarms;
 }
 
-/// Three deviations of a binomial above its mean.
+/// Returns a bound of three standard deviations above the mean of the binomial distribution.
 int at_most(double rate) {
   return static_cast<int>(worlds * rate + 3 * std::sqrt(worlds * rate * (1 - rate)));
 }
@@ -75,7 +75,7 @@ TEST(Evidence, WhiteErrorsGiveUniformPValues) {
 }
 
 TEST(Evidence, CorrelatedErrorsRaiseNoMoreFalseAlarms) {
-  // At 50 Hz a correlation of 0.974 from sample to sample lasts as long as 0.987 at 100 Hz.
+  // A correlation of 0.974 between samples at 50 Hz has the same duration as one of 0.987 at 100 Hz.
   const FalseAlarms alarms = count_alarms(0.974);
   for (const auto& [id, count] : alarms.below_5_percent) EXPECT_LE(count, at_most(0.05)) << id;
   EXPECT_GT(alarms.mean_p, 0.4);
@@ -91,7 +91,7 @@ TEST(Evidence, AnErrorThatFollowsTheRateIsFoundThere) {
     for (std::size_t i = 0; i < residual[k].size(); ++i) residual[k][i] += 0.01 * h.rate_kpa_per_s[i];
   }
   const ResidualEvidence evidence = examined(records, residual);
-  // Where the pressure stands there is no rate, and the error is flat there: the rate has all of the rest.
+  // While the pressure is constant, its rate and this error are 0, so the rate explains all of the error.
   EXPECT_EQ(evidence.conditions.front().condition.id, "rate");
   EXPECT_TRUE(evidence.conditions.front().clear);
   EXPECT_GT(evidence.conditions.front().share_percent, 90);

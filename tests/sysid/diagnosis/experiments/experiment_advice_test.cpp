@@ -29,7 +29,7 @@ TEST(Advice, IsGivenForEveryPairThatNoWaveformTellsApart) {
 
 TEST(Advice, IsNotNeededWhereAWaveformTells) {
   EXPECT_TRUE(advice_for("backlash", "contact", {.separable = true}).empty());
-  // But a column that is missing tells at once.
+  // If a column is missing, recording it is simpler than an experiment.
   EXPECT_TRUE(says(advice_for("valve_lag", "sensor_lag", {.separable = true}), "record pressure_kpa"));
   EXPECT_TRUE(advice_for("valve_lag", "sensor_lag", {.pressure_recorded = true, .separable = true}).empty());
 }

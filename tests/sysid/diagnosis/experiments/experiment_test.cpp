@@ -1,5 +1,5 @@
-// The next experiment: within the rig's limits, played by the daemon's own reader, and honest in what it
-// promises.
+// The proposed experiment stays within the limits of the rig, can be played by the daemon, and reaches the
+// separation that it predicts.
 
 #include "sysid/diagnosis/experiments/experiment.h"
 
@@ -39,7 +39,7 @@ Record record_of(std::string name, std::vector<double> drive_kpa, double campaig
   return record;
 }
 
-/// What a model answers, with noise.
+/// Sets the readings of a record to the prediction of a model plus noise.
 void fill(Record& record, const model::Model& truth, std::uint64_t seed) {
   record.reading_mm = predict(truth, record, rest_starts(truth, {record}).front());
   for (std::size_t i = 0; i < record.size(); ++i) record.reading_mm[i] += noise_mm * normal_at(seed, i);
@@ -48,7 +48,7 @@ void fill(Record& record, const model::Model& truth, std::uint64_t seed) {
   record.readings = record.size();
 }
 
-/// Two loads, the second larger, no repetition: what has softened and what creeps look alike.
+/// Two loads, the second larger, without a repetition: softening and creep have a similar effect.
 std::vector<double> poor_command() {
   const Waveform waveform{"poor", "", {{0, 0}, {1, 0}, {4, 30}, {7, 0}, {9, 0}, {13, 55}, {17, 0}, {20, 0}}};
   return sampled_kpa(waveform, interval_s);
@@ -59,7 +59,8 @@ model::Model softened() {
                            {find_cause("stress_softening")->forms.front().type, {0.004, 0}});
 }
 
-/// A diagnosis that names softening, fitted to what a softening finger did, with the given alternatives.
+/// Returns a diagnosis that names softening, with the given alternatives. The record is that of a finger that
+/// softens.
 Diagnosis ambiguous(const std::vector<std::string>& alternatives) {
   const model::Model base = loaded("bench_twin");
   Record record = record_of("poor", poor_command(), 0);
@@ -174,7 +175,7 @@ TEST(Experiment, TellsSofteningFromCreepAsFarAsItPromises) {
   EXPECT_GE(next.predicted_separation_sigma, separation_needed_sigma);
   EXPECT_GT(next.best->minutes, next.best->waveform.duration_s() / 60);
 
-  // The finger really plays it, and both causes are fitted to everything.
+  // The softened finger plays the proposed experiment, and both causes are fitted to all records.
   Record played = record_of("played", sampled_kpa(next.best->waveform, interval_s), 20);
   played.largest_before_kpa = 55;
   fill(played, softened(), 12);

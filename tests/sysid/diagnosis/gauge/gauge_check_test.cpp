@@ -1,4 +1,5 @@
-// What a gauge can say of a sensor, and when it must say nothing. The sensors are formulas of their own.
+// The conclusions of a gauge check about a sensor, and the cases without a conclusion. The test has its own
+// formulas of the sensors.
 
 #include "sysid/diagnosis/gauge/gauge_check.h"
 
@@ -37,7 +38,7 @@ SensorShape end_of_logs(double at_mm) {
   return {{{*model::find_block("sensor_saturation"), {-1e4, at_mm}}}, 0};
 }
 
-/// Readings with a zero and a scale that nobody knows.
+/// Returns readings of a gauge whose zero and scale are unknown to the check.
 std::vector<GaugeReading> read(const Sensor& sensor, double noise, std::vector<double> positions,
                                double gauge_zero_mm = 3, double gauge_scale = 1.01) {
   std::mt19937_64 random(5);
@@ -162,7 +163,7 @@ TEST(GaugeCheck, TellsABendFromAnEnd) {
   EXPECT_FALSE(of(check, "sensor_saturation").ruled_out);
 }
 
-/// What is far off goes, and does not blur what is left.
+/// An implausible hypothesis is ruled out, and it must not weaken the decision between the others.
 TEST(GaugeCheck, AHypothesisThatIsFarOffMakesTheOthersNoBetter) {
   const std::vector<SensorShape> hypotheses{{}, bend_of_logs(0.4), end_of_logs(15)};
   const GaugeScales fine{0.01, -0.1, span_mm};
@@ -177,7 +178,8 @@ TEST(GaugeCheck, AHypothesisThatIsFarOffMakesTheOthersNoBetter) {
   EXPECT_TRUE(of(whole, "sensor_saturation").ruled_out);
 }
 
-/// A single hypothesis is what the logs are sure of: no bend that they could not see speaks against it.
+/// With a single hypothesis, the logs show a linear sensor. A nonlinearity that is too small for the logs
+/// must not contradict this.
 TEST(GaugeCheck, AStraightSensorMayBeBentByLessThanAnyLogCouldTell) {
   for (const double bow_mm : {0.02, 0.3}) {
     std::vector<GaugeReading> readings = read(bent(bow_mm), 0.001);
@@ -196,7 +198,7 @@ TEST(GaugeCheck, AGaugeThatCountsTheOtherWayOrInInchesSaysTheSame) {
   }
 }
 
-/// Under the truth, the truth is hardly ever ruled out, whatever the draw.
+/// For random noise, the true hypothesis is almost never ruled out.
 TEST(GaugeCheck, RarelyRulesOutTheTruth) {
   int wrong = 0, decided = 0;
   for (int draw = 0; draw < 300; ++draw) {

@@ -1,4 +1,4 @@
-// Gauge files: strict, with the place and what was meant.
+// Gauge files are checked strictly; an error names the line, the column and a correction.
 
 #include "sysid/diagnosis/gauge/gauge_file.h"
 

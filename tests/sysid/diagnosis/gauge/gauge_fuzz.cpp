@@ -1,4 +1,4 @@
-// Fuzz target of the gauge file reader: any bytes are a gauge file or a refusal, and what was accepted can be
+// Fuzz target of the gauge file reader. All bytes are either refused, or they are a gauge file that can be
 // written and read again.
 //
 //   scripts/fuzz.sh gauge_fuzz 30

@@ -1,5 +1,5 @@
-// A gauge beside the logs: alternatives go, names change places, and a name that the gauge contradicts does
-// not stand.
+// A diagnosis with logs and a gauge: the gauge rules out alternatives, and it can replace or withdraw the
+// named cause.
 
 #include "sysid/diagnosis/gauge/gauge_verdict.h"
 
@@ -31,7 +31,7 @@ std::vector<Log> logs_of(const model::Model& truth) {
           simulated(truth, model::SignalName::sp2, 25, noise_mm, 2)};
 }
 
-/// What the sensor of `truth` reads on a gauge.
+/// Returns the readings of the sensor of `truth` on a gauge.
 GaugeFile gauge_of(const model::Model& truth, double noise = 0.01) {
   const SensorShape sensor{static_sensor_blocks(truth), 0};
   GaugeFile file{"gauge.csv", "", {}};
@@ -59,7 +59,7 @@ void expect_found(const Diagnosis& d, const std::string& id) {
   ASSERT_EQ(d.causes.size(), 1U);
   EXPECT_EQ(d.causes[0].cause.id, id);
   EXPECT_TRUE(d.causes[0].alternatives.empty());
-  // Everything that is said of the cause is the named one's: extension, parameters, held-out figures.
+  // Extension, parameters and held-out figures all belong to the named cause.
   EXPECT_TRUE(model::position_of(d.extended_model, id));
   ASSERT_EQ(d.extended.causes.size(), 1U);
   EXPECT_EQ(d.extended.causes[0].id, id);
@@ -75,7 +75,7 @@ double value_of(const NamedCause& named, const std::string& parameter) {
   return NAN;
 }
 
-/// What stands in the JSON of a diagnosis with the gauge.
+/// Checks the gauge section in the JSON of a diagnosis.
 void expect_gauge(const nlohmann::ordered_json& json, const GaugeFile& gauge) {
   EXPECT_EQ(json["file"], "gauge.csv");
   EXPECT_EQ(json["readings"].size(), gauge.readings.size());
@@ -84,7 +84,7 @@ void expect_gauge(const nlohmann::ordered_json& json, const GaugeFile& gauge) {
   EXPECT_EQ(json["hypotheses"].size(), 2U);
 }
 
-/// That a check with a gauge is proposed where it helps.
+/// Expects that the diagnosis proposes a check with a gauge.
 void expect_check_proposed(const Diagnosis& before) {
   const NextExperiment next = design_experiment(before, {});
   EXPECT_FALSE(next.best);
@@ -122,14 +122,14 @@ TEST(GaugeVerdict, AStraightSensorClearsItselfAndTheFingerIsNamed) {
   EXPECT_NE(verdict_sentence(d).find("not the sensor"), std::string::npos) << verdict_sentence(d);
 }
 
-/// Whichever of the twins meets the logs better, the gauge decides: logs of a bent scale, gauge of a straight
-/// sensor, and the other way round.
+/// Two causes are indistinguishable in the logs, so the gauge decides between them. Tested with logs of a
+/// nonlinear sensor and a gauge check of a linear one, and the other way round.
 TEST(GaugeVerdict, TheNamedCauseGivesItsPlaceToTheOneThatIsLeft) {
   const model::Model alike = hiding("stiffening", {4 * 0.6 / (25 * 25)});
   expect_found(diagnosed(bent_scale, gauge_of(alike)), "stiffening");
   expect_found(diagnosed(alike, gauge_of(bent_scale)), "sensor_nonlinearity");
 
-  // A finger that stiffens more sharply than the catalogue's form: the scale meets it better.
+  // A finger that stiffens more sharply than the catalogue's form: a nonlinear sensor fits the logs better.
   std::vector<Log> logs;
   for (const model::SignalName signal : {model::SignalName::tp1, model::SignalName::sp2}) {
     Log& log = logs.emplace_back(simulated(loaded("bench_twin"), signal, 25, 0, 1));
@@ -154,7 +154,8 @@ TEST(GaugeVerdict, TheNamedCauseGivesItsPlaceToTheOneThatIsLeft) {
   EXPECT_TRUE(warned_of(after, "form of it leaves")) << after.unexplained_error.excess_mm;
 }
 
-/// A finger that stiffens and a sensor that is bent a little: the one is named, the other is told.
+/// A finger that stiffens and a slightly nonlinear sensor: the finger is named, and a warning reports the
+/// sensor.
 TEST(GaugeVerdict, AShareOfTheBendInTheSensorIsTold) {
   const model::Model a_little = hiding("sensor_nonlinearity", {0.3, 0, 25});
   const Diagnosis d = diagnosed(stiff_finger, gauge_of(a_little));
@@ -209,8 +210,9 @@ TEST(GaugeVerdict, ABendThatNoLogAsksForIsAWarningAndNoCause) {
   EXPECT_EQ(straight.verdict, d.verdict);
 }
 
-/// With play between them the logs tell a finger that stiffens from a bent scale by themselves; a gauge that
-/// shows a bent scale contradicts them, and the name must not stand.
+/// With play between finger and sensor, the logs alone distinguish a finger that stiffens from a nonlinear
+/// sensor. If the gauge then shows a nonlinear sensor, it contradicts the logs, and the cause must not be
+/// named.
 TEST(GaugeVerdict, AFingerThatWasNamedAloneDoesNotStandAgainstTheGauge) {
   const model::BlockSpec play{find_cause("backlash")->forms.front().type, {4}};
   const model::Model given = model::with_block(loaded("bench_twin"), play);

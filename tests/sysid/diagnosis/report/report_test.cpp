@@ -45,7 +45,7 @@ NamedCause named(const char* id, double gain_mm2) {
   return cause;
 }
 
-/// The twin diagnosed with the published model, as if a lag had been found.
+/// Returns a diagnosis of bench_twin with the published model that names a lag.
 Diagnosis a_diagnosis(const model::Model& given) {
   Diagnosis d;
   d.verdict = Verdict::ambiguous;
@@ -78,7 +78,7 @@ std::size_t count(const std::string& text, const std::string& part) {
   return found;
 }
 
-/// The words of a drawing, set flush left, through which a straight line goes.
+/// Returns the left-aligned texts of a drawing that a line crosses.
 std::vector<std::string> crossed_words(const std::string& markup) {
   const std::regex words(R"re(<text x="([0-9.]+)" y="([0-9.]+)" text-anchor="start"[^>]*>([^<]+))re");
   const std::regex line(R"re(<path d="M(-?[0-9.]+) ?(-?[0-9.]+)l(-?[0-9.]+) ?(-?[0-9.]+)")re");
@@ -205,7 +205,7 @@ TEST_F(ReportTest, EveryFigureHasACaptionANumberAndData) {
   }
 }
 
-// Where the models have one name, nobody can tell whose figure it is.
+// If two models had the same name, a reader could not assign the figures.
 TEST_F(ReportTest, TheModelsHaveNamesOfTheirOwn) {
   const std::string html = page().to_html();
   for (const char* name : {">given model<", ">recalibrated model<", ">extended model<", "zhang2025_extended"})

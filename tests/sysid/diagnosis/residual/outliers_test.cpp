@@ -12,7 +12,7 @@ namespace {
 
 constexpr double noise_mm = 0.04;
 
-/// Records whose readings are the campaign's own motion plus `left`, which a model leaves of them.
+/// Adds the residual `left` to the readings of the records.
 std::vector<Record> with(std::vector<Record> records, const ByRecord& left) {
   for (std::size_t k = 0; k < records.size(); ++k) {
     for (std::size_t i = 0; i < records[k].size(); ++i) records[k].reading_mm[i] += left[k][i];
@@ -20,7 +20,7 @@ std::vector<Record> with(std::vector<Record> records, const ByRecord& left) {
   return records;
 }
 
-/// What is found when a model leaves `left`.
+/// Returns the outliers that are found if the residual of the model is `left`.
 OutlierEvidence found_in(const ByRecord& left) {
   std::vector<Record> records = with(known_campaign(2), left);
   OutlierEvidence evidence;
@@ -52,7 +52,7 @@ TEST(Outliers, AreFoundInTheMidstOfAMotion) {
     }
   }
   const std::size_t more = hide_outliers_beside(records, left, noise_mm, evidence);
-  EXPECT_LT(before, put);  // the motion hides some from the neighbours' eyes
+  EXPECT_LT(before, put);  // the motion hides some outliers from the comparison with neighbouring readings
   EXPECT_EQ(before + more, put);
   EXPECT_EQ(evidence.count, put);
   EXPECT_NEAR(evidence.size_mm, 0.8, 0.02);
@@ -65,8 +65,8 @@ TEST(Outliers, NoiseHasNone) {
     EXPECT_EQ(found_in(noise_for(known_campaign(2), noise_mm, 0, seed)).count, 0u) << "seed " << seed;
 }
 
-// What structure leaves is no outlier, however large: an oscillation of any frequency, knocks, a staircase,
-// of whose corners one in a thousand may stand alone by chance.
+// A systematic residual is no outlier, however large: an oscillation of any frequency, impacts, or a
+// sawtooth. By chance, one in a thousand of its corners may be isolated.
 TEST(Outliers, StructureIsNone) {
   const ByRecord noise = noise_for(known_campaign(2), noise_mm, 0, 7);
   const std::vector<std::pair<const char*, double (*)(double)>> structures{
@@ -88,7 +88,7 @@ TEST(Outliers, StructureIsNone) {
   }
 }
 
-// A command that jumps while the model is late by a sample leaves one large residual.
+// If the command jumps and the model is one sample late, a single residual is large.
 TEST(Outliers, LatenessIsNone) {
   std::vector<Record> records = known_campaign(1);
   ByRecord left = noise_for(records, noise_mm, 0, 9);

@@ -22,7 +22,7 @@ std::vector<Record> noisy_campaign() {
   return records;
 }
 
-/// The sample that is read instead of each sample.
+/// Replaces the reading of each sample i by that of sample `sample(i)`.
 std::vector<Record> read_at(std::vector<Record> records,
                             const std::function<std::size_t(std::size_t)>& sample) {
   for (Record& record : records) {
@@ -67,7 +67,7 @@ TEST(HideRepeated, KeepsTheFirstOfEachSlowReading) {
 }
 
 TEST(HideRepeated, TakesTheClockOfTheSensorAsItComes) {
-  // A sensor with its own clock: 11 to 13 samples from one reading to the next.
+  // A sensor with its own clock: a new reading after every 11 to 13 samples.
   std::vector<Record> records = read_at(noisy_campaign(), [](std::size_t i) {
     return static_cast<std::size_t>(std::floor(std::floor(static_cast<double>(i) / 11.7) * 11.7));
   });
@@ -106,7 +106,7 @@ TEST(HideRepeated, LeavesACoarseSensorAndAFingerThatSticks) {
   for (Record& record : coarse) {
     double stuck_mm = 0;
     for (double& y : record.reading_mm) {
-      // Steps of 0.5 mm, and a finger that moves only after 1.5 mm.
+      // The resolution is 0.5 mm, and the finger moves only after 1.5 mm.
       if (std::abs(y - stuck_mm) > 1.5) stuck_mm = y;
       y = 0.5 * std::round(stuck_mm / 0.5);
     }

@@ -11,8 +11,8 @@
 namespace softgrip::sysid::wrong_readings_test {
 namespace {
 
-/// A finger of 0.5 mm per kPa behind triangles of 40 kPa, with noise of 0.02 mm; a reading every `every`
-/// samples.
+/// A finger with 0.5 mm/kPa, a command of triangles up to 40 kPa, noise of 0.02 mm, and a reading at every
+/// `every`-th sample.
 Log moving(int every = 1) {
   Log log;
   log.name = "moving";
@@ -29,7 +29,8 @@ Log moving(int every = 1) {
   return log;
 }
 
-/// Puts wrong readings in, and expects that they and no others are taken out, with a sentence.
+/// Inserts wrong readings, and expects that exactly these are removed, with one sentence that contains
+/// `number`.
 void expect_taken_out(Log log, const std::map<std::size_t, double>& wrong, const std::string& number) {
   for (const auto& [sample, value] : wrong) log.displacement_mm[sample] = value;
   std::vector<Log> logs{moving(), log};

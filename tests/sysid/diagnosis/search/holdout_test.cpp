@@ -26,7 +26,7 @@ TEST(HeldOutLosses, AreAtMostTheSpansSquare) {
     EXPECT_DOUBLE_EQ(cut[b], std::min(losses[b], 0.25 * most)) << b;
 }
 
-/// A zero that moved, and a start in motion, are no error of a log that was left out.
+/// A changed zero or a start in motion must not count as an error of a left-out log.
 TEST(LeftOutLosses, AreThoseOfAStartThatTheFirstReadingsTell) {
   const model::Model twin = loaded("bench_twin");
   std::vector<Log> logs{simulated(twin, model::SignalName::tp1, 25, 0.05, 3),

@@ -26,7 +26,8 @@ TEST(LinearHeldOutLosses, AreThoseOfRefitsWhereEveryPartShowsAllNumbers) {
   EXPECT_NEAR(rmse_mm(linear_held_out_losses(records, division, fit)), refitted_mm, 0.05 * refitted_mm);
 }
 
-/// One jump, and a long rest: without the stretch of the jump next to nothing shows when it came.
+/// One jump and a long rest: without the block that contains the jump, the data contain almost no information
+/// on its time.
 TEST(LinearHeldOutLosses, StayOfTheReadingsSizeWhereOneStretchAloneShowsANumber) {
   const model::Model model = loaded("bench_twin");
   Log log;

@@ -44,7 +44,7 @@ model::Model softening() {
   return model::with_block(finger(), model::block_of<model::StressSoftening>({{"softening_per_kpa", 0.001}}));
 }
 
-/// Refitting block by block is the referee.
+/// Reference: refitting for every block.
 TEST(LinearHoldout, SaysWhatRefittingSays) {
   const Campaign c = campaign_of(softening());
   const BlockLosses refitted = held_out_losses(c.data.records, c.division, c.base);
@@ -54,7 +54,7 @@ TEST(LinearHoldout, SaysWhatRefittingSays) {
     EXPECT_NEAR(linear[b], refitted[b], 0.1 * refitted[b]) << "block " << b;
 }
 
-/// The search that moves every number of the base is the referee.
+/// Reference: the search that varies all numbers of the base.
 TEST(LinearSelection, FindsWhatTheFullSearchFinds) {
   const std::vector<model::BlockSpec> effects{
       model::block_of<model::Backlash>({{"gap_mm", 0.4}}),
@@ -94,7 +94,7 @@ TEST(LinearSelection, FindsBothOfTwo) {
   EXPECT_TRUE(position_of(found.extended.point.model, *find_cause("sensor_lag")));
 }
 
-/// A base that has the form of the loop but for less than the noise may be any finger's.
+/// If the form of the loop differs from the base by less than the noise, the difference is no cause.
 TEST(LinearSelection, ARestOfTheLoopsFormIsNoCause) {
   for (const bool clear : {false, true}) {
     const Campaign c = campaign_of(model::with_block(
@@ -120,7 +120,8 @@ TEST(Weigh, IsTheGainOverTheStructureWithoutTheCause) {
   EXPECT_NEAR(alone.gain_mm2.value, 1, 1e-12);
 }
 
-/// The valve's rest is not in the measured pressure: what takes little is found where it takes it everywhere.
+/// The measured pressure excludes the error of the valve, so a cause that explains little is found if it
+/// explains it everywhere.
 TEST(LinearSelection, FromTheMeasuredPressureLessIsEnough) {
   const Campaign c =
       campaign_of(model::with_block(finger(), model::block_of<model::Backlash>({{"gap_mm", 0.1}})));

@@ -1,4 +1,4 @@
-// The conditions of every name, one by one: each has a case that fails it alone.
+// Tests the conditions of a name one by one: for each there is a case that violates only this condition.
 
 #include "sysid/diagnosis/search/named_claim.h"
 
@@ -15,15 +15,15 @@
 namespace softgrip::sysid::named_claim_test {
 namespace {
 
-/// Two runs of a twin, a cause fitted to them, and what a stand-in says of left-out runs.
+/// Two runs of bench_twin, a cause that was fitted to them, and given errors of the left-out runs.
 struct Case {
   std::vector<Record> records = known_campaign(2);
   Cause cause;
   StructureFit without, with;
-  double error_without = 1, error_with = 0.5;  ///< of every block of the left-out runs
+  double error_without = 1, error_with = 0.5;  ///< the error of every block of the left-out runs
   int asked = 0;
 
-  /// @param bend  of the readings, at the time of the campaign.
+  /// @param bend  distorts the readings, as a function of reading and time of the campaign.
   template <class Bend>
   Case(const char* id, Bend bend) : cause(*find_cause(id)) {
     const model::Model twin = loaded("bench_twin");
@@ -76,7 +76,7 @@ TEST(NamedClaim, FailsWhereTheDataNeverShowIt) {
   Case drift("sensor_drift", [](double y_mm, double t_s) { return y_mm + 2 * t_s / 120; });
   ASSERT_FALSE(drift.with.causes.empty());
   EXPECT_EQ(drift.veto(), Veto::none);
-  // Without a rest a zero that moves looks like a finger that moves.
+  // Without a rest, a drift of the zero looks like a motion of the finger.
   for (Record& record : drift.records) {
     for (double& p : record.drive_kpa)
       p += p < 1 ? 20 * normal_at(9, static_cast<std::uint64_t>(&p - record.drive_kpa.data())) : 0;
@@ -86,7 +86,7 @@ TEST(NamedClaim, FailsWhereTheDataNeverShowIt) {
 
 TEST(NamedClaim, FailsWhereItsEffectIsAbsent) {
   Case ageing("ageing", aged);
-  // It explains only readings at which the finger hardly moves.
+  // The cause reduces the residual only where the displacement is small.
   for (std::size_t r = 0; r < ageing.records.size(); ++r) {
     for (std::size_t i = 0; i < ageing.records[r].size(); ++i) {
       if (ageing.records[r].reading_mm[i] > 8)

@@ -1,4 +1,5 @@
-// The search on campaigns without a cause: seldom fooled, and a real gain stands out of what it is fooled by.
+// Tests the search on campaigns without a cause: false alarms are rare, and a true error reduction exceeds
+// theirs.
 
 #include "sysid/diagnosis/search/null_calibration.h"
 
@@ -20,7 +21,7 @@ struct Searched {
   Division division;
 };
 
-/// Two logs of zhang2025 and a backlash of this size, ready for the search.
+/// Two logs of zhang2025 with a backlash of this size, prepared for the search.
 Searched searched(double backlash_mm) {
   const model::Model given = loaded("zhang2025");
   model::Model truth = given;

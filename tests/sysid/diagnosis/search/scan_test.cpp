@@ -1,5 +1,5 @@
-// Starts judged by one linearised step: where the base answers linearly the verdict is exact, and among the
-// starts of a hidden cause the one near the truth comes first.
+// Start values are evaluated with one linearised step. If the base responds linearly, the result is exact.
+// Among the start values of a hidden cause, the one near the truth must come first.
 
 #include "sysid/diagnosis/search/scan.h"
 
@@ -58,7 +58,7 @@ TEST_F(Scanned, ASizeThatIsALittleOffIsMadeUpFor) {
 }
 
 TEST_F(Scanned, WhatTheBaseAbsorbsLinearlyCountsForNothing) {
-  // A larger alpha is a movement of the base: with it or without, the same is left.
+  // A larger alpha is a change of the base, so the remaining error must not depend on it.
   const model::Model base = loaded("zhang2025");
   model::Model moved = base;
   moved.blocks[0].values[0] *= 1.001;
@@ -86,7 +86,8 @@ TEST(BestStarts, TheLatencyNearTheHiddenOneComesFirst) {
   EXPECT_NEAR(points.front().model.blocks[*at].values[0], 0.1, 1e-12);
 }
 
-// The form with more numbers promises more from everywhere: each must be looked at, and from each place.
+// A form with more numbers promises a lower error from every point. Every form, and every point, must still
+// be tried.
 TEST(BestStarts, ShowEveryFormOfACauseAndEveryPlace) {
   const model::Model given = loaded("zhang2025");
   const SearchData data = make_search_data(records_of(model::with_block(given, block("ageing", {4}))), given);

@@ -1,4 +1,5 @@
-// How many causes are named: what the form of an equation leaves is none, a small effect of its own is one.
+// The number of named causes: the form error of a cause is no further cause, but a small effect of another
+// kind is.
 
 #include "sysid/diagnosis/search/selection.h"
 
@@ -21,7 +22,8 @@ namespace {
 
 constexpr double noise_mm = 0.03;
 
-/// What is selected where the twin's readings are bent by `bend(y, t)`, t the time of the campaign.
+/// Returns the selection for readings of bench_twin that `bend(y, t)` distorts, where t is the time of the
+/// campaign.
 Selection select(const std::function<double(double y_mm, double t_s)>& bend,
                  const SelectionOptions& options = {}) {
   const model::Model given = loaded("bench_twin");
@@ -47,7 +49,8 @@ std::vector<std::string> names(const Selection& selection) {
   return ids;
 }
 
-/// A scale whose bend is no polynomial: a few percent of it stay.
+/// A nonlinearity that is not a polynomial, so that the form of the cause leaves a few percent of it
+/// unexplained.
 double bent(double y_mm) {
   return y_mm + 1.2 * std::sin(1.3 * std::numbers::pi * y_mm / 20);
 }
@@ -64,12 +67,12 @@ TEST(Selection, ASmallEffectThatExplainsTheRestIsNamed) {
     return y_mm * (1 + 0.15 * t_s / 120) + 0.09 * std::sin(2 * std::numbers::pi * 3.1 * t_s);
   });
   EXPECT_EQ(names(selection), (std::vector<std::string>{"ageing", "periodic_disturbance"}));
-  // It takes less of the misfit than the form of a large one may leave.
+  // It explains less of the error than the form error of a large cause may be.
   const double excess = selection.base_unexplained.excess_mm;
   EXPECT_LT(0.09 * 0.09 / 2, 0.05 * excess * excess);
 }
 
-/// Blocks of both runs together agree on a size that neither run has.
+/// All blocks together agree on a size that is not the size of either run.
 TEST(Selection, WhatEachRunShowsInAnotherSizeIsNotNamed) {
   SelectionOptions one;
   one.most_causes = 1;

@@ -23,7 +23,8 @@ TEST(Slack, TheElasticShareIsThatOfTheOperatorWithoutAThreshold) {
   EXPECT_DOUBLE_EQ(elastic_share(model::Model{}), 1);
 }
 
-/// One operator with a threshold is a spring with a backlash behind it: on every way they move alike.
+/// One play operator with a threshold equals a spring followed by a backlash: their outputs are equal for
+/// every input.
 TEST(Slack, OfOneOperatorTheBacklashIsTheSame) {
   const model::Model slack = plays({0, 0, 0, 0, 3, 0.2});
   const auto with_backlash = with_slack_as_backlash(slack);

@@ -19,7 +19,7 @@ namespace {
 constexpr double noise_mm = 0.03;
 constexpr int substeps = 50;
 
-// A gain with one Kelvin-Voigt branch: enough for what stands behind a valve.
+// A gain with one Kelvin-Voigt branch, which is a sufficient model of the finger behind the valve.
 model::Model plain_model() {
   model::Model model;
   model.name = "plain";
@@ -29,8 +29,8 @@ model::Model plain_model() {
   return model::with_block(model, branch);
 }
 
-// The same, integrated by Euler's method at a fiftieth of the sample time: no code shared with what is
-// judged.
+// Integrates the same equations with Euler's method in steps of 1/50 of the sample time. It shares no code
+// with the function under test.
 template <class Valve>
 std::vector<Record> answered(std::vector<Record> records, Valve&& valve, std::uint64_t seed) {
   std::mt19937_64 random(seed);
@@ -70,16 +70,16 @@ TEST(StickSlip, FindsTheBandOfAValveThatSticksAndJumps) {
     EXPECT_LT(found->band_ci95.lower, found->band_kpa);
     EXPECT_LT(found->band_ci95.upper - found->band_ci95.lower, 0.05 * band_kpa);
     EXPECT_GE(found->jumps, fewest_jumps);
-    // The readings' noise is all that stays once it is known where the valve stood.
+    // If the positions of the valve are known, only the noise of the readings remains.
     EXPECT_LT(std::sqrt(found->fit.mean_square_mm2), 1.2 * noise_mm);
   }
 }
 
-// A course that jumps is told from one that does not when the delay is over: 17.5 samples later.
+// The readings show whether a path jumped only after the delay, 17.5 samples later.
 TEST(StickSlip, IsFoundBehindALongDelay) {
   constexpr double band_kpa = 3.1, delay_s = 0.35;
   std::vector<Record> early = known_campaign(2);
-  for (Record& r : early) {  // the valve's command, as it arrives
+  for (Record& r : early) {  // the command as it arrives at the valve
     const std::vector<double> sent = r.drive_kpa;
     const auto samples = static_cast<std::size_t>(std::floor(delay_s / r.sample_time_s));
     const double rest = delay_s / r.sample_time_s - static_cast<double>(samples);
@@ -134,7 +134,7 @@ TEST(StickSlip, SeesThatJumpsComeOverAnyDistance) {
   EXPECT_FALSE(find_stick_slip(records, behind(records), noise_mm, 2));
 }
 
-// Of 80 jumps over a band of 1 kPa, read within 1 %, every fifth was taken for one that is too short.
+// 80 jumps over a band of 1 kPa, measured with an error of 1 %. Every fifth was detected too short.
 std::vector<double> partly_short(std::uint64_t seed) {
   std::mt19937_64 random(seed);
   std::normal_distribution<double> read(1.0, 0.01);
@@ -149,7 +149,7 @@ TEST(StickSlip, JumpsThatWereTakenForShortOnesDoNotMoveTheBand) {
   double sum_kpa = 0;
   constexpr int seeds = 200;
   for (std::uint64_t seed = 1; seed <= seeds; ++seed) sum_kpa += band_of_jumps(partly_short(seed)).value_kpa;
-  // Nine tenths of them have their mean 2.3 % below.
+  // The mean of the central 90 % of the distances would be 2.3 % too low.
   EXPECT_NEAR(sum_kpa / seeds, 1.0, 0.006);
 }
 

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double noise_mm = 0.04;
 
-/// What one cause leaves, of what there was.
+/// Returns a selection whose one cause reduces the unexplained error from `before_mm` to `left_mm`.
 Selection left_of(double left_mm, double before_mm) {
   Selection selection;
   selection.left = {.excess_mm = left_mm, .present = true};
@@ -25,9 +25,9 @@ TEST(MayLackABase, NotWhereOneCauseLeavesNothingThatMatters) {
 }
 
 TEST(MayLackABase, NotWhereItsFormIsALittleOffWhatThereWas) {
-  // 0.009 of the mean square, as softening in the worlds of the first family.
+  // 0.009 of the mean square remains, as for softening in the simulated cases of the first family.
   EXPECT_FALSE(may_lack_a_base(left_of(0.3 * noise_mm, 0.3 * noise_mm / std::sqrt(0.009)), noise_mm));
-  // 0.1, as a loop of another shape that passes for a cause.
+  // 0.1 remains, as for a loop of another shape that another cause fits in part.
   EXPECT_TRUE(may_lack_a_base(left_of(0.3 * noise_mm, 0.3 * noise_mm / std::sqrt(0.1)), noise_mm));
 }
 

@@ -33,7 +33,7 @@ model::Model published() {
                      [](const model::BlockInfo& info) { return info.station != model::Station::valve; });
 }
 
-/// Loops of plays that no Bouc-Wen element follows.
+/// A finger of play operators, whose loops no Bouc-Wen element can follow.
 model::Model plays() {
   model::Model m = model::without_block(published(), model::block_type<model::BoucWen>());
   return model::with_block(std::move(m), {model::block_type<model::PrandtlIshlinskii>(),
@@ -43,7 +43,7 @@ model::Model plays() {
 struct Found {
   SearchData data;
   BaseQuestion question;
-  Selection plain;  ///< the given base alone
+  Selection plain;  ///< the result with the given base
   std::optional<BaseFindings> base;
 };
 
@@ -80,7 +80,8 @@ TEST(BaseFindings, LoopsOfAnotherFormAreNamed) {
   EXPECT_TRUE(has_lower_loss(*found.base, found.plain, noise_mm, true));
 }
 
-/// Operators without an elastic one stand still after a reversal, as a backlash does; others do not.
+/// Play operators without an elastic one do not move after a reversal, which is like a backlash. With an
+/// elastic one they move.
 TEST(BaseIngredients, ABacklashMayBeWhatOperatorsWithoutAnElasticOneMakeUpFor) {
   const auto has_backlash = [](const Found& found) {
     const auto shape = std::find_if(found.base->named.begin(), found.base->named.end(),
@@ -98,7 +99,8 @@ TEST(BaseIngredients, ABacklashMayBeWhatOperatorsWithoutAnElasticOneMakeUpFor) {
                                    << elastic_share(slack.base->fit.point.model);
 }
 
-/// Of a selection that leaves too much nothing is named.
+/// A selection with a large unexplained error gives no name, so a slightly smaller loss of the other base
+/// suffices.
 TEST(BaseFindings, WhatSaysNothingIsOutdoneByWhatLeavesALittleLess) {
   Found found = found_in(plays());
   ASSERT_TRUE(found.base);
@@ -112,7 +114,8 @@ TEST(BaseFindings, WhatSaysNothingIsOutdoneByWhatLeavesALittleLess) {
   EXPECT_FALSE(has_lower_loss(*found.base, plain, noise_mm, false));
 }
 
-/// Of two causes upon the given base one is there upon the other, too, and the other makes up for its loops.
+/// The given base needs two causes. The other base needs only one of them, because its loops explain the
+/// rest.
 TEST(BaseFindings, TheOtherBaseThatNeedsFewerOfTheSameCausesMayLeaveALittleMore) {
   Found found = found_in(plays());
   ASSERT_TRUE(found.base);
@@ -131,8 +134,8 @@ TEST(BaseFindings, TheOtherBaseThatNeedsFewerOfTheSameCausesMayLeaveALittleMore)
   EXPECT_FALSE(has_lower_loss(*found.base, plain, noise_mm, true)) << "it leaves much more";
 }
 
-/// At slow commands a delay does what a lag does: without either the other serves as well, and without both
-/// the finger is late.
+/// At slow commands a delay and a lag are equivalent: if one of them is missing, the other replaces it. If
+/// both are missing, the model is early.
 TEST(BaseFindings, ALatencyIsNamedThoughNobodyCanSayOfWhichKind) {
   const model::Model late =
       model::with_block(plays(), model::block_of<model::ValveLag>({{"time_constant_s", 0.08}}));
@@ -153,7 +156,7 @@ TEST(BaseFindings, ALatencyIsNamedThoughNobodyCanSayOfWhichKind) {
   EXPECT_GE(latency->inclusion, 0.95);
 }
 
-/// Upon a base that is not the given one causes are still told apart.
+/// Causes are still distinguished if the base is not the given one.
 TEST(BaseFindings, ACauseUponAnotherBaseIsNamed) {
   model::Model finger = plays();
   finger =

@@ -1,5 +1,5 @@
-// softgrip diagnose as a user calls it: the founding finding, and logs that cannot answer. The logs of the
-// latter are written here, by formulas that are not the model's.
+// Runs softgrip diagnose as a user does: the lag that the published model lacks, and logs without enough
+// information. The latter logs are written here, with formulas that differ from those of the models.
 
 #include <algorithm>
 #include <cmath>
@@ -21,7 +21,7 @@ using Json = nlohmann::json;
 
 constexpr double rate_hz = 50;
 
-/// Triangles of period 10 s, the second half as high.
+/// Triangles with a period of 10 s; every second one has half the height.
 double triangles_kpa(double t) {
   const double phase = std::fmod(t, 10) / 5;
   const double top = std::fmod(t, 20) < 10 ? 50 : 25;
@@ -41,7 +41,7 @@ class DiagnoseCommand : public CommandInFolder {
     });
   }
 
-  /// A log of `seconds` with noise of 0.04 mm.
+  /// Writes a log of `seconds` with noise of 0.04 mm.
   void write_log(const std::string& name, double seconds, const std::function<double(double)>& command_kpa,
                  const std::function<double(double)>& displacement_mm) {
     std::mt19937_64 random(17);
@@ -82,11 +82,12 @@ TEST_F(DiagnoseCommand, TheLatencyBehindThePublishedModelIsNamedAndTheExtensionI
   ASSERT_FALSE(json["closed_loop"].is_null());
   const double recalibrated_mm = json["closed_loop"]["recalibrated_rmse_mm"];
   const double extended_mm = json["closed_loop"]["extended_rmse_mm"];
-  EXPECT_GT(recalibrated_mm, 2 * extended_mm);  // planned for: it has no inverse
+  EXPECT_GT(recalibrated_mm,
+            2 * extended_mm);  // a planned feedforward is used, because the model has no inverse
   EXPECT_EQ(run("check result/model.yaml"), 0) << read("out.txt") << read("err.txt");
 }
 
-/// The way of a technician: diagnose, fill in the positions, diagnose again.
+/// The work of a technician: diagnose, enter the gauge readings, diagnose again.
 TEST_F(DiagnoseCommand, FilledInPositionsTellTheFingerFromTheSensor) {
   const std::string twin = SOFTGRIP_SOURCE_DIR "/config/models/bench_twin.yaml";
   write("finger.yaml", read_file(twin, 100'000).value() + "  - stiffening:\n      stiffening_per_mm: 0.01\n");

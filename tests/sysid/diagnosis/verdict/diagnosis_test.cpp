@@ -29,7 +29,8 @@ model::Model without_valve() {
                      [](const model::BlockInfo& info) { return info.station != model::Station::valve; });
 }
 
-// A cause that explains nearly everything: that its form is a little off asks for no other base.
+// The first cause explains nearly all of the error. Its small form error must not start the search for
+// another base.
 TEST(Diagnosis, LittleLeftByTheFirstCauseIsNoQuestionForAnotherBase) {
   const model::Model given = without_valve();
   const model::Model truth =
@@ -37,7 +38,7 @@ TEST(Diagnosis, LittleLeftByTheFirstCauseIsNoQuestionForAnotherBase) {
   std::vector<Log> logs;
   for (const model::SignalName signal : {model::SignalName::tp1, model::SignalName::sp2}) {
     logs.push_back(simulated(truth, signal, 25, noise_mm, 17));
-    // Bumps of a thing that no cause knows.
+    // A ripple that no cause of the registry describes.
     for (double& y : logs.back().displacement_mm)
       y += 0.9 * noise_mm * std::sin(2 * std::numbers::pi * y / 5);
   }
@@ -60,8 +61,8 @@ TEST(Diagnosis, LittleLeftByTheFirstCauseIsNoQuestionForAnotherBase) {
   }
 }
 
-// The model that made the logs explains them wherever the sensor's zero is, and in whatever state a log
-// begins.
+// The model that generated a log explains it for every zero of the sensor and every state at the start of the
+// log.
 TEST(Diagnosis, AsGivenEstimatesTheOffsetAndTheStart) {
   const model::Model truth = loaded("bench_twin");
   const Log log = simulated(truth, model::SignalName::tp1, 25, noise_mm, 5);
@@ -80,7 +81,7 @@ TEST(Diagnosis, AsGivenEstimatesTheOffsetAndTheStart) {
   EXPECT_LT(as_given_mm(in_motion, 5), of_30_mm);
 }
 
-// What stands upon another base keeps what was found before any base was fitted.
+// A cause that was found before another base was fitted is kept in the result with the other base.
 TEST(Diagnosis, WrongSamplesKeepTheirNameWhereAnotherBaseHolds) {
   const model::Model given = without_valve();
   model::Model plays = model::without_block(given, model::block_type<model::BoucWen>());
@@ -105,7 +106,7 @@ TEST(Diagnosis, WrongSamplesKeepTheirNameWhereAnotherBaseHolds) {
   EXPECT_NEAR(static_cast<double>(diagnosis->outliers.count), static_cast<double>(wrong), 2);
 }
 
-/// Two logs whose readings are replaced by those of other samples.
+/// Two logs in which the reading of sample i is that of sample `sample(i)`.
 std::vector<Log> read_at(const model::Model& truth, const std::function<std::size_t(std::size_t)>& sample) {
   std::vector<Log> logs;
   for (const model::SignalName signal : {model::SignalName::tp1, model::SignalName::sp2}) {
@@ -144,7 +145,7 @@ TEST(Diagnosis, AReadingThatLeadsItsCommandIsAClockOffset) {
   EXPECT_GT(diagnosis->recalibrated_rmse_mm, 1.2 * diagnosis->extended_rmse_mm);
 }
 
-/// The log of a finger that was pressed before the recording began.
+/// A log of a finger that was under pressure before the recording began.
 Log begun_unsettled(const model::Model& truth, model::SignalName signal, double pulse_kpa,
                     std::uint64_t seed) {
   constexpr double rate_hz = 25;
@@ -165,7 +166,7 @@ Log begun_unsettled(const model::Model& truth, model::SignalName signal, double 
   return slice(log, pressed + rested, log.size());
 }
 
-/// A log may begin without pressure and not at rest: what its creep does then has no cause.
+/// A log may begin without pressure while the finger still creeps. This creep must not be named as a cause.
 TEST(Diagnosis, AStartBeforeTheFingerHasSettledIsNoCause) {
   const model::Model truth = without_valve();
   const std::vector<Log> logs{begun_unsettled(truth, model::SignalName::tp1, 45, 3),

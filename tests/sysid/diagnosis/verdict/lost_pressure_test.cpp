@@ -12,7 +12,7 @@ namespace {
 
 constexpr double sample_s = 0.01, noise_kpa = 0.05;
 
-/// A valve without a memory: what comes of each command.
+/// Logs of a valve without dynamics: the pressure is a function of the command.
 std::vector<Log> logs_of(const std::function<double(double)>& pressure_kpa) {
   std::mt19937 random(7);
   std::normal_distribution<double> normal;
@@ -52,7 +52,8 @@ TEST(FindLostPressure, IsNothingWhereAConstantIsMissing) {
   EXPECT_FALSE(lost_of(logs_of([](double u) { return u - 3; })));
 }
 
-// A gain takes half of a ceiling; a leak, which bends the other way, takes less of it.
+// A gain explains half of the error of a pressure limit. A leak, whose curve bends in the other direction,
+// explains less.
 TEST(FindLostPressure, IsNothingWhereTheHighestPressuresAloneAreMissing) {
   const std::vector<Log> logs = logs_of([](double u) { return std::min(u, 52.0); });
   const MeasuredValve valve(logs, false);

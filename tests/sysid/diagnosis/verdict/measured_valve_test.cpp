@@ -11,9 +11,9 @@ namespace softgrip::sysid::measured_valve_test {
 namespace {
 
 constexpr double sample_s = 0.01, gain = 1.05, zero_kpa = 2.0, noise_kpa = 0.2;
-constexpr std::size_t block_samples = 800;  // of 8 s
+constexpr std::size_t block_samples = 800;  // 8 s
 
-// A valve that does nothing behind a gauge: command and pressure are on a straight line.
+// A valve without dynamics and a gauge: the pressure is a linear function of the command.
 Log straight_log(std::size_t blocks, double offset_kpa, std::uint32_t seed) {
   std::mt19937 random(seed);
   std::normal_distribution<double> normal;
@@ -31,8 +31,8 @@ Log straight_log(std::size_t blocks, double offset_kpa, std::uint32_t seed) {
   return log;
 }
 
-/// A log of so many blocks' samples ends one before its last block is full: that stretch belongs to the one
-/// before.
+/// Returns the block of a sample. The last block is one sample short of its length, so it belongs to the
+/// block before.
 std::size_t block_of(const Log& log, std::size_t sample) {
   return std::min(sample / block_samples, log.size() / block_samples - 2);
 }
@@ -40,7 +40,7 @@ std::size_t block_of(const Log& log, std::size_t sample) {
 struct Line {
   double slope, zero;
 };
-/// A straight line through the samples of every second block, in closed form.
+/// Returns the regression line through the samples of every second block, in closed form.
 Line line_through(const Log& log, bool even) {
   double n = 0, su = 0, sp = 0, suu = 0, sup = 0;
   for (std::size_t i = 0; i < log.size(); ++i) {
@@ -57,7 +57,8 @@ TEST(MeasuredValve, WhatIsLeftOfABlockIsOfAFitToTheOthers) {
   const MeasuredValve valve(logs, false);
   const BlockLosses losses = valve.held_out_losses({}, valve.fit({}, {ValveStage{}}));
   ASSERT_EQ(losses.size(), 7U);
-  // The log's first sample is the measured pressure, read through the gauge once more.
+  // The first block is not compared, because its first sample is a measured pressure that is converted by the
+  // gauge model again.
   for (std::size_t block = 1; block < 6; ++block) {
     const Line line = line_through(logs[0], block % 2 == 1);
     double sum_kpa2 = 0;
@@ -82,7 +83,7 @@ TEST(MeasuredValve, StandardErrorsOfAGaugeAreThoseOfAStraightLine) {
   const double of_zero = noise_kpa * std::sqrt(suu / (n * about_mean));
   EXPECT_NEAR(stage.gauge_gain, gain, 4 * of_gain);
   EXPECT_NEAR(stage.gauge_zero_kpa, zero_kpa, 4 * of_zero);
-  // Never below white noise's; the sum over forty blocks of it is known to a tenth.
+  // Never below the standard error for white noise. The sum over 40 blocks has an uncertainty of about 10 %.
   EXPECT_GT(errors[0], 0.97 * of_gain);
   EXPECT_LT(errors[0], 1.4 * of_gain);
   EXPECT_GT(errors[1], 0.97 * of_zero);
@@ -96,7 +97,8 @@ TEST(MeasuredValve, ALastingErrorCountsOncePerBlock) {
     return valve.standard_errors(valve.fit({}, {ValveStage{}}, 1e-12),
                                  {&ValveStage::gauge_gain, &ValveStage::gauge_zero_kpa})[1];
   };
-  // An offset of its own for each of 40 blocks, as large as the noise: like 40 readings, not 32,000.
+  // Each of the 40 blocks has its own offset, as large as the noise. The information is that of 40 readings,
+  // not of 32,000.
   EXPECT_GT(error_of(lasting), 10 * error_of(white));
   EXPECT_LT(error_of(lasting), 60 * error_of(white));
 }

@@ -16,11 +16,11 @@ constexpr double true_delay_s = 0.130;
 
 struct Named {
   std::vector<NamedCause> causes;
-  Interval alone;  ///< of the delay, as its own fit says
+  Interval alone;  ///< interval of the delay from its own fit
   std::vector<std::string> sentences;
 };
 
-/// The twin has a delay and a lag; here the delay alone is chosen.
+/// bench_twin has a delay and a lag. Here only the delay is chosen.
 Named delay_of(SignalName signal, const model::Model& twin) {
   const model::Model without_valve =
       model::only(twin, [](const model::BlockInfo& info) { return info.station != model::Station::valve; });

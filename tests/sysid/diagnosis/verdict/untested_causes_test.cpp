@@ -30,7 +30,8 @@ std::vector<std::string> ids(const std::vector<NamedCause>& causes) {
   return list;
 }
 
-/// A course of the command that swings about 20 kPa. @param rest_s  without pressure before it.
+/// Logs with a command that oscillates about 20 kPa. @param rest_s  duration of the rest without pressure at
+/// the start.
 std::vector<Log> planned(double rest_s) {
   Log log;
   log.name = "planned";
@@ -43,8 +44,8 @@ std::vector<Log> planned(double rest_s) {
   return {log};
 }
 
-/// A flow that a controller holds with a valve. @param band  that the valve ignores. @param wave  of a
-/// disturbance.
+/// Logs of a flow that a controller holds constant with a valve. @param band  change of the command that the
+/// valve ignores. @param wave  amplitude of a disturbance.
 std::vector<Log> loop(double band, double wave) {
   std::mt19937 random(4);
   std::normal_distribution<double> noise(0, 0.01);
