@@ -26,7 +26,7 @@ struct Finger {
   double crescent_mm =
       0;  ///< width of a loop whose rising branch is a parabola and whose falling branch is a line
   double wander_mm =
-      0;  ///< drift of the zero, with a different random course in each log and a period of about 15 s
+      0;  ///< amplitude of a drift of the zero with a period of about 15 s
 };
 
 /// Returns a command of triangles with several heights and a hold at the top, drawn by `seed`.
