@@ -16,8 +16,8 @@ using Effects = std::map<std::string, Numbers>;
 
 struct Log {
   double rate_hz = 100;
-  std::vector<double> command_kpa, temperature_c,
-      supply_kpa;  // one value per sample; supply as gauge pressure
+  // One value per sample; supply_kpa is a gauge pressure.
+  std::vector<double> command_kpa, temperature_c, supply_kpa;
   // Run-to-run variation (variation.h).
   double gain = 1, offset_mm = 0;
   std::size_t unrecorded = 0;  // number of first samples that precede the recording

@@ -39,9 +39,8 @@ double wanted_kpa(double t) {
 }
 
 struct Course {
-  double worst_kpa = 0;  ///< largest difference between the pressure and the requested pressure
-  double worst_expected_kpa =
-      0;  ///< largest difference between the pressure and the prediction of the inverse
+  double worst_kpa = 0;           ///< largest difference between the pressure and the requested pressure
+  double worst_expected_kpa = 0;  ///< largest difference between pressure and predicted pressure
 };
 
 /// Requests a pressure in each tick, and simulates the chain of the same blocks to get the resulting

@@ -23,10 +23,8 @@ struct Finger {
   double per_c = 0;  ///< relative change of the gain per degree, from 15 degrees on
   bool with_temperature = false;
   double bend_per_mm = 0;  ///< stiffens with the displacement; at 12 mm the displacement is unchanged
-  double crescent_mm =
-      0;  ///< width of a loop whose rising branch is a parabola and whose falling branch is a line
-  double wander_mm =
-      0;  ///< amplitude of a drift of the zero with a period of about 15 s
+  double crescent_mm = 0;  ///< width of a loop that rises along a parabola and falls along a line
+  double wander_mm = 0;    ///< amplitude of a drift of the zero with a period of about 15 s
 };
 
 /// Returns a command of triangles with several heights and a hold at the top, drawn by `seed`.

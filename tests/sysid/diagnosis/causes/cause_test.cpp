@@ -183,8 +183,8 @@ TEST(Ranges, KeepCausesWhatTheyAreCalled) {
   EXPECT_LE(range("rate_dependent_hysteresis", "width_kpa").upper, scales.largest_kpa);
   EXPECT_LE(range("inertia", "damping_ratio").upper, std::sqrt(0.5));
   EXPECT_GE(range("contact", "position_mm").lower, 0.01 * scales.span_mm);
-  EXPECT_GE(range("slow_creep", "time_constant_s").lower,
-            16.0);  // the slowest branch of bench_twin has 16.5 s
+  // The slowest branch of bench_twin has a time constant of 16.5 s.
+  EXPECT_GE(range("slow_creep", "time_constant_s").lower, 16.0);
   EXPECT_GE(range("periodic_disturbance", "frequency_hz").lower, 0.2 - 1e-12);
 }
 

@@ -82,8 +82,8 @@ TEST_F(DiagnoseCommand, TheLatencyBehindThePublishedModelIsNamedAndTheExtensionI
   ASSERT_FALSE(json["closed_loop"].is_null());
   const double recalibrated_mm = json["closed_loop"]["recalibrated_rmse_mm"];
   const double extended_mm = json["closed_loop"]["extended_rmse_mm"];
-  EXPECT_GT(recalibrated_mm,
-            2 * extended_mm);  // a planned feedforward is used, because the model has no inverse
+  // The recalibrated model has no inverse, so its feedforward is planned.
+  EXPECT_GT(recalibrated_mm, 2 * extended_mm);
   EXPECT_EQ(run("check result/model.yaml"), 0) << read("out.txt") << read("err.txt");
 }
 
