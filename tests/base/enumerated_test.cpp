@@ -16,7 +16,7 @@ TEST(Enumerated, PutsItsWordBeforeTheLastOnly) {
   EXPECT_EQ(enumerated(Words{"a"}, " and "), "a");
   EXPECT_EQ(enumerated(Words{"a", "b"}, " and "), "a and b");
   EXPECT_EQ(enumerated(Words{"a", "b", "c"}, " or "), "a, b or c");
-  EXPECT_EQ(enumerated(Words{"", "b"}, " and "), " and b") << "an item without a text is one";
+  EXPECT_EQ(enumerated(Words{"", "b"}, " and "), " and b") << "an empty item counts as an item";
 }
 
 TEST(Enumerated, TakesWhatMakesATextOfAnItemOrTheMemberThatHoldsIt) {

@@ -69,7 +69,8 @@ TEST_F(FilesTest, AFileThatAnotherProcessHasLeasedIsRefusedWithoutWaiting) {
   const std::string path = file("leased", "text");
   auto* const before = std::signal(SIGIO, SIG_IGN);
   const Descriptor holder(::open(path.c_str(), O_RDWR | O_CLOEXEC));
-  if (::fcntl(holder.get(), F_SETLEASE, F_WRLCK) != 0) GTEST_SKIP() << "this file system gives no leases";
+  if (::fcntl(holder.get(), F_SETLEASE, F_WRLCK) != 0)
+    GTEST_SKIP() << "this file system does not support leases";
   EXPECT_FALSE(open_regular(path));
   ::fcntl(holder.get(), F_SETLEASE, F_UNLCK);
   std::signal(SIGIO, before);
@@ -84,7 +85,7 @@ TEST_F(FilesTest, InAFolderNoLinkIsFollowed) {
   ASSERT_TRUE(opened);
   EXPECT_EQ(opened->size, 4U);
   EXPECT_EQ(*read_start(*opened, 3), "tex");
-  EXPECT_EQ(*read_start(*opened, 3), "t") << "it goes on where it ended";
+  EXPECT_EQ(*read_start(*opened, 3), "t") << "reading continues where it ended";
   EXPECT_EQ(open_regular_in(folder, "link").error(), "it is a symbolic link, not a regular file");
   EXPECT_TRUE(open_regular(at("link")));
 }
