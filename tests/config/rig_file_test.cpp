@@ -107,7 +107,7 @@ TEST(RigFile, AVacuumIsSimulatedWithinTheValvesRange) {
   ASSERT_TRUE(rig.has_value()) << problems.format();
   const auto& board = std::get<simulation::SimulatedBoardSettings>(rig->board);
   EXPECT_EQ(board.channels[1].valve_min_kpa, -60);
-  EXPECT_EQ(board.channels[1].vented_kpa, 0) << "rest, and not the lowest pressure";
+  EXPECT_EQ(board.channels[1].vented_kpa, 0) << "the rest pressure, not the lowest pressure";
   VirtualClock clock;
   simulation::SimulatedBoard simulated(board, clock);
   std::vector<model::Reading> readings(2);
@@ -176,7 +176,7 @@ TEST_F(Converters, OfOneNameAreRefusedWithBothAndTheirPlaceInTheFile) {
 TEST_F(Converters, AreChosenByAddressByNodeAndByPath) {
   EXPECT_EQ(problems_of("1-0060", "1-0061"), "");
   EXPECT_EQ(problems_of("iio:device1", (root_ / "hardware/1-0061").string()), "");
-  EXPECT_EQ(problems_of("1-0070", "1-0071"), "") << "of another computer";
+  EXPECT_EQ(problems_of("1-0070", "1-0071"), "") << "addresses of another computer are not checked";
 }
 
 TEST_F(Converters, AHeartbeatCountsAsAWatchdogIfEveryValveRestsWithoutPower) {
@@ -245,7 +245,7 @@ TEST(RestPressure, IsOfTheChannelAndZeroWithoutTheKey) {
                               {"  rest_kpa: 0 ", "  rest_kpa: -10 "}},
                              problems);
   EXPECT_EQ(std::get<simulation::SimulatedBoardSettings>(vacuum.rig.board).channels[0].vented_kpa, 0)
-      << "only the limits keep it from 0 kPa";
+      << "without its limits the channel could reach 0 kPa";
 }
 
 TEST(RestPressure, BeyondTheLimitsIsRefusedWithTheRange) {
@@ -304,7 +304,7 @@ TEST(RestPressure, OfTheBoardsWatchdogIsNotBeyondTheLimits) {
   for (const Edits& edits : {vacuum, with(with(vacuum, inflates), no_pressure)}) {
     Problems problems;
     EXPECT_TRUE(edited("vacuum/rig_tcp.yaml", edits, problems).accepted)
-        << "nothing is nearer to 0 kPa: " << problems.format();
+        << "no pressure in the range is nearer to 0 kPa: " << problems.format();
   }
 }
 
@@ -332,7 +332,7 @@ TEST(RestPressure, IsComparedWithTheValveThatHasNoPower) {
                                   {"on_power_loss: vents", "on_power_loss: vents, on_power_loss_kpa: -80"}})
           .find("goes to -80 kPa, and the rest pressure is -40 kPa"),
       std::string::npos)
-      << "no limit binds a valve without power";
+      << "the limits do not apply to a valve without power";
   EXPECT_NE(warning("vacuum/rig.yaml", {holds}).find("holds its last pressure"), std::string::npos);
   EXPECT_EQ(warning("rig.yaml", {holds}), "") << "the file states no rest pressure";
   Problems problems;
