@@ -11,8 +11,8 @@ TEST(UnitAtEnd, IsTheProjectsOwn) {
   EXPECT_EQ(unit_at_end("speed_mm_per_s"), "mm_per_s");
   EXPECT_EQ(unit_at_end("frequency_hz"), "hz");
   EXPECT_EQ(unit_at_end("cycles"), "");
-  EXPECT_EQ(unit_at_end("s"), "") << "a name of its own, not a unit";
-  EXPECT_EQ(unit_at_end("delay_ms"), "") << "no unit of the project";
+  EXPECT_EQ(unit_at_end("s"), "") << "a name, not a unit";
+  EXPECT_EQ(unit_at_end("delay_ms"), "") << "not a unit of the project";
   EXPECT_EQ(unit_at_end("per_s"), "s");
   EXPECT_EQ(unit_at_end("mm_per_s"), "s") << "a name needs a word before its unit";
   EXPECT_EQ(unit_at_end(""), "");

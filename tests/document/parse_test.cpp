@@ -79,7 +79,7 @@ TEST(Parse, RefusesWhatExpandsOrRepeats) {
             (Lines{"1:4: a tag (`!name`) is not accepted here", "2:4: a tag (`!name`) is not accepted here",
                    "3:4: a tag (`!name`) is not accepted here"}));
   EXPECT_EQ(problems_of("a: 1\n<<: {b: 2}\n"), (Lines{"2:1: a merge key (`<<`) is not accepted here"}));
-  EXPECT_EQ(problems_of("a: *nobody\n"), (Lines{"1:4: an alias (`*name`) is not accepted here"}));
+  EXPECT_EQ(problems_of("a: *unknown\n"), (Lines{"1:4: an alias (`*name`) is not accepted here"}));
   EXPECT_EQ(problems_of("a: 1\n---\nb: 2\n"), (Lines{"2:1: a second document starts here"}));
   EXPECT_EQ(problems_of("%YAML 1.2\n---\na: 1\n"), (Lines{"1:1: a YAML directive is not accepted here"}));
 }
