@@ -20,9 +20,9 @@ bool held_after(double expected_mm, double share) {
 
 TEST(FollowWatch, WhatStaysIsHeldAndWhatGoesOnHasChanged) {
   EXPECT_TRUE(held_after(5, 0));
-  EXPECT_TRUE(held_after(5, 0.4)) << "what yields";
+  EXPECT_TRUE(held_after(5, 0.4)) << "a part that yields";
   EXPECT_FALSE(held_after(5, 0.7));
-  EXPECT_FALSE(held_after(-3, 0.7)) << "down as well as up";
+  EXPECT_FALSE(held_after(-3, 0.7)) << "also downwards";
 }
 
 TEST(FollowWatch, BeforeTheModelHasMovedNobodyKnows) {

@@ -84,7 +84,7 @@ TEST(JumpWatch, AFingerThatIsHeldWhileItsModelMovesDoesNotJump) {
 TEST(JumpWatch, AcrossAGapNothingJumps) {
   JumpWatch watch{PlausibilitySettings{}};
   for (int i = 0; i < 40; ++i) watch.observe(nanoseconds(1 + 0.1 * i), i % 2 == 0 ? 0 : 5, 0);
-  EXPECT_FALSE(watch.unsteady()) << "readings older than max_age_s are none to jump from";
+  EXPECT_FALSE(watch.unsteady()) << "a jump from a reading older than max_age_s does not count";
 }
 
 TEST(JumpWatch, TheThresholdsAreTheSettings) {
@@ -99,7 +99,7 @@ TEST(JumpWatch, TheThresholdsAreTheSettings) {
     patient.observe(nanoseconds(t), square(t, 0.1), 0);
   }
   EXPECT_FALSE(coarse.unsteady());
-  EXPECT_FALSE(patient.unsteady()) << "ten in a second, not twelve";
+  EXPECT_FALSE(patient.unsteady()) << "ten jumps per second, not twelve";
 }
 
 TEST(JumpWatch, ForgetsWhenReset) {

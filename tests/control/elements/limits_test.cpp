@@ -88,10 +88,10 @@ TEST(Limits, RestIsZeroOrTheNearestEndOfTheRange) {
 TEST(Limits, NoFurtherFromRestThanABoundAndOnItsSide) {
   EXPECT_EQ(no_further(0, 20, 12), 12);
   EXPECT_EQ(no_further(0, 5, 12), 5);
-  EXPECT_EQ(no_further(0, -5, 12), 0) << "a bound above rest allows nothing below";
+  EXPECT_EQ(no_further(0, -5, 12), 0) << "a bound above rest allows no pressure below rest";
   EXPECT_EQ(no_further(0, -20, -12), -12);
   EXPECT_EQ(no_further(0, -5, -12), -5);
-  EXPECT_EQ(no_further(0, 5, -12), 0) << "and the other way round";
+  EXPECT_EQ(no_further(0, 5, -12), 0) << "a bound below rest allows no pressure above rest";
   EXPECT_EQ(no_further(10, 4, 0), 4);
   EXPECT_EQ(no_further(10, 12, 0), 10);
   EXPECT_EQ(no_further(0, -20, infinity), -20);
@@ -103,8 +103,8 @@ TEST(Limits, WithoutAUsableLastCommandItBeginsAtRest) {
 }
 
 TEST(Limits, ACeilingDoesNotEvacuate) {
-  EXPECT_EQ(limit(vacuum, 30, 1, 1, -20).command_kpa, 0) << "down to rest, not further";
-  EXPECT_EQ(limit(vacuum, 30, -10, 1, -20).command_kpa, 0) << "and the way back to rest is free";
+  EXPECT_EQ(limit(vacuum, 30, 1, 1, -20).command_kpa, 0) << "falls to rest, but not further";
+  EXPECT_EQ(limit(vacuum, 30, -10, 1, -20).command_kpa, 0) << "the way back to rest is not limited";
   EXPECT_EQ(limit(vacuum, 0, -30, 1, -20).command_kpa, 0);
   EXPECT_FALSE(limit(vacuum, 0, -30, 1, -20).capped);
 }

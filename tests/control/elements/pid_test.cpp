@@ -81,7 +81,8 @@ TEST(Pid, AntiWindupForgetsHowLongTheCommandWasCut) {
   for (const double share : {0.0, 0.4, 0.7}) {
     SCOPED_TRACE(share);
     const double none = recovery_s(AntiWindup::none, share, 2, limits);
-    EXPECT_GT(recovery_s(AntiWindup::none, share, 8, limits), none + 3) << "the case is not hard enough";
+    EXPECT_GT(recovery_s(AntiWindup::none, share, 8, limits), none + 3)
+        << "the case does not test saturation enough";
     for (const AntiWindup anti_windup : {AntiWindup::conditional, AntiWindup::back_calculation}) {
       const double soon = recovery_s(anti_windup, share, 2, limits);
       EXPECT_NEAR(recovery_s(anti_windup, share, 8, limits), soon, 0.05);

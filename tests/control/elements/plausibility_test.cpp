@@ -60,13 +60,13 @@ TEST(Plausibility, AnOldReadingIsStale) {
 TEST(Plausibility, AJumpIsNotBelievedUntilTheFingerCouldHaveMadeIt) {
   Channel channel;
   EXPECT_EQ(channel.next(5), Validity::valid);
-  EXPECT_EQ(channel.next(6.4), Validity::valid) << "200 mm/s for 5 ms, and the margin";
+  EXPECT_EQ(channel.next(6.4), Validity::valid) << "200 mm/s for 5 ms plus the margin";
   EXPECT_EQ(channel.next(12), Validity::jumped);
-  EXPECT_EQ(channel.next(6.4), Validity::valid) << "a spike passes";
+  EXPECT_EQ(channel.next(6.4), Validity::valid) << "a single spike is not a fault";
   EXPECT_EQ(channel.next(12), Validity::jumped);
   int ticks = 1;
   while (channel.next(12) == Validity::jumped) ++ticks;
-  EXPECT_EQ(ticks, 5) << "5.1 mm at 200 mm/s are 25.5 ms";
+  EXPECT_EQ(ticks, 5) << "5.1 mm at 200 mm/s take 25.5 ms";
 }
 
 TEST(Plausibility, AFrozenReadingIsFoundOnlyWhileTheCommandMoves) {
@@ -76,8 +76,8 @@ TEST(Plausibility, AFrozenReadingIsFoundOnlyWhileTheCommandMoves) {
   Channel moving;
   int valid = 0;
   for (int i = 0; i < 200; ++i) valid += moving.next(5, 0.2 * i) == Validity::valid;
-  EXPECT_EQ(valid, 100) << "0.5 s at 5 ms";
-  EXPECT_EQ(moving.next(5.001, 40), Validity::valid) << "it moves again";
+  EXPECT_EQ(valid, 100) << "0.5 s in ticks of 5 ms";
+  EXPECT_EQ(moving.next(5.001, 40), Validity::valid) << "the reading moves again";
 }
 
 // A finger that is stopped by a part also stays in place, but the reading of a noisy sensor still varies.
@@ -93,7 +93,7 @@ TEST(Plausibility, ALivelySensorThatRepeatsItselfStandsStillAndIsFrozenWhereTheF
       EXPECT_FALSE(i < 10 && channel.judge.stands_still()) << "before 55 ms";
       EXPECT_FALSE(i == 30 && channel.judge.stands_still() != lively) << "155 ms";
     }
-    EXPECT_EQ(valid, lively ? 100 : 200) << "0.5 s at 5 ms";
+    EXPECT_EQ(valid, lively ? 100 : 200) << "0.5 s in ticks of 5 ms";
     (void)channel.next(5.01, 20, tick_ns, 8);
     EXPECT_FALSE(channel.judge.stands_still());
   }

@@ -160,7 +160,7 @@ TEST(Reference, ARampToWhereItIsTakesNoTimeAndAnswersYes) {
   EXPECT_TRUE(reference.ramp_to(5, 10));
   EXPECT_EQ(reference.end_s(), 2);
   EXPECT_EQ(reference.at(3).value, 5);
-  EXPECT_FALSE(reference.sine(1, 1, 1, 0)) << "no cycle is no sine";
+  EXPECT_FALSE(reference.sine(1, 1, 1, 0)) << "a sine needs at least one cycle";
 }
 
 TEST(Reference, OneThatIsAlreadyGoingBrakesAndThenGoes) {

@@ -164,7 +164,7 @@ TEST(ActuatorInverse, OutOfReachIsTheBoundAndNoWindUp) {
     }
     inverse.advance(solution.pressure_kpa);
     if (k >= 3000) {
-      ASSERT_NEAR(inverse.displacement_mm(), 5, 1e-9) << "at once, from the true state";
+      ASSERT_NEAR(inverse.displacement_mm(), 5, 1e-9) << "immediately, from the true state";
     }
   }
   EXPECT_GT(out_of_reach, 1000);
@@ -197,7 +197,7 @@ TEST(ActuatorInverse, TheExplicitMultiplicativeInverseDiverges) {
   for (int k = 0; k < 34; ++k) published.step(0.01);
   EXPECT_GT(published.p_kpa, 50);
   for (int k = 0; k < 40; ++k) published.step(0.009);
-  EXPECT_FALSE(std::abs(published.p_kpa) < 1e6) << "a micrometre less";
+  EXPECT_FALSE(std::abs(published.p_kpa) < 1e6) << "1 um less";
 
   // For bench_twin beta/alpha = 0.81. The iteration converges, but by only a fifth of the remaining distance
   // per tick, so it lags on a ramp.

@@ -83,7 +83,7 @@ TEST(FullModelFeedforward, TracksAFingerThatIsTheModel) {
         run_alone(model_named("bench_twin"), {FeedforwardKind::full_model, 0}, sine_reference(frequency));
     EXPECT_LT(run.worst_mm, 2e-3) << frequency << " Hz";
     EXPECT_EQ(run.out_of_reach, 0) << frequency << " Hz";
-    EXPECT_LT(run.worst_step_kpa, 400 * tick_s) << "what the slew limits pass";
+    EXPECT_LT(run.worst_step_kpa, 400 * tick_s) << "the motion that the slew limits allow";
   }
 }
 
@@ -279,7 +279,8 @@ TEST(FullModelFeedforward, AJumpOfTheReferenceDoesNotRing) {
     for (int k = 0; k < 1200; ++k) {
       query.time_s = k * tick_s;
       const double planned = feedforward.step(query).pressure_kpa;
-      ASSERT_LE(std::abs(planned - command), slew * tick_s * (1 + 1e-9)) << "what the limits pass";
+      ASSERT_LE(std::abs(planned - command), slew * tick_s * (1 + 1e-9))
+          << "the motion that the limits allow";
       command = planned;
       finger.step(0, command);
       finger.step(tick_s, command);
@@ -364,7 +365,7 @@ TEST(FullModelFeedforward, AJumpInMotionDoesNotKick) {
     before = last;
     last = command;
   }
-  EXPECT_LT(worst, 0.5) << "kPa by which the command's step changes from one tick to the next";
+  EXPECT_LT(worst, 0.5) << "kPa: change of the command's step between two ticks";
 }
 
 TEST(BoucWenFeedforward, InvertsTheElementAlone) {

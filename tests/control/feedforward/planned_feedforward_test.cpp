@@ -68,17 +68,17 @@ TEST_F(PlannedFeedforwardTest, GoesFromThePressureThatIsThereOverToItsPlan) {
   const PressurePlan plan = plan_of(20, 2, 5);
   query_.plan = &plan;
   enter(11);
-  EXPECT_NEAR(step().pressure_kpa, 11, 1e-9) << "no step";
+  EXPECT_NEAR(step().pressure_kpa, 11, 1e-9) << "the command has no step";
   double difference = 11 - 20;
   for (int i = 0; i < 700; ++i) {
     const double expected = on_plan(plan);
     const FeedforwardStep now = step();
     const double left = now.pressure_kpa - expected;
-    EXPECT_LE(std::abs(left), std::abs(difference) + 1e-9) << "it only ever comes nearer";
+    EXPECT_LE(std::abs(left), std::abs(difference) + 1e-9) << "the distance to the plan only decreases";
     EXPECT_FALSE(now.out_of_reach);
     difference = left;
   }
-  EXPECT_NEAR(difference, 0, 1e-9) << "after " << fade_s << " s it is there";
+  EXPECT_NEAR(difference, 0, 1e-9) << "after " << fade_s << " s the command is on the plan";
 }
 
 TEST_F(PlannedFeedforwardTest, WhatTheFingerShowsMoreThanItsModelIsTakenOffAtTheSettledGain) {
@@ -97,7 +97,7 @@ TEST_F(PlannedFeedforwardTest, APlanForAnotherWayIsLeftAlone) {
     query_.plan = &plan;
     enter(20);
     const double expected = aside_mm < 1 ? 20 - aside_mm / gain() : on_line(5);
-    EXPECT_NEAR(step_for(fade_s + 1).pressure_kpa, expected, 1e-9) << aside_mm << " mm beside it";
+    EXPECT_NEAR(step_for(fade_s + 1).pressure_kpa, expected, 1e-9) << aside_mm << " mm off the plan";
   }
 }
 
@@ -139,7 +139,7 @@ TEST_F(PlannedFeedforwardTest, ClocksThatDifferByARoundingFollowTheSamePlan) {
     query_.plan_origin_s = rounding_s;
     enter(20);
     EXPECT_NEAR(step().pressure_kpa, 20, 1e-6);
-    EXPECT_NEAR(step_for(fade_s).pressure_kpa, 20, 1e-6) << "it is on its plan";
+    EXPECT_NEAR(step_for(fade_s).pressure_kpa, 20, 1e-6) << "the command is on its plan";
   }
 }
 
@@ -152,7 +152,7 @@ TEST_F(PlannedFeedforwardTest, SaysWhatIsOutOfReach) {
   std::fill(plan.displacement_mm.begin(), plan.displacement_mm.end(), 5.19);
   EXPECT_FALSE(step().out_of_reach);
   std::fill(plan.displacement_mm.begin(), plan.displacement_mm.end(), 5.21);
-  EXPECT_TRUE(step().out_of_reach) << "the plan knows that its model misses";
+  EXPECT_TRUE(step().out_of_reach) << "the plan states the error of its model";
   query_.plan = nullptr;
   reference_.start(0, 25);
   query_.offset_mm = -10;

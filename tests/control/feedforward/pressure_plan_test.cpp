@@ -10,7 +10,7 @@ namespace {
 
 TEST(PressurePlan, BeforeAndBehindItsEndsTheMissIsThatOfItsEnds) {
   PressurePlan plan;
-  EXPECT_EQ(plan.miss_mm(1), 0) << "nothing is planned";
+  EXPECT_EQ(plan.miss_mm(1), 0) << "the plan is empty";
   plan.step_s = 1;
   plan.start_s = 0;
   plan.displacement_mm = {1, 2, 4};

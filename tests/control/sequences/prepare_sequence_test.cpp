@@ -266,9 +266,9 @@ TEST(Prepare, WhatAParameterBreaksIsToldAtTheParameter) {
   };
   document::Problems problems;
   ASSERT_TRUE(read({}));
-  EXPECT_TRUE(prepare(*read({}), settings, problems)) << "what is asked for fits";
+  EXPECT_TRUE(prepare(*read({}), settings, problems)) << "the requested value is within the limits";
   check_ranges(*read({}), settings, problems);
-  ASSERT_EQ(problems.size(), 2U) << "one per channel";
+  ASSERT_EQ(problems.size(), 2U) << "one error per channel";
   EXPECT_EQ(problems.list()[0].at.line, 3);
   EXPECT_NE(
       problems.list()[0].message.find(

@@ -82,7 +82,7 @@ TEST(SequencePlans, EveryMoveToADisplacementHasOneWithinTheLimits) {
     const LimitSettings& limits = settings.channels[0].limits;
     const PreparedSequence pick = example_sequence("pick_stone", settings);
     ASSERT_EQ(pick.steps.size(), 4U);
-    EXPECT_EQ(pick.steps[2].plan_of(0), nullptr) << "a hold goes on with the plan of the grip";
+    EXPECT_EQ(pick.steps[2].plan_of(0), nullptr) << "a hold continues the plan of the grip";
     EXPECT_EQ(pick.steps[3].plan_of(0), nullptr) << "a release by pressure";
     for (const std::size_t k : {0U, 1U}) {
       const PressurePlan* plan = pick.steps[k].plan_of(0);
@@ -98,7 +98,7 @@ TEST(SequencePlans, EveryMoveToADisplacementHasOneWithinTheLimits) {
     }
     const double grip_to_end_s = pick.steps[1].plan_of(0)->step_s *
                                  static_cast<double>(pick.steps[1].plan_of(0)->pressure_kpa.size() - 1);
-    EXPECT_GT(grip_to_end_s, 5) << "over the hold";
+    EXPECT_GT(grip_to_end_s, 5) << "during the hold";
   }
 }
 
@@ -244,7 +244,7 @@ TEST(SequencePlans, OnlyPlannedFingersArePlannedFor) {
       sequence_of("name: x\nsteps:\n  - move: {displacement_mm: 6, duration_s: 1}\n", mixed);
   EXPECT_EQ(move.steps[0].plan_of(0), nullptr);
   EXPECT_NE(move.steps[0].plan_of(1), nullptr);
-  EXPECT_EQ(move.steps[0].plan_of(7), nullptr) << "no such channel";
+  EXPECT_EQ(move.steps[0].plan_of(7), nullptr) << "this channel does not exist";
 }
 
 // Grips a stone, then grips without a part with a retry (which backs off outside any plan), then grips again.
@@ -306,7 +306,7 @@ TEST(SequencePlans, AFingerThatStandsOffItsModelArrivesAllTheSame) {
     rig.request(Request::Kind::start, &move);
     ASSERT_TRUE(rig.run_until(State::running, 12));
     const Motion motion = watch(rig, 5);
-    EXPECT_LT(motion.jump_kpa, 0.5) << "no more than noise and motion";
+    EXPECT_LT(motion.jump_kpa, 0.5) << "only noise and motion";
     EXPECT_LT(motion.worst_mm, 1.5 + 0.8);
     EXPECT_NEAR(rig.plant_mm(0) + 1.5, 15, 0.15);
   }
@@ -339,7 +339,7 @@ TEST(SequencePlans, AStartFromAnotherDisplacementIsBumplessAndBetterThanPidAlone
     const PidSettings& gains = model[0] == 'z' ? for_pid_alone : twin_gains;
     const Motion alone = from_half_way(rig_with(model, FeedforwardKind::none, gains), model);
     std::printf("%s: worst %.2f mm, with PID alone %.2f mm\n", model, planned.worst_mm, alone.worst_mm);
-    EXPECT_LT(planned.jump_kpa, 0.5) << "no more than noise and motion";
+    EXPECT_LT(planned.jump_kpa, 0.5) << "only noise and motion";
     EXPECT_LT(planned.worst_mm, alone.worst_mm);
   }
 }
@@ -354,7 +354,7 @@ TEST(SequencePlans, BackingOffIsBumpless) {
     rig.request(Request::Kind::start, &pick);
     ASSERT_TRUE(rig.run_until_step(1, 10));
     const Motion motion = watch(rig, 8);
-    EXPECT_LT(motion.jump_kpa, 0.6) << "10 mm/s need about 0.2 kPa a tick; the rest is the sensor's noise";
+    EXPECT_LT(motion.jump_kpa, 0.6) << "10 mm/s need about 0.2 kPa per tick; the rest is sensor noise";
     EXPECT_LT(motion.worst_mm, 2);
   }
 }
@@ -371,7 +371,7 @@ TEST(PlannedFeedforward, WithoutAPlanItFollowsAtTheSettledGainFromWhereItIs) {
   (void)reference.ramp_for(15, 2);
   FeedforwardQuery query{&reference, 0, 0, nullptr, 0};
   feedforward.enter(running, query, 30);
-  EXPECT_NEAR(feedforward.step(query).pressure_kpa, 30, 1e-9) << "from where it is";
+  EXPECT_NEAR(feedforward.step(query).pressure_kpa, 30, 1e-9) << "from its present position";
   double last = 30;
   for (int k = 1; k < 1000; ++k) {
     query.time_s = k * sim::tick_s;

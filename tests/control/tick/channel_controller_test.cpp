@@ -129,7 +129,7 @@ TEST(ChannelController, EveryChangeOfModeIsBumpless) {
   reference.start(rig.time_s(), rig.last.displacement_mm);
   rig.track(reference);
   rig.tick();
-  EXPECT_NEAR(rig.last.command_kpa, before, 1e-9) << "pressure to displacement, creep under way";
+  EXPECT_NEAR(rig.last.command_kpa, before, 1e-9) << "from pressure to displacement while the finger creeps";
   expect_smooth("after the start of tracking");
   EXPECT_TRUE(reference.ramp_to(15, 10));
   rig.run(0.4);
@@ -143,7 +143,7 @@ TEST(ChannelController, EveryChangeOfModeIsBumpless) {
   reference.start(rig.time_s(), rig.last.displacement_mm);
   rig.track(reference);
   rig.tick();
-  EXPECT_NEAR(rig.last.command_kpa, before, 1e-9) << "hold to displacement";
+  EXPECT_NEAR(rig.last.command_kpa, before, 1e-9) << "from hold to displacement";
   expect_smooth("after hold");
 }
 
@@ -258,7 +258,7 @@ TEST(ChannelController, ResynchronisingFollowsAFingerThatIsNotWhereTheModelIs) {
   rig.input.demand.mode = Mode::hold;
   rig.tick();
   const double off = rig.last.residual_mm;
-  EXPECT_GT(std::abs(off), 0.3) << "creep that the model started without";
+  EXPECT_GT(std::abs(off), 0.3) << "the model started without the creep of the finger";
   rig.input.resynchronise = true;
   int ticks = 0;
   while (!rig.tick().synchronised && ticks < 1000) ++ticks;

@@ -74,7 +74,7 @@ TEST(ChannelPlayer, FeedbackIsHeldByATouchOnlyWhileSomethingIsGrippedOrHeld) {
     EXPECT_TRUE(player.demand(1).feedback_held) << "holding";
 
     (void)player.tick(1.01, short_by(0));
-    EXPECT_FALSE(player.demand(1.01).feedback_held) << "nothing touches any more";
+    EXPECT_FALSE(player.demand(1.01).feedback_held) << "the contact has ended";
   }
 }
 
@@ -94,7 +94,7 @@ TEST(ChannelPlayer, ATouchCountsFromRestUpward) {
   player.reset();
   player.begin(move, nullptr, 0, touching_under(-20, -25));
   for (int i = 1; i <= 20; ++i) (void)player.tick(0.01 * i, touching_under(-20 + i, -25));
-  EXPECT_FALSE(player.stopped_by_contact()) << "on its way up to rest";
+  EXPECT_FALSE(player.stopped_by_contact()) << "rising to rest";
   EXPECT_EQ(player.take_contact(), std::nullopt);
   for (int i = 21; i <= 24; ++i) (void)player.tick(0.01 * i, touching_under(-20 + i, 1));
   EXPECT_TRUE(player.stopped_by_contact()) << "above rest";

@@ -88,11 +88,11 @@ TEST_F(ContactTest, AMoveStaysWithItsFirstTouchUnlessToldOtherwise) {
   SimulatedRig rig(settings);
   rig.stone(6);
   play(rig, move);
-  EXPECT_EQ(contacts(rig, OnContact::hold), 2U) << "one of each finger";
+  EXPECT_EQ(contacts(rig, OnContact::hold), 2U) << "one contact per finger";
   rig.run(3);
   EXPECT_LT(squeeze_kpa(rig), curve.squeeze_for_kpa(settings.detection.margin_mm) + 1.5)
-      << "what was on its way is taken back";
-  EXPECT_GT(squeeze_kpa(rig), 0.5) << "and the touch stays";
+      << "the excess pressure is taken back";
+  EXPECT_GT(squeeze_kpa(rig), 0.5) << "the contact remains";
   EXPECT_EQ(rig.count(Event::Kind::fault_latched), 0U);
 }
 
@@ -104,7 +104,7 @@ TEST_F(ContactTest, AMoveMayGoOnWithTheGripAtOnce) {
   start(rig, pick);
   ASSERT_TRUE(rig.run_until_step(1, 20));
   EXPECT_EQ(contacts(rig, OnContact::grip), 1U);
-  EXPECT_LT(rig.plant_mm(1), 8) << "the other finger is taken along from where it is";
+  EXPECT_LT(rig.plant_mm(1), 8) << "the other finger begins the grip at its present position";
   ASSERT_TRUE(rig.run_until(State::idle, 60));
 }
 
@@ -144,7 +144,7 @@ TEST_F(ContactTest, AMoveMayPressOnAndIsBoundedByItsPressure) {
   }
   EXPECT_NEAR(most, 25, 1e-9);
   EXPECT_EQ(contacts(rig, OnContact::ignore), 2U);
-  EXPECT_GE(rig.count(Event::Kind::limit_binds), 1U) << "it binds for longer than a moment";
+  EXPECT_GE(rig.count(Event::Kind::limit_binds), 1U) << "the limit is active for a longer time";
 }
 
 // One line for each limit of the rig file and of a step. Each is reported if it lasts.
@@ -232,7 +232,7 @@ TEST_F(ContactTest, WhatIsHeldMayBeMoved) {
   rig.stone(12);
   play(rig, carry);
   EXPECT_EQ(rig.result(0), GripResult::holding);
-  EXPECT_NEAR(rig.board_kpa(0), 35, 1e-6) << "pressed harder on purpose";
+  EXPECT_NEAR(rig.board_kpa(0), 35, 1e-6) << "the step requests this pressure";
 }
 
 TEST_F(ContactTest, ASpringIsFollowedUntilItPressesBack) {
@@ -261,7 +261,7 @@ TEST_F(ContactTest, WhatSlipsAwayIsSearchedForAndNotChased) {
     most_mm = std::max(most_mm, rig.plant_mm(0));
   }
   EXPECT_EQ(rig.result(0), GripResult::no_part);
-  EXPECT_LT(most_mm, pick.steps[1].step.target.value + 1) << "no farther than the step goes";
+  EXPECT_LT(most_mm, pick.steps[1].step.target.value + 1) << "not further than the step requests";
 }
 
 TEST_F(ContactTest, TheBoundHoldsWhileAHeldPartCreeps) {

@@ -139,7 +139,7 @@ TEST_P(FaultReaction, LatchesActsAndStaysUntilAcknowledged) {
   EXPECT_LE(cycles, fault.bound_cycles);
   EXPECT_EQ(rig.output().first_fault.code, fault.code);
   const double at_latch_kpa = rig.output().channels[0].command_kpa;
-  EXPECT_NEAR(at_latch_kpa, before_kpa, 10) << "no more than a few cycles of motion";
+  EXPECT_NEAR(at_latch_kpa, before_kpa, 10) << "at most a few cycles of motion";
   if (phase.step >= 0) {
     EXPECT_EQ(rig.result(0), GripResult::error);
   }
@@ -168,7 +168,7 @@ TEST_P(FaultReaction, LatchesActsAndStaysUntilAcknowledged) {
   ASSERT_TRUE(rig.run_until(State::idle, 1));
   rig.run(2);
   EXPECT_EQ(rig.output().state, State::idle);
-  EXPECT_EQ(rig.output().channels[0].command_kpa, rest_kpa) << "acknowledging moves nothing";
+  EXPECT_EQ(rig.output().channels[0].command_kpa, rest_kpa) << "an acknowledgement moves no finger";
   EXPECT_EQ(rig.result(0), GripResult::none);
 
   if (rest_kpa != 0) {  // a held finger may hold a part, so the test vents it before it grips again
@@ -224,7 +224,7 @@ TEST_F(SingleFault, CyclesAreCountedOneByOne) {
   EXPECT_EQ(
       ticks_until_fault([](SimulatedRig& rig) { rig.fault[0].validity = model::Validity::sensor_error; }),
       settings.faults.invalid_reading_cycles + 1)
-      << "what is read after a tick is seen in the next";
+      << "a reading after a tick is used in the next tick";
 }
 
 // A single correct readback resets the count of deviations to 0.
@@ -269,7 +269,7 @@ TEST_F(SingleFault, AFingerThatStillHasPressureAtTheStartIsGivenTimeToDeflate) {
   rig.run(1);
   EXPECT_EQ(rig.output().state, State::idle);
   rig.run(1);
-  EXPECT_EQ(rig.output().first_fault.code, FaultCode::pressure_not_followed) << "but not for ever";
+  EXPECT_EQ(rig.output().first_fault.code, FaultCode::pressure_not_followed) << "only for a limited time";
 }
 
 TEST_F(SingleFault, AStutteringWireDoesNotHideABurstLine) {
@@ -287,7 +287,8 @@ TEST_F(SingleFault, AStutteringWireDoesNotHideABurstLine) {
   rig.run(1);
   rig.request(Request::Kind::acknowledge);
   rig.tick();
-  EXPECT_TRUE(rig.answer(Event::Kind::fault_acknowledged)) << "what is not measured any more is no cause";
+  EXPECT_TRUE(rig.answer(Event::Kind::fault_acknowledged))
+      << "a pressure that is no longer measured causes no fault";
 }
 
 TEST_F(SingleFault, APressureThatIsNotMeasuredIsNoFault) {
@@ -348,12 +349,12 @@ TEST_F(SingleFault, TheFirstFaultIsKeptAndLaterOnesAreTold) {
   rig.fault[0].validity = model::Validity::sensor_error;
   ASSERT_TRUE(rig.run_until(State::faulted, 1));
   rig.run(0.5);
-  EXPECT_GT(rig.board_kpa(0), 20) << "held, as the settings say";
+  EXPECT_GT(rig.board_kpa(0), 20) << "held, as the settings state";
   rig.emergency_stop = true;
   rig.run(1);
   EXPECT_EQ(rig.output().first_fault.code, FaultCode::sensor_error);
   EXPECT_EQ(rig.count(Event::Kind::fault_latched), 2U);
-  EXPECT_EQ(rig.board_kpa(0), 0) << "a later fault can only turn a hold into a vent";
+  EXPECT_EQ(rig.board_kpa(0), 0) << "a later fault can change a hold to a vent, but not a vent to a hold";
 }
 
 TEST_F(SingleFault, AcknowledgingIsRefusedWhileTheCauseIsThere) {
@@ -368,7 +369,8 @@ TEST_F(SingleFault, AcknowledgingIsRefusedWhileTheCauseIsThere) {
   EXPECT_EQ(refused->detail, static_cast<std::uint16_t>(RefusalCode::cause_persists));
   rig.emergency_stop = false;
   rig.run(0.5);
-  EXPECT_EQ(rig.output().state, State::faulted) << "the refused request is not remembered: an edge is needed";
+  EXPECT_EQ(rig.output().state, State::faulted)
+      << "a refused request is not stored: a new request is required";
 }
 
 TEST_F(SingleFault, AnAcknowledgementBeforeTheFaultDoesNotCount) {
@@ -402,8 +404,9 @@ TEST_F(SingleFault, AHoldSurvivesAReconnectionOnlyWhereTheBoardHoldsToo) {
     const double at_reconnection_kpa = rig.board_kpa(0);
     rig.wire_cut = false;
     rig.run(2);
-    EXPECT_NEAR(rig.board_kpa(0), at_reconnection_kpa, 1) << "reconnection moves nothing";
-    EXPECT_EQ(rig.count(Event::Kind::fault_latched), 1U) << "old readings were the wire's fault";
+    EXPECT_NEAR(rig.board_kpa(0), at_reconnection_kpa, 1) << "a reconnection moves no finger";
+    EXPECT_EQ(rig.count(Event::Kind::fault_latched), 1U)
+        << "old readings after a bus fault are no further fault";
   }
 }
 
@@ -423,10 +426,10 @@ TEST_F(SingleFault, ALaterFaultDoesAsThePhaseOfTheFirstSays) {
   rig.fault[1].validity = model::Validity::sensor_error;
   rig.run(1);
   EXPECT_EQ(rig.count(Event::Kind::fault_latched), 2U);
-  EXPECT_NEAR(rig.board_kpa(0), held_kpa, 1) << "what is held stays held";
+  EXPECT_NEAR(rig.board_kpa(0), held_kpa, 1) << "a held part remains held";
   rig.emergency_stop = true;
   rig.run(1);
-  EXPECT_LT(rig.board_kpa(0), 1) << "but an emergency stop has its own word";
+  EXPECT_LT(rig.board_kpa(0), 1) << "the emergency stop has its own safe action";
 }
 
 TEST_F(SingleFault, NamesItsFingerUntilItIsAcknowledged) {
@@ -440,8 +443,9 @@ TEST_F(SingleFault, NamesItsFingerUntilItIsAcknowledged) {
   rig.fault[1].validity.reset();
   rig.fault[0].validity = model::Validity::out_of_range;
   rig.run(0.1);
-  EXPECT_EQ(rig.output().first_fault.channel, 1) << "the first one stays";
-  EXPECT_EQ(rig.output().cause.code, FaultCode::reading_out_of_range) << "but another one is in the way now";
+  EXPECT_EQ(rig.output().first_fault.channel, 1) << "the first fault remains latched";
+  EXPECT_EQ(rig.output().cause.code, FaultCode::reading_out_of_range)
+      << "another fault now prevents the acknowledgement";
   EXPECT_EQ(rig.output().cause.channel, 0);
   rig.request(Request::Kind::acknowledge);
   rig.tick();
@@ -467,7 +471,7 @@ TEST_F(SingleFault, PressureThatItHoldsIsSaidAndNotThatOfARunningHold) {
   const PreparedSequence pick = example_sequence("pick_stone", settings);
   start(rig, pick);
   ASSERT_TRUE(rig.run_until_step(2, 20));
-  EXPECT_EQ(rig.output().under_pressure, 0U) << "a hold is what was asked for";
+  EXPECT_EQ(rig.output().under_pressure, 0U) << "the running sequence requested the hold";
   rig.request(Request::Kind::stop);
   ASSERT_TRUE(rig.run_until(State::idle, 5));
   EXPECT_EQ(rig.output().under_pressure, 3U);

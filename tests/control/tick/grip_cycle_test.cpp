@@ -88,7 +88,8 @@ TEST_F(GripCycle, AStonePulledOutDuringHoldIsPartLostWithinTwoReverifications) {
   rig.run(2 * pick.steps[2].step.reverify_every_s);
   EXPECT_EQ(rig.result(0), GripResult::part_lost);
   ASSERT_TRUE(rig.run_until(State::idle, 20));
-  EXPECT_EQ(rig.result(0), GripResult::part_lost) << "latched: the release does not overwrite it";
+  EXPECT_EQ(rig.result(0), GripResult::part_lost)
+      << "the result is latched: the release does not overwrite it";
   rig.run(1);
   EXPECT_EQ(rig.result(0), GripResult::part_lost);
   rig.request(Request::Kind::acknowledge);
@@ -106,7 +107,7 @@ TEST_F(GripCycle, TheNextStartClearsPartLost) {
   ASSERT_EQ(rig.result(0), GripResult::part_lost);
   rig.stone(12);
   rig.request(Request::Kind::start, &pick);
-  ASSERT_TRUE(rig.run_until(State::running, 12)) << "comes to rest again";
+  ASSERT_TRUE(rig.run_until(State::running, 12)) << "the finger comes to rest again";
   EXPECT_EQ(rig.result(0), GripResult::none);
   ASSERT_TRUE(rig.run_until(State::idle, 60));
   EXPECT_EQ(rig.result(0), GripResult::released);
@@ -205,7 +206,7 @@ steps:
   EXPECT_EQ(rig.output().channels[0].evidence, GripEvidence::pressure);
   ASSERT_TRUE(rig.run_until(State::idle, 20));
   EXPECT_EQ(rig.result(0), GripResult::released);
-  EXPECT_EQ(rig.output().channels[0].evidence, GripEvidence::none) << "nobody saw it";
+  EXPECT_EQ(rig.output().channels[0].evidence, GripEvidence::none) << "no valid reading showed the part";
 }
 
 TEST_F(GripCycle, APartThatLeavesItsPositionWindowIsLost) {
@@ -223,7 +224,7 @@ steps:
     ASSERT_TRUE(rig.start_until_step(grip, 1));
     ASSERT_EQ(rig.result(0), GripResult::holding);
     rig.run(1);
-    ASSERT_EQ(rig.result(0), GripResult::holding) << "inside its window";
+    ASSERT_EQ(rig.result(0), GripResult::holding) << "within the window";
     rig.fault[0].offset_mm = moved_mm;
     rig.run(0.6);
     EXPECT_EQ(rig.result(0), GripResult::part_lost);
@@ -247,7 +248,8 @@ steps:
   rig.run(1.55);  // the finger has arrived
   rig.fault[0].validity = model::Validity::out_of_range;
   ASSERT_TRUE(rig.run_until(State::idle, 10));
-  EXPECT_EQ(rig.result(0), GripResult::error) << "who did not look says neither HOLDING nor NO PART";
+  EXPECT_EQ(rig.result(0), GripResult::error)
+      << "without a valid reading the result is neither HOLDING nor NO PART";
 }
 
 TEST_F(GripCycle, AFingerThatBacksOffSettlesBeforeItTriesAgain) {
@@ -270,7 +272,7 @@ steps:
     }
   }
   ASSERT_EQ(begun_s.size(), 2U);
-  EXPECT_GT(begun_s[1] - low_since_s, 0.7) << "its settle_s at the bottom";
+  EXPECT_GT(begun_s[1] - low_since_s, 0.7) << "settle_s at the start pressure";
 }
 
 TEST_F(GripCycle, AFingerThatCannotArriveEndsWithErrorAtTheTimeout) {
@@ -284,7 +286,7 @@ steps:
   rig.stone(8);
   play(rig, move);
   EXPECT_EQ(rig.result(0), GripResult::error);
-  EXPECT_EQ(rig.output().first_fault.code, FaultCode::none) << "a timeout is an answer, not a fault";
+  EXPECT_EQ(rig.output().first_fault.code, FaultCode::none) << "a timeout is a result, not a fault";
   EXPECT_EQ(rig.board_kpa(0), 0);
 }
 

@@ -154,7 +154,7 @@ TEST_F(Requests, AStopOfOneStartEndsThatOneAlone) {
   ASSERT_TRUE(rig.run_until(State::running, 5));
   rig.request({Request::Kind::stop, 8, nullptr, 6});
   rig.tick();
-  EXPECT_EQ(rig.output().state, State::running) << "another start was named";
+  EXPECT_EQ(rig.output().state, State::running) << "the stop named another start";
   const auto refused = std::ranges::find(rig.events, Event::Kind::request_refused, &Event::kind);
   ASSERT_NE(refused, rig.events.end());
   EXPECT_EQ(refused->request, 8U);
@@ -166,7 +166,7 @@ TEST_F(Requests, AStopOfOneStartEndsThatOneAlone) {
   ASSERT_TRUE(rig.run_until(State::idle, 2));
   rig.request({Request::Kind::stop, 10, nullptr, 7});
   rig.tick();
-  EXPECT_EQ(rig.count(Event::Kind::request_refused), 2U) << "it has ended already";
+  EXPECT_EQ(rig.count(Event::Kind::request_refused), 2U) << "the sequence has already ended";
 }
 
 TEST_F(Requests, AStopOfOneStartThatPassesItKeepsItFromBeginning) {
@@ -186,7 +186,7 @@ TEST_F(Requests, AStopOfOneStartThatPassesItKeepsItFromBeginning) {
   EXPECT_TRUE(refused(7));
   rig.request({Request::Kind::start, 8, &pick});
   rig.tick();
-  EXPECT_EQ(rig.output().state, State::resynchronising) << "nothing has named this one";
+  EXPECT_EQ(rig.output().state, State::resynchronising) << "no stop has named this start";
   EXPECT_FALSE(refused(8));
 }
 
@@ -282,7 +282,7 @@ TEST_F(Requests, AHeldFingerMustBeAtRestToo) {
     ASSERT_EQ(rig.output().state, State::resynchronising);
   }
   rig.fault[0].offset_mm = 0;
-  EXPECT_TRUE(rig.run_until(State::running, 1)) << "the shaking has ended";
+  EXPECT_TRUE(rig.run_until(State::running, 1)) << "the person has stopped shaking the finger";
 }
 
 TEST_F(Requests, AGripThatNeedsTheModelIsNotStartedWhereTheModelIsFarOff) {
@@ -300,7 +300,7 @@ TEST_F(Requests, AGripThatNeedsTheModelIsNotStartedWhereTheModelIsFarOff) {
   EXPECT_NEAR(why->value, 1.5 * settings.detection.margin_mm, 0.1);
   const PreparedSequence track = example_sequence("track_sine", settings);
   rig.request(Request::Kind::start, &track);
-  EXPECT_TRUE(rig.run_until(State::running, 2)) << "a study does not need it";
+  EXPECT_TRUE(rig.run_until(State::running, 2)) << "a tracking sequence does not need the model";
 }
 
 TEST_F(Requests, LeavingTheLoopIsSafeInEveryPhase) {

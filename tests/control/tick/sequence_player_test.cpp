@@ -82,7 +82,7 @@ TEST_F(SequencePlayback, EveryFailureActionDoesWhatItSays) {
     }
     EXPECT_EQ(begun, expected);
     EXPECT_EQ(rig.result(1), test.lets_go ? GripResult::released : GripResult::error)
-        << "whoever took part gets an answer";
+        << "each finger of the grip has a result";
   }
 }
 

@@ -117,30 +117,33 @@ class SupervisorSearch : public testing::Test {
     if (tick.of_start == another_start && undisturbed && before == State::running && after != before)
       return "a stop of another start ends this one";
     if (tick.fault != FaultCode::none && after != State::faulted) return "a fault that is due does not latch";
-    if (halts && may_rise(after)) return "motion goes on after a stop or a vent";
+    if (halts && may_rise(after)) return "motion continues after a stop or a vent";
     if (tick.request == Kind::vent && supervisor.venting() != all && after != State::idle)
       return "a vent is refused";
     if (outputs.release && after == State::running && supervisor.sequence() == nullptr)
-      return "a release of nothing";
+      return "a release without a sequence";
     if (tick.request == Kind::release && before == State::resynchronising && may_rise(after))
-      return "motion goes on after a release";
-    if (after == State::resynchronising && before != after && !started) return "motion that nobody asked for";
+      return "motion continues after a release";
+    if (after == State::resynchronising && before != after && !started)
+      return "a motion that was not requested";
     if (after == State::running && before != after && before != State::resynchronising)
-      return "motion without looking for rest";
-    if (outputs.begin != nullptr && after != State::running) return "a sequence is played that does not run";
+      return "a motion without a check of the rest position";
+    if (outputs.begin != nullptr && after != State::running)
+      return "a sequence is played in a state in which none runs";
     if (started && (tick.interlock_open || !tick.bus_good || !tick.all_ready) && tick.request == Kind::start)
       return "a start that should have been refused";
-    if (before == State::faulted && after != State::faulted && !acknowledged) return "a fault goes by itself";
-    if (acknowledged && tick.cause_present) return "a fault is acknowledged whose cause is there";
+    if (before == State::faulted && after != State::faulted && !acknowledged)
+      return "a fault disappears without an acknowledgement";
+    if (acknowledged && tick.cause_present) return "a fault is acknowledged while its cause is present";
     if (may_rise(after) && supervisor.sequence() == nullptr) return "motion without a sequence";
     if (!may_rise(after) && supervisor.sequence() != nullptr) return "a sequence without motion";
     if (tick.request != Kind::none && answers == 0 && !outputs.acknowledged_by)
-      return "a request without an answer";
+      return "a request that is not answered";
     if (after == State::faulted && (tick.fault == FaultCode::board_watchdog_tripped) &&
         supervisor.venting() != all)
-      return "what the board has vented is held";
+      return "an output that the board has vented is held";
     if (after == State::faulted && supervisor.venting_on_leaving(tick.phase) != supervisor.venting())
-      return "leaving undoes what a fault decided";
+      return "the shutdown changes the safe action of a fault";
     return {};
   }
 
@@ -168,7 +171,7 @@ TEST_F(SupervisorSearch, NoStateThatCanBeReachedBreaksAPromise) {
                             << static_cast<int>(tick.rest) << " to " << name_of(to.state());
       if (seen.insert(bytes_of(to)).second) open.push_back(to);
     }
-    ASSERT_LT(seen.size(), 100'000U) << "these are no discrete states";
+    ASSERT_LT(seen.size(), 100'000U) << "the states are not discrete";
   }
   std::printf("%zu states, %zu steps\n", seen.size(), steps);
   EXPECT_GT(seen.size(), 20U);

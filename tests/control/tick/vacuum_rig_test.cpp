@@ -112,9 +112,9 @@ TEST_F(VacuumRig, ACommandBelowRestThatTheBoardDoesNotHaveIsForgotten) {
     rig.request(Request::Kind::stop);
     rig.tick();
     const double rise_kpa = settings.channels[0].limits.slew_up_kpa_per_s / settings.rate_hz;
-    EXPECT_LE(command(rig), -30 + rise_kpa + 1e-9) << "what is on its way may be written";
+    EXPECT_LE(command(rig), -30 + rise_kpa + 1e-9) << "a command in flight may still be written";
     rig.run(1);
-    EXPECT_EQ(command(rig), std::min(outputs_kpa, 0.0)) << "never past rest";
+    EXPECT_EQ(command(rig), std::min(outputs_kpa, 0.0)) << "never beyond rest";
   }
 }
 
@@ -139,7 +139,7 @@ TEST_F(VacuumRig, AReleaseToAPressureGoesNoFurtherThanRest) {
   ASSERT_TRUE(rig.start_until_step(release, 1));
   while (rig.output().state == State::running) {
     rig.tick();
-    ASSERT_LE(command(rig), 0) << "the other side of rest is not on the way";
+    ASSERT_LE(command(rig), 0) << "the command does not cross rest";
   }
   EXPECT_EQ(command(rig), 0);
 }

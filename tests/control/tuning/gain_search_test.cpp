@@ -31,7 +31,7 @@ TEST(GainSearch, ACoarseGridLooksAtFewerPointsAndFindsTheBowlToo) {
   search.iterations = 0;
   search.coarseness = 1;
   (void)search_gains(cost, search);
-  EXPECT_EQ(evaluations, 30 + 3) << "the grid and the simplex around its best";
+  EXPECT_EQ(evaluations, 30 + 3) << "the grid and the simplex around its best point";
   evaluations = 0;
   search.coarseness = 5;
   (void)search_gains(cost, search);
@@ -48,7 +48,7 @@ TEST(GainSearch, EndsWhereAllCornersAreAlike) {
         return 1.0;
       },
       {0, 0, 0}, 1, {.iterations = 1000, .done_share = 1e-3});
-  EXPECT_EQ(evaluations, 3) << "nothing is better anywhere";
+  EXPECT_EQ(evaluations, 3) << "no point is better";
   EXPECT_EQ(found, (GainPoint{0, 0, 0}));
 }
 
