@@ -149,7 +149,7 @@ int run(const Arguments& a) {
   int listening = context ? modbus_tcp_listen(context.get(), 1) : -1;
   if (listening < 0) throw std::runtime_error("cannot listen");
   std::cout << "listening on 127.0.0.1:" << port_of(listening) << std::endl;
-  if (modbus_tcp_accept(context.get(), &listening) < 0) throw std::runtime_error("nobody came");
+  if (modbus_tcp_accept(context.get(), &listening) < 0) throw std::runtime_error("no client connected");
   std::vector<std::uint8_t> query(MODBUS_TCP_MAX_ADU_LENGTH);
   for (;;) {
     const int length = modbus_receive(context.get(), query.data());
