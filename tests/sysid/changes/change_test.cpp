@@ -92,7 +92,7 @@ TEST(Change, ASensorWithLittleNoiseAtTheEndOfItsRangeHasNoOutliers) {
       ++all;
     }
   }
-  ASSERT_GT(2 * at_end, all) << "the median of the noise is that at the end";
+  ASSERT_GT(2 * at_end, all) << "more than half of the readings are at the limit";
   const auto d = diagnose_change(humming(logs_of({}, 1)), later);
   ASSERT_TRUE(d) << d.error();
   ASSERT_FALSE(d->causes.empty());

@@ -72,7 +72,7 @@ TEST(IsClearlyLess, InTheMeanOrInMostBlocks) {
   EXPECT_TRUE(is_clearly_less({1, 1, 1, 1}, {2, 2, 4, 4}));
   EXPECT_TRUE(is_clearly_less({1, 1, 1, 30}, {2, 2, 2, 90})) << "one block is hard for both";
   EXPECT_FALSE(is_clearly_less({1, 2, 3, 4}, {1, 2, 3, 4}));
-  EXPECT_FALSE(is_clearly_less({1, 1, 1, 90}, {2, 2, 2, 30})) << "worse in the mean";
+  EXPECT_FALSE(is_clearly_less({1, 1, 1, 90}, {2, 2, 2, 30})) << "worse on average";
   EXPECT_FALSE(is_clearly_less({1, 3, 1, 3}, {3, 1, 3, 1.5}));
 }
 

@@ -64,7 +64,7 @@ std::vector<std::size_t> moments_to_cut(const Record& record) {
   for (std::size_t i = 1; record.time_s[i] + 3 < record.time_s.back(); ++i) {
     if (record.drive_kpa[i] <= 0 && record.drive_kpa[i - 1] > 0) moments.push_back(i);
   }
-  EXPECT_GT(moments.size(), cuts) << "the pressure comes back to 0 in between";
+  EXPECT_GT(moments.size(), cuts) << "the pressure must return to 0 at least once";
   return moments;
 }
 

@@ -38,7 +38,7 @@ TEST(CommandBefore, IsWhereTheMeasuredPressureStillWas) {
   EXPECT_EQ(*before_kpa, log.pressure_kpa.front());
   const auto vented = pressure_before_kpa(begun_at_a_step(90));
   ASSERT_TRUE(vented);
-  EXPECT_GT(*vented, 75) << "as well where the command was set down";
+  EXPECT_GT(*vented, 75) << "also if the command was lowered";
 }
 
 TEST(CommandBefore, IsACommandThatTheLogContains) {
@@ -87,7 +87,7 @@ TEST(CommandBefore, WithoutMeasuredPressureALogThatShowsNoStepHasNone) {
   EXPECT_FALSE(pressure_before_kpa(creeping)) << "12 % of the span";
   Log brief = unmeasured(begun_at_a_step(7));
   for (std::size_t i = 19; i < brief.size(); ++i) brief.pressure_command_kpa[i] = 20;
-  EXPECT_FALSE(pressure_before_kpa(brief)) << "stands for 19 samples";
+  EXPECT_FALSE(pressure_before_kpa(brief)) << "the command is held for 19 samples only";
   Log lowest = unmeasured(begun_at_a_step(7));
   for (double& command : lowest.pressure_command_kpa) command = 120 - command;
   EXPECT_FALSE(pressure_before_kpa(lowest)) << "the displacement rises, and the first command is the lowest";
@@ -104,7 +104,8 @@ TEST(CommandBefore, APressureWithAnotherZeroIsNotOnItsWay) {
 TEST(CommandBefore, OnlyTheHoldOfTheFirstCommandCounts) {
   Log log = begun_at_a_step(7);
   for (std::size_t i = 1; i < log.size(); ++i) log.pressure_command_kpa[i] = i < 100 ? 10 : 60;
-  EXPECT_FALSE(pressure_before_kpa(log)) << "60 kPa stood for one sample: nothing went there";
+  EXPECT_FALSE(pressure_before_kpa(log))
+      << "60 kPa was held for one sample, so the pressure did not reach it";
 }
 
 TEST(CommandBefore, IsASampleWithoutReadings) {

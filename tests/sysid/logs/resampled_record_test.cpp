@@ -64,7 +64,8 @@ TEST(StridedRecord, AStepComesNeitherEarlyNorLateWhereverItIs) {
       ASSERT_EQ(thin.size(), 11U);
       EXPECT_NEAR(integral_kpa_s(thin), integral_kpa_s(record), 1e-9) << step << (held ? " held" : "");
       for (std::size_t i = 0; i < thin.size(); ++i) {
-        EXPECT_GE(thin.drive_kpa[i], 0) << "beyond what was commanded a finger's memory would keep it";
+        EXPECT_GE(thin.drive_kpa[i], 0)
+            << "a higher value than the command would remain in the memory of a finger";
         EXPECT_LE(thin.drive_kpa[i], 80);
       }
     }
@@ -111,9 +112,9 @@ TEST(AveragedRecord, ReadingsThatAreNotThereAreNotInvented) {
   for (std::size_t i = 96; i <= 104; ++i) record.reading_mm[i] = none;
   record.reading_mm[201] = none;
   const Record averaged = averaged_to(record, 0.010);
-  EXPECT_FALSE(std::isfinite(averaged.reading_mm[10])) << "none of its nine is there";
+  EXPECT_FALSE(std::isfinite(averaged.reading_mm[10])) << "all nine readings are missing";
   EXPECT_TRUE(std::isfinite(averaged.reading_mm[9]));
-  EXPECT_NEAR(averaged.reading_mm[20], 2 * 0.2 * 0.2, 2e-3) << "one of nine is missing";
+  EXPECT_NEAR(averaged.reading_mm[20], 2 * 0.2 * 0.2, 2e-3) << "one of nine readings is missing";
   EXPECT_EQ(averaged.readings, 400U);
 }
 
@@ -133,7 +134,8 @@ TEST(AveragedRecord, ACampaignKeepsAboutAsManyReadingsAsWanted) {
 
 TEST(StridedRecord, LeavesOutReadingsButTellsMotionsApartLikeTheLog) {
   EXPECT_EQ(thinned_to(parabola(0), 0.02).finest_interval_s, 1e-3);
-  EXPECT_NEAR(averaged_to(parabola(0), 0.02).finest_interval_s, 0.02, 1e-12) << "a mean blurs what is faster";
+  EXPECT_NEAR(averaged_to(parabola(0), 0.02).finest_interval_s, 0.02, 1e-12)
+      << "a mean would smooth a faster signal";
 }
 
 /// A ramp: 4 s at 1 kHz.
@@ -156,8 +158,8 @@ TEST(CentredRecord, KeepsTheFirstSampleAndTheMiddleOfEveryInterval) {
   const Record thin = thinned_to_centres(ramp(), 0.011);
   ASSERT_GE(thin.size(), 364U);
   EXPECT_EQ(thin.time_s[0], 0);
-  EXPECT_EQ(thin.sample_time_s, 0) << "the first step is another one";
-  EXPECT_NEAR(thin.finest_interval_s, 0.011, 1e-4) << "a sample stands for those around it";
+  EXPECT_EQ(thin.sample_time_s, 0) << "the first step differs";
+  EXPECT_NEAR(thin.finest_interval_s, 0.011, 1e-4) << "a sample represents those around it";
   for (std::size_t i = 1; i + 1 < thin.size(); ++i) {
     EXPECT_NEAR(thin.time_s[i], 0.011 * (static_cast<double>(i) - 0.5), 0.51e-3);
     EXPECT_NEAR(thin.duration_s[i], thin.time_s[i] - thin.time_s[i - 1], 1e-9);
@@ -219,7 +221,7 @@ TEST(FewerReadings, LeavesEveryKthAndAllSamples) {
       std::count_if(few.reading_mm.begin(), few.reading_mm.end(), [](double y) { return std::isfinite(y); });
   EXPECT_EQ(left, 1000);
   EXPECT_EQ(few.reading_mm[0], record.reading_mm[0]);
-  EXPECT_EQ(with_fewer_readings({record}, 4000).front().readings, 4000U) << "nothing has to be left out";
+  EXPECT_EQ(with_fewer_readings({record}, 4000).front().readings, 4000U) << "no sample has to be left out";
 }
 
 }  // namespace

@@ -218,7 +218,7 @@ TEST(Chart, BothColourSchemesAreInTheFileAndColoursAreThereWithoutThem) {
   EXPECT_NE(svg.find("class=\"s-model\" stroke=\"#0072b2\""), std::string::npos);
   EXPECT_NE(svg.find(".s-model{stroke:var(--model)}"), std::string::npos);
   const std::string inside = svg_of({"", "", stacked({a_chart()})});
-  EXPECT_EQ(inside.find("<style"), std::string::npos) << "the page brings it";
+  EXPECT_EQ(inside.find("<style"), std::string::npos) << "the page contains the style";
 }
 
 TEST(Chart, WhatColourTellsApartDashesTellApart) {

@@ -236,7 +236,7 @@ TEST(IdentifyStructure, FindsTheBentEnvelopesOfGeneralisedPlays) {
                               simulated(bent_play_finger(), SignalName::sp2, 100, 0.03, 6)};
   const auto found = identify_structure(logs, StructureQuestion::automatic);
   ASSERT_TRUE(found) << found.error();
-  EXPECT_LT(found->rmse_mm, 2 * 0.03) << "thresholds and envelopes stand on no grid of the fit";
+  EXPECT_LT(found->rmse_mm, 2 * 0.03) << "thresholds and envelopes are not on the grid of the fit";
   EXPECT_LT(continuation_rmse_mm(bent_play_finger(), found->model, SignalName::tp2, 0), 3 * 0.03);
   const auto chosen = std::find_if(found->structure->candidates.begin(), found->structure->candidates.end(),
                                    [](const auto& c) { return c.chosen; });
@@ -353,7 +353,8 @@ TEST(SimplestStart, WhatTheCallerStatesAndWhatRestDoesNotExplainStays) {
   }
   const std::vector<Record> records = make_records({late}, {});
   ASSERT_TRUE(records[0].start_unknown);
-  EXPECT_TRUE(with_simplest_start(records, {})[0].start_unknown) << "rest leaves clearly more";
+  EXPECT_TRUE(with_simplest_start(records, {})[0].start_unknown)
+      << "with a start at rest the error is clearly larger";
   RecordOptions stated;
   stated.start = Start::unknown;
   EXPECT_TRUE(with_simplest_start(make_records({whole}, stated), {})[0].start_unknown) << "as stated";
@@ -410,7 +411,7 @@ TEST(IdentifyStructure, HasTwoStagesWhereThePressureWasMeasured) {
   EXPECT_NEAR(found->structure->valve->filling_time_constant_s, 0.08, 0.01);
   EXPECT_NEAR(found->structure->valve->venting_time_constant_s, 0.2, 0.01);
   EXPECT_NEAR(found->structure->valve->rmse_kpa, 0.3, 0.03);
-  EXPECT_LT(found->rmse_mm, 2 * 0.03) << "0.3 kPa of noise on the input must not turn its hysteresis";
+  EXPECT_LT(found->rmse_mm, 2 * 0.03) << "0.3 kPa of noise on the input must not reverse the hysteresis";
   EXPECT_EQ(found->scores.front().drive, Drive::measured);
   EXPECT_EQ(found->structure->valve->from_command.front().drive, Drive::command);
   EXPECT_TRUE(model::validate(found->model).empty());

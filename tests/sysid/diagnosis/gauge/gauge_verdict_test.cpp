@@ -193,7 +193,7 @@ TEST(GaugeVerdict, ANoisyGaugeLeavesTheVerdictAsItWasAndIsNotProposedAgain) {
   EXPECT_EQ(d.gauge->check.outcome, GaugeOutcome::undecided);
   EXPECT_NE(verdict_sentence(d).find("does not tell"), std::string::npos);
   const NextExperiment again = design_experiment(d, {});
-  EXPECT_FALSE(again.gauge_check) << "it was made already";
+  EXPECT_FALSE(again.gauge_check) << "the check has already been done";
   ASSERT_FALSE(again.advice.empty());
   EXPECT_NE(again.advice.front().find("change the load"), std::string::npos);
 }

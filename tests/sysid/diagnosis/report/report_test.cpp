@@ -111,7 +111,7 @@ class ReportTest : public ::testing::Test {
 
 TEST_F(ReportTest, TheBudgetAddsUpToWhatRecalibrationLeaves) {
   const std::vector<BudgetPart> parts = budget_parts(diagnosis);
-  ASSERT_EQ(parts.size(), 3U) << "what the lag takes, what is left, noise";
+  ASSERT_EQ(parts.size(), 3U) << "explained by the lag, unexplained, noise";
   double sum = 0;
   for (const BudgetPart& part : parts) sum += part.mm2;
   EXPECT_NEAR(sum, 0.09, 1e-12);
@@ -267,7 +267,7 @@ TEST_F(ReportTest, TheClosedLoopIsDrawnOverTime) {
   EXPECT_EQ(figure.charts[1].front().series.front().y[1], -2) << "displacement minus reference";
   EXPECT_NE(figure.caption.find("PID alone 1.5 mm, extended model 0.02 mm"), std::string::npos);
   const std::vector<Series>& drawn = figure.charts[0].front().series;
-  EXPECT_EQ(drawn[1].colour, Colour::other) << "not the recalibrated model's, which is not there";
+  EXPECT_EQ(drawn[1].colour, Colour::other) << "not that of the recalibrated model, which is missing";
   EXPECT_EQ(drawn[1].dash, Dash::dotted);
   EXPECT_EQ(drawn[2].colour, Colour::good);
 }

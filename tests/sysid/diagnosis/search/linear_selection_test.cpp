@@ -102,7 +102,7 @@ TEST(LinearSelection, ARestOfTheLoopsFormIsNoCause) {
     const Selection found = select_causes_upon(c.data, c.base, 0.03, c.division, {});
     ASSERT_TRUE(found.base_unexplained.present);
     EXPECT_EQ(found.base_unexplained.excess_mm > 0.03, clear) << found.base_unexplained.excess_mm;
-    EXPECT_EQ(found.last_candidates.empty(), !clear) << "no cause can take what is not left";
+    EXPECT_EQ(found.last_candidates.empty(), !clear) << "no cause is tested if the residual is only noise";
     EXPECT_EQ(found.chosen.size(), clear ? 1U : 0U);
     for (const ChosenCause& one : found.chosen) EXPECT_EQ(one.cause.id, "asymmetric_hysteresis");
   }

@@ -48,12 +48,12 @@ TEST(AnotherShape, WillDoWhereItsBaseLeavesAboutAsLittleWithoutAnAsymmetricLoop)
   base.losses.assign(10, 1.15 * 0.04);
   EXPECT_TRUE(another_shape_will_do(base, selected));
   base.losses.assign(10, 1.3 * 0.04);
-  EXPECT_FALSE(another_shape_will_do(base, selected)) << "it leaves clearly more";
+  EXPECT_FALSE(another_shape_will_do(base, selected)) << "its unexplained error is clearly larger";
   base.losses = selected;
   base.named.push_back(named("asymmetric_hysteresis"));
-  EXPECT_FALSE(another_shape_will_do(base, selected)) << "it needs the loop as well";
+  EXPECT_FALSE(another_shape_will_do(base, selected)) << "the base needs the loop as well";
   base.named = {named("slow_creep")};
-  EXPECT_FALSE(another_shape_will_do(base, selected)) << "its loops are the given one's";
+  EXPECT_FALSE(another_shape_will_do(base, selected)) << "its loops are those of the given base";
 }
 
 TEST(AnotherShape, IsAnAlternativeOfTheAsymmetricLoopAloneAndOnce) {

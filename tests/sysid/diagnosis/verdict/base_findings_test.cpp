@@ -124,14 +124,15 @@ TEST(BaseFindings, TheOtherBaseThatNeedsFewerOfTheSameCausesMayLeaveALittleMore)
   for (double& loss : plain.extended_losses) loss /= 1.2;
   plain.extended.causes = {*find_cause("contact"), *find_cause("sensor_lag")};
   plain.left.excess_mm = 1.5 * noise_mm;
-  EXPECT_FALSE(has_lower_loss(*found.base, plain, noise_mm, true)) << "it has none of them";
+  EXPECT_FALSE(has_lower_loss(*found.base, plain, noise_mm, true)) << "the other base has none of the causes";
   found.base->fit.causes = {*find_cause("contact")};
   EXPECT_TRUE(has_lower_loss(*found.base, plain, noise_mm, true));
   plain.left.excess_mm = 0.5 * noise_mm;
-  EXPECT_FALSE(has_lower_loss(*found.base, plain, noise_mm, true)) << "the two leave nothing";
+  EXPECT_FALSE(has_lower_loss(*found.base, plain, noise_mm, true))
+      << "the two causes leave no unexplained error";
   plain.left.excess_mm = 1.5 * noise_mm;
   for (double& loss : plain.extended_losses) loss /= 1.6;
-  EXPECT_FALSE(has_lower_loss(*found.base, plain, noise_mm, true)) << "it leaves much more";
+  EXPECT_FALSE(has_lower_loss(*found.base, plain, noise_mm, true)) << "its unexplained error is much larger";
 }
 
 /// At slow commands a delay and a lag are equivalent: if one of them is missing, the other replaces it. If

@@ -31,7 +31,7 @@ TEST(Budget, WhatIsBelowTheNoiseIsNothing) {
   const Budget budget = budget_of(errors_mm(0.05, 0.04, 0.03, 0.05));
   EXPECT_EQ(budget.excess(), 0);
   EXPECT_EQ(budget.left(), 0);
-  EXPECT_EQ(budget.share_percent(worth_mm2(0.01)), 0) << "a share of nothing";
+  EXPECT_EQ(budget.share_percent(worth_mm2(0.01)), 0) << "a share of an error of 0";
 }
 
 TEST(Budget, AShareStaysWithinTheWhole) {

@@ -45,7 +45,7 @@ TEST(MixedIntervals, HoldTheDelayWhereALagIsInQuestion) {
   const Named named = delay_of(SignalName::tp2, loaded("bench_twin"));
   ASSERT_EQ(named.causes.size(), 1U);
   ASSERT_EQ(named.causes.front().cause.id, "transport_delay");
-  EXPECT_GT(named.alone.lower, true_delay_s) << "alone the delay takes the lag with it";
+  EXPECT_GT(named.alone.lower, true_delay_s) << "without a lag in the model, the delay includes the lag";
   const Interval mixed = named.causes.front().parameters.front().ci95;
   EXPECT_LT(mixed.lower, true_delay_s);
   EXPECT_GT(mixed.upper, true_delay_s);
