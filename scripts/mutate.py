@@ -5,7 +5,7 @@
 Without files: the sources of control/, the bus and the loop. A mutant is a comparison, a sign, a logical connective, a constant or a
 condition that was turned over; places are drawn by the seed. It is built with what is below it in a copy under
 build/mutants, and the fitting tests are run until one fails. Written: the score per folder and every survivor with its
-line. A survivor is a test that is missing, or a change that changes nothing: docs/reliability.md says which. --again
+line. A survivor shows a missing test, or a change without effect (docs/results/mutants-and-branches.md). --again
 judges the survivors of an earlier report only: whether tests that were added since notice them.
 """
 

@@ -3,7 +3,7 @@
 
 Repeats every test of Hearing (tests/system/test_hearing.py) that vents beside an attack, each time with a rig and a daemon of
 its own, and prints the worst and the middle time from the client's line to outputs below 1 kPa. --page writes that into
-docs/reliability.md. Needs a release build (SOFTGRIP_BUILD); the full disk needs the right to mount one.
+docs/results/vents-under-attack.md. Needs a release build (SOFTGRIP_BUILD); the full disk needs the right to mount one.
 """
 
 import argparse
@@ -16,7 +16,7 @@ import sys
 import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
-PAGE = ROOT / "docs/reliability.md"
+PAGE = ROOT / "docs/results/vents-under-attack.md"
 MARKS = ("<!-- vents: written by scripts/vent_times.py --page -->\n", "<!-- /vents -->")
 sys.path.insert(0, str(ROOT / "tests/system"))
 import test_hearing  # noqa: E402
@@ -68,7 +68,7 @@ def table(times, only):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--times", type=int, default=20, help="how often each attack is repeated")
-    parser.add_argument("--page", action="store_true", help="write the table into docs/reliability.md")
+    parser.add_argument("--page", action="store_true", help="write the table into docs/results/vents-under-attack.md")
     parser.add_argument("--only", default="", help="the attacks whose test's name holds this")
     arguments = parser.parse_args()
     text = table(arguments.times, arguments.only)
