@@ -10,7 +10,7 @@
 namespace variation {
 
 /// Standard deviations at strength 1.
-inline constexpr double offset_share = 0.003;  // of the span
+inline constexpr double offset_share = 0.003;  // share of the span
 inline constexpr double gain_share = 0.01;
 inline constexpr double temperature_c = 2;
 inline constexpr double supply_share = 0.02;

@@ -12,7 +12,7 @@ struct Campaign {
   std::uint64_t seed = 1;
   std::size_t runs = 3;
   double variation = 0;  // strength of the run-to-run variation (variation.h)
-  double span_mm = 0;    // of the finger; needed with a variation
+  double span_mm = 0;    // span of the finger; required with a variation
 };
 
 /// Draws logs with three kinds of commands in turn: triangles with many amplitudes, rates and minor loops;

@@ -1,4 +1,4 @@
-// Which texts the parser accepts, and at which line and column it reports an error.
+// Tests which texts the parser accepts, and the line and column of each error.
 
 #include <gtest/gtest.h>
 #include <pthread.h>

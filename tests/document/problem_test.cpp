@@ -1,4 +1,4 @@
-// How a problem is formatted for the user.
+// Tests how a problem is formatted for the user.
 
 #include "document/problem.h"
 

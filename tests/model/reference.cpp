@@ -62,7 +62,7 @@ std::vector<double> integrate(const Physics& physics, const std::vector<double>&
 
   SUNContext context = nullptr;
 #ifdef SUN_COMM_NULL
-  require(SUNContext_Create(SUN_COMM_NULL, &context));  // since version 7
+  require(SUNContext_Create(SUN_COMM_NULL, &context));  // SUNDIALS 7 and later
 #else
   require(SUNContext_Create(nullptr, &context));
 #endif

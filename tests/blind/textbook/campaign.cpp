@@ -55,7 +55,7 @@ std::vector<double> stairs(std::mt19937_64& random, double rate_hz) {
   return joined(points, rate_hz);
 }
 
-// Sines on sines: rates from 0.05 to 0.6 Hz, never below zero.
+// Sums of two sines with frequencies from 0.05 to 0.6 Hz, never below zero.
 std::vector<double> sines(std::mt19937_64& random, double rate_hz) {
   std::uniform_real_distribution<double> slow(0.05, 0.12), fast(0.25, 0.6);
   const double f = slow(random), g = fast(random);

@@ -152,7 +152,7 @@ class Body {
   Body(const World& world, const Hidden& hidden, Age& age, const Log& log)
       : h_(hidden), age_(age), log_(log), finger_(world.finger), span_(world.finger.span_mm) {}
 
-  // Returns the displacement at sample `k`. The pressure changes linearly since the previous sample.
+  // Returns the displacement at sample `k`. The pressure has changed linearly since the previous sample.
   double sample(std::size_t k, double pressure_kpa) {
     double y = 0;
     for (int i = 1; i <= finger_steps; ++i) {

@@ -199,8 +199,8 @@ TEST_F(ContactTest, FreeMotionsMeetNothing) {
   EXPECT_EQ(rig.count(Event::Kind::limit_binds), 0U);
 }
 
-// A frozen reading looks like a finger that is stopped by a part. At any time of the freeze, the result must
-// not be HOLDING.
+// A frozen reading looks like a finger that is stopped by a part. The result must not be HOLDING, regardless
+// of when the reading freezes.
 TEST_F(ContactTest, ASensorThatFreezesIsNoPart) {
   for (const char* name : {"pick_stone", "hand_over", "pick_screw", "empty_grip"}) {
     const PreparedSequence sequence = example_sequence(name, settings);

@@ -82,7 +82,7 @@ std::vector<FaultCase> fault_cases() {
 struct PhaseCase {
   const char* name;
   Phase phase;
-  int step;  ///< of pick_stone; -1: idle
+  int step;  ///< step of pick_stone; -1: idle
   double into_s;
 };
 const std::vector<PhaseCase> phase_cases{{"idle", Phase::idle, -1, 0.5},

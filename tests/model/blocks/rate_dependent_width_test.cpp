@@ -14,7 +14,6 @@ namespace {
 
 // A Bouc-Wen element whose loop becomes wider with the rate. The second parameter also makes its saturation
 // rate-dependent.
-// rate-dependent.
 Model widened(double growth, double levelling = 0) {
   Model model{"widened", "test", {BlockSpec{block_type<BoucWen>(), {0.35, 0.2, 0.03, 0.05, 1}}}};
   model = with_block(model, {block_type<RateDependentWidth>(), {growth, 15.0, 0.08}});
