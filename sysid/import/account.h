@@ -1,5 +1,5 @@
 #pragma once
-// The account of a foreign file: each of its rows is in the log, or is counted with the reason.
+// Row counts of an imported file: each row is in the log, or is counted with the reason why it is not.
 
 #include <array>
 #include <cstddef>
@@ -23,17 +23,17 @@ enum class LeftOut : std::uint8_t {
 };
 inline constexpr std::size_t left_out_count = 9;
 
-/// The word of a reason in JSON.
+/// Returns the identifier of a reason in JSON.
 [[nodiscard]] std::string_view word_of(LeftOut reason);
 
-/// Above this share of lost rows the import warns.
+/// If a larger share of the rows is lost, the import warns.
 inline constexpr double warned_share = 0.05;
-/// Above this share of lost rows the import refuses the file.
+/// If a larger share of the rows is lost, the import refuses the file.
 inline constexpr double refused_share = 0.8;
 
 /// A file with two time columns has two entries in each row; each entry counts as a row.
 struct RowAccount {
-  std::size_t rows = 0;    ///< of the file
+  std::size_t rows = 0;    ///< rows of the file
   std::size_t used = 0;    ///< samples of the log
   std::size_t joined = 0;  ///< rows that complete the sample of another row at the same time
   std::array<std::size_t, left_out_count> left_out{};
@@ -41,12 +41,13 @@ struct RowAccount {
   void leave_out(LeftOut reason, std::size_t count = 1) {
     left_out[static_cast<std::size_t>(reason)] += count;
   }
-  /// True if no row is without a fate.
+  /// Returns true if each row is used, joined or left out.
   [[nodiscard]] bool balanced() const;
-  /// Rows that nobody asked to leave out, and their share of the rows that the user asked for.
+  /// Returns the number of rows that were left out although the user did not request it.
   [[nodiscard]] std::size_t lost() const;
+  /// Returns lost() divided by the number of rows that the user requested.
   [[nodiscard]] double lost_share() const;
-  /// "1500 rows: 600 used, 900 left out (900 at the time of the row before)".
+  /// Returns, for example, "1500 rows: 600 used, 900 left out (900 at the time of the row before)".
   [[nodiscard]] std::string sentence() const;
 };
 

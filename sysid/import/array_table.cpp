@@ -22,7 +22,7 @@ void ArrayCollector::add(const std::string& name, const std::string& unit, std::
   if (values.size() != rows * columns || values.size() < 2) return;
   values_ += values.size();
   const bool is_vector = rows == 1 || columns == 1;
-  // Few rows of many values lie on their side.
+  // A matrix with more columns than rows has one signal in each row.
   const bool lies = !is_vector && columns > rows;
   const std::size_t count = is_vector ? 1 : std::min(rows, columns);
   const std::size_t length = values.size() / count;

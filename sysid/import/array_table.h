@@ -12,7 +12,7 @@
 
 namespace softgrip::sysid {
 
-/// What is said of an array that does not fit within most_values.
+/// The message about an array that does not fit within most_values.
 inline constexpr const char* too_large = "with it the file has more than 134217728 values";
 
 /// Collects the arrays of a file and keeps those that are as long as most others.
@@ -20,20 +20,20 @@ class ArrayCollector {
  public:
   explicit ArrayCollector(std::string file) : file_(std::move(file)) {}
 
-  /// A vector, whichever way it lies, as one column; a matrix as its columns, named "NAME(:,2)", or, where it
-  /// lies, as its rows. `values` are by columns (Fortran's order). What has fewer than two values is passed
-  /// over.
+  /// Adds an array. A row or column vector becomes one column. A matrix becomes one column for each of its
+  /// columns, named "NAME(:,2)". If it has more columns than rows, each of its rows becomes a column, named
+  /// "NAME(2,:)". `values` are in column-major order. An array with fewer than two values is ignored.
   void add(const std::string& name, const std::string& unit, std::size_t rows, std::size_t columns,
            const std::vector<double>& values);
   void note(std::string what) { notes_.push_back(std::move(what)); }
-  /// Something in the file that is no array of numbers.
+  /// Notes that `name` is skipped. `what` states the reason.
   void pass_over(const std::string& name, const std::string& what);
-  /// True if an array of this size still fits within most_values. Ask before its values are read.
+  /// Returns true if an array of this size still fits within most_values. Call it before the values are read.
   [[nodiscard]] bool has_room(std::size_t rows, std::size_t columns) const {
     return columns == 0 || rows <= (most_values - values_) / columns;
   }
 
-  /// The table, or a problem where there is none.
+  /// Returns the table, or nullopt and a problem if fewer than two arrays are equally long.
   [[nodiscard]] std::optional<ForeignTable> table(const std::string& format,
                                                   document::Problems& problems) const;
 

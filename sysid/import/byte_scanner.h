@@ -1,5 +1,5 @@
 #pragma once
-// Reads the numbers and texts of a binary file in turn.
+// Sequential reader of the numbers and texts in a binary file.
 
 #include <cstdint>
 #include <cstring>
@@ -7,8 +7,8 @@
 
 namespace softgrip::sysid {
 
-/// Reads little-endian bytes from their begin to their end. Behind the end each value is 0 or empty, and
-/// good() is false from then on.
+/// Reads little-endian values one after the other. After a read beyond the end, each value is 0 or empty, and
+/// good() remains false.
 class ByteScanner {
  public:
   explicit ByteScanner(std::string_view bytes) : bytes_(bytes) {}
@@ -20,13 +20,13 @@ class ByteScanner {
     if (at != nullptr) std::memcpy(&value, at, sizeof(T));
     return value;
   }
-  /// A text behind its length of 32 bits.
+  /// Reads a text that follows its 32-bit length.
   std::string_view text() {
     const auto size = value<std::uint32_t>();
     const char* const at = skip(size);
     return at == nullptr ? std::string_view{} : std::string_view(at, size);
   }
-  /// The place of the next `size` bytes; null behind the end.
+  /// Skips `size` bytes and returns a pointer to the first of them, or nullptr if fewer are left.
   const char* skip(std::uint64_t size) {
     good_ = good_ && size <= bytes_.size();
     if (!good_) return nullptr;
@@ -35,7 +35,7 @@ class ByteScanner {
     return at;
   }
   [[nodiscard]] bool good() const { return good_; }
-  /// The bytes that are not read yet.
+  /// Returns the bytes that have not been read yet.
   [[nodiscard]] std::string_view rest() const { return bytes_; }
 
  private:

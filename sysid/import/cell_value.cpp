@@ -36,7 +36,7 @@ std::optional<double> number_of(std::string_view text, CellValue& value) {
   return to_number(pointed);
 }
 
-/// Index of the word that the cell says; -1: none of them.
+/// Returns the index of the word of `missing` that equals the cell, or -1.
 int place_among(const std::vector<std::string>& missing, std::string_view text,
                 std::optional<double> number) {
   const auto found = std::find_if(missing.begin(), missing.end(), [&](const std::string& word) {

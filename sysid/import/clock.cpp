@@ -12,14 +12,14 @@ namespace softgrip::sysid {
 namespace {
 
 constexpr double day_s = 86400;
-/// A step across an overflow that is longer than this many usual steps may hide lost rows.
+/// A step across an overflow that exceeds this number of usual steps may hide lost rows.
 constexpr double longest_step = 3;
-/// Clocks of different origins show one time if they drift by less than this share of the usual step.
+/// Clocks with different origins show one time if they drift apart by less than this share of the usual step.
 constexpr double wandering_share = 0.5;
-/// Clocks of one origin show one time if they differ by less than this share of the usual step.
+/// Clocks with one origin show one time if they differ by less than this share of the usual step.
 constexpr double equal_share = 0.05;
 constexpr double rising_share = 0.9;
-/// Rows in which one of two times is absent, where they still are one clock.
+/// Two columns can be one clock if at most this share of the rows has only one of the two times.
 constexpr double apart_share = 0.01;
 
 std::vector<double> steps_of(const std::vector<double>& clock) {
@@ -53,7 +53,7 @@ Extent finite_extent(const std::vector<double>& values) {
   return extent;
 }
 
-/// True if a counter that runs through `period` explains every step back.
+/// Returns true if a counter that wraps after `period` explains every backward step.
 bool explains(const std::vector<double>& clock, double period, double step) {
   const Extent extent = finite_extent(clock);
   const bool counts_from_0 = extent.lowest >= 0 && extent.highest <= period;
@@ -72,7 +72,7 @@ bool rises(const std::vector<double>& values) {
          static_cast<double>(forward) >= rising_share * static_cast<double>(steps.size());
 }
 
-/// The unit that holds for a time column; empty: it is open.
+/// Returns the unit of a time column; empty if it is unknown.
 std::string time_unit(const ForeignTable& table, const Mapping& mapping, std::size_t index) {
   const TableColumn& column = table.columns[index];
   const std::string own = column.unit.empty() ? split_unit(column.name, Quantity::time).unit : column.unit;
@@ -85,7 +85,7 @@ std::string time_unit(const ForeignTable& table, const Mapping& mapping, std::si
   return own.empty() ? epoch_unit(column) : own;
 }
 
-/// The tokens of a name without those that say "time" or its unit.
+/// Returns the tokens of a name except words for time and units of time.
 std::vector<std::string> telling_tokens(const std::string& name) {
   std::vector<std::string> tokens = tokens_of(name);
   const auto silent = [](const std::string& token) {
@@ -95,7 +95,7 @@ std::vector<std::string> telling_tokens(const std::string& name) {
   return tokens;
 }
 
-/// True if the name of a time column names the role or a word of its column.
+/// Returns true if the name of a time column contains a word of the role or of the column's name.
 bool names_its_role(const std::string& time_name, Role role, const std::string& column_name) {
   const std::vector<std::string> theirs = tokens_of(column_name);
   const std::vector<std::string> tokens = telling_tokens(time_name);
@@ -104,7 +104,7 @@ bool names_its_role(const std::string& time_name, Role role, const std::string& 
   });
 }
 
-/// Index among the columns of the first column of each role; the number of columns where there is none.
+/// Returns the index of the first column of each role; the number of columns if a role has none.
 std::array<std::size_t, role_count> columns_of_roles(const ForeignTable& table, const Mapping& mapping) {
   std::array<std::size_t, role_count> columns{};
   columns.fill(table.columns.size());

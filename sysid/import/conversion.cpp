@@ -17,7 +17,7 @@
 namespace softgrip::sysid {
 namespace {
 
-/// One role's columns and what comes of their values.
+/// The columns of one role, and the conversion of their values: factor * value + offset.
 struct Source {
   std::vector<std::size_t> columns;
   double factor = 1;
@@ -144,7 +144,7 @@ class Converter {
   }
 
   void find_unit(const RoleSpec& spec, const ColumnMapping& mapped, Source& source) {
-    if (spec.role == Role::time && source.columns.size() > 1) return;  // each has its own: samples_by_times()
+    if (spec.role == Role::time && source.columns.size() > 1) return;  // samples_by_times() converts each
     if (spec.role == Role::time && !find_clock(table_.columns[source.columns.front()], mapped, source))
       return;
     const bool moments = table_.columns[source.columns.front()].moments > 0;
@@ -183,7 +183,7 @@ class Converter {
     return codes;
   }
 
-  /// Beside --scale, --unit displacement=deg or rad says that the scale gives an angle in this unit.
+  /// Returns the unit of an angle if --scale is given together with --unit displacement=deg or rad.
   static std::optional<Unit> angle_of_scale(const RoleSpec& spec, const ColumnMapping& mapped) {
     if (spec.role != Role::displacement || !mapped.scale || mapped.unit.empty()) return std::nullopt;
     auto unit = unit_named(mapped.unit, spec.quantity);
@@ -191,7 +191,7 @@ class Converter {
     return unit;
   }
 
-  /// "12:34" is two times: of two fields the unit says which.
+  /// "12:34" is ambiguous: the unit of the column decides between hh:mm and mm:ss.
   bool find_clock(const TableColumn& column, const ColumnMapping& mapped, Source& source) {
     if (column.short_clocks == 0) return true;
     const std::string unit = lower_case(unit_text(table_, mapped, Quantity::time));
@@ -233,7 +233,7 @@ class Converter {
     return by_times ? samples_by_times(rows) : samples_of_rows(rows);
   }
 
-  /// Messages of topics that are not used.
+  /// Removes the rows in which no used column has a value: messages of other topics.
   void leave_out_unused(std::vector<std::size_t>& rows) {
     const auto unused = [&](std::size_t row) {
       return std::none_of(roles.begin(), roles.end(), [&](const RoleSpec& spec) {
@@ -267,7 +267,7 @@ class Converter {
     return samples;
   }
 
-  /// @param rows  of the table, one for each time.
+  /// @param rows  rows of the table, one for each time.
   void continue_clock(std::vector<double>& time, double unit_s, const std::vector<std::size_t>& rows) {
     const auto overflow = continue_overflows(time, unit_s);
     if (!overflow) return;
@@ -279,14 +279,15 @@ class Converter {
         std::to_string(has_lines ? table_.line[row] : static_cast<int>(row) + 1) + ": it is continued");
   }
 
-  /// A value at the time of its own column.
+  /// A row at the time of one of several time columns.
   struct Entry {
     double time_s = 0;
     std::size_t clock = 0;
     std::size_t row = 0;
   };
 
-  /// Each time column's rows as samples with the values of its columns alone, in the order of time.
+  /// Returns one sample for each row and time column, with the values of that time's columns only. The
+  /// samples are in the order of time.
   ForeignSamples samples_by_times(const std::vector<std::size_t>& rows) {
     const std::vector<std::size_t>& clocks = sources_[static_cast<std::size_t>(Role::time)].columns;
     const auto of_roles = times_of_roles(table_, mapping_, clocks);
@@ -299,7 +300,7 @@ class Converter {
     ForeignSamples samples;
     if (!good) return samples;
     remarks_.account.rows += (clocks.size() - 1) * table_.rows();
-    // Lines that could not be split into cells are not in the table: they have one fate.
+    // A skipped line counts once for each time column. The first count is already in the account.
     remarks_.account.leave_out(LeftOut::bad_line, (clocks.size() - 1) * (table_.rows() - rows.size()));
     leave_out_empty(*of_roles, entries);
     std::stable_sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
@@ -349,7 +350,7 @@ class Converter {
     return !apart;
   }
 
-  /// Where one of the times has more rows than the other, the cells beside it are empty.
+  /// Removes entries without a time and without values: the shorter time column ends in empty cells.
   void leave_out_empty(const std::array<std::size_t, role_count>& of_roles, std::vector<Entry>& entries) {
     const auto empty = [&](const Entry& entry) {
       if (std::isfinite(entry.time_s)) return false;
@@ -366,7 +367,7 @@ class Converter {
     entries.erase(kept, entries.end());
   }
 
-  /// Every row has a fate, and not too many are lost.
+  /// Checks that each row is accounted for and that the share of lost rows is within its bounds.
   void check_account(std::size_t samples) {
     RowAccount& account = remarks_.account;
     account.used = samples;
@@ -409,7 +410,7 @@ class Converter {
     }
   }
 
-  /// Rows of several fingers, which a column of numbers names.
+  /// Refuses a table whose rows belong to several fingers, if a column of numbers names the finger.
   void refuse_rows_of_fingers() {
     for (std::size_t i = 0; i < table_.columns.size() && !table_.is_text; ++i) {
       const TableColumn& column = table_.columns[i];
@@ -450,7 +451,7 @@ class Converter {
     remarks_.warnings.push_back(option + " has no effect: " + why);
   }
 
-  /// Options that change nothing.
+  /// Warns of options that have no effect.
   void name_idle_options() {
     for (const RoleSpec& spec : roles) {
       const ColumnMapping& mapped = mapping_[spec.role];
@@ -552,7 +553,7 @@ std::optional<ImportedLog> convert(const ForeignTable& table, const Mapping& map
   if (!result) return std::nullopt;
   result->log.path = table.file;
   result->log.channel = mapping.channel;
-  // What no other command would read is not written.
+  // A log that the other commands would refuse must not be written.
   document::Problems refused;
   LogOptions options;
   options.channel = mapping.channel;

@@ -1,5 +1,5 @@
 #pragma once
-// A table and a mapping, made into a log.
+// Conversion of a table and a mapping into a log.
 
 #include <optional>
 #include <string>
@@ -15,18 +15,18 @@ namespace softgrip::sysid {
 
 struct ImportedLog {
   Log log;
-  std::vector<std::string> notes;     ///< what was left out and how times were counted
-  std::vector<std::string> warnings;  ///< what was lost or has no effect
+  std::vector<std::string> notes;     ///< samples that were left out, and the origin of the times
+  std::vector<std::string> warnings;  ///< lost samples, and options without effect
   RowAccount account;
 };
 
-/// The word of `missing` as a number; nothing if it is none.
+/// Returns a word of `missing` as a number, or nullopt if it is not a number.
 [[nodiscard]] std::optional<double> missing_number(const std::string& word);
 
-/// The log, by the rules of samples.h. Each row of the table is in it, or is counted with the reason in its
-/// account; a share of lost rows above refused_share is a problem, one above warned_share a warning. Columns
-/// and options without effect are named; what the log contract refuses is refused here too. All problems are
-/// added to `problems`, in the words of `softgrip import`'s options.
+/// Returns the log, by the rules of samples.h. Each row of the table is in the log, or is counted in
+/// `account` with the reason. A share of lost rows above refused_share is a problem; a share above
+/// warned_share is a warning. Columns and options without effect are reported. A log that parse_log() would
+/// refuse is a problem. All problems are added to `problems`; they name the options of `softgrip import`.
 [[nodiscard]] std::optional<ImportedLog> convert(const ForeignTable& table, const Mapping& mapping,
                                                  document::Problems& problems);
 

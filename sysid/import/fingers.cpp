@@ -34,13 +34,14 @@ bool fits_a_displacement(const TableColumn& column) {
   return fitness_for(column, Role::displacement) > 0;
 }
 
-/// Words in which two or more columns of a kind differ while the rest of their names is the same.
+/// Returns the words in which the names of two or more columns of a kind differ; the rest of the names is
+/// equal.
 template <class OfKind>
 std::set<std::string> words_apart(const ForeignTable& table, OfKind of_kind) {
   std::map<std::string, std::set<std::string>> by_pattern;
   for (const TableColumn& column : table.columns) {
     if (!of_kind(column)) continue;
-    // Without its unit: 'A' is a finger or an ampere.
+    // The unit is removed first, because 'A' may be a finger or an ampere.
     const std::vector<std::string> tokens = tokens_of(split_unit(column.name).name);
     for (std::size_t k = 0; k < tokens.size(); ++k) {
       if (is_role_word(tokens[k])) continue;
@@ -72,7 +73,7 @@ std::set<std::string> finger_set(const ForeignTable& table) {
     if (is_finger_word(word)) known.insert(word);
   }
   if (known.size() > 1) return known;
-  // The pressures of two fingers beside the reading of one.
+  // The table may have the pressures of two fingers and the displacement of one.
   for (const TableColumn& column : table.columns) {
     if (!fits_a_displacement(column)) continue;
     for (const std::string& token : tokens_of(column.name)) {

@@ -1,5 +1,5 @@
 #pragma once
-// Several fingers in the columns of one table.
+// Recognition of several fingers in the columns of one table.
 
 #include <cstddef>
 #include <string>
@@ -10,20 +10,21 @@
 
 namespace softgrip::sysid {
 
-/// "P1_left (kPa)" is p, 1, left, kpa.
+/// Splits a name into lower-case words and numbers: "P1_left (kPa)" gives p, 1, left, kpa.
 [[nodiscard]] std::vector<std::string> tokens_of(std::string_view name);
 
-/// More fingers than a rig has are readings.
+/// The largest number of fingers of a rig. A column with more different cells contains readings.
 inline constexpr std::size_t most_fingers = 16;
 
-/// True for a column whose cells say of which finger a row is: "channel", "Finger ID", "run.actuator".
+/// Returns true if the cells of a column with this name state the finger of each row: "channel", "Finger ID",
+/// "run.actuator".
 [[nodiscard]] bool names_channel(std::string_view name);
 
-/// The fingers that the columns' names tell apart ("left_tip_mm", "right_tip_mm"), in the order of the
-/// columns; fewer than two: there is one finger.
+/// Returns the fingers that the names of the columns distinguish ("left_tip_mm", "right_tip_mm"), in the
+/// order of the columns. If fewer than two are returned, the table has one finger.
 [[nodiscard]] std::vector<std::string> fingers_of(const ForeignTable& table);
 
-/// The finger of a column among these; empty: the column belongs to all.
+/// Returns the finger of a column; empty if the column belongs to all fingers.
 [[nodiscard]] std::string finger_of(const TableColumn& column, const std::vector<std::string>& fingers);
 
 }  // namespace softgrip::sysid

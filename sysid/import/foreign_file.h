@@ -1,5 +1,5 @@
 #pragma once
-// A file of other people's, whatever its format.
+// Reader of external files in all supported formats.
 
 #include <optional>
 #include <string>
@@ -12,14 +12,14 @@
 
 namespace softgrip::sysid {
 
-/// Reads text (gzip around it or not), XLSX, TDMS, MCAP, MATLAB or HDF5, by what the file begins with and not
-/// by its name; a folder stands for the run.csv in it. What is refused is added to `problems`; `unreadable`
-/// is set where the file could not be opened at all.
+/// Reads text (plain or in gzip), XLSX, TDMS, MCAP, MATLAB or HDF5. The first bytes of the file, not its
+/// name, determine the format. For a folder, the function reads run.csv in it. Reasons for a refusal are
+/// added to `problems`. `unreadable` is set if the file could not be opened.
 [[nodiscard]] std::optional<ForeignTable> read_foreign_file(const std::string& path,
                                                             const TableOptions& options,
                                                             document::Problems& problems, bool& unreadable);
 
-/// What gzip packed, at most `bound` bytes of it; the error is a sentence.
+/// Decompresses gzip data to at most `bound` bytes. The error is a sentence.
 [[nodiscard]] tl::expected<std::string, std::string> gunzipped(std::string_view bytes, std::size_t bound);
 
 }  // namespace softgrip::sysid

@@ -17,7 +17,7 @@ constexpr int most_objects = 100'000;
 constexpr std::size_t most_type_bytes = std::size_t{1} << 20U;
 constexpr std::size_t most_chunk_bytes = std::size_t{256} << 20U;
 
-/// An identifier of libhdf5 that closes itself.
+/// Owns an identifier of libhdf5 and closes it.
 class Handle {
  public:
   Handle(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
@@ -53,7 +53,7 @@ std::string text_of(hid_t attribute, hid_t type) {
   return text.substr(0, text.find('\0'));
 }
 
-/// A text among the attributes; empty: there is none of the name.
+/// Returns a text attribute; empty if the object has none of this name.
 std::string attribute_text(hid_t object, const char* name) {
   if (H5Aexists(object, name) <= 0) return {};
   const Handle attribute(H5Aopen(object, name, H5P_DEFAULT), H5Aclose);
@@ -71,7 +71,7 @@ std::string unit_of(hid_t dataset) {
   return {};
 }
 
-/// What MATLAB stores as numbers and means as such.
+/// Returns true for the MATLAB classes that contain numbers. MATLAB stores other classes as numbers too.
 bool is_matlab_number(const std::string& kind) {
   return kind.empty() || kind == "double" || kind == "single" || kind == "logical" ||
          kind.find("int") != std::string::npos;
@@ -82,7 +82,7 @@ bool is_number(hid_t type) {
   return kind == H5T_INTEGER || kind == H5T_FLOAT;
 }
 
-/// HDF5 lies by rows, tables by columns.
+/// Converts values from the row-major order of HDF5 to column-major order.
 std::vector<double> by_columns(const std::vector<double>& values, std::size_t rows, std::size_t columns) {
   std::vector<double> turned(values.size());
   for (std::size_t i = 0; i < rows; ++i) {
@@ -114,7 +114,7 @@ void collect_members(hid_t dataset, hid_t type, const std::string& name, std::si
   }
 }
 
-/// Bytes that libhdf5 decompresses at once to read one value; 0 of a dataset without chunks.
+/// Returns the number of bytes that libhdf5 decompresses to read one value; 0 for a dataset without chunks.
 std::size_t chunk_bytes(hid_t dataset, hid_t type) {
   const Handle creation(H5Dget_create_plist(dataset), H5Pclose);
   std::array<hsize_t, 2> chunk{1, 1};
@@ -150,11 +150,11 @@ void collect_dataset(hid_t dataset, const std::string& name, ArrayCollector& arr
   if (matlab_class.empty()) {
     arrays.add(name, unit_of(dataset), size[0], size[1], by_columns(values, size[0], size[1]));
   } else {
-    arrays.add(name, {}, size[1], size[0], values);  // MATLAB counts dimensions the other way round
+    arrays.add(name, {}, size[1], size[0], values);  // MATLAB stores its dimensions in reverse order
   }
 }
 
-/// A sentence if the values of a dataset are in other files; else empty.
+/// Returns a sentence if the values of a dataset are outside of it, otherwise an empty text.
 std::string foreign_storage(hid_t dataset) {
   const Handle creation(H5Dget_create_plist(dataset), H5Pclose);
   if (H5Pget_external_count(creation.get()) > 0) return "its values are in another file (external storage)";
@@ -163,11 +163,11 @@ std::string foreign_storage(hid_t dataset) {
   return {};
 }
 
-/// The walk through all groups of a file.
+/// State of the walk through all groups of a file.
 struct Walk {
   ArrayCollector& arrays;
   char separator = '/';
-  hid_t access = H5P_DEFAULT;  ///< of links
+  hid_t access = H5P_DEFAULT;  ///< access properties of links
   std::string refused{};       ///< why the file is not read
   int objects = 0;
 };
@@ -181,9 +181,9 @@ struct Visit {
 herr_t visit(hid_t group, const char* name, const H5L_info_t* info, void* data) {
   auto& where = *static_cast<Visit*>(data);
   Walk& walk = where.walk;
-  if (name[0] == '#') return 0;  // what MATLAB refers to by itself
+  if (name[0] == '#') return 0;  // internal objects of MATLAB
   const std::string path = where.prefix + name;
-  // Groups can link to each other in circles.
+  // Groups can link to each other in a cycle, so the number of objects is bounded.
   if (++walk.objects > most_objects) {
     walk.refused = "it has more than " + std::to_string(most_objects) + " objects";
   } else if (info->type != H5L_TYPE_HARD && info->type != H5L_TYPE_SOFT) {
@@ -209,7 +209,7 @@ herr_t visit(hid_t group, const char* name, const H5L_info_t* info, void* data) 
   return walk.refused.empty() ? 0 : 1;
 }
 
-/// Soft links are followed, but not through an external link into another file.
+/// Refuses an external link. Soft links are followed, but not through an external link into another file.
 herr_t refuse_external_link(const char* /*parent_file*/, const char* /*parent_group*/, const char* /*file*/,
                             const char* /*object*/, unsigned* /*flags*/, hid_t /*access*/, void* /*data*/) {
   return -1;
@@ -219,7 +219,7 @@ herr_t refuse_external_link(const char* /*parent_file*/, const char* /*parent_gr
 
 std::optional<ForeignTable> read_hdf5_table(const std::string& path, const std::string& opened, bool matlab,
                                             document::Problems& problems) {
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // what it says goes into our own message
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // libhdf5 must not print; the problem below reports the error
   const Handle file(H5Fopen(opened.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
   if (!file) {
     problems.add(

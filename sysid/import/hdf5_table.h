@@ -1,5 +1,5 @@
 #pragma once
-// HDF5 files, and MATLAB's of version 7.3, which are such; through libhdf5.
+// Reader of HDF5 files and of MATLAB files of version 7.3, which are HDF5; uses libhdf5.
 
 #include <optional>
 #include <string>
@@ -9,13 +9,12 @@
 
 namespace softgrip::sysid {
 
-/// Datasets of numbers in one or two dimensions, named by their path ("run1/pressure"), and members of
-/// compounds
-/// ("table.pressure"). An attribute `units` or `unit` is the unit. Everything else is passed over and said.
-/// A file that refers to other files is refused: external links, external storage and virtual datasets would
-/// copy any file that this user can read into the log. `path` names the file in messages, `opened` is where
-/// libhdf5 opens it. Of a file of MATLAB's (`matlab`) names are "run.pressure", and texts, cells and objects
-/// are passed over.
+/// Reads datasets of numbers in one or two dimensions, named by their path ("run1/pressure"), and members of
+/// compounds ("table.pressure"). An attribute `units` or `unit` is the unit. All other objects are skipped,
+/// and a note names them. In a MATLAB file (`matlab`) names are "run.pressure", and texts, cells and objects
+/// are skipped. A file that refers to other files is refused, because external links, external storage and
+/// virtual datasets could copy any file that this user can read into the log. `path` names the file in
+/// messages; libhdf5 opens `opened`.
 [[nodiscard]] std::optional<ForeignTable> read_hdf5_table(const std::string& path, const std::string& opened,
                                                           bool matlab, document::Problems& problems);
 

@@ -28,7 +28,7 @@ std::vector<std::string> cells_of(std::string_view line, char separator) {
   return texts;
 }
 
-/// Lines "KEY value value ..." up to the end of a header.
+/// The lines "KEY value value ..." of a header.
 using Header = std::map<std::string, std::vector<std::string>>;
 
 class LvmReader {
@@ -77,7 +77,8 @@ class LvmReader {
     return found == header.end() || found->second.empty() ? std::string() : found->second.front();
   }
 
-  /// Returns the value of each channel. If each has an X column, the cells of these columns are empty.
+  /// Returns the value of each channel. If each channel has an X column, the cells of the X columns are
+  /// empty.
   [[nodiscard]] std::vector<std::string> of_channels(const Header& header, const std::string& key) const {
     const auto found = header.find(key);
     if (found == header.end()) return {};
@@ -90,7 +91,7 @@ class LvmReader {
     return values;
   }
 
-  /// When each channel begins; of those that do not state it, when the first does.
+  /// Returns the start of each channel. A channel without a stated start has that of the first channel.
   [[nodiscard]] std::vector<Nanoseconds> starts_of(const Header& section) const {
     const std::vector<std::string> dates = of_channels(section, "Date");
     const std::vector<std::string> times = of_channels(section, "Time");
@@ -103,7 +104,8 @@ class LvmReader {
     return starts;
   }
 
-  /// Without an X column of its own, a channel has the times of the first.
+  /// Checks that channels with one X column have equal X0, Delta_X and start. They all have the times of the
+  /// first channel.
   bool has_one_clock(const Header& section, std::size_t line) {
     if (x_columns_ == "multi") return true;
     for (const char* const key : {"Delta_X", "X0"}) {
@@ -128,7 +130,7 @@ class LvmReader {
     return true;
   }
 
-  /// X values count from the start of their channel.
+  /// Adds to the X values of each channel its start relative to the first channel.
   void shift_starts(const Header& section, std::size_t begin) {
     const std::vector<Nanoseconds> starts = starts_of(section);
     for (std::size_t k = 1; k < starts.size() && x_columns_ == "multi"; ++k) {
@@ -141,7 +143,7 @@ class LvmReader {
     }
   }
 
-  /// With a point for the decimal mark of the file.
+  /// Replaces the decimal mark of the file by a point.
   [[nodiscard]] std::string pointed(std::string text) const {
     if (decimal_ == ',') std::replace(text.begin(), text.end(), ',', '.');
     return text;
@@ -191,7 +193,8 @@ class LvmReader {
     place(section, begin, delta);
   }
 
-  /// Where the X values restart, the section begins at its own time; without one, a step behind the last.
+  /// Shifts the X values of a section if they restart. The section then begins at its stated time, or one
+  /// step after the last value if no time is stated.
   void place(const Header& section, std::size_t begin, double delta) {
     const auto moment = moment_of(first_of(section, "Date") + " " + first_of(section, "Time"));
     if (begin == 0 && moment) first_moment_ = moment->time;
@@ -237,7 +240,7 @@ class LvmReader {
 
   void add_row(std::string_view line, std::size_t number_of_line, double counted_x) {
     ++table_.account.rows;
-    // The last line of a recording that was interrupted may be short, no other.
+    // Only the last line may be short, because a recording can be interrupted.
     if (short_line_ != 0 && !options_.skip_bad_lines) {
       refuse(short_line_, "too few cells; --skip-bad-lines leaves such lines out");
       return;

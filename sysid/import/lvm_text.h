@@ -1,5 +1,5 @@
 #pragma once
-// LabVIEW measurement files (.lvm) as plain tables of text.
+// Reader of LabVIEW measurement files (.lvm), which are tables of text.
 
 #include <optional>
 #include <string>
@@ -12,10 +12,10 @@ namespace softgrip::sysid {
 
 [[nodiscard]] bool is_lvm(std::string_view text);
 
-/// The table of an .lvm file within the bounds of table.h: its sections one behind the other, the separator
-/// and the decimal mark of its header, the times counted from X0 and Delta_X where the file has no X column,
-/// units from Y_Unit_Label. The column of comments is left out. A section whose columns differ from the first
-/// is a problem.
+/// Returns the table of an .lvm file within the bounds of table.h, with its sections one after the other. The
+/// header gives the separator and the decimal mark; Y_Unit_Label gives the units. If the file has no X
+/// column, the times follow from X0 and Delta_X. The column of comments is left out. A section whose columns
+/// differ from those of the first is a problem.
 [[nodiscard]] std::optional<ForeignTable> read_lvm(const std::string& file, std::string_view bytes,
                                                    const TableOptions& options, document::Problems& problems);
 

@@ -1,5 +1,5 @@
 #pragma once
-// Which columns of a foreign file are which of a log, and how to come to its units.
+// Assignment of the columns of an external file to the columns of a log, with the conversion of units.
 
 #include <array>
 #include <cstddef>
@@ -15,16 +15,16 @@
 
 namespace softgrip::sysid {
 
-/// What a column of a log is for.
+/// The quantity in a column of a log.
 enum class Role : std::uint8_t { time, command, pressure, displacement, temperature, supply };
 inline constexpr std::size_t role_count = 6;
 
-/// A role's words.
+/// Names, quantity and unit of a role.
 struct RoleSpec {
   Role role;
-  std::string_view word;  ///< of options and mapping files
+  std::string_view word;  ///< name in options and mapping files
   Quantity quantity;
-  std::string_view unit;  ///< of the log, as options say it; a displacement may be in deg
+  std::string_view unit;  ///< unit in the log, as written in options; a displacement may be in deg
   std::vector<double> Log::*values;
 };
 inline constexpr std::array<RoleSpec, role_count> roles{{
@@ -39,16 +39,16 @@ inline constexpr std::array<RoleSpec, role_count> roles{{
   return roles[static_cast<std::size_t>(role)];
 }
 
-/// Where a role's values come from: (value - zero) in `unit`, or times `scale`.
+/// Source of the values of a role: (value - zero), converted from `unit`, or multiplied by `scale`.
 struct ColumnMapping {
   std::vector<std::string>
-      columns;       ///< names, or numbers from 1; several are averaged, but each of several times holds for
-                     ///< its own columns (clock.h); empty: the role is not there
-  std::string unit;  ///< empty: what the column itself says
-  std::optional<double> scale;  ///< log units per unit of the column, in place of a unit's; of a
-                                ///< displacement, units of an angle where `unit` is one
-  std::optional<double> zero;   ///< subtracted before, in the column's unit
-  bool zero_first = false;      ///< the first value is subtracted
+      columns;       ///< names, or numbers from 1; several columns are averaged, but each of several time
+                     ///< columns belongs to its own values (clock.h); empty: the file does not have the role
+  std::string unit;  ///< empty: the unit that the column itself states
+  std::optional<double> scale;  ///< log units per unit of the column, instead of the factor of a unit; if
+                                ///< `unit` is an angle, `scale` of a displacement gives that unit
+  std::optional<double> zero;   ///< subtracted before the conversion, in the column's unit
+  bool zero_first = false;      ///< subtract the first value
 
   [[nodiscard]] bool given() const noexcept { return !columns.empty(); }
   bool operator==(const ColumnMapping&) const = default;
@@ -56,31 +56,31 @@ struct ColumnMapping {
 
 struct Mapping {
   std::array<ColumnMapping, role_count> columns;
-  std::optional<double> rate_hz;  ///< samples per second of a file without times
-  char separator = 0;             ///< 0: found
+  std::optional<double> rate_hz;  ///< samples per second in a file without times
+  char separator = 0;             ///< 0: detected automatically
   std::vector<std::string> missing;
   std::string channel;
-  std::string sheet;            ///< of a workbook
+  std::string sheet;            ///< name of the sheet in a workbook
   bool skip_bad_lines = false;  ///< lines that cannot be read are left out and counted
-  double from_s = 0;            ///< samples used, counted from the first one's time
+  double from_s = 0;            ///< first time used, relative to the first sample
   double to_s = std::numeric_limits<double>::infinity();
 
   [[nodiscard]] ColumnMapping& operator[](Role role) { return columns[static_cast<std::size_t>(role)]; }
   [[nodiscard]] const ColumnMapping& operator[](Role role) const {
     return columns[static_cast<std::size_t>(role)];
   }
-  /// Time, displacement, and command or pressure are said.
+  /// Returns true if time, displacement, and command or pressure are assigned.
   [[nodiscard]] bool complete() const;
   bool operator==(const Mapping&) const = default;
 };
 
-/// The options of `softgrip import` that say the same: "--time 'Time (s)' --unit pressure=psi". Words are
-/// quoted as a shell needs them.
+/// Returns the equivalent options of `softgrip import`, quoted for a shell: "--time 'Time (s)' --unit
+/// pressure=psi".
 [[nodiscard]] std::string options_of(const Mapping& mapping);
 
-/// "comma", "tab" or a character; 0: none of these.
+/// Returns the separator that a word names: "comma", "tab" or a character; 0 for another word.
 [[nodiscard]] char separator_named(std::string_view word);
-/// The word of a separator.
+/// Returns the name of a separator; the inverse of separator_named().
 [[nodiscard]] std::string_view word_of_separator(char separator);
 
 }  // namespace softgrip::sysid

@@ -41,7 +41,7 @@ std::string column_yaml(const ColumnMapping& column) {
   return text + "}";
 }
 
-/// A comment is one line, whatever a file is called.
+/// Returns a comment of one line, even if `text` has line breaks.
 std::string comment(std::string_view text) {
   return "# " + document::shown(text, 400) + "\n";
 }

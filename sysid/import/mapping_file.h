@@ -1,5 +1,5 @@
 #pragma once
-// A mapping as YAML: kept beside every imported log, and read again with `softgrip import --map`.
+// A mapping as YAML: it is written next to each imported log, and `softgrip import --map` reads it.
 
 #include <optional>
 #include <string>
@@ -9,21 +9,23 @@
 
 namespace softgrip::sysid {
 
-/// The file that was imported, for whoever reads the mapping later.
+/// The imported file, stated in the mapping for the record.
 struct ImportSource {
   std::string file;
   std::string sha256;
   std::string format;
 };
 
-/// The text; parse_mapping() of it gives the same mapping. `remarks` stand above it as comments.
+/// Returns the YAML text. parse_mapping() of this text gives the same mapping. `remarks` are written above
+/// the mapping as comments.
 [[nodiscard]] std::string mapping_yaml(const Mapping& mapping, const ImportSource& source,
                                        const std::string& software, const std::vector<std::string>& remarks);
 
-/// All problems are added to `problems`; with one there is no mapping. `file` names it in messages.
+/// Parses a mapping. Returns nullopt if there is a problem; all problems are added to `problems`. `file`
+/// names the text in messages.
 [[nodiscard]] std::optional<Mapping> parse_mapping(const std::string& file, const std::string& text,
                                                    document::Problems& problems);
-/// The same from a file. A file that cannot be read is a problem too.
+/// Reads and parses a mapping file. A file that cannot be read is a problem too.
 [[nodiscard]] std::optional<Mapping> read_mapping(const std::string& path, document::Problems& problems);
 
 }  // namespace softgrip::sysid

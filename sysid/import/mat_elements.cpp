@@ -10,7 +10,7 @@
 namespace softgrip::sysid {
 namespace {
 
-// "MAT-File Format", MathWorks, version 5: types of data elements, and classes of arrays.
+// Types of data elements and classes of arrays: "MAT-File Format", MathWorks, version 5.
 constexpr std::uint32_t type_matrix = 14;
 constexpr std::uint32_t type_compressed = 15;
 constexpr std::uint32_t first_numeric_class = 6;
@@ -18,7 +18,7 @@ constexpr std::uint32_t last_numeric_class = 15;
 constexpr std::size_t header_bytes = 128;
 constexpr std::size_t tag_bytes = 8;
 
-/// The bytes of one element, decompressed as they are read.
+/// Reads the bytes of one element and decompresses them if necessary.
 class ElementSource {
  public:
   ElementSource(std::string_view bytes, bool compressed, std::size_t& budget)
@@ -37,7 +37,7 @@ class ElementSource {
     if (compressed_) inflateEnd(&stream_);
   }
 
-  /// False at the end, and where the budget is spent.
+  /// Returns false at the end of the element, or if the budget is used up.
   bool read(char* to, std::size_t count) {
     if (count > budget_) count = budget_ = 0;
     budget_ -= count;
@@ -75,7 +75,7 @@ class ElementSource {
 
 struct Tag {
   std::uint32_t type = 0;
-  std::uint32_t bytes = 0;  ///< that follow it, without padding
+  std::uint32_t bytes = 0;  ///< size of the data after the tag, without padding
 };
 
 std::uint32_t word(const char* at, bool big_endian) {
@@ -99,17 +99,17 @@ class Counter {
   Counter(bool big_endian, std::size_t most_parts, std::size_t most_bytes)
       : big_endian_(big_endian), parts_left_(most_parts), bytes_left_(most_bytes) {}
 
-  /// One element at the top; false where it has too many parts or bytes.
+  /// Counts one top-level element. Returns false if it has too many parts or bytes.
   bool take(std::string_view bytes, bool compressed) {
     ElementSource source(bytes, compressed, bytes_left_);
     Tag tag;
     if (!read_tag(source, big_endian_, tag) || tag.type != type_matrix) return bytes_left_ > 0;
-    // The flags are the first part of an array; their lowest byte is its class.
+    // The flags are the first part of an array; their lowest byte is the class of the array.
     std::array<char, tag_bytes> flags{};
     if (!source.skip(tag_bytes) || !source.read(flags.data(), flags.size())) return bytes_left_ > 0;
     const std::uint32_t kind = word(flags.data(), big_endian_) & 0xffU;
     if (kind >= first_numeric_class && kind <= last_numeric_class) return true;
-    // The parts of a part follow it without an end mark: a flat walk meets all of them.
+    // Nested parts follow the tag of their parent without an end mark, so a flat walk visits all of them.
     while (read_tag(source, big_endian_, tag)) {
       if (parts_left_-- == 0) return false;
       constexpr std::size_t alignment = 8;
@@ -135,7 +135,7 @@ bool mat_elements_within(std::string_view file, std::size_t most_parts, std::siz
   while (file.size() >= tag_bytes) {
     const std::uint32_t type = word(file.data(), big_endian);
     const bool compressed = type == type_compressed;
-    // A compressed element is not padded; of another one the tag belongs to what is counted.
+    // A compressed element has no padding. The tag of an uncompressed element is counted too.
     const std::size_t size = word(file.data() + 4, big_endian);
     if (!counter.take(file.substr(compressed ? tag_bytes : 0, compressed ? size : size + tag_bytes),
                       compressed))

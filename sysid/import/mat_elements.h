@@ -1,5 +1,5 @@
 #pragma once
-// How many parts a MATLAB file of version 5 has, before libmatio makes an object of each.
+// Number of parts in a MATLAB file of version 5, counted before libmatio creates an object for each part.
 
 #include <cstddef>
 #include <string_view>
@@ -7,9 +7,9 @@
 namespace softgrip::sysid {
 
 /// Returns true if the cells, structures and objects of a .mat file of version 5 together have at most
-/// `most_parts` data elements, and at most `most_bytes` bytes after decompression. Compressed, some kilobytes
-/// can hold millions of empty cells. Arrays of numbers at the top are not counted. Broken files are: as far
-/// as they can be read.
+/// `most_parts` data elements, and at most `most_bytes` bytes after decompression. Some compressed kilobytes
+/// can hold millions of empty cells. Arrays of numbers at the top level are not counted. In a broken file,
+/// the readable part is counted.
 [[nodiscard]] bool mat_elements_within(std::string_view file, std::size_t most_parts, std::size_t most_bytes);
 
 }  // namespace softgrip::sysid

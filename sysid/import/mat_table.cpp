@@ -25,7 +25,7 @@ std::vector<double> as_doubles(const matvar_t& variable, std::size_t count) {
   return {data, data + count};
 }
 
-/// The values of a real array; empty of everything else.
+/// Returns the values of a real array; empty for any other variable.
 std::vector<double> values_of(const matvar_t& variable, std::size_t count) {
   if (variable.data == nullptr || variable.isComplex != 0 || variable.data_size <= 0 ||
       variable.nbytes / static_cast<std::size_t>(variable.data_size) < count)
@@ -81,7 +81,7 @@ const char* what_it_is(const matvar_t& variable) {
 
 constexpr std::size_t longest_text = 200;
 
-/// Rows and columns of an array in two dimensions; 0 and 0 of others.
+/// Rows and columns of a two-dimensional array; 0 and 0 for other arrays.
 struct Shape {
   std::size_t rows = 0;
   std::size_t columns = 0;
@@ -93,7 +93,7 @@ Shape shape_of(const matvar_t& variable) {
   return flat ? Shape{variable.dims[0], variable.dims[1]} : Shape{};
 }
 
-/// The ASCII characters of a text; empty where there is none.
+/// Returns the ASCII characters of a text; empty if the variable is not a text.
 std::string text_of(mat_t* file, matvar_t* variable) {
   if (variable == nullptr || variable->class_type != MAT_C_CHAR) return {};
   const Shape shape = shape_of(*variable);
@@ -106,14 +106,14 @@ std::string text_of(mat_t* file, matvar_t* variable) {
   return text;
 }
 
-/// The arrays of a file, gathered from its structures and cells.
+/// Collects the arrays in the variables, structures and cells of a file.
 class MatCollector {
  public:
   MatCollector(mat_t* file, ArrayCollector& arrays) : file_(file), arrays_(arrays) {}
 
-  /// Reads the values of an array, and those in structures, arrays of structures and cells. Of all else, and
-  /// of what is too large, libmatio reads only the header: a compressed variable of some bytes can hold some
-  /// gigabytes.
+  /// Reads the values of an array, and those in structures, arrays of structures and cells. For all other
+  /// variables and for arrays that are too large, libmatio reads only the header, because a compressed
+  /// variable of some bytes can hold some gigabytes.
   void collect(matvar_t& variable, const std::string& name, const std::string& unit, int depth) {
     const Shape shape = shape_of(variable);
     const bool nests =
@@ -152,8 +152,8 @@ class MatCollector {
     }
   }
 
-  /// A structure of values with their name, as dSPACE (Name, Data, Unit) and Simulink (label, values) write
-  /// it.
+  /// Adds a structure that contains values and their name, in the form of dSPACE (Name, Data, Unit) or
+  /// Simulink (label, values). Returns false for any other structure.
   bool named_signal(matvar_t& variable, const std::string& here, std::size_t index, int depth) {
     constexpr std::array<std::pair<const char*, const char*>, 2> kinds{
         {{"Name", "Data"}, {"label", "values"}}};
@@ -177,7 +177,7 @@ class MatCollector {
 
 std::optional<ForeignTable> read_mat_table(const std::string& path, const std::string& opened,
                                            document::Problems& problems) {
-  // What it says of broken files goes into our own message. Its text is const on Debian 13 only.
+  // libmatio must not print; the problem below reports the error. The message is const on Debian 13 only.
   Mat_LogInitFunc("softgrip", [](int /*level*/, auto* /*message*/) {});
   const MatFile file{Mat_Open(opened.c_str(), MAT_ACC_RDONLY), Mat_Close};
   if (!file) {
@@ -189,7 +189,7 @@ std::optional<ForeignTable> read_mat_table(const std::string& path, const std::s
   while (true) {
     const MatVariable variable{Mat_VarReadNextInfo(file.get()), Mat_VarFree};
     if (!variable) break;
-    if (variable->name == nullptr || variable->name[0] == '#') continue;  // what MATLAB refers to by itself
+    if (variable->name == nullptr || variable->name[0] == '#') continue;  // internal variables of MATLAB
     MatCollector(file.get(), arrays).collect(*variable, variable->name, {}, 0);
   }
   return arrays.table(version == MAT_FT_MAT4 ? "MATLAB 4" : "MATLAB 5", problems);

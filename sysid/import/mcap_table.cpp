@@ -29,26 +29,26 @@ constexpr std::size_t largest_message = std::size_t{1} << 20U;
 constexpr std::size_t deepest_object = 8;
 constexpr double missing_value = std::numeric_limits<double>::quiet_NaN();
 
-/// Times of two topics against the times of the recording, where they still are of one clock [s].
+/// Two topics have one clock if their offsets from the times of the recording differ by at most this [s].
 constexpr double clock_tolerance_s = 1;
 
-/// A topic with its messages. The values of its columns are counted in its own messages.
+/// A topic with its messages. Element i of a column belongs to message i of the topic.
 struct McapTopic {
   std::string name;
   std::vector<TableColumn> columns;
   std::map<std::string, std::size_t> places;  ///< by key
-  std::vector<std::size_t> rows;              ///< of the table
+  std::vector<std::size_t> rows;              ///< row of the table for each message
 
   [[nodiscard]] bool offers(Role role) const {
     return std::any_of(columns.begin(), columns.end(), [&](const TableColumn& column) {
       return names_role(column.name, role) && fitness_for(column, role) > 0;
     });
   }
-  /// A drive and a reading: a finger by itself.
+  /// Returns true if the topic alone describes a finger: it has a displacement, and a command or a pressure.
   [[nodiscard]] bool is_finger() const {
     return offers(Role::displacement) && (offers(Role::command) || offers(Role::pressure));
   }
-  /// The column that has a time in each message; nullptr: there is none.
+  /// Returns the column of a key if it has a time in each message, otherwise nullptr.
   [[nodiscard]] const TableColumn* time(const std::string& key) const {
     const auto found = std::find_if(columns.begin(), columns.end(),
                                     [&](const TableColumn& column) { return column.name == key; });
@@ -116,7 +116,8 @@ class McapReader {
     refused_ = true;
   }
 
-  /// If no topic has the name of the channel, the channel may be a finger in the names of several topics.
+  /// Searches for a topic with the name of the channel. If there is none, the channel may be a finger that
+  /// the names of several topics contain.
   void find_topic(std::string_view bytes) {
     if (options_.channel.empty()) return;
     looks_for_topics_ = true;
@@ -142,7 +143,7 @@ class McapReader {
     }
   }
 
-  /// The complete records in an incomplete chunk are read.
+  /// Counts a record that is cut off. The complete records in an incomplete chunk are read.
   void cut_off(McapOpcode kind, std::string_view bytes, std::string_view content, bool in_chunk) {
     if (kind == McapOpcode::chunk && !in_chunk) return chunk(content, false);
     if (looks_for_topics_) return;
@@ -273,7 +274,7 @@ class McapReader {
     return missing_value;
   }
 
-  /// Each topic is a finger: columns of one key are one.
+  /// Joins topics that each describe a finger: columns with the same key become one column.
   void join_fingers() {
     for (McapTopic& topic : read_) {
       for (TableColumn& column : topic.columns) place(topic, std::move(column), rows_);
@@ -313,14 +314,14 @@ class McapReader {
     return column;
   }
 
-  /// A column of a topic of one signal is named by the topic: "/pressure" with {"data": 1} is "pressure".
+  /// Returns the column name for a topic of one signal: "/pressure" with {"data": 1} gives "pressure".
   static std::string signal_name(const McapTopic& topic, const std::string& key) {
     std::string name = topic.name;
     std::replace(name.begin(), name.end(), '/', '.');
     return key == "data" || key == "value" ? name : name + "." + key;
   }
 
-  /// Topics of single signals: none is a finger by itself, but all of them together are.
+  /// Returns true if no topic alone describes a finger, but all of them together do.
   [[nodiscard]] bool has_topics_of_signals() const {
     if (has_channel_ || read_.size() < 2 ||
         std::any_of(read_.begin(), read_.end(), [](const McapTopic& topic) { return topic.is_finger(); }))
@@ -335,7 +336,7 @@ class McapReader {
     return all.is_finger();
   }
 
-  /// The key of a time that every message of every topic has; empty: there is none.
+  /// Returns the key of a time that each message of each topic has; empty if there is none.
   [[nodiscard]] std::string common_time() const {
     for (const TableColumn& column : read_.front().columns) {
       const bool common = std::all_of(read_.begin(), read_.end(), [&](const McapTopic& topic) {
@@ -373,7 +374,8 @@ class McapReader {
     table_.has_rows_of_signals = true;
   }
 
-  /// The times of the messages, against those of the recording, are of one clock.
+  /// Refuses the file if the times of the topics, compared with the times of the recording, are not of one
+  /// clock.
   void check_clocks(const TableColumn& time) {
     const std::string name = time.unit.empty() ? split_unit(time.name, Quantity::time).unit : time.unit;
     const auto unit = unit_named(name.empty() ? epoch_unit(time) : name, Quantity::time);
@@ -396,7 +398,7 @@ class McapReader {
            "write the times of one clock, or no times: then log_time is used");
   }
 
-  /// Rows in the order of time, if the times of no topic step back. A step back is judged later.
+  /// Sorts the rows by time unless the times of a topic step back. order_in_time() handles a backward step.
   void sort_rows(std::vector<double>& time) {
     for (const McapTopic& topic : read_) {
       for (std::size_t i = 1; i < topic.rows.size(); ++i) {
@@ -423,7 +425,7 @@ class McapReader {
   document::Problems& problems_;
   ForeignTable table_;
   std::map<std::uint16_t, Topic> topics_;
-  std::vector<McapTopic> read_;                                             ///< those of the rows
+  std::vector<McapTopic> read_;                                             ///< topics of the rows
   std::map<std::string, std::pair<std::string, std::size_t>> passed_over_;  ///< encoding, messages
   std::set<std::string> arrays_;
   std::vector<std::uint64_t> log_times_;

@@ -1,5 +1,6 @@
 #pragma once
-// MCAP recordings (https://mcap.dev/spec, version 0): the messages in JSON, as `softgrip export` writes them.
+// Reader of JSON messages in MCAP recordings (https://mcap.dev/spec, version 0), as `softgrip export` writes
+// them.
 
 #include <cstdint>
 #include <optional>
@@ -29,16 +30,16 @@ enum class McapOpcode : std::uint8_t {
   data_end = 0x0f,
 };
 
-/// Reads each JSON message as a row. The keys are the columns; those of an object in an object are joined by
-/// points ("pose.x"). A topic is a channel: "/left" is "left", and "/signals" alone is none. Without a key
-/// for the time there is a column "log_time" in seconds after the first message.
+/// Reads each JSON message as a row. The keys are the columns; keys of nested objects are joined by points
+/// ("pose.x"). A topic is a channel: "/left" is "left". If "/signals" is the only topic, the table has no
+/// channel. If no key is a time, the column "log_time" has the seconds after the first message.
 ///
-/// If no topic has a drive and a reading, but all together have, each topic is a signal: "/pressure" with
-/// {"data": 1} is the column "pressure", and {"x": 1} of "/tip" is "tip.x". All messages are rows, in the
-/// order of the time that all of them have, or of log_time. The times of two topics that differ by more than
-/// 1 s against log_time are a problem. Topics in other encodings, arrays and bytes behind the last complete
-/// record are left out and named. Packed chunks, wrong checksums and more than `most_values` (table.h) are
-/// problems.
+/// If no single topic has both a drive and a displacement, but all topics together have, each topic is a
+/// signal: "/pressure" with {"data": 1} is the column "pressure", and {"x": 1} of "/tip" is "tip.x". Each
+/// message is a row. The rows are ordered by the time key that all messages have, otherwise by log_time. It
+/// is a problem if the times of two topics, compared with log_time, differ by more than 1 s. Topics in other
+/// encodings, arrays and bytes after the last complete record are left out, and a note names them. Compressed
+/// chunks, wrong checksums and more than `most_values` values (table.h) are problems.
 [[nodiscard]] std::optional<ForeignTable> read_mcap_table(const std::string& file, std::string_view bytes,
                                                           const TableOptions& options,
                                                           document::Problems& problems);

@@ -9,12 +9,12 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Reads a text from the left.
+/// Reads a text from left to right.
 class Scanner {
  public:
   explicit Scanner(std::string_view text) : left_(text) {}
 
-  /// `fewest` to `most` digits as a number.
+  /// Reads `fewest` to `most` digits as a number. Returns false if there are fewer.
   bool digits(std::size_t fewest, std::size_t most, std::int64_t& value) {
     std::size_t count = 0;
     value = 0;
@@ -30,7 +30,7 @@ class Scanner {
     left_.remove_prefix(1);
     return true;
   }
-  /// A word of ASCII letters, lower-case; empty: there is none.
+  /// Reads a word of ASCII letters and returns it in lower case; empty if there is none.
   std::string word() {
     std::string text;
     while (!left_.empty() && std::isalpha(static_cast<unsigned char>(left_.front())) != 0) {
@@ -45,7 +45,7 @@ class Scanner {
   [[nodiscard]] char last() const { return last_; }
   [[nodiscard]] bool done() const { return left_.empty(); }
 
-  /// A fraction of a second behind its mark; what is finer than a nanosecond is passed over.
+  /// Reads the digits of a fraction of a second [ns]. Digits beyond 1 ns are ignored.
   bool fraction(Nanoseconds& value) {
     value = 0;
     Nanoseconds unit = ns_per_s;
@@ -61,8 +61,8 @@ class Scanner {
   char last_ = 0;
 };
 
-/// Hours of a 12 h clock behind which "PM", "a.m." or the like stands; the hours themselves where it does
-/// not.
+/// Converts the hours of a 12 h clock if "PM", "a.m." or a similar word follows. Otherwise returns the hours
+/// unchanged.
 std::optional<std::int64_t> with_half_of_day(Scanner& scan, std::int64_t hours) {
   Scanner ahead = scan;
   ahead.marks(" ");
@@ -75,7 +75,7 @@ std::optional<std::int64_t> with_half_of_day(Scanner& scan, std::int64_t hours) 
   return hours % 12 + (half == "pm" ? 12 : 0);
 }
 
-/// The fraction of a second behind a point, a comma, or a colon and 3 digits.
+/// Reads an optional fraction of a second after a point or comma, or 3 digits after a colon.
 bool fraction_of(Scanner& scan, Nanoseconds& fraction) {
   std::int64_t milliseconds = 0;
   if (scan.mark(".,")) return scan.fraction(fraction);
@@ -98,7 +98,8 @@ std::optional<Nanoseconds> time_of_day(Scanner& scan) {
   return (3600 * *of_day + 60 * minutes + seconds) * ns_per_s + fraction;
 }
 
-/// "00:59.5": minutes and seconds. Without a fraction, and up to 23, they can be hours and minutes too.
+/// Reads minutes and seconds ("00:59.5"). If the first field is at most 23 and there is no fraction, the
+/// fields can also be hours and minutes.
 std::optional<Moment> two_fields(std::string_view text) {
   Scanner scan(text);
   std::int64_t minutes = 0;
@@ -111,7 +112,7 @@ std::optional<Moment> two_fields(std::string_view text) {
   return Moment{(60 * minutes + seconds) * ns_per_s + fraction, false, true, has_fraction || minutes > 23};
 }
 
-/// "Z", "+02:00", "-0500", or nothing, which is taken for UTC.
+/// Reads the offset from UTC: "Z", "+02:00", "-0500". No text means UTC.
 std::optional<Nanoseconds> zone(Scanner& scan) {
   if (scan.done() || scan.mark("Z")) return 0;
   if (!scan.mark("+-")) return std::nullopt;
@@ -134,7 +135,7 @@ std::optional<Nanoseconds> days_of(std::int64_t year, std::int64_t month, std::i
   return std::chrono::sys_days(day).time_since_epoch().count() * Nanoseconds{86400} * ns_per_s;
 }
 
-/// 1 to 12 of an English or German name or its first three letters; 0: none.
+/// Returns 1 to 12 for the English or German name of a month or its first three letters; otherwise 0.
 std::int64_t month_named(const std::string& word) {
   constexpr std::array<std::string_view, 12> english{"january",   "february", "march",    "april",
                                                      "may",       "june",     "july",     "august",
@@ -153,7 +154,7 @@ std::int64_t month_named(const std::string& word) {
   return 0;
 }
 
-/// 31-May-2024, 31 May 2024, May 31, 2024 or 2024-May-31.
+/// Reads 31-May-2024, 31 May 2024, May 31, 2024 or 2024-May-31.
 std::optional<Nanoseconds> date_with_month_name(Scanner& scan) {
   constexpr std::string_view between = "-/., ";
   std::int64_t first = 0;
@@ -172,7 +173,7 @@ std::optional<Nanoseconds> date_with_month_name(Scanner& scan) {
   return first > 31 ? days_of(first, month, second) : days_of(second, month, first);
 }
 
-/// Days since 1970 of 2024-05-31, 2024/05/31 or 31.05.2024.
+/// Reads 2024-05-31, 2024/05/31 or 31.05.2024. Returns the time since 1970.
 std::optional<Nanoseconds> date(Scanner& scan) {
   std::array<std::int64_t, 3> parts{};
   if (!scan.digits(1, 4, parts[0]) || !scan.mark("-/.")) return std::nullopt;

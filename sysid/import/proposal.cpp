@@ -16,10 +16,10 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Words that tell a role, lower-case; in German too, as loggers there write them.
+/// Words that identify a role, in lower case. They include German words, as some data loggers write them.
 struct Words {
   Role role;
-  std::initializer_list<std::string_view> surely;  ///< a part of the name is this
+  std::initializer_list<std::string_view> surely;  ///< one of them is a part of the name
 };
 const std::array<Words, role_count>& words() {
   static const std::array<Words, role_count> list{{
@@ -41,7 +41,7 @@ const std::array<Words, role_count>& words() {
   return list;
 }
 
-/// "pSetpoint_kPa[1]" is p, setpoint, kpa, 1.
+/// Splits a name into lower-case parts: "pSetpoint_kPa[1]" gives p, setpoint, kpa, 1.
 std::vector<std::string> parts_of(std::string_view name) {
   std::vector<std::string> parts(1);
   bool was_lower = false;
@@ -72,7 +72,7 @@ bool names_role(std::string_view name, Role role) {
 
 namespace {
 
-/// The unit that a column carries, whatever it is of.
+/// Returns the unit of a column, for any quantity.
 std::string open_unit(const TableColumn& column) {
   return column.unit.empty() ? split_unit(column.name).unit : column.unit;
 }
@@ -82,7 +82,7 @@ std::string open_unit(const TableColumn& column) {
 int fitness_for(const TableColumn& column, Role role) {
   const RoleSpec& spec = spec_of(role);
   const bool time = spec.role == Role::time;
-  // A few bad cells are to be told, not to be walked around.
+  // A column with up to 10 % bad cells keeps its role, so that the cells are reported.
   if (column.is_part_of_time) return 0;
   if (column.bad_count * 10 > column.values.size() || (column.moments > 0 && !time)) return 0;
   const std::string unit = column.unit.empty() ? split_unit(column.name, spec.quantity).unit : column.unit;
@@ -92,17 +92,17 @@ int fitness_for(const TableColumn& column, Role role) {
   const std::string bare = split_unit(column.name, spec.quantity).name;
   const bool named = names_role(bare, spec.role);
   const bool angle = carried && carried->output == model::OutputUnit::deg;
-  // "temp_deg" is in degrees of a temperature: the scale is unknown.
+  // "temp_deg" is a temperature whose scale is unknown, not an angle.
   const bool warmth = angle && names_role(split_unit(column.name).name, Role::temperature);
   if (warmth) return role == Role::temperature ? 3 : 0;
   const bool elsewhere = !of_quantity && !anywhere.empty() && !is_raw_unit(anywhere) && carried;
   if (elsewhere) return 0;
   if (time && column.moments > 0) return 4;
-  // A pressure that is asked for is no measured one, and the supply's is neither.
+  // Neither a commanded pressure nor the supply pressure is the measured pressure.
   const bool pressure = spec.role == Role::pressure;
   if (pressure && (names_role(bare, Role::command) || names_role(bare, Role::supply))) return 0;
   if (spec.role == Role::command && names_role(bare, Role::displacement) && !of_quantity) return 0;
-  // Of a path and an angle, the path is taken.
+  // A displacement in mm is preferred to an angle.
   if (named) return !of_quantity ? 3 : angle ? 4 : 5;
   const bool by_unit_alone = pressure || spec.role == Role::displacement || time;
   return !of_quantity || !by_unit_alone ? 0 : angle ? 1 : 2;
@@ -135,8 +135,8 @@ std::string epoch_unit(const TableColumn& column) {
 
 namespace {
 
-/// The fingers in the columns, and the one that is meant; empty: all columns are of one finger, or nobody
-/// said.
+/// The fingers in the columns, and the selected finger. `meant` is empty if all columns belong to one finger,
+/// or if no finger was selected.
 struct FingerChoice {
   std::vector<std::string> fingers;
   std::string meant;
@@ -151,7 +151,7 @@ std::string quoted(const std::vector<std::string>& names) {
   return with_commas(names, [](const std::string& name) { return "'" + document::shown(name) + "'"; });
 }
 
-/// The fingers of the columns that the mapping gives.
+/// Returns the fingers of the columns in the mapping.
 std::vector<std::string> given_fingers(const ForeignTable& table, const Mapping& mapping,
                                        const std::vector<std::string>& fingers) {
   std::vector<std::string> given;
@@ -165,7 +165,7 @@ std::vector<std::string> given_fingers(const ForeignTable& table, const Mapping&
   return given;
 }
 
-/// The fingers that have a column for a displacement.
+/// Returns the fingers that have a column for a displacement.
 std::vector<std::string> read_fingers(const ForeignTable& table, const std::vector<std::string>& fingers) {
   std::vector<std::string> read;
   for (const TableColumn& column : table.columns) {
@@ -216,7 +216,7 @@ FingerChoice choose_finger(const ForeignTable& table, const Mapping& given, Prop
   return choice;
 }
 
-/// Times that differ: each for its own columns, or a question.
+/// If time columns differ, assigns each to its own columns, or adds a question.
 void choose_times(const ForeignTable& table, const FingerChoice& choice, Proposal& proposal) {
   ColumnMapping& time = proposal.mapping[Role::time];
   if (!time.given() || time.columns.size() > 1) return;
@@ -232,7 +232,7 @@ void choose_times(const ForeignTable& table, const FingerChoice& choice, Proposa
   std::vector<std::string> words;
   for (const std::size_t index : times) words.push_back(word_of(table, index));
   const auto of_roles = times_of_roles(table, proposal.mapping, times);
-  // A place that is left of all columns says nothing against the column that is called a time.
+  // The chosen column has the name of a time. The order of the columns alone must not drop it.
   if (!of_roles || std::find(of_roles->begin(), of_roles->end(), chosen) == of_roles->end()) {
     proposal.questions.push_back(
         {"the times of the columns " + quoted(words) + " differ",
@@ -247,7 +247,7 @@ void choose_times(const ForeignTable& table, const FingerChoice& choice, Proposa
   }
 }
 
-/// Codes such as 999 in the columns of the mapping count as missing.
+/// Treats codes such as 999 in the mapped columns as missing values.
 void choose_codes(const ForeignTable& table, Proposal& proposal) {
   if (!proposal.mapping.missing.empty()) return;
   for (const RoleSpec& spec : roles) {
@@ -292,7 +292,7 @@ void choose(const ForeignTable& table, const RoleSpec& spec, const FingerChoice&
   proposal.guessed.push_back(spec.role);
 }
 
-/// The first cell of a column that is called a time and is in no format that is read; empty: there is none.
+/// Returns a text about the first time column with a cell in an unknown format; empty if there is none.
 std::string unread_time(const ForeignTable& table) {
   for (const TableColumn& column : table.columns) {
     if (!column.bad.empty() && names_role(column.name, Role::time))
@@ -314,7 +314,7 @@ void say_what_is_missing(const ForeignTable& table, Proposal& proposal) {
     proposal.missing.emplace_back("a displacement or a bending angle: --displacement COLUMN");
 }
 
-/// Up to three values from the beginning, the middle and the end.
+/// Returns the values at the beginning, in the middle and at the end of a column as a text.
 std::string glimpse(const TableColumn& column) {
   std::string text;
   const std::size_t rows = column.values.size();
@@ -343,7 +343,7 @@ Proposal propose(const ForeignTable& table, const Mapping& given, bool optional_
   Proposal proposal{given, {}, {}, {}, {}};
   const FingerChoice choice = choose_finger(table, given, proposal);
   const auto open = [&](Role role) { return !proposal.mapping[role].given(); };
-  // What is asked for before what is measured, which any column of a pressure could be.
+  // The command is assigned before the measured pressure, because each pressure column can be the latter.
   for (const Role role :
        {Role::time, Role::displacement, Role::supply, Role::command, Role::pressure, Role::temperature}) {
     const bool needed = (role == Role::time && !given.rate_hz) || role == Role::displacement ||

@@ -1,5 +1,5 @@
 #pragma once
-// A mapping by the names and units of the columns, for somebody to agree to.
+// A mapping that is derived from the names and units of the columns. The user confirms it.
 
 #include <string>
 #include <string_view>
@@ -11,38 +11,39 @@
 namespace softgrip::sysid {
 
 struct Proposal {
-  Mapping mapping;  ///< what was given, completed
-  /// Roles that were added to what was given.
+  Mapping mapping;  ///< the given mapping with the proposed columns
+  /// Roles that were added to the given mapping.
   std::vector<Role> guessed;
-  /// What a log needs and no column offers: "a time: --time COLUMN, or --rate-hz R".
+  /// Required roles for which no column was found: "a time: --time COLUMN, or --rate-hz R".
   std::vector<std::string> missing;
-  /// Choices that only the user can make: "the columns are of 2 fingers", and the option that makes it.
+  /// A choice that only the user can make ("the columns are of 2 fingers"), and the option for it.
   struct Question {
     std::string text;
     std::string hint;
   };
   std::vector<Question> questions;
-  std::vector<std::string> warnings;  ///< what was taken for a code
+  std::vector<std::string> warnings;  ///< values that were taken as codes for missing values
 };
 
-/// How well a column would do for a role by its name and unit; 0: not at all.
+/// Returns a score for a column in a role, based on its name and unit. 0: the column cannot have the role.
 [[nodiscard]] int fitness_for(const TableColumn& column, Role role);
-/// True if a part of the name is a word of the role.
+/// Returns true if a part of the name is a word of the role.
 [[nodiscard]] bool names_role(std::string_view name, Role role);
-/// The unit of numbers that count from 1970, by their size; empty: they do not.
+/// Returns the unit of times since 1970, determined from their size; empty for other numbers.
 [[nodiscard]] std::string epoch_unit(const TableColumn& column);
 
-/// Completes `given` by what the columns are called, what their units are and, where two would do, which
-/// comes first. Roles that a log may do without are added only where `optional_too`. A column that is given
-/// to one role is offered to no other. Of several fingers only the columns of the mapping's channel are
-/// offered. Times that differ are proposed each for its own columns, or are a question.
+/// Completes `given` by the names and units of the columns. Of two equally suitable columns, the first is
+/// taken. Optional roles are added only if `optional_too`. A column has at most one role. If the table has
+/// several fingers, only the columns of the mapping's channel are considered. If time columns differ, each is
+/// proposed for its own columns, or the user must choose.
 [[nodiscard]] Proposal propose(const ForeignTable& table, const Mapping& given, bool optional_too);
 
-/// The unit of a mapped column: the mapping's, the row of units', or its name's; as written, empty: none.
+/// Returns the unit of a mapped column as written: from the mapping, otherwise from the row of units,
+/// otherwise from the name of the column; empty if there is none.
 [[nodiscard]] std::string unit_text(const ForeignTable& table, const ColumnMapping& column,
                                     Quantity quantity);
 
-/// One line per column: its number, its name, its unit, its values, and what it is taken for.
+/// Returns a table with one line per column: number, name, unit, some values, and the role.
 [[nodiscard]] std::string mapping_table(const ForeignTable& table, const Mapping& mapping);
 
 }  // namespace softgrip::sysid

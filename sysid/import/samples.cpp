@@ -41,7 +41,8 @@ void keep_range(ForeignSamples& samples, std::size_t first, std::size_t last) {
   keep(samples, kept);
 }
 
-/// A second counted from 1970 has steps of 0.24 us: what comes of a difference behind that is noise.
+/// Returns the resolution of times up to `largest_s` as a power of 10 [s], at least 1e-9 s. A double that
+/// counts seconds since 1970 has steps of 0.24 us, and smaller digits of a difference are rounding errors.
 double resolution_s(double largest_s) {
   const double step = std::nextafter(largest_s, 2 * largest_s + 1) - largest_s;
   return std::max(finest_s, std::pow(10.0, std::ceil(std::log10(step) - 1e-9)));
@@ -52,7 +53,7 @@ double rounded(double value, double step) {
   return step < 1 ? std::round(value * per_second) / per_second : value;
 }
 
-/// Times count from the first sample.
+/// Makes the times relative to the first sample.
 void from_zero(std::vector<double>& time_s, std::vector<std::string>& notes) {
   const double first = time_s.front();
   double largest = 0;
@@ -74,7 +75,7 @@ double usual_interval_s(const std::vector<double>& time_s) {
   return median_of(std::span<double>(steps));
 }
 
-/// Samples at one time complete each other where no role has a value in both.
+/// Returns true if no role has a value in both samples, which are at the same time.
 bool complete_each_other(const ForeignSamples& samples, std::size_t a, std::size_t b) {
   return std::all_of(roles.begin(), roles.end(), [&](const RoleSpec& spec) {
     const std::vector<double>& values = samples[spec.role];
@@ -89,7 +90,7 @@ void join(ForeignSamples& samples, std::size_t into, std::size_t from) {
   }
 }
 
-/// Coarse time stamps: their cause and the remedy.
+/// Returns a sentence about repeated times: number, step of the time stamps, and remedy.
 std::string about_repeats(const std::vector<double>& time_s, std::size_t repeated) {
   std::vector<double> steps;
   std::vector<std::size_t> changes;
@@ -99,7 +100,7 @@ std::string about_repeats(const std::vector<double>& time_s, std::size_t repeate
     changes.push_back(i);
   }
   if (steps.empty()) return "all rows have one time; --rate-hz R in place of --time counts the rows";
-  // The first and the last time may have fewer rows than the others.
+  // The first and the last time stamp may have fewer rows than the others, so they are not used for the rate.
   const std::size_t rows = changes.size() > 1 ? changes.back() - changes.front() : time_s.size() - 1;
   const double rows_s =
       changes.size() > 1 ? time_s[changes.back()] - time_s[changes.front()] : time_s.back() - time_s.front();

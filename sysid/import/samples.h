@@ -1,5 +1,5 @@
 #pragma once
-// The samples of a foreign file on their way into a log, and the rules by which some of them are left out.
+// The samples of an external file before they become a log, and the rules that leave out some of them.
 
 #include <array>
 #include <cstddef>
@@ -12,11 +12,11 @@
 
 namespace softgrip::sysid {
 
-/// All vectors that are not empty are equally long. NaN: nothing was there.
+/// All vectors that are not empty are equally long. NaN is a missing value.
 struct ForeignSamples {
   std::array<std::vector<double>, role_count>
-      values;                    ///< in the units of a log; empty: the role is not there
-  std::vector<std::size_t> row;  ///< of the table
+      values;                    ///< in the units of a log; empty: the file does not have the role
+  std::vector<std::size_t> row;  ///< row of the table for each sample
 
   [[nodiscard]] std::vector<double>& operator[](Role role) { return values[static_cast<std::size_t>(role)]; }
   [[nodiscard]] const std::vector<double>& operator[](Role role) const {
@@ -25,33 +25,35 @@ struct ForeignSamples {
   [[nodiscard]] std::size_t size() const noexcept { return row.size(); }
 };
 
-/// Why no log can be made of the samples.
+/// The reason why the samples cannot become a log.
 struct SampleProblem {
   std::size_t row = 0;
   std::string message;
   std::string hint;
 };
 
-/// What was done with the samples.
+/// The account, notes and warnings of an import.
 struct ImportRemarks {
   RowAccount account;
   std::vector<std::string> notes;
   std::vector<std::string> warnings;
 };
 
-/// Times from the first sample on, on whole steps of what a double of their size resolves (1e-9 s at best);
-/// samples without a time are left out, and those outside of the mapping's stretch. Samples at one time that
-/// complete each other become one; of others the first stays. A time that goes back is a problem.
+/// Makes the times relative to the first sample and rounds them to the resolution of a double of their size
+/// (1e-9 s or coarser). Samples without a time and samples outside from_s to to_s of the mapping are left
+/// out. Samples at one time are merged if no role has a value in both; otherwise only the first is kept. A
+/// time that goes back is a problem.
 [[nodiscard]] std::optional<SampleProblem> order_in_time(const Mapping& mapping, ForeignSamples& samples,
                                                          ImportRemarks& remarks);
 
-/// A command that is missing is the one before, and samples before the first are left out. Without a command
-/// the measured pressure stands for it. A sample without a reading stays. There is a sample at least.
+/// Completes the command: a missing value is replaced by the previous one, and samples before the first
+/// command are left out. If the file has no command, the measured pressure is used. A sample without a
+/// displacement is kept. `samples` must not be empty.
 void complete_drive(ForeignSamples& samples, ImportRemarks& remarks);
 
-/// A hole: longer than 0.5 s and than twenty usual intervals, while the command changed by more than 2 % of
-/// its range. What the finger did there nobody knows: the longest piece between holes is kept, the others are
-/// said.
+/// Keeps the longest segment between holes and reports the others. A hole is longer than 0.5 s and than 20
+/// usual intervals, and the command changes across it by more than 2 % of its range. The motion of the finger
+/// in a hole is unknown.
 void cut_at_holes(ForeignSamples& samples, ImportRemarks& remarks);
 
 }  // namespace softgrip::sysid

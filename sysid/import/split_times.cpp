@@ -19,11 +19,11 @@ constexpr std::array<std::string_view, 7> nanosecond_words{"nanosec", "nanosecs"
                                                            "ns",      "nanosecond", "nanoseconds"};
 
 struct LastWord {
-  std::string before;  ///< without the separator
-  std::string word;    ///< lower-case
+  std::string before;  ///< text before the last word, without the separator
+  std::string word;    ///< last word, lower-case
 };
 
-/// "header.stamp.sec" is "header.stamp" and "sec".
+/// Splits off the last word of a name: "header.stamp.sec" gives "header.stamp" and "sec".
 LastWord last_word(std::string_view name) {
   const std::size_t at = name.find_last_of("._/ [(");
   std::string_view word = at == std::string_view::npos ? name : name.substr(at + 1);
@@ -39,7 +39,7 @@ bool is_one_of(const Words& words, const std::string& word) {
   return std::find(words.begin(), words.end(), word) != words.end();
 }
 
-/// All values are whole, and none is outside of [0, end).
+/// Returns true if all values are whole numbers in [0, end).
 bool whole_below(const TableColumn& column, double end) {
   bool any = false;
   for (const double value : column.values) {
@@ -50,7 +50,7 @@ bool whole_below(const TableColumn& column, double end) {
   return any && column.bad_count == 0 && column.moments == 0;
 }
 
-/// The column of the nanoseconds after the seconds of another one.
+/// Returns the column with the nanoseconds that belong to the column `seconds`.
 std::optional<std::size_t> rest_of_seconds(const std::vector<TableColumn>& columns, std::size_t seconds) {
   constexpr double latest_s = 1e11;
   const LastWord name = last_word(columns[seconds].name);

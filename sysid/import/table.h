@@ -1,5 +1,5 @@
 #pragma once
-// A foreign file as columns of numbers, whatever its format was; what they mean is the mapping's business.
+// An external file as columns of numbers, for all formats. A mapping assigns a meaning to the columns.
 
 #include <cstddef>
 #include <string>
@@ -12,74 +12,74 @@
 
 namespace softgrip::sysid {
 
-/// Bounds of a foreign file, so that a small file cannot exhaust the memory. A log of 512 MiB is the longest
-/// that other commands read.
+/// Bounds of an imported file, so that a small file cannot exhaust the memory. Other commands read logs of at
+/// most 512 MiB.
 inline constexpr std::size_t most_text_bytes = std::size_t{512} << 20U;  ///< after decompression
-inline constexpr std::size_t longest_line = std::size_t{1} << 20U;       ///< [bytes]; each can be a cell
+inline constexpr std::size_t longest_line = std::size_t{1} << 20U;       ///< [bytes]; each byte can be a cell
 inline constexpr std::size_t most_rows = std::size_t{1} << 24U;          ///< 4.6 h at 1 kHz
 inline constexpr std::size_t most_values = std::size_t{1} << 27U;        ///< in all columns or arrays
 
-/// A cell that is neither a number nor a word for none.
+/// A cell that is neither a number nor a word for a missing value.
 struct BadCell {
   std::size_t row = 0;
   document::Location at;
   std::string line_text;
   std::string text;
-  std::string cell{};  ///< its name in a workbook ("B7"); empty elsewhere
+  std::string cell{};  ///< name of the cell in a workbook ("B7"); empty for other files
 };
 
 struct TableColumn {
-  std::string name;            ///< as the file has it; empty where it names no columns
-  std::string unit;            ///< of a row of units or an attribute, as written; empty: none
-  std::vector<double> values;  ///< by row; NaN: nothing was there
-  /// How many of them were dates or times of day; their values are seconds after the first of these.
+  std::string name;            ///< as written in the file; empty if the file does not name its columns
+  std::string unit;            ///< from a row of units or an attribute, as written; empty: none
+  std::vector<double> values;  ///< by row; NaN: missing value
+  /// Number of values that were dates or times of day; such a value is the time after the first of them [s].
   std::size_t moments = 0;
-  Nanoseconds first_moment = 0;  ///< of these, on the scale of moments.h
-  std::size_t short_clocks = 0;  ///< how many of them have two fields ("12:34"), read as minutes and seconds
+  Nanoseconds first_moment = 0;  ///< the first date or time of day, on the scale of moments.h
+  std::size_t short_clocks = 0;  ///< number of times with two fields ("12:34"), read as minutes and seconds
   bool is_part_of_time = false;  ///< nanoseconds that another column contains (split_times.h)
   bool surely_minutes = false;   ///< one of the short clocks cannot be hours and minutes
-  std::vector<BadCell> bad;      ///< the first few
+  std::vector<BadCell> bad;      ///< the first few bad cells
   std::size_t bad_count = 0;
-  std::vector<std::size_t> bad_rows;  ///< all of them, where bad lines are to be skipped
+  std::vector<std::size_t> bad_rows;  ///< all rows with a bad cell, if bad lines are to be skipped
 };
 
 /// All columns are equally long.
 struct ForeignTable {
   std::string file;    ///< as the user named it
   std::string format;  ///< in words: "CSV, ';' between columns, decimal comma"
-  std::string sha256;  ///< of the file's bytes
+  std::string sha256;  ///< hash of the file's bytes
   std::vector<TableColumn> columns;
-  std::vector<int> line;  ///< of each row in the text; empty of a binary file
+  std::vector<int> line;  ///< line number of each row of a text; empty for a binary file
   std::vector<std::string>
       channels;                    ///< texts of the column of the fingers, in the order of their first rows
-  std::string channel_column;      ///< its name; empty: there is none, or topics stand for it
-  std::vector<std::string> notes;  ///< what was passed over
-  RowAccount account;              ///< of a text's rows, but of a binary file's only those left out
+  std::string channel_column;      ///< name of the column of the fingers; empty: none, or topics are fingers
+  std::vector<std::string> notes;  ///< skipped contents
+  RowAccount account;              ///< all rows of a text; for a binary file only the rows left out
   bool is_text = false;
   bool has_rows_of_signals = false;        ///< each row has the signal of one topic
   bool has_separators = false;             ///< characters between the columns
-  std::string sheet;                       ///< of a workbook, the one that was read
-  std::vector<std::size_t> missing_cells;  ///< for each word of TableOptions::missing: the cells that say it
+  std::string sheet;                       ///< the sheet of a workbook that was read
+  std::vector<std::size_t> missing_cells;  ///< number of cells for each word of TableOptions::missing
 
   [[nodiscard]] std::size_t rows() const noexcept {
     return columns.empty() ? 0 : columns.front().values.size();
   }
 };
 
-/// How a text is to be understood where it cannot be seen.
+/// Options for the interpretation of a file, where the file itself is not conclusive.
 struct TableOptions {
-  char separator = 0;  ///< 0: found
+  char separator = 0;  ///< 0: detected automatically
   std::vector<std::string>
-      missing;          ///< what stands where nothing was read, besides empty cells, NaN, NA and the like
-  std::string channel;  ///< only rows whose column of the fingers says this; empty: all
-  bool skip_bad_lines = false;  ///< leave out lines of another width, and count them
-  std::string sheet{};          ///< of a workbook; empty: the only one with numbers
+      missing;          ///< words for a missing value, in addition to empty cells, NaN, NA and similar words
+  std::string channel;  ///< read only the rows of this finger; empty: all rows
+  bool skip_bad_lines = false;  ///< leave out lines with another number of cells, and count them
+  std::string sheet{};          ///< sheet of a workbook; empty: the only sheet with numbers
 };
 
-/// The column that a word names: its name, or its number counted from 1 where no name is that. Its index, or
-/// the number of columns where there is none or more than one of the name.
+/// Returns the index of the column that a word names: by its name, or by its number counted from 1 if no
+/// column has this name. Returns the number of columns if there is no such column or the name is not unique.
 [[nodiscard]] std::size_t column_index(const ForeignTable& table, std::string_view word);
-/// How a column is named in messages and options: its name, or its number where it has none of its own.
+/// Returns the word for a column in messages and options: its name, or its number if it has no unique name.
 [[nodiscard]] std::string word_of(const ForeignTable& table, std::size_t index);
 
 }  // namespace softgrip::sysid

@@ -20,11 +20,11 @@ static_assert(std::endian::native == std::endian::little, "the values are copied
 
 constexpr std::size_t lead_in_bytes = 28;
 constexpr std::size_t most_channels = 10'000;
-/// Of all segments together; a segment of 28 bytes can repeat a list of channels.
+/// Bound on the steps for all segments together, because a segment of 28 bytes can repeat a list of channels.
 constexpr std::size_t most_steps = 100'000'000;
 constexpr std::size_t longest_label = 1000;
 constexpr const char* has_daqmx = "has raw values of DAQmx, which need its scales";
-/// Instead of the length of a segment that was not finished.
+/// The length that is stored for a segment that was not finished.
 constexpr std::uint64_t no_length = ~std::uint64_t{0};
 
 // Flags of a segment.
@@ -53,7 +53,7 @@ enum class TdmsType : std::uint32_t {
   time = 0x44
 };
 
-/// Bytes of a value; 0 of a text, and of what is not known.
+/// Returns the size of a value [bytes]; 0 for a text or an unknown type.
 std::size_t size_of(TdmsType type) {
   switch (type) {
     case TdmsType::i8:
@@ -87,7 +87,7 @@ T copied(const char* at) {
   return value;
 }
 
-/// A time stamp since 1904, in two parts: seconds as a double would lose digits.
+/// A time stamp since 1904. It has two parts, because one double would lose digits.
 struct Stamp {
   std::int64_t seconds = 0;
   double fraction = 0;
@@ -96,12 +96,12 @@ Stamp stamp_at(const char* at) {
   return {copied<std::int64_t>(at + 8), std::ldexp(static_cast<double>(copied<std::uint64_t>(at)), -64)};
 }
 double between(const Stamp& from, const Stamp& to) {
-  // Seconds of a broken file may be any; as doubles they do not overflow.
+  // A broken file can have any seconds. Their difference as doubles does not overflow.
   return (static_cast<double>(to.seconds) - static_cast<double>(from.seconds)) +
          (to.fraction - from.fraction);
 }
 
-/// A number; time stamps are not among these.
+/// Reads a value as a number. The type must not be a time stamp.
 double number_at(TdmsType type, const char* at) {
   switch (type) {
     case TdmsType::i8:
@@ -134,19 +134,19 @@ struct TdmsChannel {
   std::string name;
   std::string unit;
   TdmsType type = TdmsType::f64;
-  bool has_index = false;   ///< a segment has said how its values are stored
+  bool has_index = false;   ///< a segment has stated how the values are stored
   std::uint64_t count = 0;  ///< values in a chunk
   std::uint64_t bytes = 0;  ///< in a chunk
   std::vector<double> values;
-  std::optional<Stamp> first;  ///< of a channel of time stamps
-  double increment_s = 0;      ///< 0: no waveform
+  std::optional<Stamp> first;  ///< first value of a channel of time stamps
+  double increment_s = 0;      ///< 0: not a waveform
   double start_offset_s = 0;
   std::optional<Stamp> start;
   bool needs_scale = false;
   std::size_t cut_off = 0;  ///< values in the incomplete end of the file
 };
 
-/// "/'group'/'channel'" as "group/channel".
+/// Converts a path: "/'group'/'channel'" gives "group/channel".
 std::string name_in(std::string_view path) {
   std::string name;
   for (std::size_t i = 0; i < path.size(); ++i) {
@@ -165,7 +165,7 @@ class TdmsReader {
  public:
   TdmsReader(std::string_view bytes, ArrayCollector& arrays) : bytes_(bytes), arrays_(arrays) {}
 
-  /// False where the file is refused, with a sentence in `refused`.
+  /// Reads all segments. Returns false if the file is refused; `refused` then contains a sentence.
   bool read() {
     std::size_t at = 0;
     while (at < bytes_.size() && refused.empty()) {
@@ -179,7 +179,7 @@ class TdmsReader {
     return refused.empty();
   }
 
-  /// Rows of the table of which the file has a value in its incomplete end.
+  /// Returns the number of rows that have a value in the incomplete end of the file.
   [[nodiscard]] std::size_t cut_off_rows(const ForeignTable& table) const {
     std::size_t rows = 0;
     for (const TdmsChannel& channel : channels_) {
@@ -191,7 +191,7 @@ class TdmsReader {
   std::string refused;
 
  private:
-  /// The place of the next segment.
+  /// Reads the segment at byte `at`. Returns the position of the next segment.
   std::size_t segment(std::size_t at) {
     ByteScanner lead(bytes_.substr(at, lead_in_bytes));
     const bool signed_so = std::string_view(lead.skip(4), 4) == "TDSm";
@@ -200,7 +200,7 @@ class TdmsReader {
     const auto next = lead.value<std::uint64_t>();
     const auto raw = lead.value<std::uint64_t>();
     const std::string_view rest = bytes_.substr(at + lead_in_bytes);
-    // A recording that was interrupted has no length, or less than it says.
+    // After an interrupted recording, the length is absent or exceeds the remaining bytes.
     const std::uint64_t size = std::min<std::uint64_t>(next, rest.size());
     if (!signed_so) refuse(at, "does not begin with TDSm");
     if ((flags & is_big_endian) != 0) refuse(at, "is big-endian");
@@ -225,7 +225,7 @@ class TdmsReader {
     if (refused.empty()) refused = "the segment at byte " + std::to_string(at) + " " + why;
   }
   static std::string quoted(std::string_view name) { return "'" + document::shown(name, 40) + "'"; }
-  /// Metadata that is valid and not read. Returns false.
+  /// Records why valid metadata is not read. Returns false.
   bool unread(const std::string& why) {
     if (unread_.empty()) unread_ = why;
     return false;
@@ -235,7 +235,7 @@ class TdmsReader {
                   ", which is not read");
   }
 
-  /// The number of rows in the segment is unknown.
+  /// Leaves out a segment that is cut off. The number of its rows is unknown.
   void leave_out_segment(std::size_t at, const std::string& where) {
     arrays_.note("the segment at byte " + std::to_string(at) + " is cut off " + where + ": its " +
                  std::to_string(bytes_.size() - at) + " bytes are left out");
@@ -349,7 +349,7 @@ class TdmsReader {
     return refused.empty();
   }
 
-  /// A value of each channel, then the next of each.
+  /// Reads interleaved values: one value of each channel, then the next value of each.
   void rows(std::string_view piece, std::uint64_t row) {
     const std::size_t complete = piece.size() / row;
     const std::size_t rest = piece.size() % row;
@@ -363,7 +363,7 @@ class TdmsReader {
     cut_off_bytes_ += rest;
   }
 
-  /// All values of a channel, then those of the next.
+  /// Reads contiguous values: all values of a channel, then those of the next channel.
   void blocks(std::string_view piece) {
     for (const std::size_t i : listed_) {
       TdmsChannel& channel = channels_[i];
@@ -375,7 +375,7 @@ class TdmsReader {
     }
   }
 
-  /// With them the first channels would have more values than the others.
+  /// Leaves out an incomplete chunk. With it, the first channels would have more values than the others.
   void leave_out_blocks(std::string_view piece) {
     cut_off_bytes_ += piece.size();
     for (const std::size_t i : listed_) {
@@ -443,7 +443,7 @@ class TdmsReader {
   std::vector<std::size_t> listed_;  ///< the channels with values in this segment
   std::size_t steps_ = 0;
   std::size_t values_ = 0;
-  std::uint64_t missing_bytes_ = 0;  ///< behind the end of the file
+  std::uint64_t missing_bytes_ = 0;  ///< announced bytes beyond the end of the file
   std::size_t cut_off_bytes_ = 0;
   std::string unread_;  ///< why valid metadata is refused
 };

@@ -11,15 +11,15 @@ namespace softgrip::sysid {
 namespace {
 
 constexpr std::array separators{',', ';', '\t', '|', ' '};
-/// So many lines in the middle and at the end show what separates the columns.
+/// Number of lines in the middle and at the end from which the separator is determined.
 constexpr std::size_t looked_at = 40;
-/// Above the numbers nobody writes more than this.
+/// Maximum number of lines of content above the first row of numbers.
 constexpr std::size_t longest_preamble = 1000;
 
 struct Row {
   std::size_t cells = 0;
-  std::size_t values = 0;   ///< numbers, moments, or nothing
-  std::size_t numbers = 0;  ///< numbers and moments
+  std::size_t values = 0;   ///< numbers, timestamps and missing values
+  std::size_t numbers = 0;  ///< numbers and timestamps
 };
 
 Row row_of(std::string_view line, char separator, const TableOptions& options, std::vector<Cell>& cells) {
@@ -34,12 +34,12 @@ Row row_of(std::string_view line, char separator, const TableOptions& options, s
   return row;
 }
 
-/// A row of the table: as wide as the others, a number in it, and mostly values.
+/// Returns true for a row of the table: `width` cells, at least one number, and more than half are values.
 bool is_data(const Row& row, std::size_t width) {
   return row.cells == width && row.numbers > 0 && 2 * row.values > row.cells;
 }
 
-/// How many values the lines hold that are as wide as most of them; the width.
+/// Number of values in the rows with the best width, and that width.
 struct Fit {
   std::size_t values = 0;
   std::size_t width = 0;
@@ -78,7 +78,8 @@ std::vector<std::string> texts_of(const std::vector<Cell>& cells) {
   return texts;
 }
 
-/// Units in brackets or bare, "-" or nothing where there is none; at least one of them.
+/// Returns true if the texts are units, in brackets or not. "-" and an empty text mean no unit, but at least
+/// one text must be a unit.
 bool are_units(const std::vector<std::string>& texts) {
   bool any = false;
   for (const std::string& text : texts) {
@@ -101,7 +102,7 @@ std::string unbracketed(const std::string& text) {
   return text == "-" ? std::string() : text;
 }
 
-/// Names and units above the first row of numbers.
+/// Reads names and units above the first row of numbers.
 class Heading {
  public:
   Heading(const std::string& file, const TextLines& lines, Dialect& dialect, document::Problems& problems)
@@ -139,7 +140,7 @@ class Heading {
   }
 
  private:
-  /// True if no row has a value behind its last separator.
+  /// Returns true if no row has a value after its last separator.
   [[nodiscard]] bool rows_end_empty() const {
     std::vector<Cell> cells;
     for (std::size_t i = dialect_.first_row; i < lines_.content.size(); ++i) {
@@ -149,7 +150,8 @@ class Heading {
     return true;
   }
 
-  /// Between blanks a name may have blanks of its own: then two of them separate.
+  /// Splits the line of names. If blanks separate the columns and a name contains a blank, two blanks
+  /// separate the names.
   std::vector<std::string> split_names(const TextLine& line) const {
     std::vector<Cell> cells;
     split_line(line.text, dialect_.separator, cells);
@@ -164,7 +166,7 @@ class Heading {
     return texts.size() == dialect_.width ? texts : texts_of(cells);
   }
 
-  /// "# time, pressure": what numpy.savetxt writes.
+  /// Reads the names from a comment: numpy.savetxt writes "# time, pressure".
   void from_comment() {
     const int first = lines_.content[dialect_.first_row].number;
     const TextLine* last = nullptr;
@@ -215,7 +217,7 @@ TextLines text_lines(std::string_view text) {
     const std::string_view said = trimmed(line);
     if (said.empty()) continue;
     const bool comment = said.front() == '#' || said.front() == '%' || said.starts_with("//");
-    // "#N/A" is a cell.
+    // "#N/A" is a cell, not the beginning of a comment.
     const bool cell = said.starts_with("#N/A") || said.starts_with("#n/a");
     (comment && !cell ? lines.comments : lines.content).push_back({number, line});
   }

@@ -1,5 +1,5 @@
 #pragma once
-// How a foreign table of text is written: what separates its columns, where names, units and numbers stand.
+// Format of a table in an external text: its separator, and the lines of names, units and numbers.
 
 #include <cstddef>
 #include <optional>
@@ -26,21 +26,21 @@ struct TextLines {
 };
 [[nodiscard]] TextLines text_lines(std::string_view text);
 
-/// Splits a line; at blanks, several of them are one. False where a quote is not closed.
+/// Splits a line into cells. Several blanks count as one separator. Returns false if a quote is not closed.
 bool split_line(std::string_view line, char separator, std::vector<Cell>& cells);
 
 struct Dialect {
   char separator = ',';
-  std::size_t first_row = 0;       ///< among the lines of content
-  std::vector<std::string> names;  ///< by column; empty where the text names none
-  std::vector<std::string> units;  ///< by column, of a row below the names; empty: there is none
+  std::size_t first_row = 0;       ///< index of the first row of numbers in the lines of content
+  std::vector<std::string> names;  ///< by column; empty if the text has no names
+  std::vector<std::string> units;  ///< by column, from a row below the names; empty: there is none
   int names_line = 0;              ///< 0: there are no names
-  std::size_t width = 0;           ///< columns
+  std::size_t width = 0;           ///< number of columns
   bool extra_cell = false;         ///< each row has one empty cell more than there are names
 };
 
-/// Finds it by the rows of numbers; nothing and a problem where there are none, or where the names above them
-/// are not as many as the columns.
+/// Detects the format from the rows of numbers. Returns nullopt and adds a problem if there are no such rows,
+/// or if the number of names above them differs from the number of columns.
 [[nodiscard]] std::optional<Dialect> dialect_of(const std::string& file, const TextLines& lines,
                                                 const TableOptions& options, document::Problems& problems);
 

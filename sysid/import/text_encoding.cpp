@@ -47,7 +47,7 @@ std::string from_utf16(std::string_view bytes, bool big_endian) {
   return text;
 }
 
-/// Continuation bytes that the first byte of a character asks for; -1: it begins none.
+/// Returns the number of continuation bytes after the first byte of a character; -1: not a first byte.
 int continuations(std::uint8_t first) {
   if (first < 0x80) return 0;
   if (first >= 0xc2 && first < 0xe0) return 1;
@@ -66,20 +66,20 @@ bool is_utf8(std::string_view text) {
   return true;
 }
 
-/// Old Macs end lines with \r alone.
+/// Replaces \r by \n in a text without \n: old Macs end lines with \r alone.
 void normalise_line_ends(std::string& text) {
   if (text.find('\n') != std::string::npos) return;
   for (char& c : text) c = c == '\r' ? '\n' : c;
 }
 
-/// NUL bytes at the end of a text that is not UTF-16.
+/// Returns the number of NUL bytes at the end of a text; 0 for UTF-16.
 std::size_t nul_tail(std::string_view bytes) {
   if (bytes.starts_with("\xff\xfe") || bytes.starts_with("\xfe\xff")) return 0;
   const std::size_t last = bytes.find_last_not_of('\0');
   return last == std::string_view::npos ? 0 : bytes.size() - last - 1;
 }
 
-/// The first line that is too long, counted from 1.
+/// Returns the number of the first line that is too long, counted from 1.
 std::optional<std::size_t> number_of_long_line(std::string_view text) {
   std::size_t number = 1;
   for (std::size_t begin = 0; begin < text.size(); ++number) {

@@ -1,5 +1,5 @@
 #pragma once
-// The characters of a foreign text.
+// Character encoding of an external text.
 
 #include <optional>
 #include <string>
@@ -12,17 +12,17 @@
 
 namespace softgrip::sysid {
 
-/// UTF-8 without a byte order mark, of UTF-8, UTF-16 with a byte order mark, or Latin-1; lines end with \n.
-/// What is no text is a sentence that says so.
+/// Converts UTF-8, UTF-16 with a byte order mark, or Latin-1 to UTF-8 without a byte order mark; lines end
+/// with \n. If the bytes are not a text, the error is a sentence.
 [[nodiscard]] tl::expected<std::string, std::string> utf8_of(std::string_view bytes);
 
 struct ForeignText {
   std::string text;                ///< see utf8_of()
-  std::vector<std::string> notes;  ///< NUL bytes at the end, as a logger leaves them that loses its power
+  std::vector<std::string> notes;  ///< NUL bytes at the end, as after a power failure of a data logger
 };
 
-/// The text of an external file with at most most_text_bytes and most_rows lines of at most longest_line
-/// (table.h). A text that is refused is a problem.
+/// Returns the text of an external file with at most most_text_bytes bytes and most_rows lines of at most
+/// longest_line bytes (table.h). If the text is refused, a problem is added.
 [[nodiscard]] std::optional<ForeignText> foreign_text(const std::string& file, std::string_view bytes,
                                                       document::Problems& problems);
 

@@ -25,7 +25,7 @@ std::string name_of_separator(char separator) {
   return std::string("'") + separator + "'";
 }
 
-/// The rows of numbers, read into columns.
+/// Reads the rows of numbers into columns.
 class RowReader {
  public:
   RowReader(const Dialect& dialect, const TableOptions& options, ForeignTable& table, LogReporter& report)
@@ -63,7 +63,7 @@ class RowReader {
                            (skipped_.size() > bad_lines_named ? ", ..." : ""));
   }
 
-  /// Decimal point and comma in one file: one of them must separate thousands.
+  /// Refuses a file with decimal points and decimal commas: one of them must separate thousands.
   void check_decimals() {
     if (comma_.number == 0 || point_.number == 0) return;
     const TextLine& later = comma_.number > point_.number ? comma_ : point_;
@@ -75,7 +75,8 @@ class RowReader {
   [[nodiscard]] bool decimal_comma() const { return comma_.number != 0; }
 
  private:
-  /// A separator behind each row of numbers, which the names do not have.
+  /// Removes the empty cell after a separator at the end of a row, if the line of names has no such
+  /// separator.
   void drop_extra_cell() {
     const bool extra = dialect_.extra_cell && cells_.size() == dialect_.width + 1;
     if (extra && trimmed(cells_.back().text).empty()) cells_.pop_back();
@@ -102,7 +103,7 @@ class RowReader {
     const std::string channel = cell_text(cells_[channel_].text);
     if (std::find(table_.channels.begin(), table_.channels.end(), channel) == table_.channels.end())
       table_.channels.push_back(channel);
-    // Only a column of readings has more different cells than a rig has fingers.
+    // A column with more different cells than a rig has fingers contains readings.
     if (table_.channels.size() > most_fingers && !is_log_channel_ && options_.channel.empty()) {
       channel_ = dialect_.width;
       table_.channels.clear();
@@ -141,9 +142,9 @@ class RowReader {
     column.values.push_back(nothing);
   }
 
-  /// Whole nanoseconds are counted from a column's first moment: as seconds since 1970 they would lose
-  /// digits. A time of day that falls back by half a day has passed midnight; minutes and seconds that fall
-  /// back by half an hour have passed a full hour.
+  /// Times relative to the first timestamp of a column. They are computed in whole nanoseconds, because a
+  /// double of seconds since 1970 would lose digits. A time of day that decreases by more than half a day has
+  /// passed midnight. Minutes and seconds that decrease by more than half an hour have passed a full hour.
   struct Clock {
     Nanoseconds first = 0;
     Nanoseconds last = 0;
@@ -166,7 +167,7 @@ class RowReader {
   std::vector<Clock> moments_;
   std::vector<Cell> cells_;
   std::size_t channel_ = dialect_.width;
-  bool is_log_channel_ = false;  ///< called as in a log
+  bool is_log_channel_ = false;  ///< the channel column has the name that it has in a log
   TextLine comma_;
   TextLine point_;
   std::vector<int> skipped_;

@@ -1,5 +1,5 @@
 #pragma once
-// A foreign table of text: CSV in any dialect, or columns between tabs and blanks.
+// Reader of external tables in text: CSV with any separator, or columns separated by tabs or blanks.
 
 #include <optional>
 #include <string>
@@ -10,10 +10,10 @@
 
 namespace softgrip::sysid {
 
-/// Reads UTF-8 or Latin-1, with a byte order mark or without, or UTF-16 with one. Comments, lines above the
-/// names, a row of units and empty lines are passed over; decimal points and commas are found, but not both
-/// in one file; a last line that is cut off is left out and said. Other rows of another width are problems.
-/// `file` names it in messages.
+/// Reads UTF-8 or Latin-1, with or without a byte order mark, or UTF-16 with one. Comments, lines above the
+/// names and empty lines are skipped; a row of units is recognised. Decimal points or decimal commas are
+/// detected, but one file must not have both. If the last line is cut off, it is left out and counted. Other
+/// rows with a different number of cells are problems. `file` names the text in messages.
 [[nodiscard]] std::optional<ForeignTable> parse_text_table(const std::string& file, std::string_view text,
                                                            const TableOptions& options,
                                                            document::Problems& problems);

@@ -10,7 +10,7 @@ namespace {
 constexpr double psi_kpa = 6.894757293168361;
 constexpr double absolute_zero_c = -273.15;
 
-/// The first of each quantity is the log's own. Names are lower-case.
+/// The first unit of each quantity is the unit of a log. Names are lower-case.
 constexpr std::array units{
     Unit{"s", Quantity::time},
     Unit{"ms", Quantity::time, 1e-3},
@@ -73,7 +73,7 @@ constexpr std::array spellings{
 };
 constexpr std::array<std::string_view, 14> raw_units{
     "v", "mv", "volt", "volts", "ma", "a", "counts", "count", "lsb", "adc", "raw", "%", "percent", "digits"};
-/// Behind a blank or an underscore these may as well be words or indices.
+/// Units that can also be words or indices after a blank or an underscore.
 constexpr std::array<std::string_view, 10> doubtful{"in", "min", "a", "c",   "d",
                                                     "f",  "h",   "k", "raw", "count"};
 
@@ -82,7 +82,7 @@ void replace_all(std::string& text, std::string_view from, std::string_view to) 
     text.replace(at, from.size(), to);
 }
 
-/// The way in which the table writes it; mPa, the only unit that case decides, as "millipascal".
+/// Returns a unit as written in the table of units. mPa, the only case-sensitive unit, becomes "millipascal".
 std::string normalised(std::string_view text) {
   std::string unit(trimmed(text));
   if (unit == "mPa") return "millipascal";
@@ -90,7 +90,7 @@ std::string normalised(std::string_view text) {
   replace_all(unit, "\xc2\xb5", "u");  // micro sign
   replace_all(unit, "\xce\xbc", "u");  // small mu
   replace_all(unit, "\xc2\xb0", "");   // degree sign
-  replace_all(unit, "\xc2\xba", "");   // ordinal indicator, which passes for one
+  replace_all(unit, "\xc2\xba", "");   // ordinal indicator, often used as a degree sign
   replace_all(unit, " ", "");
   replace_all(unit, "\xc2\xb2", "2");
   replace_all(unit, "^", "");
@@ -105,7 +105,7 @@ bool is_unit_of(std::string_view text, std::optional<Quantity> quantity) {
   return quantity ? unit_named(text, *quantity).has_value() : unit_named(text).has_value();
 }
 
-/// "P [psi]", "P (psi)": what stands in the last pair of brackets.
+/// Returns the name and the text in the last pair of brackets: "P [psi]", "P (psi)".
 std::optional<NameAndUnit> in_brackets(std::string_view column) {
   if (column.size() < 3 || (column.back() != ']' && column.back() != ')')) return std::nullopt;
   const std::size_t open = column.rfind(column.back() == ']' ? '[' : '(');

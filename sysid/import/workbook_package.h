@@ -1,5 +1,5 @@
 #pragma once
-// The parts of an .xlsx workbook, which is a ZIP archive; through libzip.
+// Reader of the parts of an .xlsx workbook, which is a ZIP archive; uses libzip.
 
 #include <cstddef>
 #include <memory>
@@ -16,11 +16,11 @@ namespace softgrip::sysid {
 /// `most_text_bytes` (table.h), regardless of the sizes that the archive states.
 class WorkbookPackage {
  public:
-  /// The error is a sentence.
+  /// Opens the archive. The error is a sentence.
   [[nodiscard]] static tl::expected<WorkbookPackage, std::string> open(std::string_view bytes);
 
   [[nodiscard]] bool has(const std::string& part) const;
-  /// The content of a part. The error is a sentence.
+  /// Returns the content of a part. The error is a sentence.
   [[nodiscard]] tl::expected<std::string, std::string> read(const std::string& part);
 
  private:

@@ -27,16 +27,16 @@ constexpr std::size_t cells_named = 5;
 enum class Content : std::uint8_t { none, number, date, text, error, no_value };
 
 struct SheetCell {
-  std::size_t row = 0;     ///< from 1
-  std::size_t column = 0;  ///< from 0
+  std::size_t row = 0;     ///< counted from 1
+  std::size_t column = 0;  ///< counted from 0
   Content content = Content::none;
-  std::string text;      ///< of a number as the file has it, or the word of an error
-  double serial = 0;     ///< of a date: days
-  bool formula = false;  ///< with a stored value
+  std::string text;      ///< text, number as written in the file, or word of an error
+  double serial = 0;     ///< date [days]
+  bool formula = false;  ///< the value is the stored value of a formula
   bool is_bool = false;
 };
 
-/// How many cells, and the names of the first few.
+/// A number of cells, and the names of the first few.
 struct NamedCells {
   std::size_t count = 0;
   std::string names;
@@ -54,13 +54,13 @@ std::string column_letters(std::size_t column) {
   return text;
 }
 
-/// The number of a row; nothing where the text is none.
+/// Returns the number of a row, or nullopt if the text is not a valid row number.
 std::optional<std::size_t> row_number(std::string_view text) {
   const auto row = whole_number(text);
   return row && *row >= 1 && *row <= most_sheet_rows ? row : std::nullopt;
 }
 
-/// A cell's place; nothing where the reference is none.
+/// The position of a cell.
 struct Place {
   std::size_t row = 0;
   std::size_t column = 0;
@@ -75,7 +75,8 @@ std::optional<Place> place_of(std::string_view reference) {
   return Place{*row, place.column - 1};
 }
 
-/// A date as days, in the calendar of `from`. Excel stores some 0.6 us; more digits are noise.
+/// Returns a date in ISO 8601, or a time of day. `serial` counts days since `from`. Excel resolves about 0.6
+/// us, so finer digits are rounding errors.
 std::string iso_date(double serial, std::chrono::sys_days from, bool with_day) {
   constexpr std::int64_t ticks_a_second = 1'000'000;
   constexpr std::int64_t ticks_a_day = 86400 * ticks_a_second;
@@ -99,7 +100,7 @@ std::string iso_date(double serial, std::chrono::sys_days from, bool with_day) {
   return text.data();
 }
 
-/// A cell of CSV. Quotes keep a line from looking like a comment.
+/// Returns a cell of CSV. A cell that begins like a comment is quoted, so that its line is not a comment.
 std::string csv_cell(std::string text) {
   for (char& c : text) c = c == '\n' || c == '\r' || c == '\t' ? ' ' : c;
   const bool like_comment = !text.empty() && (text[0] == '#' || text[0] == '%' || text[0] == '/');
@@ -127,7 +128,7 @@ class SheetReader {
     if (!problem_) problem_ = SheetProblem{at, std::move(message)};
   }
 
-  /// Calls back with each cell that has content, in the order of rows and columns.
+  /// Calls `take` for each cell that has content, in the order of rows and columns.
   template <class Take>
   void walk(const Take& take) {
     std::size_t row = 0;
@@ -208,7 +209,7 @@ class SheetReader {
       return refuse_cell(
           cell, "'" + document::shown(cell.text) + "' is no number, and the file says that it is one");
     if (!std::isfinite(*number)) {
-      cell.content = Content::text;  // "NaN" means here what it means in a text
+      cell.content = Content::text;  // "NaN" is interpreted as in a text file
       return;
     }
     cell.content = Content::number;
@@ -250,7 +251,7 @@ class SheetReader {
     cell.content = Content::number;
   }
 
-  /// Finds the first and the last row and column of a sheet, before a cell is written.
+  /// Updates the first and last row and column of the sheet. All cells are surveyed before one is written.
   void survey(const SheetCell& cell) {
     if (result_.first_row == 0) {
       result_.first_row = cell.row;
@@ -274,13 +275,13 @@ class SheetReader {
     booleans_ += cell.is_bool ? 1 : 0;
   }
 
-  /// A date in a title does not belong to the column below it.
+  /// Updates the latest date of a column. Dates in titles above the table are ignored.
   void survey_date(const SheetCell& cell) {
     if (cell.content == Content::date && cell.row >= full_row_)
       longest_[cell.column] = std::max(longest_[cell.column], cell.serial);
   }
 
-  /// The first row that has three quarters of the columns; names and numbers do, titles do not.
+  /// Returns the first row that has at least 75 % of the columns, as rows of names and numbers have.
   [[nodiscard]] std::size_t first_full_row() const {
     const std::size_t width = last_column_ - first_column_ + 1;
     const auto full = std::find_if(filled_.begin(), filled_.end(),
@@ -297,7 +298,7 @@ class SheetReader {
     constexpr sys_days of_1904{year{1904} / 1 / 1};
     constexpr double a_year = 366;
     const double longest = cell.row < full_row_ ? cell.serial : longest_[cell.column];
-    // A column below a year is of durations, which have no calendar.
+    // A column of values below one year contains durations, which do not depend on the calendar.
     return iso_date(cell.serial, texts_.from_1904 || longest < a_year ? of_1904 : of_1900, longest >= 1);
   }
 
@@ -328,7 +329,7 @@ class SheetReader {
     text += '\n';
   }
 
-  /// "what (3): where".
+  /// Adds a note "what (3): where".
   void note(const std::string& what, std::size_t count, const std::string& where = {}) {
     result_.notes.push_back(what + " (" + std::to_string(count) + ")" + (where.empty() ? "" : ": " + where));
   }
@@ -376,11 +377,12 @@ class SheetReader {
   std::optional<SheetProblem> problem_;
   std::size_t first_column_ = 0;
   std::size_t last_column_ = 0;
-  std::vector<std::pair<std::size_t, std::size_t>> filled_;  ///< rows with content, and their cells
-  std::size_t full_row_ = 0;                                 ///< the first one below the titles
-  std::size_t shared_bytes_ = 0;                             ///< of the shared strings in the cells
-  std::map<std::size_t, double> longest_;                    ///< the latest date of a column below the titles
-  std::size_t numbers_ = 0;                                  ///< in this row
+  std::vector<std::pair<std::size_t, std::size_t>>
+      filled_;                             ///< rows with content, and their numbers of cells
+  std::size_t full_row_ = 0;               ///< the first one below the titles
+  std::size_t shared_bytes_ = 0;           ///< total size of shared strings in the cells
+  std::map<std::size_t, double> longest_;  ///< the latest date of a column below the titles
+  std::size_t numbers_ = 0;                ///< in this row
   std::size_t dates_ = 0;
   std::size_t formulas_ = 0;
   std::size_t booleans_ = 0;
@@ -403,7 +405,7 @@ bool is_date_format(std::string_view code) {
   for (std::size_t i = 0; i < code.size() && code[i] != ';'; ++i) {
     const char c = code[i];
     if (c == '\\' || c == '_' || c == '*') {
-      ++i;  // the next character stands for itself
+      ++i;  // the next character is literal
     } else if (c == '"') {
       i = std::min(code.find('"', i + 1), code.size());
     } else if (c == '[') {

@@ -1,5 +1,5 @@
 #pragma once
-// A sheet of a workbook as rows of text.
+// Conversion of a workbook sheet to rows of text.
 
 #include <cstddef>
 #include <string>
@@ -16,7 +16,7 @@ namespace softgrip::sysid {
 /// Texts and formats to which the cells of all sheets refer.
 struct WorkbookTexts {
   std::vector<std::string> strings;  ///< shared strings
-  std::vector<bool> date_styles;     ///< by style: its numbers are dates or times of day
+  std::vector<bool> date_styles;     ///< by style; true: its numbers are dates or times of day
   bool from_1904 = false;            ///< dates count from 1904
 };
 
@@ -29,23 +29,23 @@ struct SheetText {
   std::vector<std::string> notes;
 };
 
-/// Why a sheet is not read.
+/// The reason why a sheet is not read.
 struct SheetProblem {
   document::Location at;  ///< row and column, both from 1
   std::string message;
 };
 
-/// True if numbers in this format are dates or times of day: "yyyy-mm-dd", "[h]:mm:ss.000".
+/// Returns true if numbers in this format are dates or times of day: "yyyy-mm-dd", "[h]:mm:ss.000".
 [[nodiscard]] bool is_date_format(std::string_view code);
 [[nodiscard]] bool is_date_format(std::size_t builtin);
 
-/// "B7" of a row and a column that count from 1 and 0.
+/// Returns the name of a cell, such as "B7". Rows are counted from 1 and columns from 0.
 [[nodiscard]] std::string cell_name(std::size_t row, std::size_t column);
 
-/// The cells in lines of CSV. Rows above the first one with 3 of 4 columns have only their own cells;
-/// below it each row with a cell has all columns. Booleans are 1 and 0. Dates are ISO 8601; a column of times
-/// within one day has times of day, regardless of the rows above.  Of formulas the stored value is taken.
-/// Errors and formulas without a stored value are empty, and a note names them.
+/// Returns the cells as lines of CSV. Rows above the first row that has 75 % of the columns contain only
+/// their own cells. From that row on, each row with a cell has all columns. Booleans are 1 and 0. Dates are
+/// ISO 8601; a column of times within one day has times of day, regardless of the rows above. A formula gives
+/// its stored value. Errors and formulas without a stored value give empty cells, and a note names them.
 [[nodiscard]] tl::expected<SheetText, SheetProblem> sheet_text(const pugi::xml_document& sheet,
                                                                const WorkbookTexts& texts);
 

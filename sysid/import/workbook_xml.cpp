@@ -6,11 +6,11 @@ namespace softgrip::sysid {
 namespace {
 
 constexpr std::size_t most_tree_bytes = std::size_t{1} << 30U;
-// Size of a node of pugixml on a machine of 64 bits.
+// Sizes of a node and an attribute of pugixml on a 64-bit machine.
 constexpr std::size_t node_bytes = 64;
 constexpr std::size_t attribute_bytes = 40;
 
-/// An upper bound of the memory that the tree needs. The first text in an element has no node of its own.
+/// Returns an upper bound of the memory of the tree [bytes]. The first text in an element needs no node.
 std::size_t tree_bytes(std::string_view text) {
   std::size_t bytes = 0;
   bool opens = false;

@@ -20,9 +20,9 @@ namespace {
 constexpr std::size_t most_sheets = 1000;
 constexpr const char* as_csv = "export the sheet as CSV";
 
-/// A reference of one part of the package to another, by its id.
+/// A reference from one part of the package to another.
 struct Relation {
-  std::string type;  ///< the last word of the address that names it: "worksheet"
+  std::string type;  ///< the last word of its type address: "worksheet"
   std::string part;
   bool external = false;
 };
@@ -69,7 +69,7 @@ class WorkbookReader {
     return file_ + ", sheet " + quoted_name(sheet.name);
   }
 
-  /// The XML of a part; `text_` holds its characters. False where that was refused.
+  /// Loads the XML of a part; `text_` owns its characters. Returns false if the part was refused.
   bool load(const std::string& part, const std::string& file) {
     auto text = package_.read(part);
     if (!text) {
@@ -88,7 +88,7 @@ class WorkbookReader {
     return loaded.has_value();
   }
 
-  /// The relations of a part in the folder `folder`, by id.
+  /// Returns the relations of the part `name` in the folder `folder`, by id.
   std::optional<Relations> relations(const std::string& folder, const std::string& name) {
     const std::string part = folder + "_rels/" + name + ".rels";
     if (!load(part, file_)) return std::nullopt;
@@ -104,7 +104,7 @@ class WorkbookReader {
     return relations;
   }
 
-  /// The part with the list of sheets.
+  /// Returns the path of the part that lists the sheets.
   std::optional<std::string> book_part() {
     if (!package_.has("_rels/.rels")) {
       if (package_.has("content.xml"))
@@ -122,7 +122,7 @@ class WorkbookReader {
     return refuse("this is an archive, no workbook", "unpack it");
   }
 
-  /// The sheets, and what their cells refer to.
+  /// Reads the list of sheets, the shared strings and the styles.
   bool read_book(const std::string& part) {
     const std::size_t slash = part.rfind('/');
     const std::string folder = slash == std::string::npos ? std::string() : part.substr(0, slash + 1);
@@ -192,7 +192,7 @@ class WorkbookReader {
     return true;
   }
 
-  /// The text of a sheet; nothing where that is refused.
+  /// Returns the text of a sheet, or nullopt if it is refused.
   std::optional<SheetText> text_of(const Sheet& sheet) {
     if (!load(sheet.part, file_of(sheet))) return std::nullopt;
     auto text = sheet_text(document_, texts_);
@@ -271,7 +271,7 @@ class WorkbookReader {
     return table;
   }
 
-  /// A text that stands for a number is found by its cell, not by a byte.
+  /// Adds the name of the cell ("B7") to each bad cell.
   void name_bad_cells(ForeignTable& table) const {
     for (std::size_t i = 0; i < table.columns.size(); ++i) {
       for (BadCell& bad : table.columns[i].bad)
@@ -283,7 +283,7 @@ class WorkbookReader {
   WorkbookPackage package_;
   const TableOptions& options_;
   document::Problems& problems_;
-  std::string text_;  ///< what `document_` refers to
+  std::string text_;  ///< the characters to which `document_` refers
   pugi::xml_document document_;
   WorkbookTexts texts_;
   std::vector<Sheet> sheets_;

@@ -1,5 +1,5 @@
 #pragma once
-// Spreadsheet workbooks (.xlsx): the values of one sheet.
+// Reader of the values in one sheet of a spreadsheet workbook (.xlsx).
 
 #include <optional>
 #include <string>
@@ -10,10 +10,11 @@
 
 namespace softgrip::sysid {
 
-/// Reads the sheet that `options.sheet` names, else the only one with rows of numbers; several of them are a
-/// problem that lists them. The cells are read like those of a text (text_table.h), so a workbook gives what
-/// CSV with the same cells gives; the line of a row is its number in the sheet. Errors, formulas without a
-/// stored value, merged cells and other sheets are named. `file` names the workbook in messages.
+/// Reads the sheet that `options.sheet` names, otherwise the only sheet with rows of numbers. If several
+/// sheets have rows of numbers, a problem lists them. The cells are read like those of a text (text_table.h),
+/// so a workbook gives the same table as CSV with the same cells. The line of a row is its number in the
+/// sheet. Notes name errors, formulas without a stored value, merged cells and other sheets. `file` names the
+/// workbook in messages.
 [[nodiscard]] std::optional<ForeignTable> read_xlsx_table(const std::string& file, std::string_view bytes,
                                                           const TableOptions& options,
                                                           document::Problems& problems);
