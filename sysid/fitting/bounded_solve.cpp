@@ -7,10 +7,10 @@
 namespace softgrip::sysid {
 namespace {
 
-/// A diagonal of 1 and this: what is singular to rounding stays where the hair leaves it.
+/// Regularisation: it is added to the unit diagonal, so that a singular matrix has a unique minimum.
 constexpr double hair = 1e-13;
 
-/// A primal active set method on scaled variables.
+/// A primal active-set method on scaled variables.
 class ActiveSet {
  public:
   ActiveSet(const Eigen::MatrixXd& gram, const Eigen::VectorXd& b, const Eigen::VectorXd& lower,
@@ -36,7 +36,7 @@ class ActiveSet {
  private:
   [[nodiscard]] bool held(Eigen::Index i) const { return held_[static_cast<std::size_t>(i)]; }
 
-  /// Goes toward the minimum over the free variables; true if a bound stopped it.
+  /// Steps to the minimum over the free variables. Returns true if a bound shortened the step.
   bool advance() {
     std::vector<Eigen::Index> free;
     for (Eigen::Index i = 0; i < b_.size(); ++i) {
@@ -73,7 +73,7 @@ class ActiveSet {
     return 0;
   }
 
-  /// Frees the held variable that most wants to leave its bound; true if there is one.
+  /// Releases the bound with the largest multiplier of the wrong sign. Returns false if there is none.
   bool release() {
     const Eigen::VectorXd gradient = b_ - gram_ * x_;
     double most = 1e-12;
@@ -107,7 +107,7 @@ BoundedSolution solve_bounded(const Eigen::MatrixXd& gram, const Eigen::VectorXd
       gram.diagonal().unaryExpr([](double d) { return d > 0 ? 1 / std::sqrt(d) : 1.0; });
   Eigen::MatrixXd g = scale.asDiagonal() * gram * scale.asDiagonal();
   g.diagonal().array() += hair;
-  // Multipliers are compared with 1e-12: the right-hand side is brought to a size of 1.
+  // The right-hand side is scaled to a maximum of 1, because multipliers are compared with 1e-12.
   const Eigen::VectorXd scaled_b = scale.cwiseProduct(b);
   const double size = std::max(scaled_b.cwiseAbs().maxCoeff(), 1e-300);
   const Eigen::VectorXd right = scaled_b / size;

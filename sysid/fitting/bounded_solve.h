@@ -1,5 +1,5 @@
 #pragma once
-// Small least squares problems with bounds, given by their normal equations.
+// Solver of small bounded least-squares problems that are given by their normal equations.
 
 #include <vector>
 
@@ -7,18 +7,19 @@
 
 namespace softgrip::sysid {
 
-/// Minimises x' G x / 2 - b' x with lower <= x <= upper.
+/// The minimum of x' G x / 2 - b' x subject to lower <= x <= upper.
 struct BoundedSolution {
   Eigen::VectorXd x;
-  std::vector<bool> at_bound;  ///< held there by its multiplier
+  std::vector<bool> at_bound;  ///< the bound is active
 };
 
-/// @param gram  symmetric, positive semidefinite, may be badly scaled or singular: it is scaled by its
-///              diagonal and a hair is added to it.
+/// Solves the problem. @param gram  G: symmetric and positive semidefinite. It may be badly scaled or
+/// singular:
+///              the solver scales it to a unit diagonal and adds a small regularisation.
 [[nodiscard]] BoundedSolution solve_bounded(const Eigen::MatrixXd& gram, const Eigen::VectorXd& b,
                                             const Eigen::VectorXd& lower, const Eigen::VectorXd& upper);
 
-/// Rows and columns of a symmetric matrix for which keep holds.
+/// Returns the rows and columns of a symmetric matrix whose indices are in `keep`.
 [[nodiscard]] Eigen::MatrixXd kept(const Eigen::MatrixXd& matrix, const std::vector<Eigen::Index>& keep);
 
 }  // namespace softgrip::sysid

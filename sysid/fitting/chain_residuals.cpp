@@ -1,5 +1,5 @@
-// Residuals of any chain by automatic differentiation. The only file that instantiates Chain with
-// derivatives. Each record, and each group of derivatives, by itself: on whatever threads are idle.
+// Residuals of any chain by automatic differentiation. Only this file instantiates Chain with derivatives.
+// Idle threads compute the records and the groups of derivatives in parallel.
 
 #include <algorithm>
 #include <cmath>
@@ -15,13 +15,14 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Derivatives are carried along in groups of one of these sizes: a cause's own parameters need a run of few,
-/// a base with two branches and a cause's first parameters one run of many.
+/// Possible sizes of a group of derivatives. The parameters of one cause need a small group. A structure with
+/// two branches and the first parameters of a cause need one large group.
 constexpr std::size_t least_group = 4;
 constexpr std::size_t small_group = 8;
 constexpr std::size_t large_group = 12;
 
-/// The size of the next group when so many derivatives are left: as few runs as possible, then as narrow.
+/// Returns the size of the next group if `left` derivatives remain. The number of groups is minimised first,
+/// then their size.
 std::size_t group_for(std::size_t left) {
   if (left <= least_group) return least_group;
   if (left <= small_group) return small_group;
@@ -62,19 +63,20 @@ class ChainResiduals final : public Residuals {
   }
 
  private:
-  /// Derivatives that are carried along together, in numbers with room for `size`.
+  /// Derivatives that are computed together. `size` is the capacity, `columns` are the columns of the
+  /// Jacobian.
   struct Group {
     std::size_t size;
     std::vector<std::size_t> columns;
   };
-  /// What one walk through a record computes.
+  /// The task of one simulation of a record.
   struct Part {
     std::size_t record;
     const std::vector<std::size_t>& columns;
-    bool values;  ///< and the residuals, which every group comes by
+    bool values;  ///< also store the residuals
   };
 
-  /// Of model parameters and peaks; at least one, for the values.
+  /// Groups the derivatives by model parameters and peaks. Returns at least one group, for the residuals.
   [[nodiscard]] std::vector<Group> groups_of_derivatives() const {
     std::vector<std::size_t> dynamic;
     for (std::size_t i = 0; i < space_.size(); ++i) {
@@ -108,7 +110,8 @@ class ChainResiduals final : public Residuals {
     return std::all_of(finite.begin(), finite.end(), [](char one) { return one != 0; });
   }
 
-  /// Values of the chain and derivatives by the parameters of the part.
+  /// Simulates one record: values of the chain, and its derivatives with respect to the parameters of the
+  /// part.
   template <std::size_t group>
   void derivatives(const FitPoint& point, std::span<const double> z, const Part& part, std::span<double> r,
                    std::span<double> jacobian) const {
@@ -159,7 +162,7 @@ class ChainResiduals final : public Residuals {
     }
   }
 
-  /// The columns of the offsets: the same in every row of record k.
+  /// Returns the offset columns of a row of the Jacobian, which are equal in all rows of record k.
   [[nodiscard]] std::vector<double> offset_columns(std::span<const double> z, std::size_t k) const {
     std::vector<double> line(space_.size());
     for (const std::size_t c : offsets_) {
@@ -169,7 +172,7 @@ class ChainResiduals final : public Residuals {
     return line;
   }
 
-  /// Branches whose unsettled creep is there or may be fitted.
+  /// Returns the branches whose unsettled creep is not 0 or is a free parameter.
   [[nodiscard]] std::vector<std::size_t> unsettled_branches(const StartState& state) const {
     std::vector<std::size_t> branches;
     for (std::size_t b = 0; b < state.unsettled_mm.size(); ++b) {
@@ -192,7 +195,8 @@ class ChainResiduals final : public Residuals {
     }
   }
 
-  /// The unsettled creep depends on the branch's time constant c/k: d/d ln tau is given.
+  /// Adds the derivatives of unsettled creep with respect to k and c. Given is the derivative by ln tau,
+  /// where tau = c/k is the branch's time constant.
   void creep_columns(const FitPoint& point, std::span<const double> z, std::size_t branch, double by_ln_tau,
                      double* line) const {
     if (by_ln_tau == 0) return;
@@ -209,7 +213,7 @@ class ChainResiduals final : public Residuals {
   }
 
   std::vector<std::size_t> offsets_;    ///< columns of the records' offsets
-  std::vector<std::size_t> first_row_;  ///< of each record
+  std::vector<std::size_t> first_row_;  ///< first row of each record
 };
 
 }  // namespace

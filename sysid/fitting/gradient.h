@@ -1,12 +1,12 @@
 #pragma once
-// A number with many derivatives carried along (forward mode), laid out for the processor's vector registers.
-// Ceres' Jet does the same; its expressions are not inlined into the steps of a chain, where all time is
-// spent.
+// A number with many derivatives (forward-mode automatic differentiation), laid out for vector registers.
+// Ceres' Jet is equivalent, but the compiler does not inline its expressions into the steps of a chain, which
+// take most of the time.
 //
-// What an operator returns is an expression: its value is known, its derivatives are worked out pair by pair
-// when a Gradient is made of it, so that a formula goes through the derivatives once and not once per
-// operator. An expression refers to the Gradients in it: it belongs into a Gradient before they are gone, and
-// never into an `auto`.
+// An operator returns an expression. Its value is computed at once. Its derivatives are computed in pairs
+// when a Gradient is constructed from it, so a formula loops over the derivatives once and not once per
+// operator. An expression refers to the Gradients in it. Convert it to a Gradient while they exist, and never
+// store it in an `auto` variable.
 
 #include <array>
 #include <cmath>
@@ -38,7 +38,7 @@ struct Derivatives {
   }
 };
 
-/// A Gradient or an expression: a value `a`, and pair(i) of its derivatives.
+/// A Gradient or an expression. It has a value `a`, and pair(i) returns two of its derivatives.
 template <class E>
 concept GradientLike = requires(const E& e, std::size_t i) {
   { e.a } -> std::convertible_to<double>;
@@ -46,7 +46,7 @@ concept GradientLike = requires(const E& e, std::size_t i) {
   { e.pair(i) } -> std::same_as<DerivativePair>;
 };
 
-/// Value `a` and derivatives `v`. Comparisons look at the value alone, as decisions do.
+/// Value `a` and derivatives `v`. Comparisons use only the value.
 template <std::size_t count>
 struct Gradient {
   static constexpr std::size_t derivatives = count;
@@ -59,7 +59,7 @@ struct Gradient {
   [[gnu::always_inline]] Gradient(const E& e) : a(e.a) {  // NOLINT(google-explicit-constructor): its value
     for (std::size_t i = 0; i < count / 2; ++i) v.pairs[i] = e.pair(i);
   }
-  /// It may stand in the expression itself: that looks at pair i alone where pair i is written.
+  /// Assigns an expression, which may contain *this: pair i of the expression depends only on pairs i.
   template <GradientLike E>
   [[gnu::always_inline]] Gradient& operator=(const E& e) {
     for (std::size_t i = 0; i < count / 2; ++i) v.pairs[i] = e.pair(i);
@@ -90,7 +90,7 @@ struct Gradient {
   }
 };
 
-/// How an expression keeps what it is made of: a Gradient where it stands, another expression as a copy.
+/// The type of an operand in an expression: a reference for a Gradient, a copy for another expression.
 template <class E>
 struct HeldInExpression {
   using Type = const E;
@@ -125,7 +125,7 @@ struct CombinedGradient {
     return x.pair(i) * s + y.pair(i) * t;
   }
 };
-/// x + y or x - y, by the sign: of one type, so that a formula may choose between them.
+/// x + y or x - y, depending on the sign. Both have one type, so a conditional expression can contain both.
 template <class X, class Y>
 struct AddedGradient {
   static_assert(X::derivatives == Y::derivatives);
@@ -251,7 +251,7 @@ SOFTGRIP_OPERATOR abs(const X& x) {
 }
 #undef SOFTGRIP_OPERATOR
 
-/// The value of a Gradient, an expression or a constant.
+/// Returns the value of a Gradient, an expression or a constant.
 template <class X>
 [[nodiscard]] constexpr double compared(const X& x) {
   if constexpr (GradientLike<X>) {

@@ -1,6 +1,6 @@
 #pragma once
-// Held-out evidence: models are refitted without some blocks of the readings and judged there. The hidden
-// state is always simulated from the start of the record, never corrected by readings.
+// Cross-validation: models are refitted without some blocks of the readings and evaluated on these blocks.
+// The hidden state is always simulated from the start of the record, never corrected by readings.
 
 #include <functional>
 #include <vector>
@@ -12,15 +12,15 @@
 
 namespace softgrip::sysid {
 
-/// A fit to records of which some readings are hidden; called for several folds at once.
+/// A fit to records from which some readings were removed. It is called for several folds in parallel.
 using Refit = std::function<FitPoint(const std::vector<Record>& rest)>;
 
-/// Mean square of a residual over a block; of a block without readings 0 [mm^2].
+/// Returns the mean square of a residual over a block [mm^2]; 0 for a block without readings.
 [[nodiscard]] double loss_of(const std::vector<double>& residual_mm, const Block& block);
 
-/// What every block loses under the model that `refit` finds without the block's fold. One that runs off
-/// where it was not fitted loses no more than one that predicts nothing, the square of its record's span:
-/// a larger loss would dominate every mean.
+/// Returns the mean square error of each block [mm^2] under the model that `refit` finds without the block's
+/// fold. The loss is at most the square of the record's span, so that one diverging prediction does not
+/// dominate every mean.
 [[nodiscard]] BlockLosses held_out_losses(const std::vector<Record>& records, const Division& division,
                                           const Refit& refit);
 

@@ -1,13 +1,14 @@
 #pragma once
-// One monotone step of g, where h = beta g is Bouc-Wen's state for exponent 1, with all derivatives:
-// dg/dp = 1 - k g with k = +-(gamma + eta) while |g| grows and -+(gamma - eta) while it shrinks.
+// One step of g for a monotone change of the pressure, with all derivatives. h = beta g is the Bouc-Wen state
+// for exponent 1: dg/dp = 1 - k g with k = +-(gamma + eta) while |g| grows and -+(gamma - eta) while it
+// shrinks.
 
 #include <cmath>
 
 namespace softgrip::sysid {
 
-/// f(x) = (1 - exp(-x)) / x and its derivative. Short pressure steps make x small: a polynomial without an
-/// exponential, good to 2e-16 below 0.05.
+/// f(x) = (1 - exp(-x)) / x and its derivative. Short pressure steps make x small. For |x| < 0.05 a
+/// polynomial is used, with a relative error below 2e-16.
 struct Decay {
   double f;
   double slope;
@@ -29,7 +30,8 @@ struct Decay {
   return {-e / x, ((1 + e) * (1 + x) - 1) / (x * x)};
 }
 
-/// g with its derivatives by gamma + eta, gamma - eta, the valve's lag and the peak before the start.
+/// g and its derivatives with respect to gamma + eta, gamma - eta, the valve's lag and the peak before the
+/// start.
 struct Hysteresis {
   double g = 0;
   double by_growing = 0;
@@ -43,7 +45,7 @@ struct HysteresisRates {
   double shrinking;  ///< gamma - eta [1/kPa]
 };
 
-/// The value alone, after a monotone change of the pressure.
+/// Returns g after a monotone change of the pressure, without derivatives.
 [[nodiscard]] inline double stepped(double g, double change, const HysteresisRates& rates) {
   const double direction = change < 0 ? -1 : 1;
   const bool grows = g * direction >= 0;
@@ -55,7 +57,7 @@ struct HysteresisRates {
   return rest * decay(rates.growing * direction * rest).f;
 }
 
-/// @param change_by_lag,change_by_peak  derivatives of the change.
+/// Steps g and its derivatives. @param change_by_lag,change_by_peak  derivatives of the change.
 inline void step(Hysteresis& h, double change, double change_by_lag, double change_by_peak,
                  const HysteresisRates& rates) {
   const double direction = change < 0 ? -1 : 1;
@@ -76,7 +78,7 @@ inline void step(Hysteresis& h, double change, double change_by_lag, double chan
     h.g = end;
     return;
   }
-  // g passes zero after `to_zero` of pressure and grows anew from there.
+  // g reaches zero after a pressure change of `to_zero`, and |g| grows again from there.
   const bool straight = std::abs(k * h.g) < 1e-6;
   const double to_zero = straight ? -h.g * (1 + k * h.g / 2) : std::log1p(-k * h.g) / k;
   const double zero_by_g = -1 / left;

@@ -1,5 +1,5 @@
 #pragma once
-// A 95 % interval of a number, and how it is written.
+// A 95 % confidence interval and its text.
 
 #include <string>
 #include <string_view>
@@ -11,10 +11,10 @@ struct Interval {
   double upper = 0;
 };
 
-/// "0.127 .. 0.133" with `between` " .. "; of an interval more than twenty times as wide as the value, that
-/// these logs do not determine it.
+/// Returns the interval as a text, for example "0.127 .. 0.133" if `between` is " .. ". If is_determined() is
+/// false, the text states that these logs do not determine the value.
 [[nodiscard]] std::string text_of(const Interval& interval, double value, std::string_view between);
-/// Whether the interval says anything of the value.
+/// Returns true if the width of the interval is at most 20 times the magnitude of the value.
 [[nodiscard]] bool is_determined(const Interval& interval, double value);
 
 }  // namespace softgrip::sysid

@@ -1,11 +1,11 @@
 #pragma once
-// The Jacobian of residuals as a matrix.
+// Matrix type of the Jacobian of residuals.
 
 #include <Eigen/Core>
 
 namespace softgrip::sysid {
 
-/// A residual a row, a coordinate a column, as Residuals::evaluate() writes them.
+/// One row for each residual and one column for each coordinate, as Residuals::evaluate() writes them.
 using Jacobian = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 }  // namespace softgrip::sysid

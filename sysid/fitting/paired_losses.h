@@ -1,6 +1,6 @@
 #pragma once
-// Losses of two models on the same blocks, compared in pairs by draws of whole blocks (bootstrap).
-// sysid/evidence/comparison.h compares by weights instead.
+// Paired comparison of the losses of two models on the same blocks, by a bootstrap over blocks.
+// sysid/evidence/comparison.h uses weights instead.
 
 #include <cstddef>
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace softgrip::sysid {
 
-/// Mean square error of every block while it was held out [mm^2].
+/// Mean square error of each block while it was held out [mm^2].
 using BlockLosses = std::vector<double>;
 
 /// A number with its uncertainty.
@@ -21,39 +21,40 @@ struct Spread {
   double upper = 0;
 };
 
-/// A number that follows from the blocks at `indices`.
+/// A statistic of the blocks at `indices`.
 using BlockStatistic = std::function<double(std::span<const std::size_t> indices)>;
-/// The statistic in every draw of as many blocks out of `blocks`, each drawn with replacement (Efron 1979).
-/// Whole blocks are drawn, so that correlation within a block does not matter. The same seed gives the same
-/// draws.
-/// @param blocks  1 and more.
+/// Returns the statistic of each bootstrap resample (Efron 1979): `blocks` blocks drawn with replacement.
+/// Whole blocks are drawn, so correlation within a block does not matter. Equal seeds give equal draws.
+/// @param blocks  number of blocks, at least 1.
 [[nodiscard]] std::vector<double> statistic_of_draws(std::size_t blocks, std::size_t draws,
                                                      std::uint64_t seed, const BlockStatistic& statistic);
 
-/// Mean over blocks of worse minus better, with the spread of the draws.
+/// Returns the mean over blocks of worse minus better [mm^2], with its standard error and 95 % interval.
 [[nodiscard]] Spread mean_difference(const BlockLosses& worse, const BlockLosses& better, std::uint64_t seed);
-/// Whether what makes the difference is missed: no draw of blocks doubts it, and it is worth `least_mm2`.
+/// Returns true if the component that distinguishes the two models is necessary: the lower limit of the 95 %
+/// interval of mean_difference() is above 0, and the mean exceeds `least_mm2`.
 [[nodiscard]] bool is_missed(const BlockLosses& without, const BlockLosses& with, double least_mm2,
                              std::uint64_t seed);
-/// Mean over blocks of log(worse / better) by the same draws: each block counts by how many times less it
-/// loses, so that one in which a fit without it went astray does not outweigh all others. A block without
-/// loss counts as a tie.
+/// Returns the mean over blocks of log(worse / better), from the same draws. Each block counts by the ratio
+/// of its losses, so one block with a very poor fit does not outweigh all others. A block in which a loss is
+/// 0 counts as a tie.
 [[nodiscard]] Spread mean_log_ratio(const BlockLosses& worse, const BlockLosses& better, std::uint64_t seed);
-/// 100 (1 - rms(after)/rms(before)) by the same draws [%].
+/// Returns the error reduction 100 (1 - rms(after)/rms(before)) [%], from the same draws.
 [[nodiscard]] Spread gain_percent(const BlockLosses& before, const BlockLosses& after, std::uint64_t seed);
-/// How often `ours` loses less than `other` when whole blocks are drawn in pairs; ties count half.
+/// Returns the share of paired draws of blocks in which `ours` has the lower loss; ties count half.
 [[nodiscard]] double winning_share(const BlockLosses& ours, const BlockLosses& other, std::uint64_t seed);
-/// Root of the mean over blocks [mm].
+/// Returns the square root of the mean over blocks [mm].
 [[nodiscard]] double rmse_mm(const BlockLosses& losses);
 
-/// Mean of worse minus better over blocks, and its standard error [mm^2].
+/// Mean over blocks of worse minus better, and its standard error [mm^2].
 struct LossDifference {
   double mean_mm2 = 0;
   double standard_error_mm2 = 0;
 };
 [[nodiscard]] LossDifference loss_difference(const BlockLosses& worse, const BlockLosses& better);
-/// Whether less is lost by twice the standard error: in the mean over blocks, or, where that is no more, in
-/// the mean of the logarithms, in which a block that is hard for both does not outweigh the others.
+/// Returns true if `better` has the lower mean loss and the difference exceeds twice its standard error,
+/// either for the losses or for their logarithms. With logarithms, a block that is difficult for both models
+/// does not outweigh the others.
 [[nodiscard]] bool is_clearly_less(const BlockLosses& better, const BlockLosses& worse);
 
 }  // namespace softgrip::sysid

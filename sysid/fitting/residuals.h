@@ -1,5 +1,5 @@
 #pragma once
-// The difference between model and readings over whole trajectories, with exact derivatives.
+// Residuals of a model over whole trajectories, with exact derivatives.
 
 #include <cstddef>
 #include <memory>
@@ -11,19 +11,20 @@
 
 namespace softgrip::sysid {
 
-/// Prediction minus reading for every reading of every record, in order. Evaluating is thread-safe.
+/// Prediction minus reading for each reading of each record, in order. evaluate() is thread-safe.
 class Residuals {
  public:
   virtual ~Residuals() = default;
 
-  /// How many residuals.
+  /// Returns the number of residuals.
   [[nodiscard]] std::size_t count() const noexcept { return count_; }
   [[nodiscard]] const FitSpace& space() const noexcept { return space_; }
   [[nodiscard]] const std::vector<Record>& records() const noexcept { return records_; }
 
+  /// Computes the residuals and the Jacobian. Returns false if the model is not defined at z, or if a value
+  /// is not finite.
   /// @param z  in the coordinates of space(). @param r  count() residuals [mm], or empty.
-  /// @param jacobian  count() rows of space().size(), derivatives by z, or empty.
-  /// Returns false where the model is not defined or its answer not finite.
+  /// @param jacobian  derivatives with respect to z: count() rows of space().size(), or empty.
   [[nodiscard]] virtual bool evaluate(std::span<const double> z, std::span<double> r,
                                       std::span<double> jacobian) const = 0;
 
@@ -35,15 +36,17 @@ class Residuals {
   std::size_t count_ = 0;
 };
 
-/// For any chain: automatic differentiation through its steps. `records` must outlive the result.
+/// Returns residuals for any chain, by automatic differentiation of its steps. `records` must outlive the
+/// result.
 [[nodiscard]] std::unique_ptr<Residuals> chain_residuals(const std::vector<Record>& records, FitSpace space);
 
-/// For a chain of Bouc-Wen with exponent 1 and Kelvin-Voigt behind at most one delay and one valve lag: the
-/// same numbers from sensitivities in closed form, several times faster. nullptr for any other chain.
+/// Returns residuals for a chain of at most one delay, at most one valve lag, Bouc-Wen with exponent 1 and
+/// Kelvin-Voigt. Sensitivities in closed form give the same values several times faster. Returns nullptr for
+/// any other chain.
 [[nodiscard]] std::unique_ptr<Residuals> separable_residuals(const std::vector<Record>& records,
                                                              FitSpace space);
 
-/// The faster of the two that serves.
+/// Returns separable_residuals() if possible, otherwise chain_residuals().
 [[nodiscard]] std::unique_ptr<Residuals> residuals_for(const std::vector<Record>& records,
                                                        const FitSpace& space);
 

@@ -17,20 +17,20 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Most iterations from one start.
+/// Maximum number of iterations from one starting point.
 constexpr int search_iterations = 60;
 constexpr int chain_search_iterations = 40;
-/// How many samples a first look at many starts needs; more only cost time.
+/// Number of samples for the coarse fit from many starting points. More samples do not improve it.
 constexpr std::size_t samples_of_a_look = 4000;
-/// Starts that end this factor above the best try once more on a slower way down.
+/// A start whose RMSE exceeds the lowest by this factor is repeated with a larger initial damping.
 constexpr double higher = 1.02;
 constexpr double slow_damping = 10;
-/// Places within this factor of the best are worth all samples.
+/// Minima within this factor of the lowest RMSE are refined on all samples.
 constexpr double not_far = 1.3;
-/// Points as near as this in the fit's scale are one place.
+/// Results whose distance in the coordinates of the fit is below this are one minimum.
 constexpr double same_place = 0.02;
 
-/// Tells several threads' progress, one at a time.
+/// Reports the progress of several threads, one call at a time.
 class Teller {
  public:
   Teller(const ShowProgress& show, std::size_t starts)
@@ -54,7 +54,7 @@ double lowest_rmse_mm(const std::vector<SearchResult>& results) {
   return lowest;
 }
 
-/// For each result the first one that ended at the same place.
+/// Returns for each result the index of the first result with the same minimum.
 std::vector<std::size_t> places(const FitSpace& space, const std::vector<SearchResult>& results) {
   std::vector<std::size_t> firsts;
   std::vector<std::vector<double>> at;
@@ -74,7 +74,7 @@ std::vector<std::size_t> places(const FitSpace& space, const std::vector<SearchR
   return place;
 }
 
-/// Every start to its end on few samples.
+/// Searches from all starting points on few samples.
 std::vector<SearchResult> look(const SeparableSearch& few, const std::vector<FitPoint>& starts,
                                unsigned threads, const ShowProgress& progress) {
   Teller teller(progress, starts.size());

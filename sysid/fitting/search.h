@@ -1,5 +1,5 @@
 #pragma once
-// Searching from many starts.
+// Parameter search from many starting points.
 
 #include <cstddef>
 #include <functional>
@@ -12,26 +12,26 @@
 
 namespace softgrip::sysid {
 
-/// How far a search has come.
+/// Progress of a search.
 struct Progress {
   std::size_t done = 0;
   std::size_t starts = 0;
   double best_rmse_mm = 0;
-  std::string stage;  ///< what is being done, where that is not a search from starts
+  std::string stage;  ///< name of the current task, if it is not a search from starting points
 };
 
-/// Called from any thread, never from two at once. May be empty.
+/// Callback for progress. It is called from any thread, but never concurrently. It may be empty.
 using ShowProgress = std::function<void(const Progress&)>;
 
-/// Where the searches from all starts ended, in their order. A separable chain is searched by variable
-/// projection: every start to its end on thinned records, and each place that one of them found, unless it is
-/// far above the best, once more on all samples. Any other chain goes through the minimiser.
-/// @param threads  0: as many as there are cores.
+/// Searches from all starting points and returns the results in their order. A separable chain is fitted by
+/// variable projection: first from each starting point on thinned records. Each distinct minimum with an RMSE
+/// of at most 1.3 times the lowest is then refined on all samples. Any other chain is fitted by minimise().
+/// @param threads  0: one thread for each core.
 [[nodiscard]] std::vector<SearchResult> search(const FitSpace& space, const std::vector<Record>& records,
                                                const std::vector<FitPoint>& starts, unsigned threads,
                                                const ShowProgress& progress);
 
-/// Puts the creep branches of a point into the order of the given time constants.
+/// Sorts the creep branches of a point into the order of the given time constants.
 void order_branches(const std::vector<double>& like_s, FitPoint& point);
 
 }  // namespace softgrip::sysid

@@ -16,12 +16,12 @@
 namespace softgrip::sysid {
 namespace {
 
-/// The rate of a dashpot without a spring, which never settles and so begins at zero.
+/// Rate of a dashpot without a spring. It never settles, so its state begins at zero.
 constexpr double without_spring_hz = 1e-30;
 
 constexpr std::size_t most_branches = 8;
 
-/// How a branch answers a stretch of one duration, with the derivatives by its rate.
+/// Response of a branch to a stretch of one duration, and its derivatives with respect to the branch's rate.
 struct BranchWeights {
   double loss, begin, rise, bend;
   double loss_by_rate, begin_by_rate, rise_by_rate, bend_by_rate;
@@ -54,7 +54,7 @@ struct Branch {
   double by_lag = 0;
 };
 
-/// Gathers rows into blocks.
+/// Collects rows into blocks.
 class Rows {
  public:
   Rows(Eigen::Index columns, SeparableRecord::Sink& sink)
@@ -76,7 +76,7 @@ class Rows {
   Eigen::Index used_ = 0;
 };
 
-/// Walks one record; Full: with sensitivities.
+/// Simulates one record; if Full is true, with sensitivities.
 template <bool Full>
 class Walker {
  public:
@@ -213,7 +213,7 @@ class Walker {
     double by_delay = 0;
     double by_lag = 0;
     if (delayed_) {
-      // The chain does not change with time: a delay moves its answer, dy/d(delay) = -y'.
+      // The chain is time-invariant, so a delay shifts its response: dy/d(delay) = -y'.
       const double g = hysteresis_.g;
       const double k = g * rate_kpa_per_s >= 0 ? rates_.growing : rates_.shrinking;
       by_delay = rate_kpa_per_s * (point_.instantaneous - point_.beta * (1 - k * std::abs(g)));

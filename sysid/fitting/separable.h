@@ -1,14 +1,14 @@
 #pragma once
-// The base chain in closed form: Bouc-Wen with exponent 1 and Kelvin-Voigt branches behind at most one
-// transport delay and one valve lag, with the sensitivities of everything.
+// The separable chain in closed form, with all sensitivities: at most one transport delay and one valve lag,
+// then Bouc-Wen with exponent 1 and Kelvin-Voigt branches.
 //
-// With h = beta g the hysteresis obeys g' = p' - gamma p' |g| - eta |p'| g, free of beta. So the displacement
+// With h = beta g the hysteresis obeys g' = p' - gamma p' |g| - eta |p'| g, without beta. The displacement
 //
 //   y = A p - beta g + sum_b a_b w_b + offset + sum_b u_b exp(-r_b t),   w_b' = p - r_b w_b,
 //
-// is linear in A = alpha + 1/k0, beta, a_b = 1/c_b and the start's offset and unsettled creep u_b, once the
-// few others are given: gamma + eta ("growing"), gamma - eta ("shrinking"), the rates r_b = k_b/c_b, delay,
-// lag and the peak before a record's start. A search needs to walk those alone (variable projection).
+// is linear in A = alpha + 1/k0, beta, a_b = 1/c_b, and the offset and unsettled creep u_b of the start. The
+// nonlinear parameters are gamma + eta ("growing"), gamma - eta ("shrinking"), the rates r_b = k_b/c_b,
+// delay, lag and the peak before a record's start. A search iterates over these only (variable projection).
 
 #include <cstddef>
 #include <optional>
@@ -23,19 +23,19 @@
 
 namespace softgrip::sysid {
 
-/// Where the parts of a separable chain stand in its model.
+/// Indices of the blocks of a separable chain in Model::blocks, and its number of branches.
 struct SeparableShape {
-  std::optional<std::size_t> delay;  ///< index in Model::blocks
+  std::optional<std::size_t> delay;
   std::optional<std::size_t> lag;
   std::size_t bouc_wen = 0;
   std::size_t kelvin_voigt = 0;
   std::size_t branches = 0;
 };
 
-/// The shape, if the model has it.
+/// Returns the shape of a separable model; nullopt for any other model.
 [[nodiscard]] std::optional<SeparableShape> separable_shape(const model::Model& model);
 
-/// The coordinates in which the chain is simple.
+/// The parameters of a separable chain in the coordinates above.
 struct SeparablePoint {
   double growing_per_kpa = 0;
   double shrinking_per_kpa = 0;
@@ -50,10 +50,11 @@ struct SeparablePoint {
 
 [[nodiscard]] SeparablePoint to_separable(const SeparableShape& shape, const FitPoint& point);
 
-/// The columns of one record's block of rows. Linear ones first: they are also the values of the terms.
+/// Column indices of one record's rows. The linear columns are first. Each contains the term that its linear
+/// parameter multiplies.
 struct SeparableColumns {
   std::size_t branches = 0;
-  bool has_start = false;  ///< columns for unsettled creep and peak are there
+  bool has_start = false;  ///< there are columns for unsettled creep and peak
 
   [[nodiscard]] static constexpr Eigen::Index pressure() { return 0; }
   [[nodiscard]] static constexpr Eigen::Index hysteresis() { return 1; }  ///< -g
@@ -63,7 +64,7 @@ struct SeparableColumns {
     return offset() + 1 + static_cast<Eigen::Index>(b);
   }
   [[nodiscard]] Eigen::Index linear() const { return has_start ? unsettled(branches) : offset() + 1; }
-  // Sensitivities of y, at the linear parameters given.
+  // Sensitivities of y to the nonlinear parameters, at the given linear parameters.
   [[nodiscard]] Eigen::Index growing() const { return linear(); }
   [[nodiscard]] Eigen::Index shrinking() const { return linear() + 1; }
   [[nodiscard]] Eigen::Index rate(std::size_t b) const { return linear() + 2 + static_cast<Eigen::Index>(b); }
@@ -73,7 +74,7 @@ struct SeparableColumns {
   [[nodiscard]] Eigen::Index all() const { return delay() + (has_start ? 3 : 2); }
 };
 
-/// A record, arranged for many evaluations.
+/// A record, prepared for many evaluations.
 class SeparableRecord {
  public:
   SeparableRecord(const Record& record, const SeparableShape& shape);
@@ -81,8 +82,8 @@ class SeparableRecord {
   [[nodiscard]] const Record& record() const noexcept { return record_; }
   [[nodiscard]] const SeparableColumns& columns() const noexcept { return columns_; }
 
-  /// Receives up to `block_rows` consecutive rows with a reading. Columns as above (linear() or all() of
-  /// them), then one more: the reading, or, with sensitivities, prediction minus reading.
+  /// Receives up to `block_rows` consecutive rows with a reading. The columns are those of SeparableColumns
+  /// (linear() or all() of them) and one more: the reading, or, with sensitivities, prediction minus reading.
   class Sink {
    public:
     virtual ~Sink() = default;
@@ -90,16 +91,16 @@ class SeparableRecord {
   };
   static constexpr Eigen::Index block_rows = 128;
 
-  /// The linear columns and the readings, at the nonlinear parameters of `point`.
+  /// Writes the linear columns and the readings, at the nonlinear parameters of `point`.
   void linear(const SeparablePoint& point, std::size_t index, Sink& sink) const;
-  /// All columns and the residual. @param index  of the record in point.starts.
+  /// Writes all columns and the residual. @param index  index of the record in point.starts.
   void full(const SeparablePoint& point, std::size_t index, Sink& sink) const;
 
  private:
   const Record& record_;
   SeparableShape shape_;
   SeparableColumns columns_;
-  PressureWalk still_;  ///< of a valve without delay and lag: always the same
+  PressureWalk still_;  ///< pressure without delay and lag, which does not depend on the parameters
 };
 
 }  // namespace softgrip::sysid

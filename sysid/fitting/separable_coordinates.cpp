@@ -1,4 +1,4 @@
-// The coordinates of SeparableSearch: between parameters, what is searched and what follows from it.
+// The coordinates of SeparableSearch, and their conversion from and to the parameters.
 
 #include <algorithm>
 #include <cmath>
@@ -34,7 +34,8 @@ void SeparableSearch::add_coordinates(const FreeParts& parts) {
   for (std::size_t b = 0; b < shape_.branches; ++b) {
     const FreeParameter& k = at(parts.stiffness[b]);
     const FreeParameter& c = at(parts.damping[b]);
-    // Slower than twenty logs is a dashpot, faster than half a sample is part of the spring.
+    // A branch slower than 20 lengths of the log acts as a dashpot; one faster than half a sample, as a
+    // spring.
     coordinates_.push_back({Coordinate::Kind::rate, b, 1,
                             std::log(std::max(k.lower / c.upper, 0.05 / longest_s)),
                             std::log(std::min(k.upper / c.lower, 2 / shortest_s))});
@@ -57,7 +58,7 @@ void SeparableSearch::add_linear(const FreeParts& parts) {
     lower_.push_back(lower);
     upper_.push_back(upper);
   };
-  // alpha and k0 enter as their sum: the one that moves bounds it.
+  // Only the sum alpha + 1/k0 is fitted. Its lower bound follows from alpha.
   const FitPoint base = space_->point(std::vector<double>(space_->size(), 0.0));
   const double fixed_alpha = base.model.blocks[shape_.bouc_wen].values[0];
   bound(parts.alpha >= 0 ? 0 : fixed_alpha, 1e6);
@@ -195,7 +196,7 @@ FitPoint SeparableSearch::to_fit_point(FitPoint start, const SeparablePoint& poi
   if (alpha_free_) {
     bw[0] = point.instantaneous - 1 / kv[0];
     if (bw[0] <= 0) {
-      // The spring alone gives more than the whole: it must be stiffer.
+      // The spring alone yields more than the fitted sum, so it must be stiffer.
       kv[0] = 1 / std::max(point.instantaneous, 1e-9);
       bw[0] = 0;
     }

@@ -1,5 +1,5 @@
 #pragma once
-// Which of a separable chain's parameters a search may move. Of separable_search only.
+// The free parameters of a separable chain. Only separable_search includes this file.
 
 #include <algorithm>
 #include <utility>
@@ -9,7 +9,7 @@
 
 namespace softgrip::sysid {
 
-/// By their index in the space; -1: fixed.
+/// Indices of the parameters in the fit space; -1: fixed.
 struct SeparableSearch::FreeParts {
   int alpha = -1, k0 = -1, beta = -1, gamma = -1, eta = -1, delay = -1, lag = -1;
   std::vector<int> stiffness, damping;

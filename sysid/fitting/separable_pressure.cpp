@@ -14,7 +14,8 @@ using model::ExponentialWeights;
 using model::Segment;
 using Number = Dual<double>;
 
-/// Gives equal durations one number. Looks at the last few only: logs alternate between few or have many.
+/// Assigns one index to equal durations. It compares only the last 8 distinct durations, because a log either
+/// alternates between few durations or has many different ones.
 class DurationTable {
  public:
   explicit DurationTable(std::vector<double>& durations) : durations_(durations) {}
@@ -34,7 +35,7 @@ class DurationTable {
   std::vector<double>& durations_;
 };
 
-/// A straight piece of the command.
+/// A linear piece of the drive.
 struct Piece {
   double duration_s;
   double end_kpa;
@@ -65,7 +66,7 @@ void append_straight(PressureWalk& walk, double begin_kpa, double end_kpa, doubl
   walk.stretches.push_back(s);
 }
 
-/// Without delay: the pieces as they are.
+/// Appends the pieces without a delay.
 void append_undelayed(PressureWalk& walk, const std::vector<Piece>& pieces, DurationTable& durations) {
   double last = walk.first_kpa;
   for (const Piece& piece : pieces) {
@@ -75,12 +76,12 @@ void append_undelayed(PressureWalk& walk, const std::vector<Piece>& pieces, Dura
   }
 }
 
-/// The pieces, `delay_s` later, cut at the samples.
+/// Appends the pieces, delayed by `delay_s` and split at the samples.
 void append_delayed(PressureWalk& walk, const Record& record, const std::vector<Piece>& pieces,
                     double delay_s, DurationTable& durations) {
   std::size_t next = 0;  // the piece after the current one
   Piece current{delay_s, walk.first_kpa};
-  double at = walk.first_kpa;  // where the current piece begins
+  double at = walk.first_kpa;  // pressure at the beginning of the current piece
   for (std::size_t i = 1; i < record.size(); ++i) {
     double remaining = record.duration_s[i];
     while (remaining > 0) {
@@ -108,8 +109,8 @@ void append_delayed(PressureWalk& walk, const Record& record, const std::vector<
   }
 }
 
-/// Passes straight stretches through a lag, as model::ValveLag does, with the derivative by its time
-/// constant.
+/// Filters linear stretches with a lag, as model::ValveLag does, and computes the derivatives with respect to
+/// its time constant.
 void apply_lag(PressureWalk& walk, double lag_s) {
   const Number rate = Number(1.0) / Number(lag_s, 1);
   std::vector<ExponentialWeights<Number>> weights;

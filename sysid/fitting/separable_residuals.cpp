@@ -1,4 +1,4 @@
-// Residuals of a separable chain: its columns, mapped to the parameters that the fit knows.
+// Residuals of a separable chain: its columns are mapped to the parameters of the fit.
 
 #include <cmath>
 
@@ -10,10 +10,10 @@
 namespace softgrip::sysid {
 namespace {
 
-/// It walks so fast that only a longer record is worth a thread.
+/// Minimum number of samples per thread. The simulation is fast, so a shorter record is not worth a thread.
 constexpr std::size_t samples_worth_one = 4 * samples_worth_a_thread;
 
-/// Derivatives of a record's columns by the free parameters: rows of the Jacobian = full columns * this.
+/// Returns the matrix M with: rows of the Jacobian = full columns of the record * M.
 Eigen::MatrixXd mapping(const SeparableShape& shape, const SeparableColumns& c, const FitSpace& space,
                         const FitPoint& point, std::span<const double> z, std::size_t record) {
   const auto& blocks = point.model.blocks;
@@ -107,7 +107,7 @@ class SeparableResiduals final : public Residuals {
  private:
   SeparableShape shape_;
   std::vector<SeparableRecord> prepared_;
-  std::vector<std::size_t> first_row_;  ///< of each record
+  std::vector<std::size_t> first_row_;  ///< first row of each record
 };
 
 }  // namespace

@@ -20,20 +20,20 @@ namespace softgrip::sysid {
 namespace {
 
 constexpr double used_share = 0.05, used_at_least_s = 2, used_at_most_share = 0.5;
-/// Standard deviation of unsettled creep, as a share of what the drive's range makes of the branch.
+/// Standard deviation of unsettled creep, as a share of the branch's settled creep over the drive's range.
 constexpr double unsettled_share = 0.3;
-/// What a model may err by, as a share of the motion that it predicts.
+/// Assumed error of the model, as a share of the predicted motion.
 constexpr double model_tolerance = 0.05;
-/// A start at rest is given up where it leaves more than so many standard deviations.
+/// Threshold [standard deviations] of the residual above which a start at rest is rejected.
 constexpr double rejected_at = 3;
-/// The speed at which the pressure arrived is that of the drive's first so many seconds.
+/// Duration [s] from the first sample over which the speed of the drive is computed.
 constexpr double speed_over_s = 0.1;
-/// The last turns are searched on a grid of so many steps, and then between its points, so many times by
-/// half.
+/// The last reversals are searched on a grid with this number of steps. The step is then halved this many
+/// times.
 constexpr int grid_steps = 5, halvings = 4;
-/// Of a correlation that is smaller nothing more is to be summed.
+/// The sum of the autocorrelation ends at the first value below this.
 constexpr double least_correlation = 0.05;
-/// Until the residual is known: independent readings in the first samples.
+/// Assumed number of independent readings in the beginning, before a residual is known.
 constexpr double independent_at_first = 5;
 
 Record beginning_of(const Record& unit) {
@@ -44,7 +44,7 @@ Record beginning_of(const Record& unit) {
   return beginning;
 }
 
-/// How many independent ones would say as much: by the sum of the autocorrelation until it vanishes.
+/// Returns the effective number of independent residuals, from the sum of the autocorrelation.
 double independent_among(const Eigen::VectorXd& residual) {
   const Eigen::Index n = residual.size();
   const double squares = residual.squaredNorm();
@@ -57,17 +57,16 @@ double independent_among(const Eigen::VectorXd& residual) {
   return std::max(1.0, static_cast<double>(n) / (1 + 2 * sum));
 }
 
-/// How far the readings are trusted: mean square of what a start leaves, and how many of them are
-/// independent.
+/// Weight of the readings: mean square of the residual, and effective number of independent readings.
 struct Trust {
   double mean_square_mm2 = 0;
   double independent = 1;
 };
 
-/// A start, and what it leaves of the first readings.
+/// A start state and its residual in the beginning.
 struct Trial {
   StartState start;
-  double misfit = std::numeric_limits<double>::infinity();  ///< minus twice the logarithm of its posterior
+  double misfit = std::numeric_limits<double>::infinity();  ///< minus twice the log posterior of the start
   Trust left;
 };
 
@@ -104,7 +103,7 @@ class StartSearch {
     return rest;
   }
 
-  /// Readings minus what the model makes of a start without offset and unsettled creep.
+  /// Returns the readings minus the prediction from `start` with zero offset and settled creep.
   [[nodiscard]] Eigen::VectorXd unexplained(StartState start) const {
     start.offset_mm = 0;
     std::fill(start.unsettled_mm.begin(), start.unsettled_mm.end(), 0.0);
@@ -125,7 +124,7 @@ class StartSearch {
     return trial;
   }
 
-  /// Offset and unsettled creep by least squares under their priors, for one course of the pressure.
+  /// Estimates offset and unsettled creep by least squares with priors, for given reversals of the pressure.
   [[nodiscard]] Trial with_creep(StartState start, const Trust& trust) const {
     const Eigen::VectorXd y = unexplained(start);
     const double weight = trust.independent / (static_cast<double>(y.size()) * trust.mean_square_mm2);
@@ -154,14 +153,14 @@ class StartSearch {
     return best;
   }
 
-  /// The start that the first readings and the priors make most probable.
+  /// Returns the start with the highest posterior probability, given the first readings and the priors.
   [[nodiscard]] Trial anywhere(const StartState& rest) {
     prepare_creep();
     const std::vector<StartState> starts = grid(rest);
     const Eigen::VectorXd y = unexplained(rest);
     const double spread_mm2 = (y.array() - y.mean()).square().mean();
     Trial best = best_of(starts, {std::max(spread_mm2, smallest_mm2), independent_at_first});
-    // How much is left decides how far the priors count, and the other way round.
+    // The residual determines the weight of the priors, and the priors influence the residual: iterate.
     for (int pass = 0; pass < 2; ++pass) best = best_of(starts, best.left);
     double peak_step = (highest_kpa_ - first_kpa_) / grid_steps;
     double valley_step = (first_kpa_ - lowest_kpa_) / grid_steps;
@@ -171,7 +170,7 @@ class StartSearch {
       best = best_of(around(best.start, peak_step, valley_step), best.left);
     }
     if (!under_pressure_) return best;
-    // What one stroke cannot tell would be chosen by the noise.
+    // One stroke may not determine the start. Without this rule, the noise would select it.
     const Trial usual = with_creep(turned(rest, highest_kpa_, lowest_kpa_), best.left);
     return usual.misfit < best.misfit + square(rejected_at) ? usual : best;
   }
@@ -194,7 +193,7 @@ class StartSearch {
     }
   }
 
-  /// Every pair of a last peak and a valley behind it.
+  /// Returns `rest` and all pairs of a last peak and a later valley on the grid.
   [[nodiscard]] std::vector<StartState> grid(const StartState& rest) const {
     std::vector<StartState> starts{rest};
     for (int peak = 0; peak <= grid_steps; ++peak) {
@@ -228,7 +227,7 @@ class StartSearch {
     return (beginning_.drive_kpa[i] - first_kpa_) / (beginning_.time_s[i] - beginning_.time_s[0]);
   }
 
-  /// Whether a start at rest leaves what neither noise nor an error of the model explains.
+  /// Returns true if neither noise nor the assumed model error explains the residual of a start at rest.
   [[nodiscard]] bool is_rejected(const Trial& resting, const Trial& moving) const {
     const Eigen::VectorXd still = unexplained(resting.start);
     double sum = 0, squares = 0;
@@ -252,8 +251,8 @@ class StartSearch {
   double first_kpa_, lowest_kpa_ = 0, highest_kpa_ = 0;
   bool under_pressure_;
   std::vector<std::size_t> rows_;  ///< samples with readings
-  Eigen::MatrixXd columns_;        ///< what offset and unsettled creep add
-  Eigen::VectorXd precision_;      ///< of their priors
+  Eigen::MatrixXd columns_;        ///< contributions of offset and unsettled creep
+  Eigen::VectorXd precision_;      ///< precision of their priors
 };
 
 }  // namespace

@@ -1,5 +1,5 @@
 #pragma once
-// The walk of a record through a Chain<T>; included where a T is chosen (double, automatic differentiation).
+// Simulation of a record with a Chain<T>, for any number type T (double, or with derivatives).
 
 #include <algorithm>
 #include <cmath>
@@ -11,28 +11,28 @@
 
 namespace softgrip::sysid {
 
-/// Long enough for a valve, and then for any creep, to settle before the first sample.
+/// Durations [s] after which a valve, or any creep, has settled before the first sample.
 inline constexpr double valve_settling_s = 10;
 inline constexpr double creep_settling_s = 1e6;
 
-/// A pressure that arrives at the first sample has moved at that speed for so long, at most.
+/// Maximum duration [s] for which the pressure moved at its arrival speed before the first sample.
 inline constexpr double longest_arrival_s = 2;
 
-/// A pressure that turned at a peak and at a valley has done so as often, so that a hysteresis is in its
-/// cycle.
+/// Number of cycles between a peak and a valley before the first sample, so that the hysteresis is in its
+/// steady cycle.
 inline constexpr int cycles_before = 15;
 
-/// Where a pressure that arrives at the first sample was before, no farther away than its last turn; without
-/// an arrival the first pressure.
+/// Returns the pressure [kPa] at which the final movement to the first sample began. It is not beyond the
+/// last reversal. Without an arrival speed, it is the first pressure.
 inline double arrived_from_kpa(double first_kpa, double last_turn_kpa, double arrival_kpa_per_s) {
   const double from_kpa = first_kpa - arrival_kpa_per_s * longest_arrival_s;
   return arrival_kpa_per_s > 0 ? std::clamp(from_kpa, std::min(last_turn_kpa, first_kpa), first_kpa)
                                : std::clamp(from_kpa, first_kpa, std::max(last_turn_kpa, first_kpa));
 }
 
-/// Brings a chain to where a record begins, by the turns that its StartState names: at rest at the peak, then
-/// to the valley, then to the first pressure, where all settles or which it reaches at the speed of the
-/// arrival. Without turns at rest at the first pressure.
+/// Brings a chain to the start of a record by the reversals in its StartState: from rest at the peak to the
+/// valley, then to the first pressure. There the chain settles, or it arrives at the arrival speed. Without
+/// reversals, the chain is at rest at the first pressure.
 template <class T>
 void start(model::Chain<T>& chain, const Record& record, const T& peak_before_kpa, const StartState& state) {
   const double first_kpa = record.drive_kpa.front();
@@ -41,7 +41,7 @@ void start(model::Chain<T>& chain, const Record& record, const T& peak_before_kp
   // A cycle between a valley and the first pressure has its peak there.
   const bool peaked =
       turned ? model::value_of(peak_before_kpa) >= first_kpa : model::value_of(peak_before_kpa) > first_kpa;
-  // What remembers the largest load so far has seen that of the earlier records.
+  // Blocks that depend on the largest load so far include the load of the earlier records.
   chain.reset(T(record.largest_before_kpa));
   chain.rest(peaked ? peak_before_kpa : T(turned ? valley_kpa : first_kpa));
   if (!peaked && !turned) return;
@@ -63,13 +63,14 @@ void start(model::Chain<T>& chain, const Record& record, const T& peak_before_kp
   if (from_kpa != first_kpa) chain.step(T((first_kpa - from_kpa) / state.arrival_kpa_per_s), T(first_kpa));
 }
 
-/// The same without a valley and an arrival; a record that begins at rest has no peak before it either.
+/// Brings a chain to the start of a record without a valley and an arrival speed. The peak is used only if
+/// the start of the record is unknown.
 template <class T>
 void start(model::Chain<T>& chain, const Record& record, const T& peak_before_kpa) {
   start(chain, record, record.start_unknown ? peak_before_kpa : T(record.drive_kpa.front()), StartState{});
 }
 
-/// What surrounds the rig at the end of sample `i`; without a column the usual.
+/// Returns time, temperature and supply pressure at sample `i`. A missing column gives the default value.
 inline model::Surroundings surroundings_at(const Record& record, std::size_t i) {
   model::Surroundings around;
   around.time_s = record.campaign_time_s + record.time_s[i];
@@ -78,12 +79,13 @@ inline model::Surroundings surroundings_at(const Record& record, std::size_t i) 
   return around;
 }
 
-/// The drive at the end of the step to sample `i` >= 1 [kPa].
+/// Returns the drive at the end of the step to sample `i` >= 1 [kPa].
 inline double drive_at_end(const Record& record, std::size_t i) {
   return record.held ? record.drive_kpa[i - 1] : record.drive_kpa[i];
 }
 
-/// Calls sink(i, displacement) for every sample. The displacement lacks the offset and the unsettled creep.
+/// Calls sink(i, displacement) for each sample. The displacement does not include the offset and the
+/// unsettled creep.
 template <class T, class Sink>
 void walk(const model::Model& model, std::span<const T> values, const Record& record,
           const T& peak_before_kpa, const StartState& state, Sink&& sink) {
