@@ -1,5 +1,6 @@
 #pragma once
-// A fit to one stroke may cancel large terms against each other that the next stroke does not cancel.
+// Plausibility check of a fitted model. In a fit to one stroke, large terms may cancel each other; in the
+// next stroke they may not.
 
 #include <vector>
 
@@ -8,9 +9,9 @@
 
 namespace softgrip::sysid {
 
-/// Returns true if the answer to the drive of every record, and to the same drive once more behind it, leaves
-/// the range of the record's readings by no more than the width of that range. A repeated stroke differs from
-/// the first by creep and training, which are less than the stroke.
+/// Simulates the drive of each record twice in succession. Returns true if each response exceeds the range of
+/// the record's readings by at most the width of that range. A repeated stroke differs from the first by
+/// creep and training, which are smaller than the stroke.
 [[nodiscard]] bool stays_bounded(const FitPoint& point, const std::vector<Record>& records);
 
 }  // namespace softgrip::sysid

@@ -10,7 +10,7 @@ namespace {
 
 using Segment = model::Segment<double>;
 
-/// Delay, and lag or regulator, as far as the structure has them.
+/// Delay, and lag or regulator, if the structure has them.
 class Valve {
  public:
   Valve(const Record& record, const BaseStructure& structure, const NonlinearNumbers& n, double first_kpa)

@@ -1,5 +1,5 @@
 #pragma once
-// The pressure in the finger: what the delay and the valve's lag of a structure make of a record's drive.
+// The pressure in the finger: the drive of a record after the delay and the valve's lag of a structure.
 
 #include <cstddef>
 #include <vector>
@@ -10,20 +10,20 @@
 
 namespace softgrip::sysid {
 
-/// One record's, as the segments that delay and lag cut it into, exact for a drive that is straight between
-/// samples or held.
+/// The pressure for one record, as segments. It is exact for a drive that is linear or constant between
+/// samples.
 struct DrivenPressure {
-  double first_kpa = 0;                          ///< at the first sample
+  double first_kpa = 0;                          ///< pressure at the first sample
   std::vector<model::Segment<double>> segments;  ///< [s], [kPa]
-  std::vector<std::size_t> until;                ///< per sample: how many of them end there or before
+  std::vector<std::size_t> until;                ///< per sample: number of segments that end there or before
 
   [[nodiscard]] double at_kpa(std::size_t sample) const {
     return until[sample] == 0 ? first_kpa : segments[until[sample] - 1].end;
   }
 };
 
-/// Writes into `driven`. Its memory is used again, because a search calls this thousands of times.
-/// @param numbers  those of the delay, the lag and the regulator count, as far as `structure` has them.
+/// Computes `driven`. Its memory is reused, because a search calls this function thousands of times.
+/// @param numbers  the parameters of delay, lag and regulator are used if `structure` has these parts.
 void drive(const Record& record, const BaseStructure& structure, const NonlinearNumbers& numbers,
            DrivenPressure& driven);
 

@@ -21,10 +21,10 @@ namespace {
 
 using Failure = tl::unexpected<std::string>;
 
-/// A search that ends within this of the best RMSE has reached it.
+/// A search has reached the best RMSE if its RMSE exceeds the best by at most this share.
 constexpr double reached_share = 1e-3;
 constexpr std::size_t fewest_readings = 100;
-/// A structure is chosen with means over at most this time [s], so that a valve's lag is still seen.
+/// Maximum averaging time [s] for the choice of a structure. Longer means would hide the lag of a valve.
 constexpr double longest_mean_s = 0.02;
 
 StructureEvidence evidence_of(const StructureChoice& choice, const std::vector<WithoutIngredient>& ablation) {
@@ -50,7 +50,7 @@ std::string chosen_by_means(const std::vector<Record>& averaged) {
          " ms, and its parameters were fitted to all samples";
 }
 
-/// Intervals of the numbers that the fit moved, those that stand at zero or at a bound without one.
+/// Adds the estimates of the free parameters. A parameter that is 0 or at a bound has no interval.
 void add_estimates(const StructureTrial& trial, Identification& result) {
   const auto residuals = residuals_for(
       result.records, FitSpace(trial.point.model, result.records, free_numbers(trial.point.model)));
@@ -96,7 +96,7 @@ void join_valve(const std::vector<Log>& logs, const IdentifyOptions& options, Id
   StructureEvidence::Valve valve{
       stage.delay_s,      stage.filling_s,         stage.venting_s,          stage.rmse_kpa,
       stage.rmse_percent, stage.held_out_rmse_kpa, pressure_noise_kpa(logs), {}};
-  // Both in a row, from the measured pressure at which each log begins.
+  // Valve and finger in series. Each log begins at its first measured pressure.
   std::vector<Log> driven = logs;
   for (Log& log : driven) log.pressure_kpa = predicted_pressure_kpa(stage, log, options.record.held);
   RecordOptions measured = options.record;

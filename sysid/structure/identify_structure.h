@@ -1,5 +1,6 @@
 #pragma once
-// Identification that chooses the structure; where the pressure was measured, in two stages joined at it.
+// Identification with a choice of the model structure. If the pressure was measured, valve and finger are
+// identified separately.
 
 #include <vector>
 
@@ -10,10 +11,11 @@
 
 namespace softgrip::sysid {
 
-/// Of `options`, `fixed`, `free`, `start_points`, `exponents`, `robust` and `profile` belong to the fit of a
-/// given structure and are not used. With Drive::command and a pressure_kpa column in every log the finger is
-/// identified from the measured pressure and the valve from command to measured pressure; the model has both,
-/// the scores are the finger's. Fails with a sentence.
+/// Chooses a structure and identifies it. With Drive::command and a pressure_kpa column in each log, the
+/// finger is identified from the measured pressure, and the valve from command to measured pressure. The
+/// model contains both; the scores are those of the finger. The members `fixed`, `free`, `start_points`,
+/// `exponents`, `robust` and `profile` of `options` are not used, because they concern a given structure. The
+/// error is a sentence.
 [[nodiscard]] tl::expected<Identification, std::string> identify_structure(
     const std::vector<Log>& logs, StructureQuestion question, const IdentifyOptions& options = {});
 

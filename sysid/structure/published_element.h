@@ -1,6 +1,5 @@
 #pragma once
-// The published element (Bouc-Wen with two Kelvin-Voigt branches) behind a delay and a lag, with its own
-// search.
+// Fit of the published element (Bouc-Wen with two Kelvin-Voigt branches) after a delay and a lag.
 
 #include <cstdint>
 #include <vector>
@@ -16,17 +15,18 @@ struct PublishedElement {
   std::vector<double> start_rmse_mm;
 };
 
-/// From many starts. @param drive  Drive::measured: without delay and lag.
+/// Fits the element from `starts` starting points. @param drive  Drive::measured: without delay and lag.
 [[nodiscard]] PublishedElement fit_published(const std::vector<Record>& records, Drive drive,
                                              std::size_t starts, std::uint64_t seed);
-/// From where it stands, for records of the same samples.
+/// Fits the element from the point `from`, to records with the same samples.
 [[nodiscard]] FitPoint refit_published(const std::vector<Record>& records, const FitPoint& from);
 
-/// Whether it rises with the pressure everywhere: beta times its steepest slope is below alpha + 1/k0.
+/// Returns true if the displacement increases with the pressure in every state: beta times the maximum slope
+/// of the hysteretic state is less than alpha + 1/k0.
 [[nodiscard]] bool rises_everywhere(const model::Model& model);
 
-/// What a fit of it may move, by flat index: everything but the exponent and k0 (which enters with alpha as
-/// one sum).
+/// Returns the flat indices of the free parameters: all except the exponent and k0. k0 is fixed, because the
+/// data determine only the sum of alpha and 1/k0.
 [[nodiscard]] std::vector<std::size_t> free_numbers(const model::Model& model);
 
 }  // namespace softgrip::sysid

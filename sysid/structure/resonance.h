@@ -1,6 +1,6 @@
 #pragma once
-// A second-order mode of mass and spring (model/blocks/inertia.h) behind a structure that was fitted without
-// one.
+// Fit of a second-order mode of mass and spring (model/blocks/inertia.h) after a structure that was fitted
+// without this mode.
 
 #include <limits>
 #include <vector>
@@ -15,12 +15,13 @@ struct ResonantFit {
   double rmse_mm = std::numeric_limits<double>::infinity();
 };
 
-/// The point with a resonance. Period and damping ratio are searched from several periods between 6 sampling
-/// intervals and a tenth of the longest record (10 s at most). Dead time and time constants of the valve are
-/// fitted with them; all other numbers stay.
+/// Adds a resonance to a point. The search for period and damping ratio starts from several periods between 6
+/// sampling intervals and 10 % of the longest record (at most 10 s). Dead time and time constants of the
+/// valve are fitted too; all other parameters are fixed.
 [[nodiscard]] ResonantFit with_resonance(const FitPoint& point, const std::vector<Record>& records);
 
-/// The point with the resonance of `resonant`, fitted from there to other readings of the same records.
+/// Adds the resonance of `resonant` to `point` and fits it to other readings of the same records, starting
+/// from `resonant`.
 [[nodiscard]] FitPoint with_resonance_of(const FitPoint& resonant, FitPoint point,
                                          const std::vector<Record>& records);
 

@@ -1,12 +1,12 @@
 #pragma once
-// The structures that a finger's base may have. With q the driving pressure behind dead time and lag:
+// The possible model structures of a finger. With the pressure q after dead time and lag:
 //
 //   z = hysteresis(b(q)) + sum_j c_j creep_j(q),   tau_j creep_j' = q - creep_j,   y = g(z) + offset
 //
-// b: the envelopes of model::EnvelopeMap, of generalised plays, or b(q) = q.
+// b: the envelope function model::EnvelopeMap of generalised play operators, or b(q) = q.
 // hysteresis: play operators, sum_i w_i play_(r_i)(q) (Prandtl-Ishlinskii; Kuhnen, European Journal of
-// Control 9, 2003), or Bouc-Wen's element with exponent 1. Weights are not negative, so that every fitted
-// model is monotone in its newest pressure and has an inverse. g is the block `characteristic`.
+// Control 9, 2003), or the Bouc-Wen element with exponent 1. Weights are not negative. Therefore each fitted
+// model is monotone in the current pressure and has an inverse. g is the block `characteristic`.
 
 #include <cstddef>
 #include <string>
@@ -17,62 +17,65 @@ namespace softgrip::sysid {
 
 enum class HysteresisForm { bouc_wen, play };
 
-/// Which ingredients a structure has.
+/// The components of a structure.
 struct BaseStructure {
   HysteresisForm hysteresis = HysteresisForm::play;
-  bool hysteretic = true;      ///< false: the elastic gain alone
-  bool creep = true;           ///< a ladder of Kelvin-Voigt branches
-  bool slow_creep = true;      ///< the ladder reaches beyond a tenth of the longest record
+  bool hysteretic = true;      ///< false: only the elastic gain
+  bool creep = true;           ///< a chain of Kelvin-Voigt branches with fixed time constants
+  bool slow_creep = true;      ///< the chain has time constants above 10 % of the longest record
   bool delay = true;           ///< dead time between the drive and the finger
-  bool lag = true;             ///< a first-order lag behind it
-  bool two_way = true;         ///< filling and venting have a time constant each
-  bool second_lag = false;     ///< another lag in front of the first, both directions alike
+  bool lag = true;             ///< a first-order lag after the delay
+  bool two_way = true;         ///< filling and venting have different time constants
+  bool second_lag = false;     ///< another lag before the first, with one time constant for both directions
   bool regulator = false;      ///< the lag is that of a regulator with an overlap, see RegulatedPressure
-  bool characteristic = true;  ///< a bent, monotone map behind the sum
-  bool resonance = false;      ///< a second-order mode behind the map, see with_resonance()
-  bool envelopes = false;      ///< the plays are generalised ones: their envelopes are bent
-  bool hinged_creep = false;   ///< creep that depends on the pressure: a short ladder behind every hinge
-  bool wandering = false;      ///< beside it every record's zero wanders as it likes; no part of the finger
-  /// The published element: Bouc-Wen and two Kelvin-Voigt branches whose time constants are searched too, one
-  /// lag.
+  bool characteristic = true;  ///< a nonlinear, monotone map after the sum
+  bool resonance = false;      ///< a second-order mode after the map, see with_resonance()
+  bool envelopes = false;      ///< generalised play operators with nonlinear envelopes
+  bool hinged_creep =
+      false;               ///< pressure-dependent creep: a short chain above each threshold pressure (hinge)
+  bool wandering = false;  ///< a piecewise linear drift of each record's zero, not a part of the finger
+  /// The published element: one lag, Bouc-Wen, and two Kelvin-Voigt branches whose time constants are fitted
+  /// too.
   bool published = false;
 
   bool operator==(const BaseStructure&) const = default;
 };
 
-/// "prandtl_ishlinskii" or "bouc_wen", as `softgrip identify --structure` calls it.
+/// Returns "prandtl_ishlinskii" or "bouc_wen", the names in `softgrip identify --structure`.
 [[nodiscard]] std::string_view name_of(HysteresisForm form);
-/// "play operators, creep ladder, delay, lag (filling and venting), characteristic"
+/// Returns, for example, "play operators, creep ladder, delay, lag (filling and venting), characteristic".
 [[nodiscard]] std::string description_of(const BaseStructure& structure);
 
-/// What stays fixed while a structure is fitted: where its operators stand.
+/// The fixed parameters of the operators: thresholds, time constants and hinges. The fit does not change
+/// them.
 struct StructureGrid {
-  double largest_kpa = 0;              ///< of the drive's magnitude
-  double span_mm = 0;                  ///< of the readings, from zero
-  std::vector<double> thresholds_kpa;  ///< of the plays besides the elastic one, ascending
-  std::vector<double> ladder_s;        ///< time constants of the creep branches, ascending
-  double slow_from_s = 0;              ///< branches from here on are slow creep
-  std::vector<double> hinges_kpa;      ///< where pressure-dependent creep begins, ascending
-  std::vector<double> hinge_ladder_s;  ///< its time constants
+  double largest_kpa = 0;  ///< largest magnitude of the drive
+  double span_mm = 0;      ///< largest magnitude of the readings
+  std::vector<double>
+      thresholds_kpa;              ///< thresholds of the play operators, without the elastic one, ascending
+  std::vector<double> ladder_s;    ///< time constants of the creep branches, ascending
+  double slow_from_s = 0;          ///< branches with at least this time constant are slow creep
+  std::vector<double> hinges_kpa;  ///< threshold pressures of pressure-dependent creep, ascending
+  std::vector<double> hinge_ladder_s;  ///< time constants of pressure-dependent creep
 };
 
-/// The numbers of a structure that its reading does not depend on linearly.
+/// The nonlinear parameters of a structure.
 struct NonlinearNumbers {
   double delay_s = 0;
   double filling_s = 0;  ///< time constant while the pressure rises; 0: none
   double venting_s = 0;
-  double second_s = 0;        ///< of the second lag
-  double pilot_band_kpa = 0;  ///< regulator: of the command, ignored after a reversal
+  double second_s = 0;        ///< time constant of the second lag
+  double pilot_band_kpa = 0;  ///< regulator: change of the command that is ignored after a reversal
   double overlap_kpa = 0;     ///< regulator: as in RegulatorNumbers, like the next two
   double integral_s = 0;
   double full_open_kpa = 0;
-  double curvature = 0;        ///< of the characteristic
+  double curvature = 0;        ///< curvature of the characteristic
   double growing_per_kpa = 0;  ///< Bouc-Wen: gamma + eta
   double narrowing = 0.5;      ///< Bouc-Wen: eta / (gamma + eta), in (0, 1]
-  double trained_kpa = 0;      ///< plays: the largest load before the logs
+  double trained_kpa = 0;      ///< play operators: the largest load before the logs
   double envelope_bend = 0;    ///< as in model::EnvelopeMap, like the next one
   double envelope_skew = 0;
-  std::vector<double> peak_before_kpa;  ///< by record, see StartState; of records that start from rest 0
+  std::vector<double> peak_before_kpa;  ///< by record, see StartState; 0 for records that start from rest
 
   bool operator==(const NonlinearNumbers&) const = default;
 };

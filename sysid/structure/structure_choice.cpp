@@ -21,12 +21,13 @@ namespace softgrip::sysid {
 namespace {
 
 constexpr std::array ridges{1e-7, 1e-6, 1e-5, 1e-4, 1e-3};
-/// With this one the nonlinear numbers are searched from every start; with the others they are near.
+/// Index of the ridge parameter with which the nonlinear parameters are searched from all starting points.
+/// For the others, the search begins at this result.
 constexpr std::size_t first_ridge = 2;
-/// In a fold the nonlinear numbers are not far from those of all readings.
+/// Maximum number of iterations in a fold, whose nonlinear parameters are close to those of all readings.
 constexpr int fold_iterations = 5;
 
-/// Whether the creep ladder has a rung between every two.
+/// yes: the chain of creep branches has an additional time constant between each two neighbours.
 enum class RungsBetween { no, yes };
 
 std::vector<double> with_rungs_between(const std::vector<double>& ladder_s) {
@@ -57,20 +58,21 @@ class Judge {
     return fit_form(records_, structure, grid_, with(ridge), near);
   }
 
-  /// From the numbers of a similar one on.
+  /// Evaluates a structure. The fit begins at the nonlinear parameters of a similar structure.
   [[nodiscard]] StructureTrial judge_near(const BaseStructure& structure, double ridge,
                                           const NonlinearNumbers& numbers) const {
     return judge(fit(structure, ridge, &numbers), ridge, fold_iterations);
   }
 
-  /// With a regulator in the place of the lag, from the numbers of a trial with the lag on.
+  /// Evaluates a structure with a regulator instead of the lag. The fit begins at the parameters of the trial
+  /// with the lag.
   [[nodiscard]] StructureTrial judge_regulated(BaseStructure structure, const StructureTrial& lagging) const {
     structure.regulator = true;
     structure.second_lag = false;
     return judge_near(structure, lagging.ridge, with_usual_regulator(lagging.numbers, grid_));
   }
 
-  /// A trial with a resonance behind it. Its other numbers are those that were fitted without one.
+  /// Evaluates a trial with an additional resonance. The member `numbers` remains that of the trial.
   [[nodiscard]] StructureTrial judge_resonant(const StructureTrial& still) const {
     StructureTrial trial = still;
     trial.structure.resonance = true;
@@ -91,7 +93,8 @@ class Judge {
                                : judge(fit(structure, ridge), ridge, fold_iterations);
   }
 
-  /// @param iterations  in every fold, from the numbers of the whole; 0: they stay
+  /// Evaluates a fitted structure. @param iterations  maximum number in each fold, starting from the
+  /// parameters of `whole`; 0: the nonlinear parameters remain fixed.
   [[nodiscard]] StructureTrial judge(const FittedStructure& whole, double ridge, int iterations) const {
     StructureTrial trial = trial_of(whole.structure);
     trial.ridge = ridge;
@@ -147,7 +150,7 @@ class Judge {
   Division division_;
 };
 
-/// The simplest first.
+/// Returns the candidates; the simplest is first.
 std::vector<BaseStructure> candidates(const StructureChoiceOptions& options) {
   const bool delay = options.drive == Drive::command;
   std::vector<BaseStructure> list;
@@ -173,7 +176,7 @@ std::vector<BaseStructure> candidates(const StructureChoiceOptions& options) {
   return list;
 }
 
-/// The structure without the ingredient; as it is where it does not have it.
+/// Returns the structure without the component, or unchanged if it does not have the component.
 BaseStructure without(BaseStructure s, Ingredient ingredient) {
   switch (ingredient) {
     case Ingredient::hysteresis:
@@ -224,7 +227,7 @@ BaseStructure without(BaseStructure s, Ingredient ingredient) {
 }
 
 bool has(const BaseStructure& s, Ingredient ingredient) {
-  // Of one of the two alone the other says all.
+  // If the structure has only a delay or only a lag, removing it is a separate entry of the ablation.
   if (ingredient == Ingredient::latency) return s.delay && s.lag;
   return without(s, ingredient) != s;
 }
@@ -243,7 +246,7 @@ std::size_t best_of(const std::vector<StructureTrial>& trials) {
                                   trials.begin());
 }
 
-/// The first from `first` on that is within one standard error of the best.
+/// Returns the first trial, from index `first`, whose loss is within one standard error of the best.
 std::size_t simplest_of_the_best(const std::vector<StructureTrial>& trials, std::size_t first = 0) {
   const std::size_t best = best_of(trials);
   for (std::size_t i = first; i < best; ++i) {
@@ -254,7 +257,7 @@ std::size_t simplest_of_the_best(const std::vector<StructureTrial>& trials, std:
   return best;
 }
 
-/// Takes the trial if it loses clearly less than the chosen one.
+/// Chooses the trial if its loss is significantly lower than that of the chosen one.
 void offer(StructureTrial trial, StructureChoice& choice) {
   if (!may_be_chosen(trial) ||
       !is_clearly_less(trial.block_losses_mm2, choice.trials[choice.chosen].block_losses_mm2))
@@ -263,8 +266,8 @@ void offer(StructureTrial trial, StructureChoice& choice) {
   choice.trials.push_back(std::move(trial));
 }
 
-/// Offers the chosen structure as `judged` extends it and, since creep may have made up for what it adds,
-/// with simpler creep.
+/// Offers the extension of the chosen structure that `judged` fits. Pressure-dependent creep may have
+/// compensated for the missing extension, so the extension without it is tried too.
 void offer_extended(const std::function<StructureTrial(const BaseStructure&, const StructureTrial&)>& judged,
                     unsigned threads, StructureChoice& choice) {
   const StructureTrial chosen = choice.trials[choice.chosen];
@@ -277,7 +280,8 @@ void offer_extended(const std::function<StructureTrial(const BaseStructure&, con
   offer(std::move(extended[simplest_of_the_best(extended)]), choice);
 }
 
-/// @param near  where the nonlinear numbers begin; nullptr: at every start.
+/// Fits the structure of a trial. @param near  starting point of the nonlinear parameters; nullptr: all usual
+/// ones.
 FitPoint fit_from(const NonlinearNumbers* near, const StructureTrial& trial,
                   const std::vector<Record>& records, Drive drive, StructureFitOptions options = {}) {
   if (trial.structure.published) return refit_published(records, trial.point);
@@ -401,7 +405,8 @@ std::vector<WithoutIngredient> ablation_of(const std::vector<Record>& records, c
   const Judge judge(records, options);
   const Judge among_more_rungs(records, options, RungsBetween::yes);
   parallel_for(ablation.size(), options.threads, [&](std::size_t i) {
-    // A branch of the finger's own between two rungs is made up for by both; the upper one may be slow creep.
+    // A creep time constant of the finger between two of the chain is represented by both of them. The larger
+    // one may count as slow creep, so slow creep is removed from a chain with intermediate time constants.
     const Judge& fair = ablation[i].ingredient == Ingredient::slow_creep ? among_more_rungs : judge;
     BaseStructure still = ablation[i].trial.structure;
     const bool rings = std::exchange(still.resonance, false);
@@ -413,7 +418,7 @@ std::vector<WithoutIngredient> ablation_of(const std::vector<Record>& records, c
 }
 
 FitPoint fit_again(const StructureTrial& trial, const std::vector<Record>& records, Drive drive) {
-  // A regulator is dear to search for, and stays where it is whatever the finger does.
+  // The search for a regulator is expensive, and its parameters do not depend on the finger.
   return fit_from(trial.structure.regulator ? &trial.numbers : nullptr, trial, records, drive);
 }
 

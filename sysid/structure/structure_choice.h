@@ -1,5 +1,5 @@
 #pragma once
-// Which structure a finger has: a few fixed ones, judged on readings that they were not fitted to.
+// Choice of the model structure of a finger from fixed candidates, by their error on held-out readings.
 
 #include <array>
 #include <cstdint>
@@ -14,18 +14,19 @@
 
 namespace softgrip::sysid {
 
-/// What is asked for.
+/// The requested structure.
 enum class StructureQuestion { automatic, bouc_wen, prandtl_ishlinskii };
 
 struct StructureChoiceOptions {
-  /// The published element gives way to what leaves less than this share of its held-out error, however
-  /// uncertain that is; 0: to nothing. Where a cause is missing, one block may spoil what all say.
+  /// The published element is rejected if the held-out error of another structure is less than this share of
+  /// its own, even if the difference is uncertain; 0: never. If a cause is missing, one block may dominate
+  /// the standard error.
   double published_yields_below = 0;
   StructureQuestion question = StructureQuestion::automatic;
-  Drive drive = Drive::command;  ///< with the measured pressure no dead time is looked for
-  /// A second lag and a resonance are tried too. To the diagnosis they are causes of their own.
+  Drive drive = Drive::command;  ///< Drive::measured: structures without a dead time
+  /// Also try a second lag and a resonance. The diagnosis treats them as causes.
   bool dynamics = false;
-  std::size_t starts = 20;  ///< of the published element's search
+  std::size_t starts = 20;  ///< starting points for the published element
   /// Creep of at least this time constant is slow creep [s]; 0: from a tenth of the longest record on.
   double slow_from_s = 0;
   std::uint64_t seed = 1;
@@ -33,22 +34,22 @@ struct StructureChoiceOptions {
   std::function<void(const std::string&)> progress;  ///< from any thread
 };
 
-/// What a structure can be made without, to see what it brings.
+/// Components that are removed from a structure to measure their contribution.
 enum class Ingredient {
   hysteresis,
-  play_operators,  ///< instead of them Bouc-Wen's element
+  play_operators,  ///< replaced by the Bouc-Wen element
   creep,
   slow_creep,
   pressure_dependent_creep,
   delay,
   lag,
   second_lag,
-  latency,         ///< delay and lag: each makes up for most of the other
-  regulator,       ///< instead of it a lag
-  venting_lag,     ///< one time constant for both directions
-  characteristic,  ///< and the bend of the envelopes: each makes up for most of the other
+  latency,         ///< delay and lag together: each compensates for most of the other
+  regulator,       ///< replaced by a lag
+  venting_lag,     ///< replaced by one time constant for both directions
+  characteristic,  ///< together with the envelopes: each compensates for most of the other
   resonance,
-  envelopes  ///< plays instead of generalised ones
+  envelopes  ///< generalised play operators, replaced by plain ones
 };
 inline constexpr std::array all_ingredients{Ingredient::hysteresis,
                                             Ingredient::play_operators,
@@ -66,19 +67,20 @@ inline constexpr std::array all_ingredients{Ingredient::hysteresis,
                                             Ingredient::envelopes};
 [[nodiscard]] std::string_view name_of(Ingredient ingredient);
 
-/// One structure, fitted to everything and, fold by fold, without the blocks on which it is then judged.
+/// One structure, fitted to all readings. For each fold it is fitted again without the blocks of the fold,
+/// which are then used for its evaluation.
 struct StructureTrial {
   BaseStructure structure;
   FitPoint point;
-  NonlinearNumbers numbers;  ///< empty of the published element
+  NonlinearNumbers numbers;  ///< empty for the published element
   double ridge = 0;
-  double rmse_mm = 0;  ///< of the readings it was fitted to
+  double rmse_mm = 0;  ///< RMSE over the readings of the fit
   bool converged = false;
-  bool bounded = true;     ///< see stays_bounded(); otherwise it is not chosen
-  bool invertible = true;  ///< the published element may move the wrong way first; it is then not chosen
-  std::vector<double> start_rmse_mm;     ///< where the search from each start ended
-  std::vector<double> block_losses_mm2;  ///< mean square of each block while it was held out
-  double heldout_rmse_mm = 0;            ///< root of their mean
+  bool bounded = true;     ///< see stays_bounded(); an unbounded trial is not chosen
+  bool invertible = true;  ///< false: the published element has an inverse response; it is not chosen
+  std::vector<double> start_rmse_mm;     ///< RMSE of the search from each starting point
+  std::vector<double> block_losses_mm2;  ///< mean square error of each block while it was held out
+  double heldout_rmse_mm = 0;            ///< square root of the mean of the block losses
 };
 
 struct StructureChoice {
@@ -88,40 +90,42 @@ struct StructureChoice {
   std::size_t blocks = 0;
 };
 
-/// The chosen structure without one of its ingredients, fitted and judged the same way.
+/// The chosen structure without one component, fitted and evaluated by the same method.
 struct WithoutIngredient {
   Ingredient ingredient;
   StructureTrial trial;
 };
 
-/// The records with a start at rest at the first pressure, all of them or none: none if unknown starts leave
-/// clearly less in held-out blocks. A start that the caller states is kept.
+/// Returns the records with a start at rest at the first pressure. If unknown starts have a significantly
+/// lower held-out loss, returns the records unchanged. A start that the caller states is kept.
 [[nodiscard]] std::vector<Record> with_simplest_start(const std::vector<Record>& records,
                                                       const StructureChoiceOptions& options);
 
-/// The ridge is chosen first, with the richest structure; then the simplest structure whose held-out loss is
-/// within one standard error (of the difference, block by block) of the best (Breiman et al. 1984,
-/// section 3.4.3). Further trials, each chosen where it loses clearly less, are a resonance and, from the
-/// command, a second lag and a regulator in the place of the lags.
+/// Chooses the ridge parameter with the richest structure. Then chooses the simplest structure whose held-out
+/// loss is within one standard error of the best (Breiman et al. 1984, section 3.4.3); the standard error is
+/// that of the paired difference over blocks. Then tries extensions: with Drive::command, a second lag and a
+/// regulator instead of the lags; a resonance. An extension is chosen if its held-out loss is significantly
+/// lower.
 [[nodiscard]] StructureChoice choose_structure(const std::vector<Record>& records,
                                                const StructureChoiceOptions& options);
 
-/// A trial that was chosen with averaged records, fitted to the records as they are, from its own numbers.
-/// Its nonlinear numbers and its losses in held-out blocks stay those of the choice.
+/// Fits a trial that was chosen with averaged records to the original records, starting from its parameters.
+/// The member `numbers` and the held-out losses remain those of the choice.
 [[nodiscard]] StructureTrial fitted_to(StructureTrial trial, const std::vector<Record>& records, Drive drive);
 
-/// The choice without each of those of the ingredients that it has: what each brings. None of the published
-/// element.
-/// @param records, options  those of the choice.
+/// Fits and evaluates the chosen structure without each of the given components that it has. Returns an empty
+/// list for the published element.
+/// @param records, options  as for the choice.
 [[nodiscard]] std::vector<WithoutIngredient> ablation_of(
     const std::vector<Record>& records, const StructureChoice& choice, const StructureChoiceOptions& options,
     std::span<const Ingredient> ingredients = all_ingredients);
 
-/// The same structure with the same ridge fitted to other readings of the same records.
-/// @param trial  without a resonance: of a choice without `dynamics`.
+/// Fits the structure of a trial, with its ridge parameter, to other readings of the same records.
+/// @param trial  without a resonance, that is, of a choice without `dynamics`.
 [[nodiscard]] FitPoint fit_again(const StructureTrial& trial, const std::vector<Record>& records,
                                  Drive drive);
-/// From the trial's own numbers alone, where what has changed of the readings is little.
+/// Like fit_again(), but starts only from the trial's parameters. Use it if the readings differ only
+/// slightly.
 [[nodiscard]] FitPoint fit_nearby(const StructureTrial& trial, const std::vector<Record>& records,
                                   Drive drive);
 

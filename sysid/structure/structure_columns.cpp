@@ -15,14 +15,15 @@ namespace {
 using Segment = model::Segment<double>;
 using Weights = model::ExponentialWeights<double>;
 
-/// Whether the pressure in the finger is the same.
+/// Returns true if the parameters of delay, lags and regulator are equal, so that the pressure in the finger
+/// is equal.
 bool drive_alike(const NonlinearNumbers& a, const NonlinearNumbers& b) {
   return a.delay_s == b.delay_s && a.filling_s == b.filling_s && a.venting_s == b.venting_s &&
          a.second_s == b.second_s && a.pilot_band_kpa == b.pilot_band_kpa && a.overlap_kpa == b.overlap_kpa &&
          a.integral_s == b.integral_s && a.full_open_kpa == b.full_open_kpa;
 }
 
-/// The branches of a ladder, all behind the same signal, two by two.
+/// The creep branches with one input signal, computed in pairs.
 class Ladder {
  public:
   Ladder(const std::vector<double>& time_constants_s, double at)
@@ -41,11 +42,12 @@ class Ladder {
 
  private:
   using Pair [[gnu::vector_size(16)]] = double;
-  /// model::ExponentialWeights of the end.
+  /// Weights of the end value for two branches, see model::ExponentialWeights.
   struct PairWeights {
     Pair loss{}, begin{}, rise{}, bend{};
   };
-  /// Of the last few durations: the nominal sample time and the pieces that a delay cuts it into.
+  /// Weights for one of the last few durations: the sample time, or one of the parts into which a delay
+  /// splits it.
   struct Kept {
     double duration_s = 0;
     std::vector<PairWeights> pairs;
@@ -76,7 +78,7 @@ class Ladder {
   std::size_t next_ = 0;
 };
 
-/// The part of a segment above a hinge, as a segment of its own.
+/// Returns the part of a segment above a threshold pressure (hinge), relative to the threshold.
 Segment above(const Segment& in, double hinge_kpa) {
   const double begin = in.begin - hinge_kpa, end = in.end - hinge_kpa;
   if (begin >= 0 && end >= 0) return {in.duration_s, begin, end, in.mean - hinge_kpa};
@@ -85,7 +87,7 @@ Segment above(const Segment& in, double hinge_kpa) {
   return {in.duration_s, std::max(begin, 0.0), std::max(end, 0.0), high * high / (2 * std::abs(end - begin))};
 }
 
-/// What remembers the way of the pressure: Bouc-Wen's element, or plays.
+/// The hysteresis: the Bouc-Wen element, or play operators.
 class PressureMemory {
  public:
   PressureMemory(const BaseStructure& structure, const StructureGrid& grid, const NonlinearNumbers& numbers,
@@ -106,7 +108,7 @@ class PressureMemory {
     if (peak_kpa > first_kpa) move(peak_kpa, first_kpa);
   }
 
-  /// Through a monotone change.
+  /// Updates the state for a monotone change of the pressure.
   void move(double from, double to) {
     if (bouc_wen_) {
       if (to != from) g_ = stepped(g_, to - from, rates_);
@@ -118,7 +120,7 @@ class PressureMemory {
     }
   }
 
-  /// The pressure as the operators see it.
+  /// Returns the input of the play operators for a pressure: the value of the envelope function [kPa].
   [[nodiscard]] double seen_kpa(double kpa) const { return envelopes_.value(kpa); }
 
   template <class Row>
@@ -132,9 +134,9 @@ class PressureMemory {
   model::EnvelopeMap<double> envelopes_;
   bool bouc_wen_;
   HysteresisRates rates_;
-  std::vector<double> plays_, untouched_;  ///< now, and where the finger's past left them
+  std::vector<double> plays_, untouched_;  ///< current states, and states after the load before the logs
   double g_ = 0;
-  double steepest_;  ///< dg/dp is never above it
+  double steepest_;  ///< maximum of dg/dp
 };
 
 std::size_t branches_of(const BaseStructure& structure, const StructureGrid& grid) {
@@ -195,7 +197,7 @@ StructureColumns::StructureColumns(const std::vector<Record>& records, const Bas
 const Eigen::MatrixXd& StructureColumns::at(const NonlinearNumbers& numbers) {
   const bool driven_alike = !driven_.empty() && drive_alike(numbers_, numbers);
   NonlinearNumbers same = numbers;
-  same.curvature = numbers_.curvature;  // comes behind the columns
+  same.curvature = numbers_.curvature;  // does not affect the columns
   if (driven_alike && same == numbers_) return columns_;
   numbers_ = numbers;
   driven_.resize(records_.size());
@@ -209,7 +211,7 @@ const Eigen::MatrixXd& StructureColumns::at(const NonlinearNumbers& numbers) {
   return columns_;
 }
 
-/// What follows from the pressure in the finger alone.
+/// Writes the columns that depend only on the pressure in the finger: elastic gain and creep.
 void StructureColumns::write_driven(std::size_t r) {
   const DrivenPressure& driven = driven_[r];
   Ladder ladder(grid_.ladder_s, driven.first_kpa);
@@ -252,7 +254,8 @@ void StructureColumns::write_hysteresis(std::size_t r) {
   }
 }
 
-/// A record's own, whatever the numbers are.
+/// Writes the columns of offset, unsettled creep and drift of each record, which do not depend on the
+/// parameters.
 void StructureColumns::write_own() {
   for (std::size_t r = 0; r < records_.size(); ++r) {
     const Record& record = records_[r];

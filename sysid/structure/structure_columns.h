@@ -1,6 +1,6 @@
 #pragma once
-// What every operator of a structure does with the pressure of the records: the columns of which the reading
-// is a weighted sum, before the characteristic.
+// The regressor matrix of a structure: each column is the response of one operator to the pressure of the
+// records. The weighted sum of the columns is the reading before the characteristic.
 
 #include <cstddef>
 #include <vector>
@@ -13,16 +13,16 @@
 
 namespace softgrip::sysid {
 
-/// Where the columns of a structure stand. Those before own() are behind the characteristic's input and have
-/// weights that are not negative; a record's own (offset, unsettled creep, wandering zero) are added behind
-/// it and may have either sign.
+/// Column indices of a structure. The weighted sum of the columns before own() is the input of the
+/// characteristic; their weights are not negative. The columns of each record (offset, unsettled creep, drift
+/// of the zero) are added after the characteristic, and their weights may have either sign.
 class ColumnLayout {
  public:
   ColumnLayout(const BaseStructure& structure, const StructureGrid& grid, const std::vector<Record>& records);
 
   [[nodiscard]] static constexpr Eigen::Index elastic() { return 0; }
-  /// Play by play, or the one of Bouc-Wen's element: steepest_state() times the pressure, minus its state
-  /// over beta.
+  /// The column of play operator i, or the column of the Bouc-Wen element: steepest_state() times the
+  /// pressure, minus the state of the element divided by beta.
   [[nodiscard]] static constexpr Eigen::Index hysteresis(std::size_t i) {
     return 1 + static_cast<Eigen::Index>(i);
   }
@@ -33,11 +33,12 @@ class ColumnLayout {
     return creep(branches_) + static_cast<Eigen::Index>(hinge * hinge_branches_ + branch);
   }
   [[nodiscard]] Eigen::Index own() const { return hinged(hinges_, 0); }
-  /// -1: the record has none.
+  /// Returns the column of a record's offset; -1: the record has none.
   [[nodiscard]] Eigen::Index offset(std::size_t record) const { return offset_[record]; }
   [[nodiscard]] Eigen::Index unsettled(std::size_t record) const { return unsettled_[record]; }
-  /// The first of knots() columns, straight between knots that stand `knot_interval_s` apart from the
-  /// record's first sample on; the zero at that sample is no column.
+  /// Returns the first of the knots() columns of a piecewise linear drift. The knots are `knot_interval_s`
+  /// apart, beginning at the record's first sample. The first knot has no column, because the drift is 0
+  /// there.
   [[nodiscard]] Eigen::Index wandering(std::size_t record) const { return wandering_[record]; }
   [[nodiscard]] std::size_t knots(std::size_t record) const { return knots_[record]; }
   static constexpr double knot_interval_s = 20;
@@ -56,27 +57,30 @@ class ColumnLayout {
   Eigen::Index count_ = 0;
 };
 
-/// The largest slope of Bouc-Wen's normalised state over pressure, at the turn of a saturated loop: 2
-/// eta/(gamma + eta), 1 at least. An elastic gain of beta times it keeps the element monotone.
+/// Returns the largest slope of the normalised Bouc-Wen state over pressure, at the reversal of a saturated
+/// loop: 2 eta/(gamma + eta), at least 1. The element is monotone if its elastic gain is at least beta times
+/// this slope.
 [[nodiscard]] double steepest_state(const NonlinearNumbers& numbers);
 
-/// Which samples are rows: those with a reading.
+/// The sample of a row. Each sample with a reading is a row.
 struct RowPlace {
   std::size_t record = 0;
   std::size_t sample = 0;
 };
 [[nodiscard]] std::vector<RowPlace> rows_of(const std::vector<Record>& records);
 
-/// One row per reading, one column per layout: mm per mm/kPa (that is, kPa) before own(), 1 and decaying
-/// exponentials from there.
+/// The regressor matrix: one row per reading, and the columns of ColumnLayout. Columns before own() are in
+/// kPa, as their weights are in mm/kPa. The columns from own() on are dimensionless.
 class StructureColumns {
  public:
-  /// `records`, `structure` and `grid` outlive it.
+  /// `records`, `structure` and `grid` must outlive the object.
   StructureColumns(const std::vector<Record>& records, const BaseStructure& structure,
                    const StructureGrid& grid);
 
-  /// `structure` says which of the numbers count. Only what differs from the last call is computed: the
-  /// delay and the lags are the dear ones. Each record on whatever thread is idle. Valid until the next call.
+  /// Returns the matrix for the given nonlinear parameters; parameters that the structure does not have are
+  /// ignored. Columns are computed only if their parameters differ from the last call; those of delay and
+  /// lags are expensive. Idle threads compute the records in parallel. The result is valid until the next
+  /// call.
   [[nodiscard]] const Eigen::MatrixXd& at(const NonlinearNumbers& numbers);
 
  private:
@@ -88,13 +92,13 @@ class StructureColumns {
   const BaseStructure& structure_;
   const StructureGrid& grid_;
   ColumnLayout layout_;
-  std::vector<std::size_t> first_row_;  ///< of every record
+  std::vector<std::size_t> first_row_;  ///< first row of each record
   Eigen::MatrixXd columns_;
-  NonlinearNumbers numbers_;            ///< of columns_
-  std::vector<DrivenPressure> driven_;  ///< of every record; empty: at() was not called yet
+  NonlinearNumbers numbers_;            ///< parameters of columns_
+  std::vector<DrivenPressure> driven_;  ///< pressure of each record; empty: at() was not called yet
 };
 
-/// The same for once.
+/// Computes the matrix of StructureColumns once.
 [[nodiscard]] Eigen::MatrixXd structure_columns(const std::vector<Record>& records,
                                                 const BaseStructure& structure, const StructureGrid& grid,
                                                 const NonlinearNumbers& numbers);

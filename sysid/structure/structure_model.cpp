@@ -20,11 +20,12 @@
 namespace softgrip::sysid {
 namespace {
 
-/// A spring that is as good as rigid: alpha or the elastic play alone is the instantaneous gain.
+/// Stiffness of a practically rigid spring: the instantaneous gain is then alpha or the elastic play
+/// operator.
 constexpr double rigid_kpa_per_mm = 1e9;
-/// A branch that is only there for its time constant [mm/kPa].
+/// Compliance of a branch that is kept only for its time constant [mm/kPa].
 constexpr double next_to_no_creep = 1e-7;
-/// Of such a branch; the block has an upper bound.
+/// Damping of such a branch, limited by the upper bound of the block.
 constexpr double largest_dashpot_kpa_s_per_mm = 1e8;
 
 class Builder {

@@ -1,5 +1,6 @@
 #pragma once
-// The best weights of a structure whose nonlinear numbers are given: nonnegative least squares with a ridge.
+// Optimal weights of a structure with given nonlinear parameters: nonnegative least squares with ridge
+// regularisation.
 
 #include <Eigen/Core>
 
@@ -8,25 +9,28 @@
 
 namespace softgrip::sysid {
 
-/// What the weights are fitted to.
+/// The data, bounds and regularisation of the least-squares problem.
 struct ProjectionProblem {
   const Eigen::MatrixXd& columns;
   const ColumnLayout& layout;
   const Eigen::VectorXd& readings_mm;
-  double largest_kpa = 1;    ///< a weight times it is what the operator can move the finger by
-  double least_elastic = 0;  ///< of the elastic weight: above 0 every fitted model has an inverse
-  double ridge = 0;          ///< added to the mean square, per squared millimetre of that
+  double largest_kpa =
+      1;  ///< largest pressure; weight * largest_kpa is the largest motion of an operator [mm]
+  double least_elastic =
+      0;             ///< lower bound of the elastic weight; if it is above 0, the model has an inverse
+  double ridge = 0;  ///< penalty on the square of weight * largest_kpa, added to the mean square error
 };
 
 struct Projection {
   Eigen::VectorXd weights;
-  Eigen::VectorXd error_mm;    ///< prediction minus reading, of all rows
-  Eigen::VectorXd penalty_mm;  ///< the ridge as further residuals, scaled like one row's
-  double mean_square_mm2 = 0;  ///< of all rows
+  Eigen::VectorXd error_mm;    ///< prediction minus reading, for all rows
+  Eigen::VectorXd penalty_mm;  ///< the ridge penalty as additional residuals, scaled like those of a row
+  double mean_square_mm2 = 0;  ///< mean square error of all rows
 };
 
-/// @param near  weights of a neighbouring problem of the same layout, or nullptr. With a bent characteristic
-/// by Gauss-Newton steps on the weights, from the readings seen backwards through it.
+/// Computes the optimal weights. With a nonlinear characteristic, Gauss-Newton steps are used. They begin at
+/// `near`, or at the solution for the readings after the inverse characteristic.
+/// @param near  weights of a similar problem with the same layout, or nullptr.
 [[nodiscard]] Projection project(const ProjectionProblem& problem,
                                  const model::CharacteristicMap<double>& map,
                                  const Eigen::VectorXd* near = nullptr);

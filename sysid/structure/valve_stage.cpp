@@ -30,7 +30,7 @@ double first_finite(const std::vector<double>& values) {
   return found == values.end() ? 0 : *found;
 }
 
-/// What the search knows of the logs.
+/// Ranges of the pressures in the logs.
 struct Scene {
   double lowest_kpa = std::numeric_limits<double>::infinity();
   double highest_kpa = -lowest_kpa;
@@ -52,9 +52,9 @@ Scene scene_of(const std::vector<Log>& logs) {
   return scene;
 }
 
-/// The search's numbers, of order one each: the delay in tenths of a second and the band in kPa by their
-/// magnitude, lags by their logarithm, the limit in tenths of the highest pressure, the leak's share by its
-/// magnitude.
+/// The coordinates of the search, scaled to about 1. The magnitude of a coordinate is used for the delay [0.1
+/// s], the band [kPa] and the share of the leak. Lags have logarithmic coordinates. The unit of the limit is
+/// 10 % of the highest pressure.
 class Coordinates {
  public:
   Coordinates(ValveParts parts, const Scene& scene) : parts_(parts), scene_(scene) {}
@@ -97,7 +97,7 @@ class Coordinates {
   const Scene& scene_;
 };
 
-/// @param sample_time_s  of the log; 0: irregular.
+/// Returns the predicted pressure of a log [kPa]. @param sample_time_s  sample time of the log; 0: irregular.
 std::vector<double> predicted(const ValveStage& stage, const Log& log, bool held, double sample_time_s) {
   const std::vector<double>& u = log.pressure_command_kpa;
   model::TransportDelay<double> delay(std::array{stage.delay_s}, {.sample_time_s = sample_time_s});
@@ -106,7 +106,7 @@ std::vector<double> predicted(const ValveStage& stage, const Log& log, bool held
       second(stage.second_s, stage.second_s, 0);
   delay.reset(u.front());
   const double first_kpa = first_finite(log.pressure_kpa);
-  // Where in its band the valve stands, the first pressure tells.
+  // The first measured pressure determines the state of the dead band.
   dead_band.reset(first_kpa + stage.band_kpa / 2);
   dead_band.settle(u.front());
   lag.reset(first_kpa);
@@ -147,7 +147,8 @@ std::vector<double> predicted(const ValveStage& stage, const Log& log, bool held
   return p;
 }
 
-/// Prediction minus measurement of every log, as one row; a missing or unfitted measurement counts nothing.
+/// Residuals: prediction minus measurement for all logs. A missing or excluded measurement has the residual
+/// 0.
 class Errors {
  public:
   Errors(const std::vector<Log>& logs, const ValveFit& fit) : logs_(logs), fit_(fit) {
@@ -159,7 +160,7 @@ class Errors {
 
   [[nodiscard]] std::size_t count() const { return count_; }
 
-  /// Leaves gain and zero of the gauge in the stage.
+  /// Computes the residuals. Writes gain and zero of the pressure sensor into the stage if they are fitted.
   void evaluate(ValveStage& stage, std::span<double> out) const {
     const std::vector<std::vector<double>> p = predicted_by(stage);
     if (fit_.sensor != PressureSensorFit::nothing) read_gauge(p, stage);
@@ -172,7 +173,7 @@ class Errors {
     }
   }
 
-  /// Root mean square of the samples that are fitted, or of the others [kPa].
+  /// Returns the RMSE of the fitted samples, or of the others [kPa].
   [[nodiscard]] double rmse_kpa(const ValveStage& stage, bool fitted) const {
     double sum = 0;
     std::size_t used = 0;
@@ -189,7 +190,7 @@ class Errors {
   }
 
  private:
-  /// Of every log.
+  /// Returns the predicted pressure of each log [kPa].
   [[nodiscard]] std::vector<std::vector<double>> predicted_by(const ValveStage& stage) const {
     std::vector<std::vector<double>> p;
     for (std::size_t k = 0; k < logs_.size(); ++k)
@@ -201,7 +202,8 @@ class Errors {
     return !fit_.is_fitted || fit_.is_fitted(log, sample);
   }
 
-  /// The straight line from prediction to measurement, or the one of slope one.
+  /// Fits zero and gain of the sensor by linear regression of the measurement on the prediction, or only the
+  /// zero.
   void read_gauge(const std::vector<std::vector<double>>& predicted, ValveStage& stage) const {
     double n = 0, x = 0, y = 0, xx = 0, xy = 0;
     for (std::size_t k = 0; k < logs_.size(); ++k) {
@@ -220,10 +222,10 @@ class Errors {
   const std::vector<Log>& logs_;
   const ValveFit& fit_;
   std::size_t count_ = 0;
-  std::vector<double> sample_time_s_;  ///< of every log
+  std::vector<double> sample_time_s_;  ///< sample time of each log
 };
 
-/// Where the search begins.
+/// Returns the starting points of the search.
 std::vector<ValveStage> starts_of(const ValveFit& fit) {
   if (!fit.from.empty()) return fit.from;
   std::vector<ValveStage> starts;

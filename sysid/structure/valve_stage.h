@@ -1,6 +1,6 @@
 #pragma once
-// Command to measured pressure, judged by the measured pressure: dead time, a lag for filling and for
-// venting, and what else a valve may do.
+// Model of the valve from command to measured pressure, fitted to the measured pressure: dead time, lags for
+// filling and venting, and further effects.
 
 #include <bitset>
 #include <cstdint>
@@ -13,15 +13,15 @@
 
 namespace softgrip::sysid {
 
-/// What may stand between command and measured pressure, in the order in which the signal meets it.
+/// Possible parts between command and measured pressure, in the order of the signal.
 enum class ValvePart : std::uint8_t {
   delay,
   dead_band,
   lag,
-  two_ways,  ///< of the lag: another time constant while it vents
+  two_ways,  ///< separate time constant of the lag for venting
   supply_sag,
   limit,
-  second_lag,  ///< behind the other, both ways alike
+  second_lag,  ///< after the first, with one time constant for both directions
   leak,
 };
 inline constexpr std::size_t valve_part_count = 8;
@@ -30,7 +30,7 @@ using ValveParts = std::bitset<valve_part_count>;
 [[nodiscard]] constexpr std::size_t index_of(ValvePart part) {
   return static_cast<std::size_t>(part);
 }
-/// Dead time and a lag for either direction: what every valve has.
+/// Returns the parts of every valve: dead time, and a lag with a time constant for each direction.
 [[nodiscard]] inline ValveParts usual_valve_parts() {
   return ValveParts()
       .set(index_of(ValvePart::delay))
@@ -43,49 +43,50 @@ struct ValveStage {
   double band_kpa = 0;  ///< change of the command after a reversal that the valve ignores
   double filling_s = 0;
   double venting_s = 0;
-  double second_s = 0;            ///< of the second lag
-  double coupling = 0;            ///< share of a relative loss of supply that reaches the pressure
-  double nominal_supply_kpa = 0;  ///< the loss is counted from here; 0: the supply is not recorded
+  double second_s = 0;            ///< time constant of the second lag
+  double coupling = 0;            ///< relative drop of the pressure per relative drop of the supply
+  double nominal_supply_kpa = 0;  ///< reference of the supply drop; 0: the supply is not recorded
   double limit_kpa = std::numeric_limits<double>::infinity();
-  double leak_share = 0;  ///< of a small pressure, lost on the way (model/line_loss.h)
-  double gauge_gain = 1;  ///< of the pressure's sensor
+  double leak_share = 0;  ///< share of a small pressure that is lost in the line (model/line_loss.h)
+  double gauge_gain = 1;  ///< gain of the pressure sensor
   double gauge_zero_kpa = 0;
-  double rmse_kpa = 0;           ///< of the fitted samples
-  double rmse_percent = 0;       ///< of the measured pressure's range
-  double held_out_rmse_kpa = 0;  ///< of the others; 0 where everything was fitted
+  double rmse_kpa = 0;           ///< RMSE of the fitted samples
+  double rmse_percent = 0;       ///< rmse_kpa in percent of the range of the measured pressure
+  double held_out_rmse_kpa = 0;  ///< RMSE of the other samples; 0 if all samples were fitted
   bool converged = false;
 
-  /// It leaves more than a twentieth of the range: the valve is another thing than these parts.
+  /// Returns true if the RMSE exceeds 5 % of the range, so that these parts do not describe the valve.
   [[nodiscard]] bool is_far_off() const { return rmse_percent > 5; }
 };
 
-/// What is fitted of the pressure's sensor.
+/// The fitted parameters of the pressure sensor.
 enum class PressureSensorFit : std::uint8_t { nothing, zero, gain_and_zero };
 
-/// What is fitted, and to which samples.
+/// Parts, samples and starting points of a fit.
 struct ValveFit {
   ValveParts parts = usual_valve_parts();
   PressureSensorFit sensor = PressureSensorFit::nothing;
   bool held = false;  ///< the command keeps its value until the next sample
-  /// Empty: all samples.
+  /// Selects the samples of the fit; empty: all samples.
   std::function<bool(std::size_t log, std::size_t sample)> is_fitted = {};
-  std::vector<ValveStage> from = {};  ///< the search begins at each of them; empty: at three usual ones
-  double tolerance = 1e-12;           ///< relative change of the cost at which it ends
+  std::vector<ValveStage> from = {};  ///< starting points of the search; empty: three default ones
+  double tolerance = 1e-12;           ///< relative change of the cost at which the search ends
 };
 
-/// Every log needs a pressure_kpa column, and a supply_kpa column where parts hold supply_sag; each begins at
-/// its first measured pressure, wherever the command is.
+/// Fits a valve. Each log needs a pressure_kpa column, and a supply_kpa column if the parts include
+/// supply_sag. The simulation of a log begins at its first measured pressure, regardless of the command.
 [[nodiscard]] ValveStage fit_valve_stage(const std::vector<Log>& logs, const ValveFit& fit);
-/// The usual parts, fitted to the first `share` of every log.
+/// Fits the parts of usual_valve_parts() to the first `share` of each log.
 [[nodiscard]] ValveStage fit_valve_stage(const std::vector<Log>& logs, double share, bool held);
 
-/// Of the measured pressure, from sample to sample: the largest of the logs' [kPa].
+/// Returns the noise of the measured pressure between successive samples: the largest value over the logs
+/// [kPa].
 [[nodiscard]] double pressure_noise_kpa(const std::vector<Log>& logs);
 
-/// The measured pressure that the stage predicts for a log [kPa].
+/// Returns the measured pressure that the stage predicts for a log [kPa].
 [[nodiscard]] std::vector<double> predicted_pressure_kpa(const ValveStage& stage, const Log& log, bool held);
 
-/// The model with the stage's blocks in front.
+/// Returns the model of the actuator with the blocks of the stage before it.
 [[nodiscard]] model::Model with_valve(model::Model actuator, const ValveStage& stage);
 
 }  // namespace softgrip::sysid
