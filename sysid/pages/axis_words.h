@@ -1,12 +1,13 @@
 #pragma once
-// Units in words, for those who read a figure without its text.
+// Axis labels with units in words, for a figure that is read without the text of its report.
 
 #include <string>
 #include <string_view>
 
 namespace softgrip::sysid {
 
-/// "time [s]" as "time in seconds", "[s]" as "seconds"; a unit that is not known stays as it is.
+/// Writes the unit of a label in words: "time [s]" gives "time in seconds", "[s]" gives "seconds". An unknown
+/// unit remains unchanged.
 [[nodiscard]] std::string in_words(std::string_view label);
 
 }  // namespace softgrip::sysid

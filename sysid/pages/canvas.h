@@ -1,5 +1,5 @@
 #pragma once
-// Lines, boxes and words as SVG elements in the palette's colours: what charts and drawings are made of.
+// Lines, boxes and texts as SVG elements in the colours of the palette. Charts and drawings consist of them.
 
 #include <string>
 #include <string_view>
@@ -9,26 +9,26 @@
 
 namespace softgrip::sysid {
 
-/// Where a text stands beside its point.
+/// The part of a text that is at its point.
 enum class Anchor { start, middle, end };
 
-/// Width of a text, about: for margins and legends without a font at hand [px].
+/// Returns the approximate width of a text [px], for margins and legends. The actual font is unknown.
 [[nodiscard]] double text_width(std::string_view text);
 
-/// SVG elements, one after the other. All lengths in pixels; `more` is further attributes, with a blank
-/// before.
+/// A sequence of SVG elements. All lengths are in pixels. `more` contains further attributes and begins with
+/// a blank.
 class Canvas {
  public:
   void line(Pixel from, Pixel to, Colour colour, std::string_view more = {});
-  /// A closed area without an edge, or with one.
+  /// Draws a filled rectangle without an edge; framed_box() draws one with an edge.
   void box(double x, double y, double width, double height, Colour fill, std::string_view more = {});
   void framed_box(double x, double y, double width, double height, Colour fill, Colour edge,
                   std::string_view more = {});
   void words(Pixel at, Anchor anchor, std::string_view text, Colour colour = Colour::text,
              std::string_view more = {});
-  /// Words that stay readable on a curve.
+  /// Draws a text that remains readable on a curve.
   void words_on_curve(Pixel at, Anchor anchor, std::string_view text);
-  /// Markup made elsewhere in this room.
+  /// Appends markup that another file of this folder has produced.
   void raw(std::string_view markup) { markup_ += markup; }
 
   [[nodiscard]] const std::string& markup() const noexcept { return markup_; }

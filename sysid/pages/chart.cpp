@@ -15,9 +15,9 @@
 namespace softgrip::sysid {
 namespace {
 
-constexpr double line_px = 16;  ///< of title and legend
+constexpr double line_px = 16;  ///< height of a line of the title or the legend
 
-/// Attributes of a dash.
+/// Returns the SVG attribute of a dash pattern.
 std::string_view dashes_of(Dash dash) {
   switch (dash) {
     case Dash::solid:
@@ -41,10 +41,10 @@ struct Range {
   }
 };
 
-/// Draws one chart, its upper left corner at (edge, top).
+/// Draws one chart with its upper left corner at (edge, top).
 class Painter {
  public:
-  /// @param margin  from the edge to where the axes begin [px]: at least left_margin().
+  /// @param margin  distance from the left edge to the axes [px], at least left_margin().
   Painter(const Chart& chart, double edge, double top, double margin)
       : chart_(chart), edge_(edge), top_(top), left_(edge + margin) {
     for (const Series& s : chart.series) {
@@ -59,7 +59,7 @@ class Painter {
     }
   }
 
-  /// Room for the widest number of the axis.
+  /// Returns the width of the widest tick label of the y axis, with margins [px].
   [[nodiscard]] double left_margin() const {
     const Scale trial(chart_.y, y_range_.lowest, y_range_.highest, 100, 0, true);
     double widest = 0;
@@ -75,7 +75,7 @@ class Painter {
     const Scale x(chart_.x, x_range_.lowest, x_range_.highest, left_, right_, margin);
     const Scale y(chart_.y, y_range_.lowest, y_range_.highest, lower_, upper_, true);
     grid(x, y);
-    // A nested <svg> clips what leaves the axes, without the document-wide names that a clip path needs.
+    // A nested <svg> clips curves at the axes. A clip path would need a name that is unique in the document.
     const std::string box = fixed(left_, 1) + ' ' + fixed(upper_, 1) + ' ' + fixed(right_ - left_, 1) + ' ' +
                             fixed(lower_ - upper_, 1);
     canvas_.raw("<svg x=\"" + fixed(left_, 1) + "\" y=\"" + fixed(upper_, 1) + "\" width=\"" +
@@ -95,7 +95,7 @@ class Painter {
     upper_ = top_ + 10 + line_px * head_lines();
     lower_ = top_ + chart_.height - (chart_.x.label.empty() ? 22 : 40);
   }
-  /// Title and legend share a line where both fit.
+  /// Returns the number of lines for title and legend. They share a line if both fit.
   [[nodiscard]] int head_lines() const {
     const double legend = legend_width();
     if (chart_.title.empty()) return legend > 0 ? 1 : 0;
@@ -158,8 +158,8 @@ class Painter {
     }
   }
 
-  /// Dots as strokes: round ones of no length, or square in the colours of what is wrong and of others. A
-  /// square needs a length, for renderers of PDF do not draw a square end that has no direction.
+  /// Draws dots as strokes: round dots of length 0, or square dots for the colours `error` and `other`. A
+  /// square dot has a small length, because PDF renderers do not draw a square end without a direction.
   void points(const std::vector<Pixel>& curve, Colour colour, double radius) {
     const bool square = colour == Colour::error || colour == Colour::other;
     const auto dots = distinct_dots(curve);
@@ -215,7 +215,7 @@ class Painter {
         canvas_.words_on_curve({right_ - 4, y.px(mark.at) - 4}, Anchor::end, mark.label);
     } else {
       canvas_.line({x.px(mark.at), upper_}, {x.px(mark.at), lower_}, Colour::text, dashes);
-      // Beside its line, on the side where there is room.
+      // The label is next to its line, on the side with enough space.
       const bool fits = x.px(mark.at) + 4 + text_width(mark.label) <= right_;
       const double at = fits ? x.px(mark.at) + 4 : x.px(mark.at) - 4;
       if (!mark.label.empty())
@@ -256,7 +256,7 @@ class Painter {
   Range x_range_;
   Range y_range_;
   double right_ = 0;
-  double upper_ = 0;  ///< y of the upper edge [px], smaller than lower_
+  double upper_ = 0;  ///< y of the upper edge [px], less than lower_
   double lower_ = 0;
   Canvas canvas_;
 };

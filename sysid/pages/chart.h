@@ -1,10 +1,10 @@
 #pragma once
-// Charts as SVG: lines, points, bands, bars. No script, no font but the reader's own.
+// Charts as SVG: lines, points, bands, bars. They contain no script and use the fonts of the reader's system.
 //
-// A chart is a plain value; markup_of() draws it, in a figure (figure.h). Units of axes are drawn in words.
-// Long series are thinned to what the picture can show: where x increases, each pixel column keeps its first,
-// lowest, highest and last value, so that a single outlier among a million samples stays visible; other
-// curves (loops) lose points that fall on drawn ground.
+// A chart is a plain value; markup_of() draws it as part of a figure (figure.h). Units of axes are written in
+// words. Long series are thinned to the resolution of the picture. If x increases, the lowest and the highest
+// value of each pixel column are kept, so a single outlier among a million samples remains visible. Other
+// curves (loops) lose points that coincide with drawn ones.
 
 #include <optional>
 #include <string>
@@ -14,7 +14,7 @@
 
 namespace softgrip::sysid {
 
-/// How a line is drawn, beside its colour: what is told apart by colour alone, some readers cannot tell.
+/// The dash pattern of a line. Some readers cannot distinguish lines by their colour alone.
 enum class Dash { solid, dashed, dotted };
 
 /// One curve. `x` and `y` have the same length; a value that is not finite interrupts the line.
@@ -26,17 +26,17 @@ struct Series {
     bars,   ///< from 0 to y, as wide as their spacing allows
     steps,  ///< a line that keeps its value until the next x
   };
-  std::string label;  ///< in the legend; "" keeps it out
+  std::string label;  ///< text in the legend; "": not in the legend
   std::vector<double> x;
   std::vector<double> y;
-  std::vector<double> y_upper;  ///< of a band
+  std::vector<double> y_upper;  ///< upper limit of a band
   Style style = Style::line;
   Colour colour = Colour::measured;
   Dash dash = Dash::solid;
-  double width = 1.4;  ///< of the line, or radius of the points [px]
+  double width = 1.4;  ///< width of the line, or radius of the points [px]
 };
 
-/// A straight line across the chart, with a word beside it.
+/// A straight line across the chart, with a label.
 struct Mark {
   enum class Direction { vertical, horizontal };
   Direction direction = Direction::horizontal;
@@ -44,7 +44,7 @@ struct Mark {
   std::string label;
 };
 
-/// One axis. Without limits it covers the data.
+/// One axis. Without limits, it covers the range of the data.
 struct Axis {
   std::string label;  ///< with its unit: "displacement [mm]"
   std::optional<double> lower;
@@ -63,26 +63,26 @@ struct Chart {
   int height = 280;  ///< [px]
 };
 
-/// A chart of which the x axis has names instead of numbers, for series over them.
+/// Returns a chart whose x axis has names instead of numbers.
 [[nodiscard]] Chart chart_over(std::vector<std::string> names);
-/// Points over the names of such a chart, one value for each; NaN: none.
+/// Returns points over the names of such a chart, one value for each name; NaN: no point.
 [[nodiscard]] Series points_over_names(std::string label, Colour colour, std::vector<double> values);
 
-/// Rows of charts, one below the other: each a chart of full width, or several side by side.
+/// Rows of charts, one below the other. A row has one chart of full width, or several charts side by side.
 using ChartRows = std::vector<std::vector<Chart>>;
 
-/// [px]
+/// The size of a picture [px].
 struct Extent {
   int width = 0;
   int height = 0;
 };
-/// Width of the widest row, heights together.
+/// Returns the width of the widest row and the sum of the heights.
 [[nodiscard]] Extent extent_of(const ChartRows& rows);
 
-/// The charts as SVG elements within that extent. Charts of a column have their axes below each other.
+/// Returns the charts as SVG elements within extent_of(). The y axes of the charts in a column are aligned.
 [[nodiscard]] std::string markup_of(const ChartRows& rows);
 
-/// One chart below the other.
+/// Returns rows with one chart each.
 [[nodiscard]] ChartRows stacked(std::vector<Chart> charts);
 
 }  // namespace softgrip::sysid

@@ -26,11 +26,13 @@ bool x_increases(const std::vector<Pixel>& curve) {
   return true;
 }
 
-/// Beyond so many nobody can tell strokes or dots from the ground that they cover.
+/// Maximum numbers of strokes and dots. A reader cannot distinguish more of them from the area that they
+/// cover.
 constexpr std::size_t most_strokes = 9000;
 constexpr std::size_t most_dots = 6000;
 
-/// Appends of [begin, end), all in one column, the lowest and the highest in their order; of a few, all.
+/// Appends the lowest and the highest point of [begin, end) in their order. All points are in one pixel
+/// column. If there are at most four, all are appended.
 void append_column(const std::vector<Pixel>& curve, std::size_t begin, std::size_t end,
                    std::vector<Pixel>& kept) {
   if (end - begin <= 4) {
@@ -65,7 +67,7 @@ std::vector<Pixel> thinned_by_column(const std::vector<Pixel>& curve) {
   return kept;
 }
 
-/// Points closer than `least_px` to the last one are left out.
+/// Removes points that are closer than `least_px` to the last kept point, and repeated strokes.
 std::vector<Pixel> thinned_by_stroke(const std::vector<Pixel>& curve, double least_px) {
   constexpr double grid = 1.0 / 3.0;
   std::vector<Pixel> kept;
@@ -106,9 +108,9 @@ std::vector<Pixel> thinned_by_stroke(const std::vector<Pixel>& curve, double lea
   return kept;
 }
 
-/// The ground that a cloud covers: column by column, upright strokes over points closer than `gap`.
+/// Returns the area that a cloud covers: in each column, vertical strokes over points closer than `gap`.
 std::vector<Pixel> covered(const std::vector<Pixel>& curve, double gap) {
-  constexpr double dot = 0.7;  // of one point alone
+  constexpr double dot = 0.7;  // length of the stroke for a single point
   std::vector<Pixel> cloud;
   for (const Pixel& p : curve) {
     if (drawn(p)) cloud.push_back({std::floor(p.x) + 0.5, p.y});

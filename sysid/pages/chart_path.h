@@ -1,5 +1,5 @@
 #pragma once
-// Curves as SVG path data, thinned to what a picture can show.
+// Curves as SVG path data, thinned to the resolution of a picture.
 
 #include <optional>
 #include <string>
@@ -7,26 +7,27 @@
 
 namespace softgrip::sysid {
 
-/// A point in pixels; not finite: the pen is lifted.
+/// A point in pixels. A point that is not finite interrupts the curve.
 struct Pixel {
   double x;
   double y;
 };
 
-/// Keeps what is visible of a curve. Where x increases throughout: per pixel column the lowest and the
-/// highest point, in their order, and where there are no more than four, all. Otherwise: points on a grid of
-/// a third of a pixel, without repeated ones and without strokes that were drawn already; where these are
-/// too many, points two pixels apart; of a cloud, where these are too, the ground that it covers.
+/// Removes the invisible points of a curve. If x increases throughout, each pixel column keeps its lowest and
+/// its highest point in their order, or all points if there are at most four. Otherwise the points are
+/// rounded to a grid of 1/3 pixel, and repeated points and strokes are removed. If too many strokes remain,
+/// points less than 2 pixels apart are removed. If there are still too many, the result is the area that the
+/// points cover.
 [[nodiscard]] std::vector<Pixel> thinned(const std::vector<Pixel>& curve);
 
-/// The ground that a cloud of points covers, as upright strokes, one pixel column beside the other.
+/// Returns the area that a cloud of points covers, as vertical strokes in adjacent pixel columns.
 [[nodiscard]] std::vector<Pixel> ground_of(const std::vector<Pixel>& cloud);
 
-/// Dots on a grid of half a pixel, each once; those that are not finite are left out. Nothing where they are
-/// so many that only the ground can be seen that they cover.
+/// Rounds dots to a grid of 0.5 pixel and removes repeated dots and those that are not finite. Returns
+/// nullopt if there are too many dots to distinguish them from the area that they cover.
 [[nodiscard]] std::optional<std::vector<Pixel>> distinct_dots(const std::vector<Pixel>& dots);
 
-/// "M1.5 2l3 4...": relative moves in tenths of pixels.
+/// Returns SVG path data such as "M1.5 2l3 4...": relative moves with a resolution of 0.1 pixel.
 [[nodiscard]] std::string path_data(const std::vector<Pixel>& curve);
 
 }  // namespace softgrip::sysid

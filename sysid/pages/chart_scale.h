@@ -1,5 +1,5 @@
 #pragma once
-// From values to pixels, and where the ticks of an axis stand.
+// Conversion of values to pixels, and positions of the ticks of an axis.
 
 #include <string>
 #include <vector>
@@ -8,7 +8,7 @@
 
 namespace softgrip::sysid {
 
-/// Where a tick stands, in the axis' values, and what is written there.
+/// The position of a tick, as a value of the axis, and its text.
 struct Tick {
   double at;
   std::string text;
@@ -17,14 +17,14 @@ struct Tick {
 /// One axis, mapped onto pixels.
 class Scale {
  public:
-  /// @param lowest,highest  of the data; used where the axis sets no limit.
-  /// @param from_px,to_px  where the lower and upper end stand.
+  /// @param lowest,highest  range of the data, used if the axis has no limits.
+  /// @param from_px,to_px  positions of the lower and the upper end.
   Scale(const Axis& axis, double lowest, double highest, double from_px, double to_px, bool with_margin);
 
   [[nodiscard]] double px(double value) const;
   [[nodiscard]] double lower() const { return lower_; }
   [[nodiscard]] double upper() const { return upper_; }
-  /// At most about `most` ticks at 1, 2 or 5 times a power of ten (logarithmic: at powers of ten).
+  /// Returns about `most` ticks or fewer, at 1, 2 or 5 times a power of ten (logarithmic: at powers of ten).
   [[nodiscard]] std::vector<Tick> ticks(int most) const;
 
  private:

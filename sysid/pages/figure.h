@@ -1,5 +1,5 @@
 #pragma once
-// A figure: charts or a drawing, with a name, a caption and the numbers that it shows.
+// A figure: charts or a drawing, with a name, a caption and the values that it shows.
 
 #include <optional>
 #include <string>
@@ -9,28 +9,28 @@
 
 namespace softgrip::sysid {
 
-/// A picture that is no chart.
+/// A picture that is not a chart.
 struct Drawing {
-  std::string markup;               ///< SVG elements, of a Canvas
+  std::string markup;               ///< SVG elements from a Canvas
   int width = 760;                  ///< [px]
   int height = 100;                 ///< [px]
-  std::vector<std::string> header;  ///< of the numbers that it shows
+  std::vector<std::string> header;  ///< column names of `rows`, the values that the drawing shows
   std::vector<std::vector<std::string>> rows;
 };
 
 struct Figure {
-  std::string name;     ///< in a few words, also of its files: "error over time tp1"
-  std::string caption;  ///< sentences
+  std::string name;     ///< a few words, also used for its files: "error over time tp1"
+  std::string caption;  ///< one or more sentences
   ChartRows charts;
   std::optional<Drawing> drawing = {};  ///< instead of charts
 };
 
-/// As an <svg> element for a page, which brings the colours.
+/// Returns the figure as an <svg> element. The page defines the colours.
 [[nodiscard]] std::string svg_of(const Figure& figure);
-/// As a file of its own, with both colour schemes.
+/// Returns the figure as a separate file with both colour schemes.
 [[nodiscard]] std::string svg_file_of(const Figure& figure);
-/// What the figure shows, as CSV with a header: of each curve its values at full length, `x` once where
-/// curves of a chart share it; of a drawing its numbers.
+/// Returns the values of the figure as CSV with a header: all values of each curve, or the rows of the
+/// drawing. Curves of a chart that have equal x values share one column `x`.
 [[nodiscard]] std::string csv_of(const Figure& figure);
 
 }  // namespace softgrip::sysid

@@ -1,9 +1,9 @@
 #pragma once
-// The self-contained HTML page that every report is: verdict first, then provenance, then sections.
+// The self-contained HTML page of a report: the verdict first, then the provenance, then the sections.
 //
-// Readable without JavaScript (there is none), no reference to anything outside, prints well, in the reader's
-// colour scheme on a screen. Every text is escaped here; only pictures made in this room enter as markup.
-// Figures are numbered in the order in which they come.
+// The page has no JavaScript and no references to other files. It can be printed, and on a screen it has the
+// reader's colour scheme. Every text is escaped here; only pictures from this folder are inserted as markup.
+// Figures are numbered in their order.
 
 #include <cstddef>
 #include <string>
@@ -15,10 +15,10 @@
 
 namespace softgrip::sysid {
 
-/// The colour beside a verdict.
+/// The colour of a verdict.
 enum class Tone { good, doubtful, bad };
 
-/// A table. `numeric` columns are set flush right; missing entries count as text.
+/// A table. Columns with `numeric` are right-aligned; columns without an entry are text.
 struct Table {
   std::string caption;
   std::vector<std::string> header;
@@ -26,7 +26,7 @@ struct Table {
   std::vector<std::vector<std::string>> rows;
 };
 
-/// The table as lines of text, columns aligned; the caption first.
+/// Returns the table as lines of text with aligned columns; the caption is the first line.
 [[nodiscard]] std::string text_of(const Table& table);
 
 /// Terms and their values.
@@ -35,31 +35,31 @@ using Terms = std::vector<std::pair<std::string, std::string>>;
 /// A report, built from top to bottom.
 class Page {
  public:
-  /// No page is larger, however long its logs are [bytes]: figures that would make it so give way to a
+  /// Maximum size of a page [bytes], for logs of any length. A figure that would exceed it is replaced by a
   /// sentence.
   static constexpr std::size_t most_bytes = 1'500'000;
 
-  /// @param title  of the document. @param verdict  one sentence that a technician understands.
+  /// @param title  title of the document. @param verdict  one sentence for a technician.
   Page(std::string title, std::string verdict, Tone tone);
 
-  /// Right below the verdict (versions, files, hashes).
+  /// Adds entries below the verdict: versions, files, hashes.
   void provenance(Terms entries);
   void section(std::string_view title);
-  /// A section that begins on a new sheet of paper: what only those read who check.
+  /// Begins a section on a new sheet of paper, for readers who verify the result.
   void appendix(std::string_view title);
   void subsection(std::string_view title);
   void paragraph(std::string_view text);
   void list(const std::vector<std::string>& items);
   void terms(const Terms& entries);
   void table(const Table& table);
-  /// With its number, its caption and itself as a file to keep.
+  /// Adds a figure with its number, its caption and a link that saves it as a file.
   void figure(Figure figure);
-  /// A text in its own lines, in a fixed-width font (a model file).
+  /// Adds a text with its line breaks in a fixed-width font, for example a model file.
   void code(std::string_view text);
 
-  /// All figures so far, those too that the page had no room for.
+  /// Returns all figures so far, including those that were replaced by a sentence.
   [[nodiscard]] const std::vector<Figure>& figures() const noexcept { return figures_; }
-  /// With a table of contents where there are many sections.
+  /// Returns the page. It has a table of contents if there are at least three sections.
   [[nodiscard]] std::string to_html() const;
 
  private:
@@ -74,10 +74,10 @@ class Page {
   std::string body_;
 };
 
-/// Software name and version, first entry of every provenance.
+/// Returns the name and version of the software, which is the first entry of each provenance.
 [[nodiscard]] std::string software_and_version();
 
-/// "figure-2-error-over-time": the stem of a figure's files.
+/// Returns the stem of the names of a figure's files: "figure-2-error-over-time".
 [[nodiscard]] std::string figure_stem(std::size_t number, std::string_view name);
 
 }  // namespace softgrip::sysid

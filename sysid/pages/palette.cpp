@@ -12,7 +12,7 @@ struct Role {
   std::string_view dark;
 };
 
-/// In the order of Colour. On dark, the blue and vermilion of the palette are the ones of its lighter half.
+/// The roles in the order of Colour. The dark scheme uses lighter variants of blue and vermilion.
 constexpr std::array roles{
     Role{"measured", "#4d4d4d", "#c3ccd3"}, Role{"model", "#0072b2", "#56b4e9"},
     Role{"error", "#d55e00", "#f08a4b"},    Role{"other", "#a8578a", "#dd9cc1"},

@@ -1,8 +1,8 @@
 #pragma once
-// The colours of pages and pictures by role, for light and dark screens; paper is always light.
+// The colours of pages and pictures by role, for light and dark screens. Paper is always light.
 //
-// An element carries its light colour as an attribute, which every program that reads SVG knows, and a class
-// that a browser's style sheet gives the colour of the reader's scheme.
+// An element has its light colour as an attribute, which all SVG programs support. It also has a class, for
+// which the style sheet of a page defines the colour in the reader's scheme.
 
 #include <optional>
 #include <string>
@@ -10,8 +10,8 @@
 
 namespace softgrip::sysid {
 
-/// A colour by its role, so that one thing looks alike in all pictures of a report. The curves' are Okabe and
-/// Ito's, distinct for all kinds of colour vision.
+/// A colour by its role, so that one quantity has the same colour in all pictures of a report. The colours of
+/// curves are those of Okabe and Ito, which are distinct for all kinds of colour vision.
 enum class Colour {
   measured,
   model,
@@ -21,21 +21,22 @@ enum class Colour {
   good,
   bad,
   text,
-  muted,  ///< of a text that stands back
+  muted,  ///< secondary text
   axis,
   grid,
-  paper,  ///< what is drawn upon
-  panel,  ///< a box upon the paper
+  paper,  ///< background
+  panel,  ///< a box on the background
 };
 
-/// "#0072b2": of the light scheme.
+/// Returns the colour code of the light scheme, such as "#0072b2".
 [[nodiscard]] std::string_view light_code(Colour colour);
 
-/// Attributes of an SVG element, with a blank before them. What is not given is inherited.
+/// Returns attributes of an SVG element, beginning with a blank. An element inherits attributes that are not
+/// given.
 [[nodiscard]] std::string stroked(Colour stroke);
 [[nodiscard]] std::string filled(Colour fill, std::optional<Colour> stroke = std::nullopt);
 
-/// Both schemes as variables of `selector`, and the classes that use them.
+/// Returns CSS with both schemes as variables of `selector`, and the classes that use them.
 [[nodiscard]] std::string scheme_css(std::string_view selector);
 
 }  // namespace softgrip::sysid

@@ -1,5 +1,5 @@
 #pragma once
-// Where a result comes from: software, logs, models.
+// Provenance of a result: software, logs, models.
 
 #include <string>
 #include <utility>
@@ -10,7 +10,7 @@
 
 namespace softgrip::sysid {
 
-/// Entries for Page::provenance(): the software, each log with its hash, each named model with its hash.
+/// Returns the entries for Page::provenance(): the software, each log and each named model with its hash.
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> provenance_of(
     const std::vector<Log>& logs, const std::vector<std::pair<std::string, const model::Model*>>& models);
 
