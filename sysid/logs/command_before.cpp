@@ -12,12 +12,13 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Share of the command's range. The errors of a regulator and of a pressure sensor are below it.
+/// Threshold as a share of the range of the commands. Errors of a regulator and a pressure sensor are
+/// smaller.
 constexpr double far = 0.1;
-/// Share of the way to the command. A regulator's own lag covers more within any hold.
+/// Share of the difference to the command. The response of a regulator covers more within each hold.
 constexpr double on_its_way = 0.5;
 
-/// Samples from the first on at which the command is still what it was.
+/// Returns the number of samples at the beginning with a constant command.
 std::size_t stands_for(const Log& log, double range_kpa) {
   const std::vector<double>& command = log.pressure_command_kpa;
   std::size_t count = 1;
@@ -25,13 +26,13 @@ std::size_t stands_for(const Log& log, double range_kpa) {
   return count;
 }
 
-/// Share of the displacement's range: creep under a steady pressure moves less.
+/// Threshold as a share of the displacement's range. Creep at constant pressure is smaller.
 constexpr double step_share = 0.2;
-/// Readings at either end of the first command: their median is no outlier.
+/// Number of readings at either end of the first command. Their median is robust against an outlier.
 constexpr std::size_t at_an_end = 5;
 constexpr std::size_t fewest_standing = 4 * at_an_end;
 
-/// Median of the readings in [first, last); NaN without one.
+/// Returns the median of the readings in [first, last); NaN if there are none.
 double median_mm(const Log& log, std::size_t first, std::size_t last) {
   std::vector<double> readings;
   for (std::size_t i = first; i < last; ++i) {
@@ -40,7 +41,7 @@ double median_mm(const Log& log, std::size_t first, std::size_t last) {
   return readings.empty() ? std::numeric_limits<double>::quiet_NaN() : median_of(std::span(readings));
 }
 
-/// The command of the log that is nearest to a pressure. A pressure beyond all of them stays as it is.
+/// Returns the command that is nearest to a pressure. A pressure outside their range is returned unchanged.
 double command_near(double pressure_kpa, const std::vector<double>& commands, double least_kpa,
                     double most_kpa) {
   if (pressure_kpa < least_kpa || pressure_kpa > most_kpa) return pressure_kpa;

@@ -1,5 +1,6 @@
 #pragma once
-// Logs that begin the moment their command was set: the finger was still where the one before had left it.
+// Logs that begin when their first command is set: the finger is still at the position of the previous
+// command.
 
 #include <optional>
 #include <vector>
@@ -8,24 +9,27 @@
 
 namespace softgrip::sysid {
 
-/// The command before the log began [kPa], if the pressure was not yet at the first command.
-/// The measured pressure differs from the first command by 10 % of the command's range or more, and moves at
-/// least half of the way to it while the command is constant. No value if the pressure stays away (another
-/// zero, another unit). Within the range of the commands the result is the command of the log that is nearest
-/// to the measured pressure: the log does not show the response to any other.
+/// Returns the command before the log began [kPa] if the pressure was not yet at the first command, otherwise
+/// nullopt. The condition is: the measured pressure differs from the first command by at least 10 % of the
+/// range of the commands, and covers more than half of this difference while the command is constant. A
+/// pressure that does not approach the command has another zero or unit, so the result is nullopt. If the
+/// measured pressure is within the range of the commands, the result is the nearest command of the log,
+/// because the log does not show the response to any other.
 ///
-/// Without a measured pressure the displacement shows it: it moves by a fifth of its range and more while the
-/// first command is held. The pressure then was at the lowest command if the displacement rises, otherwise at
-/// the highest. Returns nullopt if the first command is that one itself, or lasts for less than 20 samples.
+/// Without a measured pressure, the displacement is used: it must move by more than 20 % of its range while
+/// the first command is held. The previous command is the lowest one if the displacement rises, otherwise the
+/// highest. Returns nullopt if the first command is itself this extreme, or if it lasts for less than 20
+/// samples.
 [[nodiscard]] std::optional<double> pressure_before_kpa(const Log& log);
 
-/// The log with one sample more before its first, without readings, at the command `before_kpa`. Times still
-/// begin at 0, so all others move by the median interval. A note states this.
+/// Returns the log with an additional first sample at the command `before_kpa`, without readings. Times still
+/// begin at 0, so all other samples are shifted by the median interval. A note states this.
 [[nodiscard]] Log with_command_before(const Log& log, double before_kpa);
 
-/// Replaces every log that begins as its command was set by with_command_before().
-/// @param measured_stay  true: not if its pressure is measured, because a stage of its own begins at that
-///                       pressure.
+/// Replaces each log for which pressure_before_kpa() has a value by with_command_before().
+/// @param measured_stay  true: logs with a measured pressure remain unchanged, because a separate model stage
+/// begins
+///                       at that pressure.
 void begin_before_first_command(std::vector<Log>& logs, bool measured_stay);
 
 }  // namespace softgrip::sysid

@@ -1,5 +1,5 @@
 #pragma once
-// CSV as text: lines and cells with their places. The readers interpret them.
+// CSV as text: lines, and cells with their positions. The readers interpret the cells.
 
 #include <string>
 #include <string_view>
@@ -7,7 +7,7 @@
 
 namespace softgrip::sysid {
 
-/// The text, line by line, without line breaks; without the empty lines at its end.
+/// Returns the lines of a text without line breaks. Empty lines at the end are omitted.
 [[nodiscard]] std::vector<std::string_view> lines_of(std::string_view text);
 
 /// A cell and the byte column at which it begins.
@@ -16,16 +16,16 @@ struct Cell {
   int column;
 };
 
-/// Splits at separators outside double quotes. The cells keep their quotes. False where a quote is not
-/// closed.
+/// Splits a line at separators outside double quotes. The cells keep their quotes. Returns false if a quote
+/// is not closed.
 bool split(std::string_view line, std::vector<Cell>& cells, char separator = ',');
 
-/// Without the blanks around it, and without the double quotes around that.
+/// Removes blanks at both ends, and then a pair of double quotes.
 [[nodiscard]] std::string_view unquoted(std::string_view text);
 
-/// Returns the content of a cell: unquoted, and inside quotes two of them stand for one (RFC 4180).
+/// Returns the content of a cell without quotes. Inside quotes, two quotes represent one (RFC 4180).
 [[nodiscard]] std::string cell_text(std::string_view cell);
-/// The cell that says it: in quotes where it must be.
+/// Returns a cell with the given content, in quotes if necessary.
 [[nodiscard]] std::string as_cell(std::string_view text);
 
 }  // namespace softgrip::sysid

@@ -8,10 +8,11 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Readings so near to a held-out block, in parts of it, are not fitted either.
+/// Readings within this share of a held-out block on either side are not fitted either.
 constexpr double gap_share = 0.1;
 constexpr std::size_t fewest_blocks = 8;
-/// With fewer blocks than this a half of them does not determine a model: quarters are held out instead.
+/// With fewer blocks, one half of them does not determine a model, so quarters are held out instead of
+/// halves.
 constexpr std::size_t enough_to_halve = 16;
 constexpr std::size_t fifths = 5;
 constexpr double blocks_of_fifths = 10;

@@ -1,5 +1,5 @@
 #pragma once
-// Runs a function for every record, in parallel if the records are long enough.
+// Calls a function for each record, in parallel if the records are long enough.
 
 #include <cstddef>
 #include <vector>
@@ -9,7 +9,7 @@
 
 namespace softgrip::sysid {
 
-/// A record with fewer samples is walked through a chain before a thread for it would have begun.
+/// A record with fewer samples is simulated in less time than a thread needs to start.
 inline constexpr std::size_t samples_worth_a_thread = 1000;
 
 /// Returns true if the records have at least `least_samples` samples on average.
@@ -20,7 +20,8 @@ inline constexpr std::size_t samples_worth_a_thread = 1000;
   return samples >= least_samples * records.size();
 }
 
-/// Calls work(i) for `count` walks through records, in any order: on the threads that are idle where it pays.
+/// Calls work(i) for `count` simulations of records in any order, on idle threads if the records are long
+/// enough.
 template <class Work>
 void for_each_walk(const std::vector<Record>& records, std::size_t count, Work&& work,
                    std::size_t least_samples = samples_worth_a_thread) {
@@ -31,15 +32,15 @@ void for_each_walk(const std::vector<Record>& records, std::size_t count, Work&&
   }
 }
 
-/// Calls work(k) for every record, in any order: on the threads that are idle where it pays. Results belong
-/// into slot k of something prepared.
+/// Calls work(k) for each record in any order, on idle threads if the records are long enough. work(k) must
+/// write its result to element k of a container that exists already.
 template <class Work>
 void for_each_record(const std::vector<Record>& records, Work&& work,
                      std::size_t least_samples = samples_worth_a_thread) {
   for_each_walk(records, records.size(), work, least_samples);
 }
 
-/// The row of each record's first reading where all readings of all records follow one another.
+/// Returns the row of each record's first reading, if the readings of all records are consecutive rows.
 [[nodiscard]] inline std::vector<std::size_t> first_rows_of(const std::vector<Record>& records) {
   std::vector<std::size_t> rows;
   std::size_t row = 0;

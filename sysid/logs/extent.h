@@ -1,5 +1,5 @@
 #pragma once
-// How far the values of a column reach.
+// Range of the values in a column.
 
 #include <optional>
 #include <vector>
@@ -8,8 +8,9 @@
 
 namespace softgrip::sysid {
 
-/// Below these a column is probably in another unit than kPa, mm or deg: a soft finger moves at 20 to 60 kPa
-/// by some 10 mm, and bends by more than 3 deg, which is less than any finger in radians.
+/// If the largest value is below these limits, the unit of a column is probably not kPa, mm or deg. A soft
+/// finger moves by about 10 mm at 20 to 60 kPa and bends by more than 3 deg; a bend in rad is always less
+/// than 3.
 inline constexpr double small_pressure_kpa = 2;
 [[nodiscard]] constexpr double small_reading(model::OutputUnit unit) {
   return unit == model::OutputUnit::deg ? 3 : 0.1;
@@ -21,7 +22,7 @@ struct ColumnExtent {
   [[nodiscard]] double width() const { return highest - lowest; }
 };
 
-/// Of the values that are finite; none, if none is.
+/// Returns the range of the finite values, or nullopt if there are none.
 [[nodiscard]] std::optional<ColumnExtent> extent_of(const std::vector<double>& values);
 
 }  // namespace softgrip::sysid

@@ -10,12 +10,12 @@
 namespace softgrip::sysid {
 namespace {
 
-/// A smaller reversal, in units of the noise, is ignored: smoothed noise does not reach this value.
+/// Smaller reversals, in units of the noise, are ignored. Smoothed noise does not reach this value.
 constexpr double least_turn = 5;
-/// Below this share of a column's range its noise changes no answer.
+/// Noise below this share of a column's range does not affect the response of a model.
 constexpr double negligible_share = 1e-4;
 
-/// Largest minus smallest finite value; negative without one.
+/// Returns the largest minus the smallest finite value; negative if there are none.
 double range_of(std::span<const double> values) {
   double low = std::numeric_limits<double>::infinity(), high = -low;
   for (const double v : values) {
@@ -26,29 +26,30 @@ double range_of(std::span<const double> values) {
   return high - low;
 }
 
-/// Degrees of freedom of the slope's drift: the slope is mostly constant, and then it jumps. With a normal
-/// distribution, the jump of one fast vent would make the whole log follow its noise.
+/// Degrees of freedom of the distribution of the slope's drift. The slope is mostly constant and sometimes
+/// jumps. With a normal distribution, the jump of one fast vent would make the whole smoothed log follow its
+/// noise.
 constexpr double heavy_tail = 1;
-/// Number of times that the shares of the drift are estimated again.
+/// Number of iterations for the shares of the drift.
 constexpr int rounds = 12;
 
-/// Level and slope before a measurement, their covariance, and the deviation of the measurement.
+/// Predicted level and slope before a measurement, their covariance, and the innovation.
 struct Estimate {
   double level = 0, slope = 0;
   double ll = 0, ls = 0, ss = 0;
   double innovation = 0, variance = 0;  ///< variance 0: no measurement
 };
 
-/// Signal whose slope is a Wiener process of `drift_rate` times the step's own share.
+/// A signal whose slope is a Wiener process. Its rate in a step is `drift_rate` times the share of the step.
 struct Path {
   std::span<const double> time_s, values;
   double noise = 0;
-  std::vector<double> shares;  ///< of the step that ends at a sample
+  std::vector<double> shares;  ///< share of the step that ends at a sample
 
   [[nodiscard]] double step_s(std::size_t i) const { return time_s[i] - time_s[i - 1]; }
 };
 
-/// Level and slope a step later.
+/// Predicts level and slope after a step of `dt` [s].
 void advance(Estimate& e, double dt, double drift_rate) {
   e.level += dt * e.slope;
   e.ll += 2 * dt * e.ls + dt * dt * e.ss + drift_rate * dt * dt * dt / 3;
@@ -56,7 +57,7 @@ void advance(Estimate& e, double dt, double drift_rate) {
   e.ss += drift_rate * dt;
 }
 
-/// One pass forwards. Returns minus twice the log-likelihood of the innovations.
+/// Runs the Kalman filter. Returns minus twice the log-likelihood of the innovations.
 double filter(const Path& path, double drift_rate, std::vector<Estimate>* before) {
   const auto& values = path.values;
   const auto first = std::find_if(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
@@ -82,8 +83,8 @@ double filter(const Path& path, double drift_rate, std::vector<Estimate>* before
   return cost;
 }
 
-/// Returns the drift rate of the slope, per second, of greatest likelihood: golden section over its
-/// logarithm.
+/// Returns the drift rate of the slope, per second, with the maximum likelihood: golden-section search over
+/// its logarithm.
 double likeliest_drift_rate(const Path& path) {
   const auto& time_s = path.time_s;
   const double dt = (time_s.back() - time_s.front()) / static_cast<double>(time_s.size() - 1);
@@ -112,13 +113,13 @@ double likeliest_drift_rate(const Path& path) {
   return std::exp((low + high) / 2);
 }
 
-/// The signal and, for every step, the drift of the slope on it: the mean of w' Q^-1 w, Q for a drift rate
-/// of 1.
+/// The smoothed signal, and for each step the drift of the slope: the mean of w' Q^-1 w, with Q for a drift
+/// rate of 1.
 struct Smooth {
   std::vector<double> level, drift;
 };
 
-/// One pass backwards over the innovations and their weights (Koopman, Biometrika 80, 1993).
+/// Runs the disturbance smoother backwards over the innovations (Koopman, Biometrika 80, 1993).
 Smooth disturbances(const Path& path, double drift_rate) {
   const std::size_t n = path.values.size();
   std::vector<Estimate> before(n);
@@ -127,7 +128,7 @@ Smooth disturbances(const Path& path, double drift_rate) {
   double r0 = 0, r1 = 0, n00 = 0, n01 = 0, n11 = 0;
   for (std::size_t i = n; i-- > 0;) {
     const Estimate& e = before[i];
-    if (i + 1 < n) {  // back over the step
+    if (i + 1 < n) {  // backwards over the step
       const double dt = path.step_s(i + 1);
       r1 += dt * r0;
       n11 += 2 * dt * n01 + dt * dt * n00;
@@ -154,7 +155,7 @@ Smooth disturbances(const Path& path, double drift_rate) {
 double white_noise_of(std::span<const double> time_s, std::span<const double> values) {
   std::vector<double> deviations;
   for (std::size_t i = 2; i < values.size(); ++i) {
-    // From the straight line between both neighbours, in units of one value's noise.
+    // Deviation from the straight line between both neighbours, scaled to the noise of one value.
     const double share = (time_s[i - 1] - time_s[i - 2]) / (time_s[i] - time_s[i - 2]);
     const double off = values[i - 1] - (1 - share) * values[i - 2] - share * values[i];
     if (std::isfinite(off))

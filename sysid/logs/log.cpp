@@ -16,7 +16,8 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Reports and JSON speak of logs by name: the second of a name becomes "run (2)".
+/// Makes the names unique, because reports and JSON refer to logs by name: the second log "run" becomes "run
+/// (2)".
 void make_names_unique(std::vector<Log>& logs) {
   std::map<std::string, int> seen;
   for (Log& log : logs) {

@@ -14,14 +14,15 @@ namespace {
 using document::Problem;
 using document::Problems;
 
-/// A log of fewer samples says nothing about a model with ten parameters.
+/// Minimum number of samples. Fewer samples do not determine a model with ten parameters.
 constexpr std::size_t fewest_samples = 50;
 constexpr std::size_t fewest_command_samples = 2;
-/// Above these a unit was certainly mistaken: a soft finger moves at 20-60 kPa by some 10 mm.
+/// Larger values certainly have a wrong unit, because a soft finger moves by about 10 mm at 20 to 60 kPa.
 constexpr double largest_pressure_kpa = 5000;
 constexpr double largest_displacement_mm = 5000;
 constexpr double longest_median_interval_s = 5;
-/// A hole: longer than this, and than this many usual intervals, while the command changed unseen.
+/// A hole is longer than this time [s] and than this number of usual intervals, and the command changes in
+/// it.
 constexpr double hole_s = 0.5;
 constexpr double hole_intervals = 20;
 constexpr double gap_intervals = 5;
@@ -30,7 +31,7 @@ std::string percent(double share) {
   return fixed(100 * share, 1) + " %";
 }
 
-/// The checks of one log, sharing its source and its problems.
+/// Checks one log.
 class Check {
  public:
   Check(Log& log, const LogSource& source, Problems& problems)
@@ -58,7 +59,7 @@ class Check {
   }
 
  private:
-  /// A problem at the line of `sample` (one past the end: the last line).
+  /// Adds a problem at the line of `sample`. An index after the last sample gives the last line.
   void refuse(std::size_t sample, int column, std::string message, std::string hint = {}) {
     Problem problem{source_.file, {1, column}, {}, std::move(message), std::move(hint)};
     if (!source_.line.empty()) {
@@ -203,7 +204,7 @@ class Check {
     }
   }
 
-  /// Readings that stay on the extreme value while the command moves on: the sensor or the board clips.
+  /// Finds readings that remain at an extreme value while the command changes: the sensor or the board clips.
   void clipping(double share_refused) {
     const ColumnExtent reading = extent_of(log_.displacement_mm).value_or(ColumnExtent{});
     if (reading.width() <= 0) return;

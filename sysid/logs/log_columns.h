@@ -1,5 +1,5 @@
 #pragma once
-// The columns of the log contract: names, units, where their values go.
+// The columns of the log contract: names, units, and members of Log for their values.
 
 #include <array>
 #include <cstddef>
@@ -16,7 +16,7 @@ struct KnownColumn {
   std::string_view name;
   std::string_view quantity;  ///< the name without its unit
   bool required;
-  bool may_be_empty;  ///< an empty cell says: no reading
+  bool may_be_empty;  ///< an empty cell is a missing reading
   std::vector<double> Log::*values;
 };
 
@@ -33,23 +33,25 @@ inline constexpr std::size_t column_command = 1;
 inline constexpr std::size_t column_displacement = 2;
 inline constexpr std::string_view channel_column = "channel";
 
-/// A column that holds the readings of the finger.
+/// A column that can contain the readings of the finger.
 struct ReadingColumn {
   std::string_view name;
   model::OutputUnit unit;
-  double factor;  ///< from the column to the unit
+  double factor;  ///< conversion factor from the column to the unit
 };
-/// A log has one of them. Of several the first is used; the others are kept as text.
+/// A log must have one of these columns. If it has several, the first is used and the others are kept as
+/// text.
 inline constexpr std::array<ReadingColumn, 3> reading_columns{{
     {known_columns[column_displacement].name, model::OutputUnit::mm, 1},
     {"angle_deg", model::OutputUnit::deg, 1},
     {"angle_rad", model::OutputUnit::deg, model::deg_per_rad},
 }};
 
-/// How a log names a column: "angle_deg" of the readings of a log in deg.
+/// Returns the name of a column in a log: "angle_deg" for the readings of a log in deg.
 [[nodiscard]] std::string_view column_name(const KnownColumn& known, const Log& log);
 
-/// How to come from a unit that people write to the one of the contract: ", divide by 1000"; empty: unknown.
+/// Returns the conversion of a unit to that of the contract as a text: ", divide by 1000"; empty: unknown
+/// unit.
 [[nodiscard]] std::string conversion(std::string_view unit);
 
 }  // namespace softgrip::sysid

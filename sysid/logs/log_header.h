@@ -1,5 +1,5 @@
 #pragma once
-// The first line of a log.
+// Reader of the first line of a log.
 
 #include <array>
 #include <string>
@@ -12,13 +12,13 @@
 
 namespace softgrip::sysid {
 
-/// The places of the columns of a log in its rows.
+/// The positions of the columns in the rows of a log.
 struct LogHeader {
   std::vector<std::string> names;
   std::array<int, known_columns.size()> index{};  ///< -1: absent
   std::array<int, known_columns.size()> column{};
   int channel = -1;
-  ReadingColumn reading = reading_columns.front();  ///< which of them holds the readings
+  ReadingColumn reading = reading_columns.front();  ///< the column with the readings
 };
 
 /// Reads the header. Reports its errors; after an error, the header must not be used.

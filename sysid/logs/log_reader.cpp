@@ -1,4 +1,4 @@
-// Reading a log: parse_log() and channels_of() of sysid/logs/log.h.
+// Reader of logs: parse_log() and channels_of() of sysid/logs/log.h.
 
 #include <algorithm>
 #include <cmath>
@@ -18,7 +18,7 @@ namespace {
 
 constexpr double no_reading = std::numeric_limits<double>::quiet_NaN();
 
-/// One number of a row, reported where it is none.
+/// Reads a number of a row. Reports a cell that is not a number.
 double read_cell(const KnownColumn& known, std::string_view name, const Cell& cell, int line_number,
                  std::string_view line, LogReporter& report) {
   const std::string_view text = unquoted(cell.text);
@@ -43,7 +43,7 @@ double read_cell(const KnownColumn& known, std::string_view name, const Cell& ce
   return *value;
 }
 
-/// The rows of one channel, read into a log.
+/// Reads the rows of one channel into a log.
 class RowReader {
  public:
   RowReader(const LogHeader& header, const LogOptions& options, Log& log, LogSource& source,
@@ -99,7 +99,8 @@ class RowReader {
   [[nodiscard]] const std::vector<std::string>& channels() const { return channels_; }
 
  private:
-  /// A value whose conversion overflows is not converted: its size is then refused.
+  /// Converts a value to the unit of the log. If the conversion overflows, the value is returned unchanged,
+  /// and a later check refuses its magnitude.
   [[nodiscard]] double in_output_unit(double value) const {
     const double converted = header_.reading.factor * value;
     return std::isfinite(converted) ? converted : value;
@@ -128,7 +129,7 @@ std::string listed(const std::vector<std::string>& words) {
   return with_commas(words, [](const std::string& word) { return "'" + word + "'"; });
 }
 
-/// A log with several channels needs a choice, and the choice must exist.
+/// Reports if a log has several channels and none is selected, or if the selected channel does not exist.
 void check_channel(const RowReader& rows, const LogHeader& header, const LogOptions& options,
                    std::string_view header_line, LogReporter& report, Log& log) {
   const document::Location at{1, 1};

@@ -14,11 +14,12 @@
 namespace softgrip::sysid {
 namespace {
 
-// Above these, as below those of extent.h, a unit was probably mistaken.
+// Values above these limits, or below those of extent.h, probably have a wrong unit.
 constexpr double large_pressure_kpa = 1000;
 /// The largest pressure of a soft finger in MPa is below this.
 constexpr double small_as_mpa = 0.2;
-/// A soft finger that moves by more per kPa does so below this pressure only if the pressure is in psi.
+/// If the largest pressure is below this value and the gain exceeds one of the following limits, the pressure
+/// is probably in psi.
 constexpr double small_as_psi = 20;
 constexpr double large_gain_mm_per_kpa = 1;
 constexpr double large_gain_deg_per_kpa = 5;
@@ -26,9 +27,9 @@ constexpr double small_as_mbar = 20e3;
 constexpr double large_displacement_mm = 500;
 constexpr double slow_sampling_s = 1;
 constexpr double atmosphere_kpa = 101.325;
-/// Correlations beyond this are no chance.
+/// A correlation with a larger magnitude is significant.
 constexpr double clear_correlation = 0.5;
-/// Loops that run backwards by more than this share are no drift of the sensor.
+/// Drift of the sensor cannot explain a loop whose relative area is below this.
 constexpr double clear_loop_backwards = -0.02;
 
 PairSums sums_of(const std::vector<double>& x, const std::vector<double>& y) {
@@ -37,7 +38,8 @@ PairSums sums_of(const std::vector<double>& x, const std::vector<double>& y) {
   return sums;
 }
 
-/// Samples by which the increments of `later` follow those of `earlier` best; negative: it comes first.
+/// Returns the lag [samples] with the best correlation between the increments of `later` and `earlier`;
+/// negative: `later` precedes `earlier`. Returns 0 if no correlation is significant.
 int best_lag(const std::vector<double>& earlier, const std::vector<double>& later) {
   constexpr int farthest = 20;
   const auto increments = [](const std::vector<double>& values) {
@@ -86,8 +88,8 @@ const std::vector<double>& drive_of(const Log& log) {
   return log.pressure_kpa.empty() ? log.pressure_command_kpa : log.pressure_kpa;
 }
 
-/// Mean area of the loops that the readings draw over the pressure, as a share of the square around them:
-/// above 0 if the readings follow the pressure, as they do in every system that dissipates or lags.
+/// Returns the mean area of the loops of readings over pressure, as a share of their bounding rectangle. It
+/// is above 0 if the readings follow the pressure, as in each dissipative or lagging system.
 double loop_share(const std::vector<double>& pressure, const std::vector<double>& reading) {
   const auto p = extent_of(pressure), y = extent_of(reading);
   if (!p || !y || p->width() <= 0 || y->width() <= 0) return 0;
@@ -137,7 +139,7 @@ void check_free_motion(const Log& log, std::vector<std::string>& warnings) {
                      "judged by them; record a run that touches nothing");
 }
 
-/// The column, its largest value, and how to state the unit that it probably has.
+/// Returns a text with the column, its largest value, and the options that state the probable unit.
 std::string state_unit(const PressureColumn& column, const ColumnExtent& p, const char* unit) {
   const double largest = -p.lowest > p.highest ? p.lowest : p.highest;
   return " The largest value of `" + column.name + "` is " + significant(largest, 3) +

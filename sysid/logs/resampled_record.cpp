@@ -8,10 +8,12 @@
 namespace softgrip::sysid {
 namespace {
 
-/// A command jumps if it leaves the straight line between two samples by this share of the largest command.
+/// A command jumps if it deviates from the straight line between two samples by this share of the largest
+/// command.
 constexpr double least_jump = 0.01;
 
-/// The command at sample `at`, weighted by a hat over the samples that are dropped on either side.
+/// Returns the mean command around sample `at`, with triangular weights over the removed samples on either
+/// side.
 double hat_mean_kpa(const std::vector<double>& drive_kpa, std::size_t at, std::size_t stride) {
   const double width = static_cast<double>(stride);
   double sum_kpa = drive_kpa[at];
@@ -31,8 +33,8 @@ bool jumps_after(const Record& record, std::size_t at, std::size_t stride) {
   return false;
 }
 
-/// A jump between two samples that are kept would come up to a whole interval early or late: there the
-/// command keeps its mean instead of its value. Corners without a jump stay as sharp as they are.
+/// Replaces the command by its local mean where it is held or jumps. Without this, a jump between two kept
+/// samples would be early or late by up to one interval. Corners without a jump are unchanged.
 void keep_mean_of_jumps(const Record& record, std::size_t stride, Record& thin) {
   if (record.held) {
     for (std::size_t to = 0; to + 1 < thin.size(); ++to) {
@@ -54,7 +56,8 @@ std::size_t stride_for(const Record& record, double interval_s) {
   return static_cast<std::size_t>(std::max(1.0, std::floor(interval_s / record.mean_interval_s())));
 }
 
-/// Mean of `reach` readings on either side of one and itself; none where fewer than half are there.
+/// Returns the mean of a reading and `reach` readings on either side; NaN if fewer than half of them are
+/// present.
 double mean_around(const std::vector<double>& readings, std::size_t at, std::size_t reach) {
   double sum = 0;
   std::size_t count = 0;
@@ -103,7 +106,8 @@ std::vector<double> finer(const std::vector<double>& series, std::size_t parts, 
 
 Record thinned_record(const Record& record, std::span<const std::size_t> kept) {
   Record thin = record;
-  // A held command is that of the step's begin: the thinned step takes the first of its steps for all.
+  // A held command has the value at the beginning of a step, so the first original step determines the
+  // thinned one.
   for (auto* column :
        {&thin.time_s, &thin.drive_kpa, &thin.reading_mm, &thin.temperature_c, &thin.supply_kpa}) {
     if (column->empty()) continue;

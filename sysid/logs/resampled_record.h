@@ -1,8 +1,8 @@
 #pragma once
-// A record with other samples: the only place that leaves samples out, averages them or adds some.
+// Resampling of records. Only this file removes, averages or adds samples.
 //
-// Every function takes a record as it is and returns another one of the same run. Where nothing has to be
-// left out it returns the record unchanged.
+// Each function returns another record of the same run. If no sample has to be removed, it returns the record
+// unchanged.
 
 #include <cstddef>
 #include <span>
@@ -12,39 +12,41 @@
 
 namespace softgrip::sysid {
 
-/// Readings that show a finger completely: an hour at 10 Hz, or seven minutes at 100 Hz. The time of a
-/// diagnosis and of a choice of structure grows with their number.
+/// A number of readings that describes a finger completely: one hour at 10 Hz, or seven minutes at 100 Hz.
+/// The duration of a diagnosis and of a choice of structure increases with this number.
 inline constexpr std::size_t enough_readings = 40'000;
 
-/// The samples at `kept` (ascending, the first is 0), with durations between them; of irregular sampling
-/// where nothing else is said.
+/// Returns the samples at `kept` (ascending, the first is 0) with the durations between them. The sampling of
+/// the result counts as irregular.
 [[nodiscard]] Record thinned_record(const Record& record, std::span<const std::size_t> kept);
-/// Every `stride`-th sample of a record, from the first on: for a first look at many starts. A command that
-/// is held is the mean of what was held; one that jumps between two samples keeps its mean around them, since
-/// the jump would come up to a whole interval early or late; corners without a jump stay as sharp as they
-/// are.
+/// Returns every `stride`-th sample, beginning with the first, for a coarse fit from many starting points. A
+/// held command is replaced by its mean over the removed samples. If the command jumps between two kept
+/// samples, these have the local mean of the command; otherwise the jump would be early or late by up to one
+/// interval. Corners without a jump are unchanged.
 [[nodiscard]] Record thinned_record(const Record& record, std::size_t stride);
-/// Thinned so that samples are at most `interval_s` apart, unless they are farther apart already.
+/// Thins a record as far as the samples remain at most `interval_s` apart.
 [[nodiscard]] Record thinned_to(const Record& record, double interval_s);
-/// Thinned likewise, and each reading the mean of those that are nearer to it than to any other that is left:
-/// their noise falls with the root of their number. A motion is not blurred as long as it bends little within
-/// `interval_s`.
+/// Thins a record like thinned_to() and replaces each reading by the mean of the readings that are nearest to
+/// it. The noise decreases with the square root of their number. A motion is preserved if it is almost linear
+/// within `interval_s`.
 [[nodiscard]] Record averaged_to(const Record& record, double interval_s);
-/// All records averaged so that about `most` readings are left in all. No mean covers more than `longest_s`,
-/// so of a very long campaign more readings are left.
+/// Averages all records so that about `most` readings remain in total. No mean covers more than `longest_s`,
+/// so more readings remain of a very long campaign.
 [[nodiscard]] std::vector<Record> averaged_to_count(std::vector<Record> records, std::size_t most,
                                                     double longest_s);
-/// The first sample, and of every interval of such a length, counted from it, the sample that is nearest to
-/// its middle: what is reckoned there stands for the interval's mean, but for how much it bends in it. A
-/// record that is coarser already stays as it is.
+/// Returns the first sample, and the sample that is nearest to the middle of each interval of length
+/// `interval_s` after it. A value computed there approximates the mean of the interval, except for its
+/// curvature. A record with larger intervals is returned unchanged.
 [[nodiscard]] Record thinned_to_centres(const Record& record, double interval_s);
-/// Divides every step into `parts` equal parts. Between samples drive and surroundings go straight, a held
-/// drive stays where it was; readings are known at the samples alone.
-/// @param parts  1 and more: sample i of the record is sample i parts of the finer one.
+/// Divides each step into `parts` equal parts. Between samples, drive and surroundings are linear; a held
+/// drive is constant. Only the original samples have readings.
+/// @param parts  at least 1: sample i of the record is sample i * parts of the result.
 [[nodiscard]] Record finer_record(const Record& record, std::size_t parts);
-/// All samples, and of the readings every k-th of each record, so that at most about `most` are left in all.
+/// Keeps all samples, but only every k-th reading of each record, so that at most about `most` readings
+/// remain in total.
 [[nodiscard]] std::vector<Record> with_fewer_readings(std::vector<Record> records, std::size_t most);
-/// Every `stride`-th row of a log: times, pressures, readings and supply. Other columns stay as they are.
+/// Returns every `stride`-th row of a log: times, pressures, readings and supply. Other columns remain
+/// unchanged.
 [[nodiscard]] Log thinned_log(const Log& log, std::size_t stride);
 
 }  // namespace softgrip::sysid

@@ -1,13 +1,14 @@
 #pragma once
-// Numbers that a sensor writes in place of a reading.
+// Detection of numbers that a sensor writes instead of a reading.
 
 #include <span>
 #include <vector>
 
 namespace softgrip::sysid {
 
-/// Values that are codes, not readings: 999, -9999 and the like, or a value that occurs three times, each far
-/// outside of all other values; ascending. Values that are not finite do not count.
+/// Returns the values that are codes and not readings, ascending. A code is far outside the range of all
+/// other values, and it is a typical code (999, -9999 and similar numbers) or occurs at least three times.
+/// Values that are not finite are ignored.
 [[nodiscard]] std::vector<double> sensor_codes(std::span<const double> values);
 
 }  // namespace softgrip::sysid

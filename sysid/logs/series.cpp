@@ -18,7 +18,7 @@ std::string cell(double value) {
 
 LogSeries series_of(const Log& log, const Record& record, bool all_held_out) {
   LogSeries series;
-  // Of an averaged record the log's own samples are no longer there.
+  // An averaged record does not have the samples of the log.
   const bool own_samples = record.size() == log.size();
   series.name = log.name;
   series.output_unit = record.output_unit;

@@ -1,18 +1,20 @@
 #pragma once
-// Where a signal turns back, and what it does between its turns.
+// Turning points of a signal, and a monotone approximation between them.
 
 #include <cstddef>
 #include <vector>
 
 namespace softgrip::sysid {
 
-/// The first sample, every sample from which the signal then goes back by more than `least`, the last one;
-/// ascending. Among equal highest (lowest) values, the first counts. At least one value, all finite.
+/// Returns the indices of the first sample, of each sample after which the signal reverses by more than
+/// `least`, and of the last sample; ascending. Of equal extreme values, the first is used. `values` must
+/// contain at least one value, and all must be finite.
 [[nodiscard]] std::vector<std::size_t> turning_points(const std::vector<double>& values, double least);
 
-/// The nearest signal, in the sense of least squares, that rises or falls steadily from one turning point to
-/// the next (pool adjacent violators: Barlow, Bartholomew, Bremner and Brunk, Statistical Inference under
-/// Order Restrictions, 1972). Where the truth does so too, no sum of squared errors grows.
+/// Returns the least-squares approximation that is monotone from each turning point to the next (pool
+/// adjacent violators: Barlow, Bartholomew, Bremner and Brunk, Statistical Inference under Order
+/// Restrictions, 1972). If the true signal is monotone there too, the sum of squared errors does not
+/// increase.
 [[nodiscard]] std::vector<double> steady_between_turns(std::vector<double> values, double least);
 
 }  // namespace softgrip::sysid
