@@ -24,14 +24,15 @@ std::string source_of(const std::vector<Log>& logs, double rmse_mm, const model:
          "), starting from " + start.name;
 }
 
-/// The error of a fit with the plausibility warnings of its logs: a unit explains a number out of its range.
+/// Returns the error of a fit and the plausibility warnings of its logs, because a wrong unit can cause the
+/// error.
 std::string refusal_of(const std::string& error, const std::vector<Log>& logs) {
   std::string text = error;
   for (const std::string& implausible : plausibility_warnings_among(logs)) text += "; " + implausible;
   return text;
 }
 
-/// Warnings about the data and the predictions: they come before the numbers that they concern.
+/// Returns the warnings about the data and the predictions.
 std::vector<std::string> warnings_of_data(const Identification& result, const std::vector<Log>& logs,
                                           std::vector<std::string> wrong_readings) {
   std::vector<std::string> warnings = std::move(wrong_readings);

@@ -1,7 +1,7 @@
 #pragma once
-// Identification and validation of given logs, complete: wrong readings are taken out first, and warnings
-// about the data come before the numbers that they concern. `softgrip identify`, `softgrip validate` and the
-// library call these functions.
+// Complete identification and validation of given logs: wrong readings are removed first, and warnings about
+// the data precede the values that they concern. `softgrip identify`, `softgrip validate` and the library
+// call these functions.
 
 #include <cstddef>
 #include <cstdint>
@@ -22,12 +22,12 @@ namespace softgrip::sysid {
 
 /// The input of an identification.
 struct IdentifyQuestion {
-  std::vector<Log> logs;                       ///< to fit; at least one
-  std::vector<Log> validation;                 ///< to predict
-  std::optional<model::Model> start;           ///< empty: the base structure, from the data's scale
-  std::string start_file;                      ///< of `start`, for a warning
+  std::vector<Log> logs;                       ///< logs to fit; at least one
+  std::vector<Log> validation;                 ///< logs to predict
+  std::optional<model::Model> start;           ///< empty: the base structure, scaled to the data
+  std::string start_file;                      ///< file of `start`, for a warning
   std::size_t branches = 2;                    ///< creep branches of the base structure
-  std::optional<StructureQuestion> structure;  ///< selects the structure; nothing of `start` is used then
+  std::optional<StructureQuestion> structure;  ///< if set, the structure is chosen and `start` is not used
   IdentifyOptions options;
 };
 
@@ -41,14 +41,16 @@ struct IdentifiedLogs {
   std::vector<Score> validation;
   std::uint64_t seed = 1;
 
-  /// Valid as long as this. @param call  the command and its arguments; empty: by no command
+  /// Returns a report that is valid as long as this object. @param call  the command and its arguments; may
+  /// be empty
   [[nodiscard]] IdentifyReport report(std::vector<std::string> call) const;
 };
 
-/// Returns an error sentence if the logs cannot be fitted. It contains the plausibility warnings of the logs.
+/// Identifies a model. If the logs cannot be fitted, the error is a sentence with their plausibility
+/// warnings.
 [[nodiscard]] tl::expected<IdentifiedLogs, std::string> identify_logs(IdentifyQuestion question);
 
-/// Predicts the logs. Takes wrong readings out of them, with a warning for each log that has some.
+/// Predicts the logs. Wrong readings are removed from `logs`, with a warning for each log that has some.
 [[nodiscard]] Validation validate_given_logs(const model::Model& model, std::vector<Log>& logs,
                                              const RecordOptions& options);
 
