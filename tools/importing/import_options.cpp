@@ -1,4 +1,4 @@
-// What the options of `softgrip import` say: mapping_of() and import_targets() of
+// Interpretation of the options of `softgrip import`: mapping_of() and import_targets() of
 // tools/importing/import_run.h.
 
 #include <algorithm>
@@ -17,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 using Taken = std::function<bool(sysid::ColumnMapping&, const std::string&)>;
 
-/// Applies "ROLE=VALUE" words; the error names the one that is none.
+/// Applies "ROLE=VALUE" words to a mapping. The error names the first invalid word.
 tl::expected<void, std::string> apply(const std::vector<std::string>& words, const char* option,
                                       sysid::Mapping& mapping, const Taken& take) {
   for (const std::string& word : words) {
@@ -54,7 +54,7 @@ bool take_zero(sysid::ColumnMapping& column, const std::string& text) {
   return true;
 }
 
-/// "day1.csv.gz" and the folder "day1" become day1.csv.
+/// Returns the name of the log of a file: day1.csv for "day1.csv.gz" and for the folder "day1".
 std::string log_name(const std::string& file) {
   fs::path path = fs::path(file).lexically_normal();
   if (!path.has_filename()) path = path.parent_path();

@@ -33,20 +33,20 @@ using nlohmann::ordered_json;
 
 constexpr std::size_t longest_log = std::size_t{512} << 20U;
 
-/// One file on its way.
+/// The import of one file.
 struct Job {
   std::string file;
   std::string out;
   sysid::ForeignTable table;
   sysid::Mapping mapping;
   std::vector<sysid::Role> guessed;
-  bool is_log = false;  ///< already, to the letter
+  bool is_log = false;  ///< the file is a log already and is copied
   sysid::ImportedLog result;
   std::vector<std::string> warnings;
   std::vector<std::string> plausibility;
 };
 
-/// A log of our own stays as it is, columns that the contract does not name included.
+/// Takes a file that is a log already, with its additional columns. Returns false for any other file.
 bool take_as_it_is(Job& job) {
   namespace fs = std::filesystem;
   if (sysid::column_index(job.table, "pressure_command_kpa") == job.table.columns.size()) return false;
@@ -76,7 +76,7 @@ bool says_columns(const sysid::Mapping& mapping) {
          std::isfinite(mapping.to_s);
 }
 
-/// Words that a reader takes for missing; numbers are compared as values, by convert().
+/// Returns the words of --missing that are not numbers. convert() compares the numbers by value.
 std::vector<std::string> missing_words(const sysid::Mapping& mapping) {
   std::vector<std::string> words;
   for (const std::string& word : mapping.missing) {
@@ -85,7 +85,7 @@ std::vector<std::string> missing_words(const sysid::Mapping& mapping) {
   return words;
 }
 
-/// True if a column holds codes where the sensor read nothing.
+/// Returns true if a column contains codes for missing readings.
 bool has_codes(const sysid::ForeignTable& table) {
   return std::any_of(table.columns.begin(), table.columns.end(), [](const sysid::TableColumn& column) {
     const bool is_value =
@@ -96,7 +96,8 @@ bool has_codes(const sysid::ForeignTable& table) {
   });
 }
 
-/// Reads a file and completes its mapping; false where that is refused, which has then been said.
+/// Reads a file and completes its mapping. Returns false if the file or the mapping is refused; the reason is
+/// then in `problems`.
 bool prepare(Job& job, const sysid::Mapping& given, document::Problems& problems, bool& unreadable) {
   job.mapping = given;
   auto table = sysid::read_foreign_file(
@@ -125,7 +126,7 @@ std::string command_line(const Job& job, const ImportOptions& options) {
          shell_word(options.out);
 }
 
-/// Shows which column was guessed to be what. False where nothing was guessed.
+/// Prints the guessed roles of the columns. Returns false if no role was guessed.
 bool show_guesses(const std::vector<Job>& jobs) {
   bool guessed = false;
   for (const Job& job : jobs) {
@@ -137,7 +138,7 @@ bool show_guesses(const std::vector<Job>& jobs) {
   return guessed;
 }
 
-/// True if what was guessed may be used.
+/// Returns true if the guessed roles may be used: nothing was guessed, --yes is given, or the user confirms.
 bool agreed(const std::vector<Job>& jobs, const ImportOptions& options) {
   if (!show_guesses(jobs)) return true;
   for (const Job& job : jobs) {
@@ -252,8 +253,8 @@ void report(const std::vector<Job>& jobs, const ImportOptions& options) {
   }
 }
 
-/// The mapping of an earlier import of the same log is no input here: it is written anew with the same
-/// meaning.
+/// Refuses output paths that would overwrite an input. The file of --map may be overwritten by a mapping
+/// file, because the new mapping has the same meaning.
 std::optional<ExitCode> refuse_own_inputs(const ImportOptions& options,
                                           const std::vector<std::string>& targets) {
   std::vector<std::string> outputs = targets;
@@ -288,7 +289,7 @@ ExitCode run_import(const ImportOptions& options) {
     jobs[i].out = (*targets)[i];
     (void)prepare(jobs[i], *mapping, problems, unreadable_file);
   }
-  // Nobody is asked to agree to what would be refused.
+  // The user is asked to confirm only after all files have been converted without a problem.
   for (Job& job : jobs) {
     if (problems.empty() && !finish(job, problems)) (void)show_guesses(jobs);
   }

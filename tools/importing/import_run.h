@@ -1,5 +1,5 @@
 #pragma once
-// `softgrip import` as a whole: what is asked, what is said, what is written.
+// The command `softgrip import`: reading, confirmation, conversion and output.
 
 #include <array>
 #include <optional>
@@ -13,7 +13,7 @@
 
 namespace softgrip::tools {
 
-/// The command line as it stands.
+/// The options of the command line, before they are interpreted.
 struct ImportOptions {
   std::vector<std::string> files;
   std::string out;
@@ -34,17 +34,17 @@ struct ImportOptions {
   bool json = false;
 };
 
-/// Reads all files before it writes any; with a problem nothing is written. What was proposed and not said is
-/// shown and asked for on a terminal; elsewhere, without --yes, the options that say it are printed and the
-/// exit code is 2.
+/// Reads all files before it writes any; if there is a problem, nothing is written. If a mapping was
+/// proposed, it is shown with the equivalent options. Without --yes, the user must confirm it on a terminal;
+/// without a terminal, the exit code is 2.
 ExitCode run_import(const ImportOptions& options);
 
-/// Where the logs of `files` go: `out` itself of one file that does not name a folder, else a file per log in
-/// it. The error is a sentence.
+/// Returns the output paths of the logs of `files`: `out` itself for one file if `out` is not a folder,
+/// otherwise one file for each log in that folder. The error is a sentence.
 [[nodiscard]] tl::expected<std::vector<std::string>, std::string> import_targets(
     const std::vector<std::string>& files, const std::string& out);
 
-/// The mapping that options say upon `begun`. The error is a sentence.
+/// Returns the mapping `begun` after the options were applied. The error is a sentence.
 [[nodiscard]] tl::expected<sysid::Mapping, std::string> mapping_of(const ImportOptions& options,
                                                                    sysid::Mapping begun);
 

@@ -1,5 +1,5 @@
 #pragma once
-// Reading logs as the desk's commands take them.
+// Options and readers of logs for the commands that analyse logs.
 
 #include <optional>
 #include <string>
@@ -20,14 +20,15 @@ class App;
 
 namespace softgrip::tools {
 
-/// How the logs of a command are to be understood.
+/// Options for the interpretation of the logs of a command.
 struct LogInput {
   std::string channel;
   std::string drive = "command";
   std::string begin = "auto";
   bool held = false;
-  /// A log that begins as its command was set gets a sample before it (sysid/logs/command_before.h). True:
-  /// not if its pressure is measured, because a stage of its own begins at that pressure.
+  /// The reader adds a first sample to a log that begins when its command is set
+  /// (sysid/logs/command_before.h). True: it does not do so if the pressure is measured, because a separate
+  /// model stage begins at that pressure.
   bool begins_at_measured_pressure = false;
 
   [[nodiscard]] sysid::RecordOptions record_options() const;
@@ -43,21 +44,21 @@ struct RequiredUnit {
 };
 [[nodiscard]] RequiredUnit unit_of(const model::Model& model);
 [[nodiscard]] RequiredUnit unit_of(const std::vector<sysid::Log>& logs);
-/// A rig measures in mm, and what is said of rigs is in mm.
+/// Returns mm, the unit of rigs.
 [[nodiscard]] RequiredUnit unit_of_rigs();
 
-/// Reads all logs; where one is refused, prints all problems and returns the exit code. Without a required
-/// unit, all must be in that of the first.
+/// Reads all logs. If one is refused, prints all problems and returns the exit code. Without a required unit,
+/// all logs must have the unit of the first.
 [[nodiscard]] tl::expected<std::vector<sysid::Log>, ExitCode> read_logs(
     const std::vector<std::string>& paths, const LogInput& input,
     const std::optional<RequiredUnit>& required = {});
 
-/// Prints the problems of logs and, of each file, how `softgrip import` would make a log of it. Returns
+/// Prints the problems of logs, and for each file a hint how `softgrip import` can convert it. Returns
 /// ExitCode::input_refused.
 ExitCode refuse_logs(const document::Problems& problems);
 
-/// Reads a gauge file; where it is refused, prints all problems and returns the exit code. One in another
-/// unit is refused.
+/// Reads a gauge file. If it is refused, prints all problems and returns the exit code. A file in another
+/// unit than required is refused.
 [[nodiscard]] tl::expected<sysid::GaugeFile, ExitCode> read_gauge(const std::string& path,
                                                                   const RequiredUnit& required);
 
