@@ -1,5 +1,5 @@
 #pragma once
-// A computation of the library that a std::stop_token can end.
+// Support for computations of the library that a std::stop_token can end.
 
 #include <stop_token>
 #include <utility>

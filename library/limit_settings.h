@@ -1,5 +1,5 @@
 #pragma once
-// The public limits as those of control.
+// Conversion of the public limits to those of control/.
 
 #include "control/elements/limits.h"
 #include "library/include/softgrip/control.h"
@@ -7,7 +7,7 @@
 namespace softgrip::library {
 
 [[nodiscard]] control::LimitSettings settings_of(const Limits& limits) noexcept;
-/// Throws InvalidArgument.
+/// Checks and converts limits. Throws InvalidArgument.
 control::LimitSettings checked(const Limits& limits);
 
 }  // namespace softgrip::library

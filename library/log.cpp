@@ -43,7 +43,8 @@ void require_no_infinity(const std::string& argument, const std::vector<double>&
   }
 }
 
-/// The columns of a log, with times that begin at 0. Throws InvalidArgument for wrong shapes and values.
+/// Converts the columns of a log; the times then begin at 0. Throws InvalidArgument for wrong shapes and
+/// values.
 sysid::Log columns_of(const Log& log) {
   const std::string unit = name_of(log.unit);
   library::require_times("time_s", log.time_s, 2);
@@ -78,7 +79,7 @@ std::string sentence_of(const document::Problems& problems) {
   return first.hint.empty() ? first.message : first.message + " (" + first.hint + ")";
 }
 
-/// The log as a reader of its file accepts it: one place decides what can be fitted.
+/// Checks a log with the reader of log files, so that files and arrays have the same conditions.
 sysid::Log accepted(const std::string& argument, const Log& log, const sysid::LogOptions& options) {
   document::Problems problems;
   const std::string name = log.name.empty() ? "log" : log.name;
@@ -200,7 +201,7 @@ Log read_log(const std::string& path, const ReadOptions& options) {
   try {
     return imported(path, options);
   } catch (const FileError&) {
-    // Of a file with the columns of a log, the problems of the log are those that can be solved.
+    // If the file has the columns of a log, the user can correct the problems of the log.
     const auto text = read_file(path, sysid::LogOptions{}.bytes);
     if (text && text->substr(0, text->find('\n')).find("pressure_command_kpa") != std::string::npos)
       library::refuse(problems);

@@ -1,5 +1,5 @@
 #pragma once
-// Public logs as those of sysid, checked.
+// Checks of public logs, and their conversion to those of sysid/.
 
 #include <optional>
 #include <string>
@@ -12,16 +12,16 @@
 
 namespace softgrip::library {
 
-/// Unit that logs must have, and its origin. Empty: that of the first log.
+/// The unit that logs must have, and its origin.
 struct NeededUnit {
   std::string of;  ///< "the model NAME"
   Unit unit = Unit::mm;
 };
 
-/// The unit of a model.
+/// Returns the unit of a model.
 [[nodiscard]] NeededUnit needed_for(const Model& model);
 
-/// Checks logs as the commands do. Throws InvalidArgument.
+/// Checks logs as the commands do, and converts them. Throws InvalidArgument.
 /// @param argument       name of the argument, for messages
 /// @param measured_stay  see sysid::begin_before_first_command()
 [[nodiscard]] std::vector<sysid::Log> checked_logs(const std::string& argument, const std::vector<Log>& logs,

@@ -19,9 +19,9 @@
 namespace softgrip {
 namespace {
 
-/// Largest difference of a step from the first one, as a share of it.
+/// Largest difference of a step from the first step, as a share of the first.
 constexpr double most_jitter = 1e-6;
-/// Steps of an inverse.
+/// Permitted steps of an inverse [s].
 constexpr double shortest_step_s = 1e-4;
 constexpr double longest_step_s = 1;
 
@@ -169,7 +169,7 @@ Inverse Model::inverse(std::span<const double> time_s, std::span<const double> d
   library::require_between("start_kpa", options.start_kpa, options.pressure_min_kpa, options.pressure_max_kpa,
                            "kPa");
   Feedforward feedforward(*this, limits, tick_s);
-  // The reference `preview_s()` after a sample, linear between samples; the last one is held.
+  // Reference at `preview_s()` after a sample, linear between samples and constant after the last one.
   const double ahead = feedforward.preview_s() / tick_s;
   const auto whole = static_cast<std::size_t>(ahead);
   const double part = ahead - static_cast<double>(whole);

@@ -13,7 +13,7 @@
 namespace softgrip {
 
 struct Model::Parts {
-  model::Model value;  ///< a valid one
+  model::Model value;  ///< a valid model
 };
 
 namespace library {
@@ -26,20 +26,20 @@ namespace library {
 /// Throws FileError with all problems.
 [[noreturn]] void refuse(const document::Problems& problems);
 
-/// "[kPa]", "[mm]": how messages state a unit.
+/// Returns a unit as messages write it: "[kPa]", "[mm]".
 [[nodiscard]] std::string in_brackets(model::OutputUnit unit);
 
-// Each of these throws InvalidArgument.
-/// `values` must have one value for each of `count` times.
+// Each of the following functions throws InvalidArgument.
+/// Requires one value for each of `count` times.
 void require_size(const std::string& argument, std::size_t size, std::size_t count, const std::string& unit);
-/// Every value must be finite.
+/// Requires finite values.
 void require_finite(const std::string& argument, std::span<const double> values, const std::string& unit);
-/// Times must be at least `fewest`, finite and increasing.
+/// Requires at least `fewest` times that are finite and increasing.
 void require_times(const std::string& argument, std::span<const double> time_s, std::size_t fewest);
-/// A number must be in [lower, upper].
+/// Requires a number in [lower, upper].
 void require_between(const std::string& argument, double value, double lower, double upper,
                      const std::string& unit);
-/// A number must be finite and above 0.
+/// Requires a finite number above 0.
 void require_positive(const std::string& argument, double value, const std::string& unit);
 
 }  // namespace library

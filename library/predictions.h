@@ -1,5 +1,5 @@
 #pragma once
-// Scores and estimates of sysid as the public structs.
+// Conversion of scores and intervals of sysid/ to the public structs.
 
 #include <string>
 #include <vector>

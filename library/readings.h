@@ -1,5 +1,5 @@
 #pragma once
-// Readings of the public interface and of the drivers.
+// Conversion between the readings of the public interface and those of the drivers.
 
 #include "library/include/softgrip/board.h"
 #include "model/reading.h"

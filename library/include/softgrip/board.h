@@ -34,8 +34,8 @@ struct Reading {
   double pressure_kpa = std::numeric_limits<double>::quiet_NaN();   ///< measured [kPa]; NaN: no sensor
   double temperature_c = std::numeric_limits<double>::quiet_NaN();  ///< [degrees Celsius]; NaN: no sensor
   std::chrono::nanoseconds sampled_at{0};                           ///< time of the sample
-  std::uint32_t sequence = 0;                                       ///< counts the responses
-  Validity validity = Validity::none_yet;                           ///< as the driver judges it
+  std::uint32_t sequence = 0;                                       ///< number of the response
+  Validity validity = Validity::none_yet;                           ///< assessment by the driver
 };
 
 /// Result of an exchange with a board.
@@ -46,7 +46,7 @@ enum class BusStatus : std::uint8_t {
   bad_reply,         ///< the response is malformed
   exception,         ///< the board returned an error
   write_refused,     ///< the outputs did not follow
-  overwritten,       ///< another client writes the outputs, too
+  overwritten,       ///< another client also writes the outputs
   watchdog_tripped,  ///< the watchdog of the board holds the outputs at their safe value
   closed_at_once,    ///< the connection was closed before its first response
 };
@@ -76,11 +76,11 @@ class SOFTGRIP_API Board {
                                            std::chrono::nanoseconds deadline) noexcept = 0;
   /// Returns the reason of the last failure of connect() or exchange().
   [[nodiscard]] virtual std::string detail() const;
-  /// Returns one line for people: product, address.
+  /// Returns one line for display: product, address.
   [[nodiscard]] virtual std::string describe() const = 0;
 };
 
-/// An object in the way of a finger.
+/// An object that a finger touches.
 struct SimulatedObject {
   double position = 0;    ///< displacement at contact, in the unit of the model
   double yielding = 0.1;  ///< share of the free motion beyond the contact: 0 (rigid) to 1 (no object)
@@ -88,19 +88,19 @@ struct SimulatedObject {
 
 /// One channel of a SimulatedBoard.
 struct SimulatedFinger {
-  Model model;                                 ///< of the finger
-  std::optional<SimulatedObject> object = {};  ///< in its way from the start
+  Model model;                                 ///< model of the finger
+  std::optional<SimulatedObject> object = {};  ///< object that is present from the start
   double noise = 0;                            ///< standard deviation of a reading, >= 0
   double pressure_min_kpa = 0;                 ///< lower end of the output [kPa]
   double pressure_max_kpa = 100;               ///< upper end of the output [kPa]
-  std::uint64_t seed = 1;                      ///< of all noise
+  std::uint64_t seed = 1;                      ///< seed of all noise
 };
 
-/// A board in memory whose fingers are models. Its clock stands still until advance(). Equal settings and
-/// calls give equal bits. It is the simulated board of the daemon.
+/// A board in memory whose fingers are models. Its clock advances only by advance(). Equal settings and calls
+/// give equal bits. It is the simulated board of the daemon.
 class SOFTGRIP_API SimulatedBoard final : public Board {
  public:
-  /// Throws InvalidArgument.
+  /// Creates a board. Throws InvalidArgument.
   /// @param fingers  one per channel, 1 to 16
   /// @param tick_s   usual period of exchange() [s], > 0
   explicit SimulatedBoard(std::vector<SimulatedFinger> fingers, double tick_s = 0.005);
@@ -115,7 +115,7 @@ class SOFTGRIP_API SimulatedBoard final : public Board {
 
   /// Returns the time of the board's clock, which begins at 1 s.
   [[nodiscard]] std::chrono::nanoseconds now() const noexcept;
-  /// Moves the clock on. A negative duration is ignored.
+  /// Advances the clock. A negative duration is ignored.
   void advance(std::chrono::nanoseconds duration) noexcept;
   /// Places an object, or removes it. An unknown channel is ignored.
   void set_object(std::size_t channel, const std::optional<SimulatedObject>& object) noexcept;

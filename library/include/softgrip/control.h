@@ -23,9 +23,9 @@ struct Limits {
   double pressure_max_kpa = 0;       ///< largest command [kPa], above the smallest
   double slew_up_kpa_per_s = 300;    ///< fastest rise of the command [kPa/s], > 0
   double slew_down_kpa_per_s = 300;  ///< fastest fall of the command [kPa/s], > 0
-  double displacement_min = -1e6;    ///< references are kept at or above
-  double displacement_max = 1e6;     ///< references are kept at or below, above the smallest
-  double rest_kpa = 0;               ///< command at rest [kPa]; the nearest end of the range counts
+  double displacement_min = -1e6;    ///< lower limit of references
+  double displacement_max = 1e6;     ///< upper limit of references, above the lower limit
+  double rest_kpa = 0;               ///< command at rest [kPa]; it is clamped to the range of the command
 };
 
 /// A command within the limits.
@@ -36,8 +36,8 @@ struct LimitedCommand {
   bool invalid = false;    ///< the request is not a number; the last command is held
 };
 
-/// Returns the command for a request. Same function as in the daemon.
-/// @param limits      of the finger
+/// Returns the command for a request. The daemon uses the same function.
+/// @param limits      limits of the finger
 /// @param wanted_kpa  the request [kPa]
 /// @param last_kpa    last command [kPa]
 /// @param elapsed_s   time since the last command [s], >= 0
@@ -59,16 +59,16 @@ struct PidSettings {
   double derivative_filter_s = 0.02;  ///< time constant of the filter of the derivative [s], >= 0
   double setpoint_weight = 1;         ///< share of the reference in the proportional part, 0 to 1
   AntiWindup anti_windup = AntiWindup::back_calculation;  ///< method
-  double tracking_time_s = 0.5;                           ///< of back_calculation [s], > 0
+  double tracking_time_s = 0.5;                           ///< time constant of back_calculation [s], > 0
 };
 
 /// PID with two degrees of freedom (Astrom and Hagglund, Advanced PID Control, 2006). Call order in a period:
 /// step(), limit() of the sum with the feedforward, sent().
 class SOFTGRIP_API Pid {
  public:
-  /// @param settings  gains
+  /// Creates a PID. Throws InvalidArgument.
+  /// @param settings  gains and filters
   /// @param tick_s    period of step() [s], > 0
-  /// Throws InvalidArgument.
   Pid(const PidSettings& settings, double tick_s);
   ~Pid();
   /// Takes over the state. `other` can then only be assigned to or destroyed.
@@ -76,10 +76,10 @@ class SOFTGRIP_API Pid {
   /// Takes over the state. `other` can then only be assigned to or destroyed.
   Pid& operator=(Pid&& other) noexcept;
 
-  /// Makes the next step() continue at `command_kpa` [kPa]: a start, or a change of the feedforward.
+  /// Makes the next step() continue at `command_kpa` [kPa], at a start or after a change of the feedforward.
   void align(double command_kpa) noexcept;
-  /// Returns the feedback [kPa]. The request is the sum of it and `feedforward_kpa`.
-  /// @param reference        at the time of the measurement
+  /// Returns the feedback [kPa]. The request is the sum of the feedback and `feedforward_kpa`.
+  /// @param reference        reference at the time of the measurement
   /// @param measurement      the reading
   /// @param feedforward_kpa  feedforward of this period [kPa]
   [[nodiscard]] double step(double reference, double measurement, double feedforward_kpa) noexcept;
@@ -107,8 +107,8 @@ class SOFTGRIP_API Reference {
 
   /// Removes all segments and holds `value` from `time_s` [s].
   void start(double time_s, double value) noexcept;
-  /// Appends a minimum-jerk ramp of `duration_s` [s], > 0. Returns false, and changes nothing, if there is no
-  /// place for a segment or an argument is out of range.
+  /// Appends a minimum-jerk ramp of `duration_s` [s], > 0. Returns false and changes nothing if there are
+  /// already 8 segments or an argument is out of range.
   bool ramp_to(double value, double duration_s) noexcept;
   /// Appends a hold of `duration_s` [s], > 0. Returns false as ramp_to() does.
   bool hold_for(double duration_s) noexcept;
@@ -132,25 +132,27 @@ class SOFTGRIP_API Reference {
 /// Kind of a feedforward.
 enum class FeedforwardKind : std::uint8_t {
   none,        ///< no feedforward
-  bouc_wen,    ///< inverse of the hysteresis alone
+  bouc_wen,    ///< inverse of the hysteresis only
   full_model,  ///< inverse of the whole model: hysteresis, creep, lag, dead time
 };
 
 /// Result of Feedforward::step().
 struct FeedforwardStep {
   double pressure_kpa = 0;    ///< command [kPa]
-  bool out_of_reach = false;  ///< the limits keep the command from the reference
+  bool out_of_reach = false;  ///< because of the limits, the command cannot reach the reference
 };
 
 /// Inverse of a model, one period at a time, for a reference that is not a Reference: a stream of samples.
 class SOFTGRIP_API Feedforward {
  public:
-  /// Throws InvalidArgument, and Refused if the model has no inverse within the limits.
-  /// @param model            of the finger
-  /// @param limits           of the command
+  /// Computes the inverse. Throws InvalidArgument, and Refused if the model has no inverse within the limits.
+  /// @param model            model of the finger
+  /// @param limits           limits of the command
   /// @param tick_s           period of step() [s], > 0
-  /// @param kind             of the inverse
-  /// @param extra_latency_s  from a command to the output of the board [s], 0 to 1, beyond the model's own
+  /// @param kind             kind of the inverse
+  /// @param extra_latency_s  latency from a command to the output of the board [s], 0 to 1, in addition to
+  /// the
+  ///                         dead time of the model
   Feedforward(const Model& model, const Limits& limits, double tick_s,
               FeedforwardKind kind = FeedforwardKind::full_model, double extra_latency_s = 0);
   ~Feedforward();
@@ -159,7 +161,7 @@ class SOFTGRIP_API Feedforward {
   /// Takes over the state. `other` can then only be assigned to or destroyed.
   Feedforward& operator=(Feedforward&& other) noexcept;
 
-  /// Returns how far ahead of now step() needs the reference [s].
+  /// Returns the preview time [s]: step() needs the reference at this time after the present.
   [[nodiscard]] double preview_s() const noexcept;
   /// Starts from rest.
   /// @param command_kpa      command under which the finger is at rest [kPa]
@@ -176,25 +178,25 @@ class SOFTGRIP_API Feedforward {
 
 /// Settings of a Controller.
 struct ControllerSettings {
-  Model model;                                                ///< of the finger in free motion
-  Limits limits = {};                                         ///< of the command
-  PidSettings pid = {};                                       ///< gains
+  Model model;                                                ///< model of the finger in free motion
+  Limits limits = {};                                         ///< limits of command and reference
+  PidSettings pid = {};                                       ///< settings of the PID
   FeedforwardKind feedforward = FeedforwardKind::full_model;  ///< kind of feedforward
-  double extra_latency_s = 0;       ///< from a command to the output of the board [s], 0 to 1
+  double extra_latency_s = 0;       ///< latency from a command to the output of the board [s], 0 to 1
   double tick_s = 0.005;            ///< period of tick() [s], 0.0001 to 1
   double sensor_noise = 0.05;       ///< standard deviation of a reading, in the unit of the model, > 0
-  double reading_max_age_s = 0.05;  ///< an older reading is not used [s], > 0
+  double reading_max_age_s = 0.05;  ///< largest age of a reading that is used [s], > 0
 };
 
 /// Result of Controller::tick(). NaN: not available.
 struct ControlOutput {
   double command_kpa = 0;                  ///< command for the board [kPa], within the limits
-  double reference = 0;                    ///< reference for now; NaN while no reference is followed
+  double reference = 0;                    ///< present reference; NaN while no reference is followed
   double displacement = 0;                 ///< last valid reading
-  double feedforward_kpa = 0;              ///< part of the command [kPa]
-  double feedback_kpa = 0;                 ///< part of the command [kPa]
-  double residual = 0;                     ///< reading minus model
-  Validity validity = Validity::none_yet;  ///< of the reading, after the plausibility check
+  double feedforward_kpa = 0;              ///< feedforward part of the command [kPa]
+  double feedback_kpa = 0;                 ///< feedback part of the command [kPa]
+  double residual = 0;                     ///< reading minus the displacement of the model
+  Validity validity = Validity::none_yet;  ///< validity of the reading after the plausibility check
   bool saturated = false;                  ///< the request was outside the pressure range
   bool slewing = false;                    ///< the slew limits reduced the request
   bool out_of_reach = false;               ///< the feedforward cannot reach the reference
@@ -204,7 +206,8 @@ struct ControlOutput {
 /// is the channel controller of the daemon, without its sequences, faults and supervisor.
 class SOFTGRIP_API Controller {
  public:
-  /// Throws InvalidArgument, and Refused if the model has no inverse for the feedforward.
+  /// Creates a controller. Throws InvalidArgument, and Refused if the model has no inverse for the
+  /// feedforward.
   explicit Controller(const ControllerSettings& settings);
   ~Controller();
   /// Takes over the state. `other` can then only be assigned to or destroyed.

@@ -1,7 +1,7 @@
 #pragma once
 /// @file
 /// Diagnosis: the error of a model on measured logs, and its cause; the change of a finger since it was
-/// healthy. The functions are stable; the results gain fields.
+/// healthy. The functions are stable; later versions may add fields to the results.
 
 #include <cstddef>
 #include <cstdint>
@@ -20,22 +20,22 @@ namespace softgrip {
 /// A named cause.
 struct Cause {
   std::string id;     ///< "valve_deadband"; the reference page "causes" lists all
-  std::string title;  ///< in words
-  /// Reduction of the held-out error by the cause [%], with a 95 % interval. NaN in a Change.
+  std::string title;  ///< name of the cause in words
+  /// Reduction of the held-out error by the cause [%]. NaN in a Change.
   double error_reduction_percent = 0;
-  Interval error_reduction_ci95;          ///< its 95 % interval [%]
-  std::vector<Estimate> parameters;       ///< of the cause; in a Change, its size
+  Interval error_reduction_ci95;          ///< 95 % interval of error_reduction_percent [%]
+  std::vector<Estimate> parameters;       ///< parameters of the cause; in a Change, size of the change
   std::vector<std::string> alternatives;  ///< ids of causes that the logs cannot separate from it
 };
 
 /// Settings of diagnose() and diagnose_change().
 struct DiagnoseOptions {
-  std::uint64_t seed = 1;          ///< of starts and resampling
-  unsigned threads = 0;            ///< 0: one per processor
+  std::uint64_t seed = 1;          ///< seed of starting points and resampling
+  unsigned threads = 0;            ///< number of threads; 0: one per processor
   std::size_t null_campaigns = 0;  ///< simulated campaigns without a cause that calibrate the search
   LogUse use = {};                 ///< interpretation of the logs
-  Progress progress = {};          ///< may be empty
-  std::stop_token stop = {};       ///< requests an early end
+  Progress progress = {};          ///< callback; may be empty
+  std::stop_token stop = {};       ///< can end the computation early
 };
 
 /// Result of diagnose().
@@ -43,25 +43,26 @@ struct Diagnosis {
   /// "adequate", "recalibrate", "cause_found", "ambiguous", "partly_explained" or "unexplained".
   std::string verdict;
   std::string sentence;               ///< the verdict in one sentence
-  std::vector<std::string> warnings;  ///< about data and result
+  std::vector<std::string> warnings;  ///< warnings about data and result
   std::vector<Cause> causes;          ///< named causes, in the order in which they were found
-  Unit unit = Unit::mm;               ///< of noise and errors
+  Unit unit = Unit::mm;               ///< unit of noise and errors
   double noise = 0;                   ///< standard deviation of the readings' noise
   double rmse_given = 0;              ///< root mean square error of the given model
-  double rmse_refitted = 0;           ///< of the refitted model, on held-out blocks
-  double rmse_extended = 0;           ///< of the model with the causes, on held-out blocks
+  double rmse_refitted = 0;           ///< RMSE of the refitted model on held-out blocks
+  double rmse_extended = 0;           ///< RMSE of the model with the causes on held-out blocks
   double unexplained_percent = 0;     ///< share of the error that no cause explains [%]
   Model refitted;                     ///< the given structure with new parameters
-  Model extended;                     ///< the same with the causes
+  Model extended;                     ///< the refitted model with the causes
   std::string json;  ///< diagnosis.json of `softgrip diagnose`, without the experiment and the closed loop
   std::string html;  ///< report.html, without the experiment and the closed loop
 };
 
-/// Diagnoses a model: its error on the logs, the cause, the extension and the error reduction. Same functions
-/// as `softgrip diagnose`. Throws InvalidArgument, Refused if the logs cannot be diagnosed, Cancelled.
-/// @param model    as it is used today
-/// @param logs     of one campaign, in order, in the unit of the model
-/// @param options  search
+/// Diagnoses a model: its error on the logs, the cause, the extension and the error reduction. `softgrip
+/// diagnose` uses the same functions. Throws InvalidArgument, Refused if the logs cannot be diagnosed,
+/// Cancelled.
+/// @param model    the model that is used today
+/// @param logs     logs of one campaign, in order, in the unit of the model
+/// @param options  settings of the search
 [[nodiscard]] SOFTGRIP_API Diagnosis diagnose(const Model& model, const std::vector<Log>& logs,
                                               const DiagnoseOptions& options = {});
 
@@ -69,19 +70,19 @@ struct Diagnosis {
 struct Change {
   std::string verdict;   ///< "unchanged", "cause_found", "ambiguous", "partly_explained" or "unexplained"
   std::string sentence;  ///< the verdict in one sentence
-  std::vector<std::string> warnings;  ///< about data and result
-  std::vector<Cause> causes;          ///< what has changed; the largest change first
-  Unit unit = Unit::mm;               ///< of displacements
+  std::vector<std::string> warnings;  ///< warnings about data and result
+  std::vector<Cause> causes;          ///< changes of the finger; the largest change first
+  Unit unit = Unit::mm;               ///< unit of displacements
   std::string json;                   ///< diagnosis.json of `softgrip diagnose --healthy`
   std::string html;                   ///< report.html of `softgrip diagnose --healthy`
 };
 
-/// Compares later logs of a finger with logs from when it was healthy. Same functions as
-/// `softgrip diagnose --healthy`. Throws InvalidArgument, Refused if the logs cannot be compared, Cancelled.
-/// @param model    of the healthy finger
+/// Compares later logs of a finger with logs from when it was healthy. `softgrip diagnose --healthy` uses the
+/// same functions. Throws InvalidArgument, Refused if the logs cannot be compared, Cancelled.
+/// @param model    model of the healthy finger
 /// @param healthy  logs of the healthy finger
 /// @param later    logs of the same finger today
-/// @param options  search; `use.held` applies, `null_campaigns` does not
+/// @param options  settings of the search; `use.held` is used, `null_campaigns` is not
 [[nodiscard]] SOFTGRIP_API Change diagnose_change(const Model& model, const std::vector<Log>& healthy,
                                                   const std::vector<Log>& later,
                                                   const DiagnoseOptions& options = {});

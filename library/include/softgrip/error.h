@@ -13,37 +13,38 @@
 /// softgrip: models, control, identification and diagnosis of soft pneumatic fingers.
 namespace softgrip {
 
-/// Base class of all exceptions of the library. what() is a sentence for people.
+/// Base class of all exceptions of the library. what() is a sentence for display.
 class SOFTGRIP_API Error : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
   ~Error() override;
 };
 
-/// An argument that no call accepts: wrong number of values, a value that is not finite, a value out of its
-/// range. what() names the argument, the expected shape or range, and the unit.
+/// An invalid argument: a wrong number of values, a value that is not finite, or a value out of its range.
+/// what() names the argument, the expected shape or range, and the unit.
 class SOFTGRIP_API InvalidArgument : public Error {
  public:
+  /// Creates the exception.
   /// @param argument  name of the argument, as in the declaration of the function
-  /// @param problem   what is wrong with it
+  /// @param problem   description of the error
   InvalidArgument(std::string argument, const std::string& problem);
   ~InvalidArgument() override;
-  /// Name of the argument, as in the declaration of the function.
+  /// Returns the name of the argument, as in the declaration of the function.
   [[nodiscard]] const std::string& argument() const noexcept { return argument_; }
 
  private:
   std::string argument_;
 };
 
-/// A file that cannot be read, is not written, or has content that is refused. what() lists each problem with
-/// file, line and column.
+/// A file that cannot be read or written, or whose content is refused. what() lists each problem with file,
+/// line and column.
 class SOFTGRIP_API FileError : public Error {
  public:
   using Error::Error;
   ~FileError() override;
 };
 
-/// Valid arguments for which there is no answer: a model without an inverse, logs that cannot be fitted.
+/// Valid arguments for which there is no result: a model without an inverse, logs that cannot be fitted.
 class SOFTGRIP_API Refused : public Error {
  public:
   using Error::Error;

@@ -2,5 +2,5 @@
 /// @file
 /// Visibility of the public symbols.
 
-/// Marks what the shared library exports.
+/// Marks the symbols that the shared library exports.
 #define SOFTGRIP_API __attribute__((visibility("default")))

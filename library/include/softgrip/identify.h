@@ -1,6 +1,7 @@
 #pragma once
 /// @file
-/// Identification: parameters of a model from logs. The functions are stable; the results gain fields.
+/// Identification: parameters of a model from logs. The functions are stable; later versions may add fields
+/// to the results.
 
 #include <cstddef>
 #include <cstdint>
@@ -22,36 +23,36 @@ struct Interval {
   double upper = 0;  ///< upper end
 };
 
-/// An estimated or fixed number.
+/// An estimated or fixed parameter.
 struct Estimate {
   std::string name;              ///< "kelvin_voigt.k1_kpa_per_mm"
-  std::string unit;              ///< of value and interval
-  double value = 0;              ///< the estimate
+  std::string unit;              ///< unit of value and interval
+  double value = 0;              ///< estimated or fixed value
   std::optional<Interval> ci95;  ///< empty: fixed, at a bound, or without effect
-  bool free = false;             ///< it was estimated
+  bool free = false;             ///< the parameter was estimated
   std::string note;              ///< reason why there is no interval
 };
 
 /// Prediction of one log.
 struct Prediction {
   std::string log;                  ///< name of the log
-  Unit unit = Unit::mm;             ///< of prediction and errors
+  Unit unit = Unit::mm;             ///< unit of prediction and errors
   std::vector<double> time_s;       ///< times of the samples [s]
-  std::vector<double> prediction;   ///< in `unit`, one per sample
+  std::vector<double> prediction;   ///< predicted reading of each sample, in `unit`
   std::vector<double> error;        ///< reading minus prediction; NaN without a reading
   double rmse = 0;                  ///< root mean square error, in `unit`
-  double rmse_percent_of_span = 0;  ///< relative to the range of the readings [%]
+  double rmse_percent_of_span = 0;  ///< RMSE relative to the range of the readings [%]
   double largest_error = 0;         ///< largest absolute error, in `unit`
-  bool diverges = false;            ///< the prediction is not finite or larger than the readings
+  bool diverges = false;            ///< not finite, or an RMSE above the range of readings of another shape
 };
 
-/// Called with a sentence about the present stage, from any thread, never from two at once. An exception of
-/// the callback ends the computation and reaches the caller.
+/// Callback with a sentence about the present stage. It is called from any thread, but never concurrently. An
+/// exception of the callback ends the computation and is passed to the caller.
 using Progress = std::function<void(const std::string& stage)>;
 
 /// Structure of the model in identify().
 enum class Structure : std::uint8_t {
-  start,      ///< that of `start`, or the base structure
+  start,      ///< structure of `start`, or the base structure
   automatic,  ///< selected on held-out blocks
   bouc_wen,   ///< selected, with a Bouc-Wen hysteresis
   play,       ///< selected, with play operators (Prandtl-Ishlinskii)
@@ -59,43 +60,43 @@ enum class Structure : std::uint8_t {
 
 /// Settings of identify().
 struct IdentifyOptions {
-  Structure structure = Structure::start;  ///< how the structure is found
-  std::optional<Model> start = {};         ///< start of the fit; only with Structure::start
+  Structure structure = Structure::start;  ///< choice of the structure
+  std::optional<Model> start = {};         ///< starting point of the fit; only with Structure::start
   std::size_t branches = 2;                ///< creep branches of the base structure, 1 to 8
   std::vector<std::string> fixed = {};     ///< parameters that keep the value of `start`
   std::vector<std::string> free = {};      ///< if not empty, only these parameters are estimated
-  std::size_t starts = 20;                 ///< searches from as many points, 1 to 10,000
-  std::uint64_t seed = 1;                  ///< of the start points
-  bool robust = false;                     ///< outliers count linearly (Huber)
+  std::size_t starts = 20;                 ///< number of starting points, 1 to 10,000
+  std::uint64_t seed = 1;                  ///< seed of the starting points
+  bool robust = false;                     ///< Huber loss: outliers count linearly
   double fit_share = 1;                    ///< first share of each log that is fitted, 0.05 to 1
-  unsigned threads = 0;                    ///< 0: one per processor
+  unsigned threads = 0;                    ///< number of threads; 0: one per processor
   LogUse use = {};                         ///< interpretation of the logs
   std::vector<Log> validation = {};        ///< logs to predict
-  Progress progress = {};                  ///< may be empty
-  std::stop_token stop = {};               ///< requests an early end
+  Progress progress = {};                  ///< callback; may be empty
+  std::stop_token stop = {};               ///< can end the computation early
 };
 
 /// Result of identify().
 struct Identification {
-  Model model;                         ///< identified
-  double rmse = 0;                     ///< of all fitted samples, in the unit of the model
+  Model model;                         ///< the identified model
+  double rmse = 0;                     ///< RMSE of all fitted samples, in the unit of the model
   bool converged = false;              ///< the minimisation ended at a minimum
   std::string verdict;                 ///< one sentence
-  std::vector<std::string> warnings;   ///< about data and result
-  std::vector<Estimate> parameters;    ///< all of the model
-  std::vector<Estimate> combinations;  ///< properties of the finger that follow from them
-  std::vector<Prediction> fit;         ///< fitted samples, by log
-  std::vector<Prediction> held_out;    ///< other samples, by log; empty: all were fitted
-  std::vector<Prediction> validation;  ///< logs of `validation`
+  std::vector<std::string> warnings;   ///< warnings about data and result
+  std::vector<Estimate> parameters;    ///< all parameters of the model
+  std::vector<Estimate> combinations;  ///< properties of the finger that follow from the parameters
+  std::vector<Prediction> fit;         ///< predictions of the fitted samples, by log
+  std::vector<Prediction> held_out;    ///< predictions of the other samples, by log; empty: all were fitted
+  std::vector<Prediction> validation;  ///< predictions of the logs in IdentifyOptions::validation
   std::string json;                    ///< identify.json of `softgrip identify`
   std::string html;                    ///< report.html of `softgrip identify`
 };
 
-/// Fits a model to logs. Same function as `softgrip identify`: maximum likelihood by nonlinear least squares
-/// from several starts, intervals from the curvature with the correlation of the residuals.
+/// Fits a model to logs, as `softgrip identify` does: maximum likelihood by nonlinear least squares from
+/// several starting points. The intervals follow from the curvature and the correlation of the residuals.
 /// Throws InvalidArgument, Refused if the logs cannot be fitted, Cancelled.
 /// @param logs     at least one log; all in the same unit
-/// @param options  structure, start, search
+/// @param options  settings of structure, starting point and search
 [[nodiscard]] SOFTGRIP_API Identification identify(const std::vector<Log>& logs,
                                                    const IdentifyOptions& options = {});
 

@@ -17,31 +17,31 @@ namespace softgrip {
 /// One measured run of one finger. All columns have one value per time; optional columns may be empty.
 /// Plain arrays: fill them from memory, or use read_log(). Functions that take logs check them.
 struct Log {
-  std::string name = {};                          ///< short, for results and reports
+  std::string name = {};                          ///< short name for results and reports
   std::vector<double> time_s = {};                ///< times [s], increasing. The first one counts as 0
   std::vector<double> pressure_command_kpa = {};  ///< commanded pressure [kPa], finite
-  std::vector<double> displacement = {};          ///< reading in `unit`; NaN: no reading
+  std::vector<double> displacement = {};          ///< readings in `unit`; NaN: no reading
   std::vector<double> pressure_kpa = {};          ///< measured pressure [kPa], optional; NaN: no reading
   std::vector<double> temperature_c = {};         ///< temperature [degrees Celsius], optional
   std::vector<double> supply_kpa = {};            ///< supply pressure [kPa], optional
-  Unit unit = Unit::mm;                           ///< of the displacement
-  std::string path = {};                          ///< file from which it was read; empty: from memory
-  std::string sha256 = {};                        ///< of that file; empty: from memory
+  Unit unit = Unit::mm;                           ///< unit of the displacement
+  std::string path = {};                          ///< file of the log; empty: created in memory
+  std::string sha256 = {};                        ///< hash of the file; empty: created in memory
   std::vector<std::string> notes = {};  ///< findings of the reader, such as the mapping of an import
 };
 
 /// Settings of read_log().
 struct ReadOptions {
-  std::string channel = {};  ///< finger of a file with several; empty: there is one
-  bool import_file = true;   ///< a file that is not a log is converted as `softgrip import` proposes
+  std::string channel = {};  ///< the finger to read if the file has several; empty: there is one
+  bool import_file = true;   ///< convert a file that is not a log with the proposal of `softgrip import`
   /// Columns by role (`time`, `command`, `pressure`, `displacement`, `temperature`, `supply`): a name or a
   /// number from 1. Roles that are absent are proposed by names and units. If it is not empty, the file is
   /// always imported.
   std::map<std::string, std::string> columns = {};
   std::map<std::string, std::string> units =
-      {};                              ///< by role, if the file does not state them: `pressure`: `psi`
-  std::optional<double> rate_hz = {};  ///< samples per second of a file without times [Hz]
-  std::string sheet = {};              ///< of a workbook
+      {};                              ///< units by role, if the file does not state them: `pressure`: `psi`
+  std::optional<double> rate_hz = {};  ///< sampling rate of a file without times [Hz]
+  std::string sheet = {};              ///< name of the sheet in a workbook
 };
 
 /// Reads a log of softgrip (CSV, a folder of a recording), or converts a file of another program (text, XLSX,
@@ -55,22 +55,22 @@ SOFTGRIP_API void write_log(const std::string& path, const Log& log);
 /// Checks a log as `softgrip identify` does. Throws InvalidArgument with the column, its shape and its unit.
 SOFTGRIP_API void check(const Log& log);
 
-/// Signal that drives the model.
+/// Input signal of the model.
 enum class Drive : std::uint8_t {
-  command,   ///< the commanded pressure, through the whole model
-  measured,  ///< the measured pressure, past the valve
+  command,   ///< the commanded pressure, the input of the whole model
+  measured,  ///< the measured pressure, the input after the blocks of the valve
 };
 
 /// Known initial state of a log.
 enum class Begin : std::uint8_t {
-  automatic,  ///< as the log shows it
+  automatic,  ///< determined from the log
   rest,       ///< at rest under the first pressure
-  unknown,    ///< estimated
+  unknown,    ///< estimated from the readings
 };
 
 /// Interpretation of logs, as the options --drive, --begin and --held of `softgrip`.
 struct LogUse {
-  Drive drive = Drive::command;    ///< the signal that drives the model
+  Drive drive = Drive::command;    ///< input signal of the model
   Begin begin = Begin::automatic;  ///< the initial state
   bool held = false;               ///< the command keeps its value until the next sample
 };

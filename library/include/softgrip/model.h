@@ -26,11 +26,11 @@ enum class Unit : std::uint8_t {
 /// One parameter of a model.
 struct Parameter {
   std::string name;   ///< "kelvin_voigt.k1_kpa_per_mm"
-  double value = 0;   ///< in `unit`
+  double value = 0;   ///< value in `unit`
   std::string unit;   ///< "kPa/mm"; empty: no unit
   double lower = 0;   ///< smallest permitted value
   double upper = 0;   ///< largest permitted value
-  std::string about;  ///< one line
+  std::string about;  ///< description in one line
 };
 
 /// Settings of Model::simulate().
@@ -40,7 +40,7 @@ struct SimulateOptions {
   /// sample.
   bool held = false;
   double noise = 0;  ///< standard deviation of white noise on the output, in the unit of the model; >= 0
-  std::uint64_t seed = 1;                      ///< of all noise. Equal seeds give equal bits
+  std::uint64_t seed = 1;                      ///< seed of all noise. Equal seeds give equal bits
   std::span<const double> supply_kpa = {};     ///< supply pressure [kPa], one value per sample, or empty
   std::span<const double> temperature_c = {};  ///< temperature [degrees Celsius], one per sample, or empty
 };
@@ -57,7 +57,8 @@ struct InverseOptions {
 /// Result of Model::inverse().
 struct Inverse {
   std::vector<double> pressure_kpa;  ///< command [kPa], one per sample, held until the next sample
-  /// One per sample: 1 if the limits kept the command from the reference, otherwise 0.
+  /// One value per sample: 1 if, because of the limits, the command does not reach the reference; otherwise
+  /// 0.
   std::vector<std::uint8_t> out_of_reach;
 };
 
@@ -71,17 +72,17 @@ class SOFTGRIP_API Model {
   [[nodiscard]] static Model load(const std::string& path);
   /// Reads the text of a model file. Throws FileError.
   /// @param yaml  the text
-  /// @param name  of the text, in error messages
+  /// @param name  name of the text in error messages
   [[nodiscard]] static Model parse(const std::string& yaml, const std::string& name = "model");
 
-  /// Writes a model file. Reading it back gives an equal model. Throws FileError.
+  /// Writes a model file. load() of this file gives an equal model. Throws FileError.
   void save(const std::string& path) const;
-  /// Returns the text of a model file, with enough digits to read back equal numbers.
+  /// Returns the text of a model file. The numbers have enough digits, so parse() gives an equal model.
   [[nodiscard]] std::string yaml() const;
 
   /// Returns the name of the model.
   [[nodiscard]] const std::string& name() const noexcept;
-  /// Returns where its numbers come from, one line.
+  /// Returns the origin of the parameters, in one line.
   [[nodiscard]] const std::string& source() const noexcept;
   /// Returns 16 hexadecimal digits that change with any parameter.
   [[nodiscard]] std::string hash() const;
@@ -95,24 +96,24 @@ class SOFTGRIP_API Model {
   /// @param value      in the unit of the parameter
   [[nodiscard]] Model with(const std::string& parameter, double value) const;
 
-  /// Simulates the finger, which is at rest under the first pressure. Same function as `softgrip simulate`.
-  /// Throws InvalidArgument.
+  /// Simulates the finger, which is at rest under the first pressure. `softgrip simulate` uses the same
+  /// function. Throws InvalidArgument.
   /// @param time_s        times [s], at least 1 value, increasing
   /// @param pressure_kpa  commanded pressure [kPa], one per time
-  /// @param options       hold, noise, surroundings
-  /// @return the reading, one per time, in the unit of the model
+  /// @param options       settings of hold, noise and surroundings
+  /// @return the readings, one per time, in the unit of the model
   [[nodiscard]] std::vector<double> simulate(std::span<const double> time_s,
                                              std::span<const double> pressure_kpa,
                                              const SimulateOptions& options = {}) const;
 
-  /// Computes the command under which the finger follows a displacement. It is the feedforward `full_model`
-  /// of the daemon: an implicit solution of hysteresis and creep, lead for lags, preview for dead times. The
-  /// difference between the first value and the displacement at rest fades out in 0.5 s or more.
+  /// Computes the command with which the finger follows a displacement. The method is the feedforward
+  /// `full_model` of the daemon: an implicit solution of hysteresis and creep, lead for lags, and preview for
+  /// dead times. The difference between the first value and the displacement at rest decays in 0.5 s or more.
   /// simulate() with `held` shows the motion under this command.
   /// Throws InvalidArgument, and Refused if the model has no inverse.
   /// @param time_s        times [s], at least 2 values, with equal steps (within 1e-6 of the step)
   ///                      of 0.0001 to 1 s
-  /// @param displacement  the reference in the unit of the model, one per time
+  /// @param displacement  the reference in the unit of the model, one value per time
   /// @param options       limits of the command
   [[nodiscard]] Inverse inverse(std::span<const double> time_s, std::span<const double> displacement,
                                 const InverseOptions& options = {}) const;
@@ -128,14 +129,14 @@ class SOFTGRIP_API Model {
   std::shared_ptr<const Parts> parts_;
 };
 
-/// Simulates a finger step by step. Construction allocates; step() and reset() do not if `sample_time_s` is
-/// given. One thread at a time.
+/// Simulates a finger step by step. Construction allocates memory; step() and reset() do not if
+/// `sample_time_s` is given. Only one thread may use an object at a time.
 class SOFTGRIP_API Simulator {
  public:
-  /// At rest under 0 kPa.
-  /// @param model          of the finger
+  /// Creates a finger at rest under 0 kPa.
+  /// @param model          model of the finger
   /// @param sample_time_s  usual duration of a step [s]; 0: irregular
-  /// @param seed           of the noise of the model's sensor
+  /// @param seed           seed of the noise of the model's sensor
   explicit Simulator(const Model& model, double sample_time_s = 0, std::uint64_t seed = 1);
   ~Simulator();
   /// Takes over the state. `other` can then only be assigned to or destroyed.
@@ -145,9 +146,9 @@ class SOFTGRIP_API Simulator {
 
   /// Returns to rest under a command [kPa].
   void reset(double pressure_kpa) noexcept;
-  /// Moves on by `duration_s` [s], >= 0, while the command goes linearly to `pressure_kpa` [kPa]. Returns the
-  /// reading in the unit of the model. An argument that is not finite, or a negative duration, gives NaN and
-  /// changes nothing.
+  /// Simulates a step of `duration_s` [s], >= 0, while the command changes linearly to `pressure_kpa` [kPa].
+  /// Returns the reading in the unit of the model. An argument that is not finite, or a negative duration,
+  /// gives NaN and changes nothing.
   double step(double duration_s, double pressure_kpa) noexcept;
 
  private:

@@ -1,6 +1,7 @@
 #pragma once
 /// @file
-/// Validation: prediction of logs to which a model was not fitted. Stable; the result gains fields.
+/// Validation: prediction of logs to which a model was not fitted. Stable; later versions may add fields to
+/// the result.
 
 #include <string>
 #include <vector>
@@ -15,14 +16,14 @@ namespace softgrip {
 /// Result of validate().
 struct Validation {
   std::string verdict;                  ///< one sentence
-  std::vector<std::string> warnings;    ///< about the data
-  std::vector<Prediction> predictions;  ///< by log
+  std::vector<std::string> warnings;    ///< warnings about the data
+  std::vector<Prediction> predictions;  ///< one prediction per log
   std::string json;                     ///< validate.json of `softgrip validate`
   std::string html;                     ///< report.html of `softgrip validate`
 };
 
-/// Predicts logs with a model. Same function as `softgrip validate`. Throws InvalidArgument.
-/// @param model  to predict with
+/// Predicts logs with a model, as `softgrip validate` does. Throws InvalidArgument.
+/// @param model  the model
 /// @param logs   at least one log, in the unit of the model
 /// @param use    interpretation of the logs
 [[nodiscard]] SOFTGRIP_API Validation validate(const Model& model, const std::vector<Log>& logs,
