@@ -19,7 +19,7 @@ constexpr std::array<Reason, left_out_count> reasons{{
     {"no_time", "without a time", true},
     {"repeated_time", "at the time of the row before", true},
     {"before_command", "before the first command", true},
-    {"hole", "in pieces beside a hole", true},
+    {"hole", "in shorter segments beside a hole", true},
 }};
 
 std::size_t sum_of(const RowAccount& account, bool lost_only) {

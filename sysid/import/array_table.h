@@ -13,7 +13,7 @@
 namespace softgrip::sysid {
 
 /// The message about an array that does not fit within most_values.
-inline constexpr const char* too_large = "with it the file has more than 134217728 values";
+inline constexpr const char* too_large = "with this array, the file has more than 134217728 values";
 
 /// Collects the arrays of a file and keeps those that are as long as most others.
 class ArrayCollector {

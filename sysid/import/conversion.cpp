@@ -71,19 +71,18 @@ class Converter {
 
   void check_completeness() {
     const Proposal proposal = propose(table_, mapping_, false);
-    for (const std::string& missing : proposal.missing)
-      refuse("the columns show no part of a log: " + missing);
+    for (const std::string& missing : proposal.missing) refuse("no column was recognised as " + missing);
     for (const Role role : proposal.guessed)
-      refuse("nothing says which column is the " + std::string(spec_of(role).word),
+      refuse("no column is assigned to the role " + std::string(spec_of(role).word),
              "--" + std::string(spec_of(role).word) + " COLUMN");
     for (const Proposal::Question& question : proposal.questions) refuse(question.text, question.hint);
     if (table_.channels.size() > 1 && mapping_.channel.empty()) {
       std::string names;
       for (const std::string& name : table_.channels) names += (names.empty() ? "'" : ", '") + name + "'";
-      refuse("the file holds " + std::to_string(table_.channels.size()) + " channels: " + names,
-             "say which one with --channel");
+      refuse("the file has " + std::to_string(table_.channels.size()) + " channels: " + names,
+             "select one with --channel");
     } else if (!mapping_.channel.empty() && table_.rows() == 0) {
-      refuse("no row is of channel '" + document::shown(mapping_.channel) + "'");
+      refuse("no row belongs to channel '" + document::shown(mapping_.channel) + "'");
     }
   }
 
@@ -132,11 +131,11 @@ class Converter {
 
   void refuse_bad_cells(const RoleSpec& spec, const TableColumn& column) {
     for (const BadCell& cell : column.bad) {
-      problems_.add(
-          {table_.file, cell.at, cell.line_text,
-           std::string(spec.word) + ": " + (cell.cell.empty() ? "" : "cell " + cell.cell + ": ") + "'" +
-               document::shown(cell.text, 40) + "' is no number",
-           "--missing says what stands where nothing was read; --skip-bad-lines leaves such lines out"});
+      problems_.add({table_.file, cell.at, cell.line_text,
+                     std::string(spec.word) + ": " + (cell.cell.empty() ? "" : "cell " + cell.cell + ": ") +
+                         "'" + document::shown(cell.text, 40) + "' is not a number",
+                     "state the text of missing readings with --missing, or leave out such lines with "
+                     "--skip-bad-lines"});
     }
     if (column.bad_count > column.bad.size())
       refuse(std::string(spec.word) + ": " + std::to_string(column.bad_count - column.bad.size()) +
@@ -164,11 +163,11 @@ class Converter {
       if (spec.role == Role::displacement) output_unit_ = unit->output;
     } else if (text.empty()) {
       refuse(
-          word + ": '" + document::shown(mapped.columns.front()) + "' says no unit",
+          word + ": '" + document::shown(mapped.columns.front()) + "' has no unit",
           "--unit " + word + "=" + std::string(spec.unit) + " (known are " + unit_names(spec.quantity) + ")");
     } else {
       refuse(
-          word + ": '" + document::shown(text) + "' is no unit of a " + std::string(name_of(spec.quantity)),
+          word + ": '" + document::shown(text) + "' is not a unit of " + std::string(name_of(spec.quantity)),
           "--scale " + word + "=X, " + std::string(spec.unit) + " per " + document::shown(text) +
               "; known are " + unit_names(spec.quantity));
     }
@@ -227,7 +226,7 @@ class Converter {
     remarks_.account.leave_out(LeftOut::bad_line, table_.rows() - rows.size());
     if (rows.size() < table_.rows())
       remarks_.notes.push_back("--skip-bad-lines leaves out " + std::to_string(table_.rows() - rows.size()) +
-                               " rows with a cell that is no number");
+                               " rows with a cell that is not a number");
     const bool by_times = mapping_[Role::time].columns.size() > 1;
     if (table_.has_rows_of_signals && !by_times) leave_out_unused(rows);
     return by_times ? samples_by_times(rows) : samples_of_rows(rows);
@@ -273,10 +272,11 @@ class Converter {
     if (!overflow) return;
     const std::size_t row = rows[overflow->first];
     const bool has_lines = row < table_.line.size();
-    remarks_.notes.push_back(
-        "the clock overflows at " + written(overflow->period) + ", " + std::to_string(overflow->count) +
-        (overflow->count == 1 ? " time" : " times") + ", first in " + (has_lines ? "line " : "sample ") +
-        std::to_string(has_lines ? table_.line[row] : static_cast<int>(row) + 1) + ": it is continued");
+    remarks_.notes.push_back("the clock overflows at " + written(overflow->period) + ", " +
+                             std::to_string(overflow->count) + (overflow->count == 1 ? " time" : " times") +
+                             ", first in " + (has_lines ? "line " : "sample ") +
+                             std::to_string(has_lines ? table_.line[row] : static_cast<int>(row) + 1) +
+                             ": the clock is corrected");
   }
 
   /// A row at the time of one of several time columns.
@@ -294,7 +294,7 @@ class Converter {
     std::vector<Entry> entries;
     bool good = of_roles.has_value();
     if (!good)
-      refuse("neither the names nor the order of the columns show the time of each",
+      refuse("neither the names nor the order of the columns show which time belongs to which column",
              "give one --time COLUMN");
     for (std::size_t k = 0; good && k < clocks.size(); ++k) good = add_entries(rows, clocks[k], entries);
     ForeignSamples samples;
@@ -326,7 +326,7 @@ class Converter {
     const auto time_s = seconds_of(table_, mapping_, clock);
     const std::string name = "time: '" + document::shown(column.name, 40) + "' ";
     if (!time_s || column.short_clocks > 0) {
-      refuse(name + "says no unit", "--unit time=s (known are " + unit_names(Quantity::time) + ")");
+      refuse(name + "has no unit", "--unit time=s (known are " + unit_names(Quantity::time) + ")");
       return false;
     }
     double last = -std::numeric_limits<double>::infinity();
@@ -344,7 +344,7 @@ class Converter {
       entries.push_back({now, clock, row});
     }
     const bool apart = clocks_end_s_ < first || last < clocks_begin_s_;
-    if (apart) refuse(name + "has no stretch in common with the other time", "give one --time COLUMN");
+    if (apart) refuse(name + "does not overlap with the other time", "give one --time COLUMN");
     clocks_begin_s_ = std::max(clocks_begin_s_, first);
     clocks_end_s_ = std::min(clocks_end_s_, last);
     return !apart;
@@ -459,7 +459,8 @@ class Converter {
       const bool time = spec.role == Role::time;
       const bool dates = time && mapped.given() && table_.columns[sources_[0].columns.front()].moments > 0 &&
                          table_.columns[sources_[0].columns.front()].short_clocks == 0;
-      const std::string why = mapped.given() ? "" : "no column is the " + std::string(spec.word);
+      const std::string why =
+          mapped.given() ? "" : "no column is assigned to the role " + std::string(spec.word);
       const bool scaled = mapped.scale && !angle_of_scale(spec, mapped);
       if (!mapped.unit.empty() && (!mapped.given() || scaled || dates))
         idle("--unit" + word + mapped.unit, !why.empty() ? why
@@ -472,9 +473,8 @@ class Converter {
     }
     name_idle_words();
     if (mapping_.separator != 0 && !table_.has_separators)
-      idle("--separator",
-           table_.is_text ? "the file itself says where its cells end" : "the file is no text");
-    if (!mapping_.sheet.empty() && table_.sheet.empty()) idle("--sheet", "the file is no workbook");
+      idle("--separator", table_.is_text ? "the file states its own separator" : "the file is not a text");
+    if (!mapping_.sheet.empty() && table_.sheet.empty()) idle("--sheet", "the file is not a workbook");
     if (mapping_.skip_bad_lines &&
         remarks_.account.left_out[static_cast<std::size_t>(LeftOut::bad_line)] == 0)
       remarks_.notes.emplace_back("--skip-bad-lines: no line was bad");
@@ -496,7 +496,7 @@ class Converter {
       } else if (text_word < table_.missing_cells.size()) {
         cells = table_.missing_cells[text_word++];
       }
-      if (cells == 0) idle("--missing " + document::shown(word, 40), "no cell that is used says it");
+      if (cells == 0) idle("--missing " + document::shown(word, 40), "no used cell contains it");
     }
   }
 
@@ -518,7 +518,7 @@ class Converter {
                         std::none_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
       if (none)
         refuse(std::string(spec.word) + ": '" + document::shown(mapping_[spec.role].columns.front()) +
-               "' holds no value");
+               "' has no value");
     }
   }
 
@@ -559,7 +559,7 @@ std::optional<ImportedLog> convert(const ForeignTable& table, const Mapping& map
   options.channel = mapping.channel;
   auto read = parse_log(table.file, format_log(result->log), refused, options);
   for (const document::Problem& problem : refused.list())
-    problems.add({table.file, {1, 1}, {}, "no log comes of it: " + problem.message, problem.hint});
+    problems.add({table.file, {1, 1}, {}, "the result is not a valid log: " + problem.message, problem.hint});
   if (!read) return std::nullopt;
   result->log.notes = std::move(read->notes);
   return result;

@@ -208,7 +208,7 @@ class LvmReader {
       for (std::size_t i = begin; i < x.size(); ++i) x[i] += shift;
       table_.notes.push_back("the times restart in line " + std::to_string(table_.line[begin]) +
                              (has_time ? ": the section begins at its own Date and Time"
-                                       : ": the section begins a step behind the one before"));
+                                       : ": the section begins one step after the end of the previous one"));
     }
   }
 

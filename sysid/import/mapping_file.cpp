@@ -73,7 +73,7 @@ class MappingReader {
     for (const document::Node* item : map.sequence("missing", false)) mapping.missing.push_back(item->scalar);
     map.finish();
     if (problems_.empty() && !mapping.complete())
-      problems_.add(document_.problem({1, 1}, "the mapping says too little",
+      problems_.add(document_.problem({1, 1}, "the mapping is incomplete",
                                       "time (or rate_hz), displacement, and command or pressure"));
     return mapping;
   }
@@ -91,7 +91,7 @@ class MappingReader {
     if (map.good("columns") && column.columns.empty()) map.report("columns", "no column is named");
     column.unit = map.optional_text("unit").value_or("");
     column.scale = map.optional_number("scale", {-1e12, 1e12});
-    if (column.scale == 0.0) map.report("scale", "everything times 0 is 0");
+    if (column.scale == 0.0) map.report("scale", "a scale must not be 0");
     const document::Node* zero = map.child("zero", false);
     if (zero != nullptr && zero->scalar == "first") {
       column.zero_first = true;
@@ -110,7 +110,7 @@ class MappingReader {
 std::string mapping_yaml(const Mapping& mapping, const ImportSource& source, const std::string& software,
                          const std::vector<std::string>& remarks) {
   std::string text =
-      "# What softgrip import took from where. The same again: softgrip import FILE --map THIS --out LOG\n";
+      "# Columns and units of an import. To repeat it: softgrip import FILE --map THIS --out LOG\n";
   text += comment("file: " + source.file + " (" + source.format + ")");
   text += comment("sha256: " + source.sha256);
   text += comment("by " + software);

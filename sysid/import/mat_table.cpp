@@ -73,9 +73,9 @@ const char* what_it_is(const matvar_t& variable) {
     case MAT_C_OBJECT:
     case MAT_C_FUNCTION:
     case MAT_C_OPAQUE:
-      return "an object of MATLAB's (a timetable, a table?); save its columns as arrays";
+      return "a MATLAB object (such as a timetable or a table); save its columns as arrays";
     default:
-      return variable.isComplex != 0 ? "complex numbers" : "no array of numbers in two dimensions";
+      return variable.isComplex != 0 ? "complex numbers" : "not an array of numbers in two dimensions";
   }
 }
 

@@ -95,7 +95,7 @@ class McapReader {
     if (has_topics_of_signals()) {
       merge_signals();
     } else if (rows_ == 0 || (!options_.channel.empty() && !has_channel_)) {
-      refuse("no topic is called '" + document::shown(options_.channel) + "'",
+      refuse("no topic has the name '" + document::shown(options_.channel) + "'",
              "the topics are " + with_commas(table_.channels));
     } else {
       if (table_.channels == std::vector<std::string>{"signals"}) table_.channels.clear();
@@ -164,7 +164,8 @@ class McapReader {
       if (!looks_for_topics_) cut_off_bytes_ += content.size();
       return;
     }
-    if (!scan.good() || (complete && size != inside.size())) return refuse("a chunk is shorter than it says");
+    if (!scan.good() || (complete && size != inside.size()))
+      return refuse("a chunk is shorter than its stated length");
     if (!packing.empty())
       return refuse("its chunks are packed by " + document::shown(packing, 20) +
                     ", which is not read; write it without compression");
@@ -180,7 +181,7 @@ class McapReader {
     scan.skip(sizeof(std::uint16_t));
     std::string_view name = scan.text();
     const std::string_view encoding = scan.text();
-    if (!scan.good()) return refuse("a channel is shorter than it says");
+    if (!scan.good()) return refuse("a channel is shorter than its stated length");
     if (name.starts_with('/')) name.remove_prefix(1);
     topics_[id] = {std::string(name), std::string(encoding)};
   }
@@ -192,7 +193,7 @@ class McapReader {
     const auto log_time = scan.value<std::uint64_t>();
     scan.skip(sizeof(std::uint64_t));
     const auto found = topics_.find(id);
-    if (!scan.good() || found == topics_.end()) return refuse("a message is of no channel");
+    if (!scan.good() || found == topics_.end()) return refuse("a message refers to an unknown channel");
     const Topic& of = found->second;
     if (of.encoding != "json") {
       auto& said = passed_over_[of.name];
@@ -209,7 +210,7 @@ class McapReader {
                                                     : nlohmann::json::parse(text, nullptr, false);
     if (!json.is_object() && options_.skip_bad_lines) return leave_out(LeftOut::bad_line);
     if (!json.is_object())
-      return refuse("message " + std::to_string(messages_) + " is no JSON object of at most " +
+      return refuse("message " + std::to_string(messages_) + " is not a JSON object of at most " +
                     std::to_string(largest_message) + " bytes; --skip-bad-lines leaves such messages out");
     if (++rows_ > most_rows) return refuse("it has more than " + std::to_string(most_rows) + " messages");
     log_times_.push_back(log_time);

@@ -187,9 +187,9 @@ FingerChoice choose_finger(const ForeignTable& table, const Mapping& given, Prop
     const std::string name = "'" + document::shown(given.channel) + "'";
     proposal.questions.push_back(
         choice.fingers.size() > 1
-            ? Proposal::Question{"no finger is called " + name + ": the columns are of " +
+            ? Proposal::Question{"no finger has the name " + name + ": the columns are of " +
                                      quoted(choice.fingers),
-                                 "say which one with --channel"}
+                                 "select one with --channel"}
             : Proposal::Question{"--channel " + name +
                                      ": the file has no column 'channel' and columns of one "
                                      "finger only",
@@ -211,7 +211,7 @@ FingerChoice choose_finger(const ForeignTable& table, const Mapping& given, Prop
     if (choice.meant.empty() && !given.complete())
       proposal.questions.push_back({"the columns are of " + std::to_string(choice.fingers.size()) +
                                         " fingers: " + quoted(choice.fingers),
-                                    "say which one with --channel, or give --command and --displacement"});
+                                    "select one with --channel, or give --command and --displacement"});
   }
   return choice;
 }
@@ -298,7 +298,7 @@ std::string unread_time(const ForeignTable& table) {
     if (!column.bad.empty() && names_role(column.name, Role::time))
       return " ('" + document::shown(column.name, 40) + "' has '" +
              document::shown(column.bad.front().text, 40) +
-             "', which is in no format that is read: 2024-05-31 12:00:00.25 is one)";
+             "', which is in an unknown format; a known one is 2024-05-31 12:00:00.25)";
   }
   return {};
 }
@@ -309,7 +309,7 @@ void say_what_is_missing(const ForeignTable& table, Proposal& proposal) {
   if (!mapping[Role::time].given() && !mapping.rate_hz)
     proposal.missing.emplace_back("a time: --time COLUMN, or --rate-hz R" + unread_time(table));
   if (!mapping[Role::command].given() && !mapping[Role::pressure].given())
-    proposal.missing.emplace_back("a pressure: --command COLUMN (asked for) or --pressure COLUMN (measured)");
+    proposal.missing.emplace_back("a pressure: --command COLUMN (commanded) or --pressure COLUMN (measured)");
   if (!mapping[Role::displacement].given())
     proposal.missing.emplace_back("a displacement or a bending angle: --displacement COLUMN");
 }

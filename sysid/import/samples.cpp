@@ -61,7 +61,7 @@ void from_zero(std::vector<double>& time_s, std::vector<std::string>& notes) {
   const double step = resolution_s(largest);
   for (double& time : time_s) time = rounded(time - first, step);
   if (first != 0)
-    notes.push_back("times are counted from the first sample, which is at " + significant(first, 12) + " s");
+    notes.push_back("times are relative to the first sample, which is at " + significant(first, 12) + " s");
 }
 
 double width_of(const std::vector<double>& values) {
@@ -153,7 +153,8 @@ std::optional<SampleProblem> order_in_time(const Mapping& mapping, ForeignSample
     return SampleProblem{0, "no samples between --from-s and --to-s",
                          "the file has " + significant(time_s.back()) + " s"};
   remarks.account.leave_out(LeftOut::repeated_time, repeated);
-  if (repeated > 0) remarks.notes.push_back(counted(repeated, "at the time of the one before left out"));
+  if (repeated > 0)
+    remarks.notes.push_back(counted(repeated, "with the time of the previous sample left out"));
   if (static_cast<double>(repeated) > warned_share * static_cast<double>(samples.size()))
     remarks.warnings.push_back(about_repeats(time_s, repeated));
   keep(samples, kept);
@@ -165,7 +166,7 @@ void complete_drive(ForeignSamples& samples, ImportRemarks& remarks) {
   if (samples[Role::command].empty()) {
     samples[Role::command] = samples[Role::pressure];
     remarks.notes.emplace_back(
-        "no command is given: the measured pressure stands for it (--drive measured says so to a fit)");
+        "no command column: the measured pressure is used instead (use --drive measured in a fit)");
   }
   std::vector<double>& command = samples[Role::command];
   const auto first = std::find_if(command.begin(), command.end(), [](double v) { return std::isfinite(v); });
@@ -184,7 +185,7 @@ void complete_drive(ForeignSamples& samples, ImportRemarks& remarks) {
     whole[i] = whole[i - 1];
     ++carried;
   }
-  if (carried > 0) remarks.notes.push_back(counted(carried, "without a command keep the one before"));
+  if (carried > 0) remarks.notes.push_back(counted(carried, "without a command have the previous command"));
 }
 
 void cut_at_holes(ForeignSamples& samples, ImportRemarks& remarks) {
@@ -210,11 +211,11 @@ void cut_at_holes(ForeignSamples& samples, ImportRemarks& remarks) {
     others += (others.empty() ? "" : ", ") + significant(time_s[edges[k]], 6) + " to " +
               significant(time_s[edges[k + 1] - 1], 6) + " s";
   }
-  remarks.notes.push_back("the command changed unseen in " + std::to_string(edges.size() - 2) +
-                          (edges.size() == 3 ? " hole" : " holes") + ": the longest piece is kept, " +
+  remarks.notes.push_back("the command changed during " + std::to_string(edges.size() - 2) +
+                          (edges.size() == 3 ? " hole" : " holes") + ": the longest segment is kept, " +
                           significant(time_s[edges[longest]], 6) + " to " +
                           significant(time_s[edges[longest + 1] - 1], 6) +
-                          " s; with --from-s and --to-s the others: " + others);
+                          " s; select another one with --from-s and --to-s: " + others);
   remarks.account.leave_out(LeftOut::hole, samples.size() - (edges[longest + 1] - edges[longest]));
   keep_range(samples, edges[longest], edges[longest + 1]);
   const double begin_s = samples[Role::time].front();

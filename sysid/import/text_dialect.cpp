@@ -194,10 +194,9 @@ class Heading {
          {line.number, 1},
          std::string(line.text.substr(0, 200)),
          std::to_string(names) + " names above " + std::to_string(dialect_.width) + " columns of numbers",
-         commas
-             ? "decimal commas and commas between the columns cannot be told apart: export the file with ';' "
-               "between them"
-             : ""});
+         commas ? "decimal commas and commas between the columns cannot be distinguished: export the file "
+                  "with ';' between them"
+                : ""});
     return false;
   }
 
@@ -265,7 +264,7 @@ std::optional<Dialect> dialect_of(const std::string& file, const TextLines& line
                   {at.number, 1},
                   std::string(at.text.substr(0, 200)),
                   lines.content.empty() ? "the file is empty" : "no rows of numbers in two or more columns",
-                  lines.content.empty() ? "" : "--separator says what stands between the columns"});
+                  lines.content.empty() ? "" : "state the separator of the columns with --separator"});
     return std::nullopt;
   }
   dialect.width = best.width;

@@ -59,7 +59,7 @@ class RowReader {
     for (std::size_t i = 0; i < skipped_.size() && i < bad_lines_named; ++i)
       lines += (lines.empty() ? "" : ", ") + std::to_string(skipped_[i]);
     table_.notes.push_back("--skip-bad-lines leaves out " + std::to_string(skipped_.size()) +
-                           " lines of another width: " + lines +
+                           " lines with another number of cells: " + lines +
                            (skipped_.size() > bad_lines_named ? ", ..." : ""));
   }
 
@@ -67,10 +67,10 @@ class RowReader {
   void check_decimals() {
     if (comma_.number == 0 || point_.number == 0) return;
     const TextLine& later = comma_.number > point_.number ? comma_ : point_;
-    report_.add(
-        "decimal", {later.number, 1}, later.text,
-        "numbers with a decimal comma and numbers with a decimal point in one file",
-        "the other kind first stands in line " + std::to_string(std::min(comma_.number, point_.number)));
+    report_.add("decimal", {later.number, 1}, later.text,
+                "numbers with a decimal comma and numbers with a decimal point in one file",
+                "the other decimal mark is first used in line " +
+                    std::to_string(std::min(comma_.number, point_.number)));
   }
   [[nodiscard]] bool decimal_comma() const { return comma_.number != 0; }
 

@@ -113,7 +113,7 @@ class SheetReader {
       : root_(sheet.document_element()), data_(child_of(root_, "sheetData")), texts_(texts) {}
 
   tl::expected<SheetText, SheetProblem> read() {
-    if (local_name(root_.name()) != "worksheet") fail({1, 1}, "its XML is no worksheet");
+    if (local_name(root_.name()) != "worksheet") fail({1, 1}, "its XML is not a worksheet");
     walk([this](const SheetCell& cell) { survey(cell); });
     full_row_ = first_full_row();
     if (dates_ > 0) walk([this](const SheetCell& cell) { survey_date(cell); });
@@ -207,7 +207,7 @@ class SheetReader {
     const auto number = to_number(cell.text);
     if (!number)
       return refuse_cell(
-          cell, "'" + document::shown(cell.text) + "' is no number, and the file says that it is one");
+          cell, "'" + document::shown(cell.text) + "' is not a number, although the file states that it is");
     if (!std::isfinite(*number)) {
       cell.content = Content::text;  // "NaN" is interpreted as in a text file
       return;
@@ -222,7 +222,8 @@ class SheetReader {
     if (!texts_.date_styles[*index]) return;
     constexpr double most_days = 2958466;  // the end of the year 9999
     if (*number < 0 || *number >= most_days)
-      return refuse_cell(cell, "'" + document::shown(cell.text) + "' is no date, and its format is one");
+      return refuse_cell(
+          cell, "'" + document::shown(cell.text) + "' is not a date, although its format is that of a date");
     cell.content = Content::date;
     cell.serial = *number;
   }
@@ -246,7 +247,7 @@ class SheetReader {
     if (cell.text == "true") cell.text = "1";
     if (cell.text == "false") cell.text = "0";
     if (cell.text != "1" && cell.text != "0")
-      return refuse_cell(cell, "'" + document::shown(cell.text) + "' is no boolean: 0 or 1 is expected");
+      return refuse_cell(cell, "'" + document::shown(cell.text) + "' is not a boolean: 0 or 1 is expected");
     cell.is_bool = true;
     cell.content = Content::number;
   }
@@ -347,13 +348,13 @@ class SheetReader {
       note(texts_.from_1904 ? "cells with dates or times, counted from 1904" : "cells with dates or times",
            dates_);
     const std::size_t span = result_.first_row == 0 ? 0 : result_.last_row - result_.first_row + 1;
-    if (span > filled_.size()) note("empty rows between others are passed over", span - filled_.size());
+    if (span > filled_.size()) note("empty rows between others are skipped", span - filled_.size());
     name_hidden();
     NamedCells merged;
     for (const pugi::xml_node& merge : child_of(root_, "mergeCells").children())
       merged.add(document::shown(attribute_of(merge, "ref"), 20));
     if (merged.count > 0)
-      note("merged cells have the value in the first cell alone", merged.count, merged.list());
+      note("merged cells have the value only in the first cell", merged.count, merged.list());
   }
 
   void name_hidden() {

@@ -109,7 +109,7 @@ class WorkbookReader {
     if (!package_.has("_rels/.rels")) {
       if (package_.has("content.xml"))
         return refuse("this is an OpenDocument spreadsheet (.ods)", "save it as .xlsx, or export it as CSV");
-      return refuse("this is an archive, no workbook", "unpack it");
+      return refuse("this is an archive, not a workbook", "unpack it");
     }
     const auto found = relations("", "");
     if (!found) return std::nullopt;
@@ -119,7 +119,7 @@ class WorkbookReader {
         return refuse("this is a binary workbook (.xlsb)", "save it as .xlsx, or export it as CSV");
       return relation.part;
     }
-    return refuse("this is an archive, no workbook", "unpack it");
+    return refuse("this is an archive, not a workbook", "unpack it");
   }
 
   /// Reads the list of sheets, the shared strings and the styles.
@@ -149,7 +149,7 @@ class WorkbookReader {
   bool read_sheets(const Relations& relations) {
     const pugi::xml_node root = document_.document_element();
     if (local_name(root.name()) != "workbook") {
-      refuse("this is a document of an office program, no workbook");
+      refuse("this is a document of an office program, not a workbook");
       return false;
     }
     texts_.from_1904 = is_true(attribute_of(child_of(root, "workbookPr"), "date1904"));
@@ -212,7 +212,7 @@ class WorkbookReader {
                                     [this](const Sheet& sheet) { return sheet.name == options_.sheet; });
     if (found == sheets_.end())
       return refuse("no sheet " + quoted_name(options_.sheet), "the sheets are " + listed(names()));
-    if (!found->is_table) return refuse("sheet " + quoted_name(found->name) + " is a chart, no table");
+    if (!found->is_table) return refuse("sheet " + quoted_name(found->name) + " is a chart, not a table");
     for (const Sheet& sheet : sheets_) {
       if (sheet.name != found->name) others_.push_back("sheet " + quoted_name(sheet.name) + " is not used");
     }
@@ -231,14 +231,14 @@ class WorkbookReader {
     std::optional<Sheet> found;
     for (const Sheet& sheet : sheets_) {
       if (!sheet.is_table) {
-        others_.push_back("sheet " + quoted_name(sheet.name) + " is passed over: a chart, no table");
+        others_.push_back("sheet " + quoted_name(sheet.name) + " is skipped: it is a chart, not a table");
         continue;
       }
       auto text = text_of(sheet);
       if (!text) return std::nullopt;
       if (text->rows_of_numbers < 2) {
         others_.push_back("sheet " + quoted_name(sheet.name) +
-                          " is passed over: it has no two rows of numbers");
+                          " is skipped: it does not have two rows of numbers");
         continue;
       }
       with_numbers.push_back(sheet.name);

@@ -20,7 +20,7 @@ void report_near_miss(const Cell& cell, std::string_view name, std::string_view 
     if (!bare && !other_unit) continue;
     const std::string expected = "expected '" + std::string(known.name) + "'";
     if (bare) {
-      report.add("unit", {1, cell.column}, line, "column '" + std::string(name) + "' says no unit",
+      report.add("unit", {1, cell.column}, line, "column '" + std::string(name) + "' has no unit",
                  expected + ", in " + std::string(unit));
     } else {
       report.add("unit", {1, cell.column}, line, "column '" + std::string(name) + "' has the wrong unit",

@@ -283,7 +283,7 @@ def spreadsheets():
         File("sheet_chosen.xlsx", "the same, and one of them", several, "--sheet Tuesday", says="sheet 'Monday' is not used"),
         File("idle_sheet.csv", "a sheet of a file without sheets", PLAIN, "--sheet Run", says="--sheet has no effect"),
         File("word.xlsx", "a word among the numbers of a sheet", workbooks.book(stuck),
-             refused="sheet 'Run':102:10: displacement: cell C102: 'stuck' is no number"),
+             refused="sheet 'Run':102:10: displacement: cell C102: 'stuck' is not a number"),
         File("cut_off.xlsx", "a workbook, cut off", workbooks.book([names] + rows)[:3000], refused="broken or cut off"),
         File("spreadsheet.ods", "an OpenDocument spreadsheet", opendocument, refused="an OpenDocument spreadsheet (.ods)"),
         File("old.xls", "an old spreadsheet", b"\xd0\xcf\x11\xe0" + bytes(508), refused="this is an old spreadsheet (.xls)"),
@@ -366,7 +366,7 @@ def reports():
              refused="the columns are of 3 fingers: 'thumb', 'index', 'ring'"),
         File("channel_rows.csv", "fingers in rows, one of them", rows_of_two, "--channel B", left_out={"other_channel": 300}),
         File("channel_rows_none.csv", "the same and a name that is none", rows_of_two, "--channel C",
-             refused="no row is of channel 'C'"),
+             refused="no row belongs to channel 'C'"),
         File("fingers.xlsx", "two fingers in a workbook, one of them", workbooks.book(
             [["time_s", "P1 set (kPa)", "P2 set (kPa)", "tip 1 (mm)", "tip 2 (mm)"]]
             + [list(row) for row in zip(T, quarter, COMMAND, other_tip, TIP)]), "--channel 2"),
@@ -384,7 +384,7 @@ def reports():
             ["Date", *names[1:]], [[(datetime.datetime(2024, 5, 31) + datetime.timedelta(seconds=t)).isoformat(
                 timespec="milliseconds") for t in step_back], COMMAND, TIP]), refused="date_corrected.csv:152:1: the time goes back"),
         File("blank_commands.xlsx", "a workbook with a command in every third row", workbooks.book(blanks),
-             columns=BASIC_OF | thirds, says="200 samples without a command keep the one before"),
+             columns=BASIC_OF | thirds, says="200 samples without a command have the previous command"),
         File("late_command.csv", "readings before the first command",
              table(names, [T, [None] * 10 + COMMAND[10:], TIP]), columns={key: without(set(range(10)))[key] for key in BASIC},
              says="10 samples before the first command left out", left_out={"before_command": 10}),
@@ -436,11 +436,11 @@ def reports():
         File("short_rows.csv", "three rows without their last cell, skipped",
              "\n".join(line.rsplit(",", 1)[0] if i in (40, 41, 200) else line for i, line in enumerate(PLAIN.split("\n"))),
              "--skip-bad-lines", columns={key: without({39, 40, 199})[key] for key in BASIC}, left_out={"bad_line": 3},
-             says="leaves out 3 lines of another width: 41, 42, 201"),
+             says="leaves out 3 lines with another number of cells: 41, 42, 201"),
         *other_fingers_and_clocks(),
         File("idle_sheet.mcap", "an MCAP recording with options of other formats", exported(bytes),
              "--channel left --sheet Run --separator tab", columns=MEASURED, left_out={"other_channel": 300},
-             says="--separator has no effect: the file is no text"),
+             says="--separator has no effect: the file is not a text"),
     ]
 
 
@@ -469,7 +469,7 @@ def other_fingers_and_clocks():
     return [
         File("psi_as_kpa.csv", "psi in a column that claims kPa", table(["time_s", "set_kpa", "tip_mm"], [T, scaled(COMMAND, PSI), TIP]),
              columns=BASIC_OF | {"pressure_command_kpa": scaled(COMMAND, PSI)}, says="The largest value of `set_kpa` is 8.7"),
-        File("finger_rows.csv", "fingers in rows, by another name than channel", by_word, refused="the file holds 2 channels: 'left', 'right'"),
+        File("finger_rows.csv", "fingers in rows, by another name than channel", by_word, refused="the file has 2 channels: 'left', 'right'"),
         File("finger_rows_left.csv", "the same, and one of them", by_word, "--channel left", **of_first),
         File("finger_numbers.csv", "fingers in rows by their number", by_number, "--channel 1", **of_first),
         File("finger_rows.mat", "MATLAB 5: fingers in rows by their number", matlab_5(structures("run", [
@@ -538,7 +538,7 @@ def signals(stamp):
         File("signals_fingers.mcap", "MCAP: a topic per signal of two fingers", mcap(fingers), refused="the columns are of 2 fingers: 'left', 'right'"),
         File("signals_left.mcap", "the same, and one of them", mcap(fingers), "--channel left", joined=COUNT, left_out={"empty": 2 * COUNT}),
         File("signals_nobody.mcap", "the same, and a finger that is not there", mcap(fingers), "--channel middle",
-             refused="no finger is called 'middle'"),
+             refused="no finger has the name 'middle'"),
     ]
 
 
@@ -565,9 +565,9 @@ def files():
                                                        [round(2 + tip / 2.5, 12) for tip in TIP]]),
              "--scale command=25 --scale displacement=2.5 --zero displacement=2"),
         File("volts_unsaid.csv", "volts without a scale", table(["time_s", "set_kpa", "laser_V"], [T, COMMAND, TIP]),
-             refused="'V' is no unit of a displacement"),
+             refused="'V' is not a unit of displacement"),
         File("unit_unsaid.csv", "a column without a unit", table(["time_s", "set_kpa", "tip"], [T, COMMAND, TIP]),
-             refused="'tip' says no unit"),
+             refused="'tip' has no unit"),
         File("unit_said.csv", "the same, and the unit as an option",
              table(["time_s", "set_kpa", "tip"], [T, COMMAND, TIP]), "--unit displacement=mm"),
         File("milliseconds_tabs.tsv", "milliseconds, tabs",
@@ -628,7 +628,7 @@ def files():
              refused="no column looks like a displacement"),
         File("pressure_alone.csv", "measured pressure alone", table(["time_s", "pressure_kpa", "tip_mm"],
                                                                     [T, PRESSURE, TIP]),
-             columns=ALONE, says="the measured pressure stands for it"),
+             columns=ALONE, says="the measured pressure is used instead"),
         File("two_chambers.csv", "two chambers, averaged",
              table(["time_s", "pd1_psi", "pd2_psi", "tip_mm"],
                    [T, scaled(COMMAND, PSI / 0.9), scaled(COMMAND, PSI / 1.1), TIP]),
@@ -642,13 +642,13 @@ def files():
              table(["time_s", "set_kpa", "tip_mm"], [T, broken_bar, TIP]),
              columns={key: TRUTH[key] for key in BASIC} | {"pressure_command_kpa": [
                  COMMAND[49] if i == 50 else value for i, value in enumerate(COMMAND)]},
-             says="keep the one before"),
+             says="have the previous command"),
         File("duplicates.csv", "rows that occur twice",
-             PLAIN.replace("\n1.5,", "\n1.49,61,99\n1.5,"), says="1 sample at the time of the one before left out",
+             PLAIN.replace("\n1.5,", "\n1.49,61,99\n1.5,"), says="1 sample with the time of the previous sample left out",
              left_out={"repeated_time": 1}),
-        File("hole.csv", "a hole in which the command changed unseen",
+        File("hole.csv", "a hole in which the command changed",
              table(["time_s", "set_kpa", "tip_mm"], dropped([T, COMMAND, TIP], set(range(80, 150)))),
-             columns={key: without(set(range(150)))[key] for key in BASIC}, says="the longest piece is kept",
+             columns={key: without(set(range(150)))[key] for key in BASIC}, says="the longest segment is kept",
              left_out={"hole": 80}),
         File("stretch.csv", "a stretch of the file", PLAIN, "--from-s 1 --to-s 1.99",
              columns={key: without(set(range(100)) | set(range(200, 300)))[key] for key in BASIC},
@@ -660,7 +660,7 @@ def files():
         File("ragged.csv", "a row with a cell too many", changed(PLAIN, 120, ",", ",,"),
              refused="4 cells where the rows above have 3"),
         File("word.csv", "a word among the numbers", changed(PLAIN, 77, "0.75,", "0.75x,"),
-             refused="'0.75x' is no number"),
+             refused="'0.75x' is not a number"),
         File("upside_down.csv", "a sensor that looks the other way", table(["time_s", "set_kpa", "tip_mm"],
                                                                             [T, COMMAND, [-y for y in TIP]]),
              columns={key: TRUTH[key] for key in BASIC} | {"displacement_mm": [-y for y in TIP]},
@@ -684,7 +684,7 @@ def files():
              "--time 1 --command 2 --displacement 3 --unit time=s --unit command=kPa --unit displacement=mm"),
         File("one_section.lvm", "a LabVIEW measurement", lvm("One", 1)),
         File("sections.lvm", "a LabVIEW measurement in 3 sections", lvm("One", 3),
-             says="the section begins a step behind the one before"),
+             says="the section begins one step after the end of the previous one"),
         File("counted.lvm", "a LabVIEW measurement without X columns", lvm("No", 1)),
         File("old.mat", "MATLAB 4", matlab_4("time_s", T) + matlab_4("set_bar", scaled(COMMAND, BAR))
              + matlab_4("tip_mm", TIP)),
@@ -739,7 +739,7 @@ def files():
                    [T, [value if i % 10 == 0 else None for i, value in enumerate(COMMAND)],
                     [None if i % 10 == 0 else tip for i, tip in enumerate(TIP)]]),
              columns={"time_s": T, "pressure_command_kpa": held, "displacement_mm": [
-                 math.nan if i % 10 == 0 else tip for i, tip in enumerate(TIP)]}, says="keep the one before"),
+                 math.nan if i % 10 == 0 else tip for i, tip in enumerate(TIP)]}, says="have the previous command"),
         File("rows_at_one_time.csv", "command and reading in two rows of one time",
              "time_s,set_kpa,tip_mm\n" + "".join(f"{t!r},{c!r},\n{t!r},,{y!r}\n" for t, c, y in pairs), joined=300),
         File("two_times.csv", "a time of the command and a time of the reading",
@@ -756,7 +756,7 @@ def files():
         File("fingers_right.csv", "the same, and one of them", fingers, "--channel right", columns=right,
              says="not used: 'P_left (kPa)', 'tip_left (mm)'"),
         File("fingers_none.csv", "the same, and a name that is none", fingers, "--channel thumb",
-             refused="no finger is called 'thumb': the columns are of 'left', 'right'"),
+             refused="no finger has the name 'thumb': the columns are of 'left', 'right'"),
         File("finger_alone.csv", "a channel of a file that has one finger", PLAIN, "--channel thumb",
              refused="--channel 'thumb': the file has no column 'channel'"),
         File("codes.csv", "999 where the sensor read nothing", table(["time_s", "set_kpa", "tip_mm"], [T, COMMAND, coded]),
@@ -768,13 +768,13 @@ def files():
             "tip_mm,\n", "tip_mm\n")),
         File("bad_lines.csv", "a word and a cell too many, skipped",
              changed(changed(PLAIN, 120, ",", ",,"), 77, "0.75,", "0.75x,"), "--skip-bad-lines",
-             columns={key: values for key, values in without({75, 118}).items() if key in BASIC}, says="--skip-bad-lines leaves out 1 lines of another width: 120",
+             columns={key: values for key, values in without({75, 118}).items() if key in BASIC}, says="--skip-bad-lines leaves out 1 lines with another number of cells: 120",
              left_out={"bad_line": 2}),
         File("idle_options.csv", "options that change nothing", PLAIN,
              "--missing 888 --unit supply=bar --to-s 100", says="--missing 888 has no effect"),
         File("months_first.csv", "dates of which the month comes first",
              table(["Timestamp", "set_kpa", "tip_mm"], [times("2024-05-31T12:00:00", "%m/%d/%Y %H:%M:%S.%f"), COMMAND, TIP]),
-             refused="'Timestamp' has '05/31/2024 12:00:00.000', which is in no format that is read"),
+             refused="'Timestamp' has '05/31/2024 12:00:00.000', which is in an unknown format"),
         File("fingers_a_b.csv", "fingers A and B", table(
             ["t_s", "Finger A set (kPa)", "Finger A tip (mm)", "Finger B set (kPa)", "Finger B tip (mm)"],
             [T, *other, COMMAND, TIP]), "--channel B"),
@@ -790,7 +790,7 @@ def files():
             ["time_s", "set_kpa", "angle (deg)", "tip (mm)"], [T, COMMAND, scaled(TIP, 0.3), TIP]),
              says="not used: 'angle (deg)'"),
         File("angle_gon.csv", "a unit of angles that is not read", table(
-            ["time_s", "set_kpa", "angle (gon)"], [T, COMMAND, TIP]), refused="'gon' is no unit of a displacement"),
+            ["time_s", "set_kpa", "angle (gon)"], [T, COMMAND, TIP]), refused="'gon' is not a unit of displacement"),
         File("angle_scaled.csv", "degrees, as the path of a tip 45 mm from the bend",
              table(["time_s", "set_kpa", "tip (deg)"], [T, COMMAND, scaled(TIP, math.radians(45))]),
              f"--scale displacement={math.radians(45)!r}"),
@@ -809,7 +809,7 @@ def files():
         *measurements(),
         *reports(),
         File("noise.bin", "random bytes", bytes((i * i * 31 + 7 * i) % 251 for i in range(3000)),
-             refused="no text, nor a format that is known"),
+             refused="not a text and not in a known format"),
     ]
 
 

@@ -16,8 +16,8 @@ TEST(RowAccount, IsBalancedOnlyWhereEveryRowHasAFate) {
   EXPECT_TRUE(account.balanced());
   EXPECT_EQ(
       account.sentence(),
-      "10 rows: 6 used, 1 joined with a row at the same time, 3 left out (1 without a time, 2 in pieces "
-      "beside a hole)");
+      "10 rows: 6 used, 1 joined with a row at the same time, 3 left out (1 without a time, 2 in shorter "
+      "segments beside a hole)");
 }
 
 TEST(RowAccount, RowsThatTheUserLeavesOutAreNotLost) {

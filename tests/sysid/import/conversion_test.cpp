@@ -128,7 +128,7 @@ TEST(Convert, EpochsLoseNoMoreThanADoubleDoes) {
 TEST(Convert, WithoutACommandTheMeasuredPressureStandsForIt) {
   const ImportedLog result = log_of(text_of("time_s,pressure_kpa,tip_mm", plain));
   EXPECT_EQ(result.log.pressure_command_kpa, result.log.pressure_kpa);
-  EXPECT_NE(result.notes.back().find("the measured pressure stands for it"), std::string::npos);
+  EXPECT_NE(result.notes.back().find("the measured pressure is used instead"), std::string::npos);
 }
 
 TEST(Convert, WhatIsMissingOrWrongIsSaidInTheWordsOfTheOptions) {
@@ -139,7 +139,7 @@ TEST(Convert, WhatIsMissingOrWrongIsSaidInTheWordsOfTheOptions) {
   EXPECT_NE(said.find("--scale displacement=X, mm per V"), std::string::npos);
   EXPECT_NE(refusal(text, mapping_of("time_s", "set", "laser_V")).find("--unit command=kPa"),
             std::string::npos);
-  EXPECT_NE(refusal(text, {}).find("nothing says which column is the time"), std::string::npos);
+  EXPECT_NE(refusal(text, {}).find("no column is assigned to the role time"), std::string::npos);
   EXPECT_NE(refusal(text_of("a,b,c", plain), {}).find("--rate-hz R"), std::string::npos);
 }
 
@@ -147,7 +147,7 @@ TEST(Convert, WhatNoOtherCommandWouldReadIsRefused) {
   const std::string still =
       text_of("time_s,set_kpa,tip_mm", [](int i, double, double y) { return plain(i, 7, y); });
   EXPECT_NE(refusal(still, mapping_of("time_s", "set_kpa", "tip_mm"))
-                .find("no log comes of it: the command is 7 kPa"),
+                .find("the result is not a valid log: the command is 7 kPa"),
             std::string::npos);
 }
 

@@ -37,7 +37,7 @@ TEST(MappingFile, MistakesHaveTheirPlace) {
     return problems.format();
   };
   const std::string good = "schema: 1\nrate_hz: 100\ncommand: {columns: [a]}\n";
-  EXPECT_NE(refused(good).find("the mapping says too little"), std::string::npos);
+  EXPECT_NE(refused(good).find("the mapping is incomplete"), std::string::npos);
   EXPECT_NE(refused(good + "displacment: {columns: [b]}\n").find("m.yaml:4:1"), std::string::npos);
   EXPECT_NE(refused(good + "displacement: {columns: [], scale: 0}\n").find("m.yaml:4:"), std::string::npos);
   EXPECT_NE(refused(good + "displacement: {columns: [b], zero: last}\n").find("m.yaml:4:"),

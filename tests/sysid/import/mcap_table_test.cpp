@@ -121,7 +121,7 @@ TEST(McapTable, TakesTheMessagesOfOneTopic) {
     EXPECT_EQ(left_out(table, LeftOut::other_channel), 1U);
     options.channel = "middle";
     const std::string said = refusal(bytes, options);
-    EXPECT_TRUE(says(said, "no topic is called 'middle'")) << said;
+    EXPECT_TRUE(says(said, "no topic has the name 'middle'")) << said;
     EXPECT_TRUE(says(said, "left and right") || says(said, "left, right")) << said;
   }
 }
@@ -153,14 +153,14 @@ TEST(McapTable, ReadsTheCompleteMessagesOfAFileThatIsCutOff) {
 TEST(McapTable, RefusesWhatItCannotRead) {
   EXPECT_TRUE(says(refusal(whole(chunk(two_fingers(), "zstd"))), "its chunks are packed by zstd"));
   EXPECT_TRUE(says(refusal(whole(chunk(two_fingers(), "", 1))), "a chunk does not match its checksum"));
-  EXPECT_TRUE(says(refusal(whole(message(1, 0, "{}"))), "a message is of no channel"));
+  EXPECT_TRUE(says(refusal(whole(message(1, 0, "{}"))), "a message refers to an unknown channel"));
   EXPECT_TRUE(
       says(refusal(whole(topic(1, "/imu", "cdr") + message(1, 0, "{}"))), "no topic has messages in JSON"));
   std::string longer = whole(two_fingers());
   longer[mcap_magic.size() + 5] = 1;
   EXPECT_TRUE(says(refusal(longer), "a record is longer than the file"));
   const std::string bad = whole(two_fingers() + message(1, 3, "[1]") + message(1, 3, R"({"time_s":1e999})"));
-  EXPECT_TRUE(says(refusal(bad), "message 4 is no JSON object"));
+  EXPECT_TRUE(says(refusal(bad), "message 4 is not a JSON object"));
   TableOptions options;
   options.skip_bad_lines = true;
   EXPECT_EQ(left_out(table_of(bad, options), LeftOut::bad_line), 2U);

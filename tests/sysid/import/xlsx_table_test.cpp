@@ -170,7 +170,7 @@ TEST(XlsxTable, AsksWhichOfSeveralSheetsAndNamesTheOthers) {
   EXPECT_TRUE(has(refusal(parts, options), "no sheet 'Sunday'"));
   const ForeignTable only =
       table_of(book({{"Monday", cells(three_rows)}, {"Notes", cells({{"mass", "2"}})}}));
-  EXPECT_TRUE(has(joined(only.notes), "sheet 'Notes' is passed over: it has no two rows of numbers"));
+  EXPECT_TRUE(has(joined(only.notes), "sheet 'Notes' is skipped: it does not have two rows of numbers"));
 }
 
 TEST(XlsxTable, NamesWhatIsMissing) {
@@ -210,8 +210,8 @@ TEST(XlsxTable, RefusesACellThatContradictsTheFile) {
   };
   const std::string shared = said("<c r='B7' t='s'><v>9</v></c>");
   EXPECT_TRUE(has(shared, "b.xlsx, sheet 'Run':7:2: cell B7: shared string '9' is none of the 0")) << shared;
-  EXPECT_TRUE(has(said("<c r='B7'><v>nine</v></c>"), "cell B7: 'nine' is no number"));
-  EXPECT_TRUE(has(said("<c r='B7' t='b'><v>2</v></c>"), "cell B7: '2' is no boolean: 0 or 1 is expected"));
+  EXPECT_TRUE(has(said("<c r='B7'><v>nine</v></c>"), "cell B7: 'nine' is not a number"));
+  EXPECT_TRUE(has(said("<c r='B7' t='b'><v>2</v></c>"), "cell B7: '2' is not a boolean: 0 or 1 is expected"));
   EXPECT_TRUE(has(said("<c r='B7' t='q'><v>2</v></c>"), "cell B7: its type 'q'"));
   EXPECT_TRUE(has(said("<c r='B8'><v>2</v></c>"), "a cell 'B8' where A7"));
   EXPECT_TRUE(has(said("<c r='B7'><v>2</v></c><c r='B7'><v>3</v></c>"), "a cell 'B7' where C7"));
@@ -239,7 +239,7 @@ TEST(XlsxTable, RefusesASecondPartOfTextsOrStyles) {
 
 TEST(XlsxTable, RefusesWhatIsNoWorkbook) {
   EXPECT_TRUE(has(refusal(Parts{{"content.xml", "x"}}), "OpenDocument"));
-  EXPECT_TRUE(has(refusal(Parts{{"a.txt", "x"}}), "an archive, no workbook"));
+  EXPECT_TRUE(has(refusal(Parts{{"a.txt", "x"}}), "an archive, not a workbook"));
   Parts parts = book({{"Run", cells(three_rows)}});
   parts["xl/s1.xml"] = "<worksheet><sheetData>";
   EXPECT_TRUE(has(refusal(parts), "cannot be read"));

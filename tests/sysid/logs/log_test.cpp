@@ -78,7 +78,7 @@ std::vector<Bad> bad_logs() {
        "'displacement_mm' is missing", "displacment_mm"},
       {"WrongUnit", with_line(1, "time_s,pressure_command_bar,displacement_mm"), 1, 8, "wrong unit",
        "'pressure_command_kpa', multiply by 100"},
-      {"NoUnit", with_line(1, "time,pressure_command_kpa,displacement_mm"), 1, 1, "says no unit", "'time_s'"},
+      {"NoUnit", with_line(1, "time,pressure_command_kpa,displacement_mm"), 1, 1, "has no unit", "'time_s'"},
       {"ColumnTwice", with_line(1, "time_s,pressure_command_kpa,time_s"), 1, 29, "stands twice", ""},
       {"Semicolons", with_line(1, "time_s;pressure_command_kpa;displacement_mm"), 1, 7, "separated by ';'",
        "','"},
