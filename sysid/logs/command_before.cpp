@@ -99,9 +99,9 @@ Log with_command_before(const Log& log, double before_kpa) {
     if (!column->empty()) put_first(*column, column->front());
   }
   for (OtherColumn& other : longer.others) other.cells.insert(other.cells.begin(), std::string());
-  longer.notes.push_back({0, "it begins as its command was set, from " + significant(before_kpa, 3) + " to " +
-                                 significant(log.pressure_command_kpa.front(), 3) +
-                                 " kPa: a sample before it says so"});
+  longer.notes.push_back({0, "it begins when its command was set from " + significant(before_kpa, 3) +
+                                 " to " + significant(log.pressure_command_kpa.front(), 3) +
+                                 " kPa: a first sample was added"});
   return longer;
 }
 

@@ -75,11 +75,12 @@ std::vector<Excitation> missing_excitation(const std::vector<Log>& logs) {
 std::string without(Excitation missing) {
   switch (missing) {
     case Excitation::unloading:
-      return "unloading never seen: hysteresis cannot be judged";
+      return "the logs contain no unloading: hysteresis cannot be determined";
     case Excitation::rest:
-      return "no rest at zero pressure: creep, softening and drift are hard to tell apart";
+      return "the logs contain no rest longer than 3 s at zero pressure: creep, softening and drift are hard "
+             "to separate";
     case Excitation::amplitudes:
-      return "one amplitude only: what depends on amplitude cannot be judged";
+      return "the logs contain only one amplitude: effects that depend on the amplitude cannot be determined";
   }
   return {};
 }

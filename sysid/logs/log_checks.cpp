@@ -86,7 +86,7 @@ class Check {
         const std::string hint =
             i > 1 && log_.time_s[i] == 0 ? "two runs in one file? Give them as two logs" : std::string();
         refuse(i, source_.time_column,
-               step == 0 ? "the time " + shortest(log_.time_s[i]) + " s stands twice"
+               step == 0 ? "the time " + shortest(log_.time_s[i]) + " s occurs twice"
                          : "the time goes back from " + shortest(log_.time_s[i - 1]) + " s to " +
                                shortest(log_.time_s[i]) + " s",
                hint);
@@ -124,14 +124,14 @@ class Check {
       if (interval > hole_s && interval > hole_intervals * sampling_.median_interval_s &&
           change > 0.02 * command_.width()) {
         refuse(i, source_.time_column,
-               "a hole of " + significant(interval) + " s, in which the command changed by " +
-                   significant(change) + " kPa unseen",
+               "a hole of " + significant(interval) + " s in which the command changed by " +
+                   significant(change) + " kPa",
                "cut the log there and give the parts as two logs");
       }
     }
     if (gaps > 0) {
       note(longest, std::to_string(gaps) + " gaps in the sampling, the longest of " + significant(longest_s) +
-                        " s; the command is taken to go straight across them");
+                        " s; the command is assumed to be linear across them");
     }
     if (sampling_.jitter_s > 0.01 * sampling_.median_interval_s) {
       note(log_.size(), "irregular sampling: " + significant(1e3 * sampling_.median_interval_s) + " ms ± " +
@@ -165,7 +165,7 @@ class Check {
       refuse(y, source_.displacement_column,
              in_unit("a displacement of ") + significant(log_.displacement_mm[y]) + in_unit(" mm"),
              is_code(log_.displacement_mm[y])
-                 ? "a code of the sensor where it read nothing? softgrip import --missing leaves it out"
+                 ? "if this is a code for a missing reading, leave it out with softgrip import --missing"
              : log_.output_unit == model::OutputUnit::deg ? "is the column in degrees?"
                                                           : "is the column in micrometres? Divide by 1000");
     } else if (const double span = span_mm(log_); span > 0 && span < small_reading(log_.output_unit)) {
@@ -228,7 +228,7 @@ class Check {
     }
     if (clipped == 0) return;
     const double share = static_cast<double>(clipped) / static_cast<double>(log_.size());
-    const std::string message = percent(share) + " of the readings stay on the extreme value " +
+    const std::string message = percent(share) + " of the readings remain at the extreme value " +
                                 significant(value, 6) + in_unit(" mm while the command moves");
     if (share > share_refused) {
       refuse(first, source_.displacement_column, message,

@@ -43,7 +43,7 @@ bool header_is_plausible(std::string_view line, const std::vector<Cell>& cells, 
     return false;
   }
   if (std::all_of(cells.begin(), cells.end(), [](const Cell& c) { return to_number(c.text).has_value(); })) {
-    report.add("header", {1, 1}, line, "the first line holds numbers instead of column names",
+    report.add("header", {1, 1}, line, "the first line contains numbers instead of column names",
                "write 'time_s,pressure_command_kpa,displacement_mm' above it");
     return false;
   }
@@ -91,7 +91,7 @@ LogHeader read_header(std::string_view line, const LogOptions& options, LogRepor
     const bool repeated =
         !name.empty() && std::find(header.names.begin(), header.names.end(), name) != header.names.end();
     if (repeated) {
-      report.add("duplicate", {1, cells[i].column}, line, "column '" + name + "' stands twice", {});
+      report.add("duplicate", {1, cells[i].column}, line, "column '" + name + "' occurs twice", {});
     } else if (known != known_columns.end()) {
       const auto k = static_cast<std::size_t>(known - known_columns.begin());
       header.index[k] = static_cast<int>(i);
@@ -109,7 +109,7 @@ LogHeader read_header(std::string_view line, const LogOptions& options, LogRepor
                "column '" + std::string(header.reading.name) + "' gives readings in " +
                    std::string(name_of(header.reading.unit)) + ", and " + options.output_unit_of + " is in " +
                    std::string(name_of(*options.output_unit)),
-               "a model and the logs that it is used with have one unit");
+               "a model and its logs must have the same unit");
   }
   for (std::size_t k = 0; k < known_columns.size(); ++k) {
     if (!known_columns[k].required || header.index[k] >= 0) continue;

@@ -69,19 +69,20 @@ void check_measured_pressure(const Log& log, std::vector<std::string>& warnings)
   if (log.pressure_kpa.empty() || log.pressure_kpa == log.pressure_command_kpa) return;
   const PairSums sums = sums_of(log.pressure_command_kpa, log.pressure_kpa);
   if (sums.correlation() < -clear_correlation) {
-    warnings.push_back("the measured pressure falls when the command rises (correlation " +
+    warnings.push_back("the measured pressure decreases when the command increases (correlation " +
                        significant(sums.correlation(), 3) +
-                       "): `softgrip import --scale pressure=-X` turns it");
+                       "): if the sign is wrong, use `softgrip import --scale pressure=-X`");
     return;
   }
   if (sums.correlation() < clear_correlation) return;
   const double slope = sums.slope();
   if (const std::string units = pressure_units_apart(slope); !units.empty())
     warnings.push_back("the measured pressure is " + significant(slope, 3) + " times the command, as " +
-                       units + " are: is the unit of one of them another? `softgrip import --unit` says it");
+                       units +
+                       " are: if the unit of one of them is wrong, state it with `softgrip import --unit`");
   constexpr int clearly_before = -2;
   if (best_lag(log.pressure_command_kpa, log.pressure_kpa) <= clearly_before)
-    warnings.emplace_back("the measured pressure moves before its command: are the two columns swapped?");
+    warnings.emplace_back("the measured pressure precedes its command: the two columns may be swapped");
 }
 
 const std::vector<double>& drive_of(const Log& log) {
@@ -112,19 +113,18 @@ void check_response(const Log& log, std::vector<std::string>& warnings) {
   const double correlation = sums_of(drive, log.displacement_mm).correlation();
   if (correlation < -clear_correlation) {
     warnings.push_back(
-        "the reading falls when the pressure rises (correlation " + significant(correlation, 3) +
-        "): a sensor mounted the other way round? `softgrip import --scale displacement=-X` with "
+        "the reading decreases when the pressure increases (correlation " + significant(correlation, 3) +
+        "): if the sensor is mounted in reverse, use `softgrip import --scale displacement=-X` with "
         "a negative factor" +
-        (log.output_unit == model::OutputUnit::deg ? " and --unit displacement=deg turns it"
-                                                   : std::string(" turns it")));
+        (log.output_unit == model::OutputUnit::deg ? " and --unit displacement=deg" : std::string()));
     return;
   }
   const double share = loop_share(drive, log.displacement_mm);
   if (correlation > clear_correlation && share < clear_loop_backwards)
     warnings.push_back(
-        "the reading moves before the pressure (its loops run backwards and enclose " +
+        "the reading precedes the pressure (its loops run backwards and enclose " +
         significant(-100 * share, 2) +
-        " % of the square around them): are the columns of pressure and displacement swapped?");
+        " % of their bounding rectangle): the columns of pressure and displacement may be swapped");
 }
 
 void check_free_motion(const Log& log, std::vector<std::string>& warnings) {
@@ -136,7 +136,7 @@ void check_free_motion(const Log& log, std::vector<std::string>& warnings) {
   warnings.push_back("the finger holds a part in " +
                      significant(100 * static_cast<double>(holding) / static_cast<double>(log.size()), 2) +
                      " % of the rows (column result): a model of free motion cannot be fitted to them or "
-                     "judged by them; record a run that touches nothing");
+                     "tested with them; record a run without contact");
 }
 
 /// Returns a text with the column, its largest value, and the options that state the probable unit.
@@ -168,7 +168,7 @@ void judge_unit_of_pressure(const Log& log, const PressureColumn& column,
                        " per kPa: psi in a column taken for kPa?" + state_unit(column, *p, "psi"));
   } else if (largest > large_pressure_kpa) {
     warnings.push_back("the pressure reaches " + significant(largest) +
-                       " kPa, and no soft finger bears that: Pa or mbar in a column taken for kPa?" +
+                       " kPa, which no soft finger withstands: Pa or mbar in a column taken for kPa?" +
                        state_unit(column, *p, largest < small_as_mbar ? "mbar" : "Pa"));
   }
 }
@@ -179,7 +179,8 @@ void check_spans(const Log& log, std::vector<std::string>& warnings) {
   if (const auto p = extent_of(log.pressure_command_kpa); p && p->width() > 0) {
     if (p->lowest > 0.9 * atmosphere_kpa && p->lowest < 1.1 * atmosphere_kpa)
       warnings.push_back("the pressure never falls below " + significant(p->lowest) +
-                         " kPa, about an atmosphere: absolute? `softgrip import --zero` subtracts it");
+                         " kPa, about 1 atmosphere: if the pressure is absolute, subtract the atmosphere "
+                         "with `softgrip import --zero`");
   }
   if (const auto y = extent_of(log.displacement_mm); y && y->width() > 0) {
     if (y->width() < small_reading(unit))
@@ -238,7 +239,7 @@ std::vector<std::string> plausibility_warnings_among(const std::vector<Log>& log
                                     [&](const Log& log) { return same_samples(log, logs[i]); });
     if (first != logs.begin() + static_cast<std::ptrdiff_t>(i))
       warnings.push_back(logs[i].name + ": the same samples as " + first->name +
-                         "; given twice they make intervals narrower than they are");
+                         "; repeated samples make the intervals too narrow");
   }
   std::vector<double> clear = gains;
   std::erase(clear, 0);
@@ -261,7 +262,7 @@ std::string scale_warning(const std::string& log_name, const std::vector<double>
   const std::string mistake = mistaken_unit(factor, unit);
   if (mistake.empty()) return {};
   return log_name + ": the readings are " + significant(factor, 3) +
-         " times what the model says: " + mistake + "?";
+         " times the prediction of the model: " + mistake + "?";
 }
 
 }  // namespace softgrip::sysid

@@ -664,7 +664,7 @@ def files():
         File("upside_down.csv", "a sensor that looks the other way", table(["time_s", "set_kpa", "tip_mm"],
                                                                             [T, COMMAND, [-y for y in TIP]]),
              columns={key: TRUTH[key] for key in BASIC} | {"displacement_mm": [-y for y in TIP]},
-             says="the reading falls when the pressure rises"),
+             says="the reading decreases when the pressure increases"),
         File("wrong_unit.csv", "a measured pressure in psi that claims kPa",
              table(["time_s", "set_kpa", "actual_pressure_kpa", "tip_mm"], [T, COMMAND, scaled(PRESSURE, PSI), TIP]),
              columns=MEASURED | {"pressure_kpa": scaled(PRESSURE, PSI)}, says="as psi and kPa are"),

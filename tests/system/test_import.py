@@ -73,7 +73,7 @@ class Import(bench.BenchTest):
         self.imported(path, "--out", "a.csv", "--yes", "--scale", "command=25", "--scale", "displacement=-2.5", "--zero",
                       "displacement=first", "--from-s", "0.5")
         kept = (self.folder / "a.import.yaml").read_text()
-        self.assertIn("doubt: the reading falls", kept)
+        self.assertIn("doubt: the reading decreases", kept)
         self.imported(path, "--out", "b.csv", "--map", "a.import.yaml")
         self.assertEqual((self.folder / "a.csv").read_bytes(), (self.folder / "b.csv").read_bytes())
         (self.folder / "a.import.yaml").write_text(kept.replace("unit", "units"))

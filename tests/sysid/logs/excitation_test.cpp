@@ -74,11 +74,12 @@ TEST(MissingExcitation, OfAVacuumIsThatOfAPressure) {
 }
 
 TEST(MissingExcitation, HasASentence) {
-  EXPECT_EQ(without(Excitation::unloading), "unloading never seen: hysteresis cannot be judged");
+  EXPECT_EQ(without(Excitation::unloading), "the logs contain no unloading: hysteresis cannot be determined");
   EXPECT_EQ(without(Excitation::rest),
-            "no rest at zero pressure: creep, softening and drift are hard to tell apart");
+            "the logs contain no rest longer than 3 s at zero pressure: creep, softening and drift are hard "
+            "to separate");
   EXPECT_EQ(without(Excitation::amplitudes),
-            "one amplitude only: what depends on amplitude cannot be judged");
+            "the logs contain only one amplitude: effects that depend on the amplitude cannot be determined");
 }
 
 }  // namespace

@@ -79,7 +79,7 @@ std::vector<Bad> bad_logs() {
       {"WrongUnit", with_line(1, "time_s,pressure_command_bar,displacement_mm"), 1, 8, "wrong unit",
        "'pressure_command_kpa', multiply by 100"},
       {"NoUnit", with_line(1, "time,pressure_command_kpa,displacement_mm"), 1, 1, "has no unit", "'time_s'"},
-      {"ColumnTwice", with_line(1, "time_s,pressure_command_kpa,time_s"), 1, 29, "stands twice", ""},
+      {"ColumnTwice", with_line(1, "time_s,pressure_command_kpa,time_s"), 1, 29, "occurs twice", ""},
       {"Semicolons", with_line(1, "time_s;pressure_command_kpa;displacement_mm"), 1, 7, "separated by ';'",
        "','"},
       {"Tabs", with_line(1, "time_s\tpressure_command_kpa\tdisplacement_mm"), 1, 7, "tabs", "','"},
@@ -91,7 +91,7 @@ std::vector<Bad> bad_logs() {
       {"Infinite", with_line(9, "0.07,-inf,1.5"), 9, 6, "'-inf'", ""},
       {"EmptyCommand", with_line(9, "0.07,,1.5"), 9, 6, "no number in column 'pressure_command_kpa'", ""},
       {"TimeGoesBack", with_line(20, "0.01,18,4.5"), 20, 1, "goes back from 0.17 s to 0.01 s", ""},
-      {"TimeStands", with_line(20, "0.17,18,4.5"), 20, 1, "0.17 s stands twice", ""},
+      {"TimeStands", with_line(20, "0.17,18,4.5"), 20, 1, "0.17 s occurs twice", ""},
       {"TwoRunsInOneFile", good_text() + good_text().substr(good_text().find('\n') + 1), 102, 1, "goes back",
        "two runs"},
       {"TimeFromElsewhere", with_log([](Log& log) {

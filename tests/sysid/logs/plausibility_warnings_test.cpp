@@ -35,7 +35,7 @@ TEST(PlausibilityWarnings, SignScaleAndOrder) {
     return warnings.empty() ? std::string() : warnings.front();
   };
   EXPECT_NE(
-      first_warning([](Log& l, std::size_t i) { l.displacement_mm[i] *= -1; }).find("the reading falls"),
+      first_warning([](Log& l, std::size_t i) { l.displacement_mm[i] *= -1; }).find("the reading decreases"),
       std::string::npos);
   EXPECT_NE(first_warning([](Log& l, std::size_t i) { l.pressure_kpa[i] /= 6.894757; }).find("psi and kPa"),
             std::string::npos);
@@ -134,7 +134,7 @@ TEST(PlausibilityWarnings, ALogThatIsGivenTwice) {
   logs[0].name = "a", logs[1].name = "b";
   logs[0].displacement_mm[3] = logs[1].displacement_mm[3] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(all_of(plausibility_warnings_among(logs)),
-            "b: the same samples as a; given twice they make intervals narrower than they are\n");
+            "b: the same samples as a; repeated samples make the intervals too narrow\n");
   logs[1].displacement_mm[4] += 0.001;
   EXPECT_EQ(all_of(plausibility_warnings_among(logs)), "");
 }

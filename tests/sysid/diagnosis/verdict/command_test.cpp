@@ -170,14 +170,14 @@ TEST_F(DiagnoseCommand, UnloadingNeverSeenIsSaid) {
   const auto ramp = [](double t) { return t; };
   write_log("loading.csv", 50, ramp, [](double t) { return 0.7 * t + 0.05 * std::pow(t, 1.2); });
   ASSERT_EQ(diagnose("loading.csv"), 0) << read("err.txt");
-  EXPECT_TRUE(warned_of(diagnosis(), "unloading never seen"));
+  EXPECT_TRUE(warned_of(diagnosis(), "the logs contain no unloading"));
 }
 
 TEST_F(DiagnoseCommand, OneAmplitudeIsSaid) {
   const auto same = [](double t) { return 40 * (1 - std::abs(std::fmod(t, 10) / 5 - 1)); };
   write_log("same.csv", 80, same, [&](double t) { return 0.6 * same(t) + 0.002 * same(t) * same(t); });
   ASSERT_EQ(diagnose("same.csv"), 0) << read("err.txt");
-  EXPECT_TRUE(warned_of(diagnosis(), "one amplitude only"));
+  EXPECT_TRUE(warned_of(diagnosis(), "the logs contain only one amplitude"));
 }
 
 TEST_F(DiagnoseCommand, ReadingsThatHaveNothingToDoWithTheCommandAreRefused) {
