@@ -108,9 +108,10 @@ std::vector<std::string> divergences_of(const std::vector<Score>& scores) {
     const bool finite = std::all_of(score.prediction_mm.begin(), score.prediction_mm.end(),
                                     [](double value) { return std::isfinite(value); });
     sentences.push_back("the prediction of " + score.name + " diverges: it " +
-                        (finite ? "leaves the readings by up to " + significant(score.largest_error_mm, 3) +
-                                      " " + std::string(model::name_of(score.output_unit))
-                                : std::string("does not stay finite")));
+                        (finite ? "deviates from the readings by up to " +
+                                      significant(score.largest_error_mm, 3) + " " +
+                                      std::string(model::name_of(score.output_unit))
+                                : std::string("is not finite")));
   }
   return sentences;
 }
