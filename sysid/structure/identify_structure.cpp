@@ -59,7 +59,7 @@ void add_estimates(const StructureTrial& trial, Identification& result) {
   const FittedPoint fit{*residuals, z, uncertainty};
   result.parameters = parameter_estimates(fit);
   for (Estimate& e : result.parameters) {
-    if (!e.free) e.note = "where it was put before the fit";
+    if (!e.free) e.note = "fixed before the fit";
   }
   result.starts = start_estimates(fit);
   result.combinations = combination_estimates(fit);
@@ -110,9 +110,11 @@ void join_valve(const std::vector<Log>& logs, const IdentifyOptions& options, Id
   }
   result.model = with_valve(result.fitted, stage);
   if (stage.is_far_off()) {
-    result.warnings.push_back("the valve is no dead time with a lag: between command and measured pressure " +
-                              significant(stage.rmse_kpa, 3) + " kPa are left, " +
-                              significant(stage.rmse_percent, 2) + " % of its range");
+    result.warnings.push_back(
+        "a dead time and a lag do not describe the valve: the error between command and measured pressure "
+        "is " +
+        significant(stage.rmse_kpa, 3) + " kPa RMS, " + significant(stage.rmse_percent, 2) +
+        " % of its range");
   }
   result.structure->valve = std::move(valve);
 }
@@ -133,7 +135,7 @@ tl::expected<Identification, std::string> identify_structure(const std::vector<L
                                                              StructureQuestion question,
                                                              const IdentifyOptions& options) {
   const auto began = std::chrono::steady_clock::now();
-  if (logs.empty()) return Failure("no logs to identify from");
+  if (logs.empty()) return Failure("no logs for the identification");
   const ThreadBudget budget(options.threads);
   const bool measured =
       std::all_of(logs.begin(), logs.end(), [](const Log& log) { return !log.pressure_kpa.empty(); });
@@ -166,7 +168,8 @@ tl::expected<Identification, std::string> identify_structure(const std::vector<L
   for (std::size_t k = 0; k < fewer.size(); ++k) result.records[k].start_unknown = fewer[k].start_unknown;
   const StructureChoice choice = choose_structure(fewer, choice_options);
   StructureTrial chosen = choice.trials[choice.chosen];
-  if (!std::isfinite(chosen.rmse_mm)) return Failure("the model's answer is not finite from any start");
+  if (!std::isfinite(chosen.rmse_mm))
+    return Failure("the response of the model is not finite from any starting point");
   result.structure = evidence_of(choice, ablation_of(fewer, choice, choice_options));
   if (readings > enough_readings) {
     chosen = fitted_to(std::move(chosen), result.records, record.drive);

@@ -316,7 +316,7 @@ std::vector<Record> with_simplest_start(const std::vector<Record>& records,
   if (std::none_of(records.begin(), records.end(), is_open)) return records;
   std::vector<Record> resting = records;
   for (Record& record : resting) record.start_unknown = record.start_unknown && !is_open(record);
-  if (options.progress) options.progress("does each log begin at rest?");
+  if (options.progress) options.progress("checking whether each log begins at rest");
   const BaseStructure structure = candidates(options).back();
   std::array<std::vector<double>, 2> losses;
   parallel_for(losses.size(), options.threads, [&](std::size_t i) {
@@ -337,7 +337,7 @@ StructureChoice choose_structure(const std::vector<Record>& records, const Struc
   const BaseStructure& richest = structures.back();
   std::vector<FittedStructure> fitted_with(ridges.size());
   std::vector<StructureTrial> by_ridge(ridges.size());
-  say("choosing the ridge");
+  say("choosing the ridge parameter");
   fitted_with[first_ridge] = judge.fit(richest, ridges[first_ridge]);
   parallel_for(ridges.size(), options.threads, [&](std::size_t i) {
     if (i != first_ridge) fitted_with[i] = judge.fit(richest, ridges[i], &fitted_with[first_ridge].numbers);
@@ -351,7 +351,7 @@ StructureChoice choose_structure(const std::vector<Record>& records, const Struc
     choice.trials[i] = i + 1 == structures.size()
                            ? judge.judge(fitted_with[best_ridge], choice.ridge, fold_iterations)
                            : judge.judge(structures[i], choice.ridge);
-    say("structures: " + std::to_string(++done) + " of " + std::to_string(structures.size()) + " judged");
+    say("structures: " + std::to_string(++done) + " of " + std::to_string(structures.size()) + " evaluated");
   });
   choice.chosen = simplest_of_the_best(choice.trials);
   const StructureTrial& simplest = choice.trials[choice.chosen];
@@ -396,7 +396,7 @@ std::vector<WithoutIngredient> ablation_of(const std::vector<Record>& records, c
   std::vector<WithoutIngredient> ablation;
   const StructureTrial& chosen = choice.trials[choice.chosen];
   if (chosen.structure.published) return ablation;
-  if (options.progress) options.progress("taking one ingredient away after the other");
+  if (options.progress) options.progress("removing one component after the other");
   for (const Ingredient ingredient : ingredients) {
     if (!has(chosen.structure, ingredient)) continue;
     ablation.push_back({ingredient, {}});
