@@ -17,8 +17,8 @@ constexpr std::size_t kept_for_figures = 450'000;
 constexpr std::size_t many_sections = 3;
 
 constexpr std::string_view style = R"(
-:root{--good-paper:#eef8f5;--doubt:#b87700;--doubt-paper:#fdf6e8;--bad-paper:#fbeeed}
-@media screen and (prefers-color-scheme:dark){:root{--good-paper:#12281f;--doubt:#e6a532;--doubt-paper:#2b2413;--bad-paper:#2f1a18}}
+:root{--good-paper:#eef8f5;--warn:#b87700;--warn-paper:#fdf6e8;--bad-paper:#fbeeed}
+@media screen and (prefers-color-scheme:dark){:root{--good-paper:#12281f;--warn:#e6a532;--warn-paper:#2b2413;--bad-paper:#2f1a18}}
 body{font:15px/1.5 system-ui,-apple-system,"Segoe UI",sans-serif;color:var(--text);background:var(--paper);max-width:820px;margin:0 auto;padding:24px 20px 64px}
 h1{font-size:19px;font-weight:600;color:var(--muted);margin:0 0 10px}
 h2{font-size:20px;margin:40px 0 8px;padding-top:14px;border-top:1px solid var(--grid)}
@@ -26,7 +26,7 @@ h3{font-size:16px;margin:24px 0 6px}
 p,ul{margin:8px 0;max-width:72ch}
 a{color:var(--model)}
 .verdict{font-size:19px;line-height:1.4;padding:14px 18px;border-left:6px solid;margin:0 0 18px;max-width:none}
-.good{border-color:var(--good);background:var(--good-paper)}.doubtful{border-color:var(--doubt);background:var(--doubt-paper)}.bad{border-color:var(--bad);background:var(--bad-paper)}
+.good{border-color:var(--good);background:var(--good-paper)}.doubtful{border-color:var(--warn);background:var(--warn-paper)}.bad{border-color:var(--bad);background:var(--bad-paper)}
 dl{display:grid;grid-template-columns:max-content 1fr;gap:2px 16px;font-size:13px;color:var(--muted);margin:0}
 dt{font-weight:600}dd{margin:0;overflow-wrap:anywhere}
 nav{font-size:13.5px;margin:14px 0;columns:2}nav a{display:block;text-decoration:none}
