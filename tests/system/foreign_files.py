@@ -851,7 +851,7 @@ def outcome(file, folder):
     if done.returncode != 0:
         return f"exit code {done.returncode}: {said}", "refused", ""
     told = json.loads(done.stdout)["logs"][0]
-    remarks = "; ".join(told["warnings"] + told["notes"] + ["doubt: " + doubt for doubt in told["doubts"]])
+    remarks = "; ".join(told["warnings"] + told["notes"] + ["warning: " + warning for warning in told["doubts"]])
     rows = told["rows"]
     if rows["file"] != rows["used"] + rows["joined"] + sum(rows["left_out"].values()) or rows["used"] != told["samples"]:
         return f"{rows} does not account for every row", "values", remarks

@@ -34,7 +34,7 @@ class Import(bench.BenchTest):
         self.assertIn("--time 'Time (s)' --command 'P set [psi]' --pressure 'P meas [psi]' --displacement 'Tip [mm]'",
                       done.stderr)
         self.assertFalse((self.folder / "log.csv").exists())
-        line = next(line for line in done.stderr.splitlines() if line.startswith("  that is: softgrip "))
+        line = next(line for line in done.stderr.splitlines() if line.startswith("  equivalent command: softgrip "))
         subprocess.run(f"{bench.SOFTGRIP} {line.split('softgrip ', 1)[1]}", shell=True, cwd=self.folder, check=True,
                        stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
         self.assertTrue((self.folder / "log.csv").exists())
@@ -56,7 +56,7 @@ class Import(bench.BenchTest):
         self.assertFalse((self.folder / "log.csv").exists())
         code, output = self.answered(b"y\n", path, "--out", "log.csv")
         self.assertEqual(code, 0, output)
-        self.assertIn("Write log.csv so?", output)
+        self.assertIn("Write log.csv with this assignment?", output)
         self.assertTrue((self.folder / "log.csv").exists())
 
     def test_nobody_is_asked_to_agree_to_what_would_be_refused(self):
@@ -65,7 +65,7 @@ class Import(bench.BenchTest):
         self.assertEqual(code, 3, output)
         self.assertIn("--unit time=s", output)
         self.assertIn("time (no unit)", output)
-        self.assertNotIn("Write log.csv so?", output)
+        self.assertNotIn("Write log.csv with this assignment?", output)
         self.imported(path, "--out", "log.csv", "--unit", "time=s", "--yes")
 
     def test_the_mapping_that_is_kept_gives_the_same_bytes(self):
@@ -73,7 +73,7 @@ class Import(bench.BenchTest):
         self.imported(path, "--out", "a.csv", "--yes", "--scale", "command=25", "--scale", "displacement=-2.5", "--zero",
                       "displacement=first", "--from-s", "0.5")
         kept = (self.folder / "a.import.yaml").read_text()
-        self.assertIn("doubt: the reading decreases", kept)
+        self.assertIn("warning: the reading decreases", kept)
         self.imported(path, "--out", "b.csv", "--map", "a.import.yaml")
         self.assertEqual((self.folder / "a.csv").read_bytes(), (self.folder / "b.csv").read_bytes())
         (self.folder / "a.import.yaml").write_text(kept.replace("unit", "units"))

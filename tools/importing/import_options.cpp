@@ -30,7 +30,7 @@ tl::expected<void, std::string> apply(const std::vector<std::string>& words, con
     if (!good)
       return tl::unexpected(
           std::string(option) + " " + word +
-          ": ROLE=VALUE is meant; roles are time, command, pressure, displacement, temperature, supply");
+          ": ROLE=VALUE is expected; roles are time, command, pressure, displacement, temperature, supply");
   }
   return {};
 }
@@ -70,14 +70,14 @@ tl::expected<std::vector<std::string>, std::string> import_targets(const std::ve
   std::error_code error;
   const bool folder = out.ends_with('/') || fs::is_directory(out, error);
   if (files.size() > 1 && !folder)
-    return tl::unexpected("of " + std::to_string(files.size()) + " files " + out +
-                          " must be a folder: end it with a '/'");
+    return tl::unexpected("--out " + out + " must be a folder for " + std::to_string(files.size()) +
+                          " files: end it with a '/'");
   std::vector<std::string> targets;
   std::set<std::string> seen;
   for (const std::string& file : files) {
     targets.push_back(folder ? (fs::path(out) / log_name(file)).string() : out);
     if (!seen.insert(targets.back()).second)
-      return tl::unexpected("two files would become " + targets.back());
+      return tl::unexpected("two files would have the output " + targets.back());
   }
   return targets;
 }

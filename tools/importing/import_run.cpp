@@ -62,7 +62,7 @@ bool take_as_it_is(Job& job) {
   job.result.log = std::move(*log);
   job.result.account = job.table.account;
   job.result.account.used = job.result.log.size();
-  job.result.notes.emplace_back("this is a log already: taken as it is");
+  job.result.notes.emplace_back("this file is already a log: copied unchanged");
   job.is_log = true;
   return true;
 }
@@ -142,18 +142,22 @@ bool show_guesses(const std::vector<Job>& jobs) {
 bool agreed(const std::vector<Job>& jobs, const ImportOptions& options) {
   if (!show_guesses(jobs)) return true;
   for (const Job& job : jobs) {
-    if (!job.guessed.empty()) std::fprintf(stderr, "  that is: %s\n", command_line(job, options).c_str());
+    if (!job.guessed.empty())
+      std::fprintf(stderr, "  equivalent command: %s\n", command_line(job, options).c_str());
   }
   if (options.yes) return true;
   if (::isatty(STDIN_FILENO) == 0) {
-    std::fputs("not written: nobody is here to agree. Give these options, or --yes\n", stderr);
+    std::fputs(
+        "not written: the guess cannot be confirmed, because standard input is not a terminal. Repeat the "
+        "command with the options above, or accept the guess with --yes\n",
+        stderr);
     return false;
   }
-  std::fprintf(stderr, "Write %s so? [y/N] ", options.out.c_str());
+  std::fprintf(stderr, "Write %s with this assignment? [y/N] ", options.out.c_str());
   std::string answer;
   std::getline(std::cin, answer);
   if (answer == "y" || answer == "Y" || answer == "yes") return true;
-  std::fputs("not written; the options above say it otherwise\n", stderr);
+  std::fputs("not written; change the options above and repeat the command\n", stderr);
   return false;
 }
 
@@ -191,7 +195,7 @@ tl::expected<void, std::string> write(const Job& job) {
   std::vector<std::string> remarks = notes_of(job);
   remarks.push_back(job.result.account.sentence());
   for (const std::string& warning : job.warnings) remarks.push_back("warning: " + warning);
-  for (const std::string& implausible : job.plausibility) remarks.push_back("doubt: " + implausible);
+  for (const std::string& implausible : job.plausibility) remarks.push_back("warning: " + implausible);
   return write_file(mapping_path(job.out),
                     sysid::mapping_yaml(job.mapping, {job.file, job.table.sha256, job.table.format},
                                         "softgrip " + std::string(software_version()), remarks));
@@ -227,7 +231,7 @@ ordered_json json_of(const Job& job) {
           {"rows", account_json(job.result.account)},
           {"warnings", job.warnings},
           {"notes", notes_of(job)},
-          {"doubts", job.plausibility}};
+          {"doubts", job.plausibility}};  // words-ok: a published key
 }
 
 void report(const std::vector<Job>& jobs, const ImportOptions& options) {
@@ -237,7 +241,7 @@ void report(const std::vector<Job>& jobs, const ImportOptions& options) {
     for (const std::string& warning : job.warnings)
       std::fprintf(stderr, "%s: warning: %s\n", job.file.c_str(), on_screen(warning).c_str());
     for (const std::string& implausible : job.plausibility)
-      std::fprintf(stderr, "%s: doubt: %s\n", job.file.c_str(), implausible.c_str());
+      std::fprintf(stderr, "%s: warning: %s\n", job.file.c_str(), implausible.c_str());
     logs.push_back(json_of(job));
     if (options.json) continue;
     for (const std::string& note : notes_of(job))

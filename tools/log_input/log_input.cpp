@@ -22,16 +22,15 @@ sysid::RecordOptions LogInput::record_options() const {
 }
 
 void add_log_options(CLI::App& command, LogInput& input) {
-  command.add_option("--channel", input.channel, "Which channel of logs with several");
+  command.add_option("--channel", input.channel, "Channel to read, for logs with several channels");
   command
       .add_option("--drive", input.drive,
-                  "What drives the model: the command, or the measured pressure past the valve")
+                  "Input of the model: the command, or the measured pressure after the valve")
       ->check(CLI::IsMember({"command", "measured"}))
       ->capture_default_str();
   command
-      .add_option(
-          "--begin", input.begin,
-          "How logs begin: at rest, in an unknown state that is estimated, or as the log itself shows")
+      .add_option("--begin", input.begin,
+                  "Start state of logs: at rest, unknown (estimated), or determined from each log")
       ->check(CLI::IsMember({"auto", "rest", "unknown"}))
       ->capture_default_str();
   command.add_flag("--held", input.held, "The command keeps its value until the next sample");
@@ -46,7 +45,7 @@ RequiredUnit unit_of(const std::vector<sysid::Log>& logs) {
 }
 
 RequiredUnit unit_of_rigs() {
-  return {"what a rig measures", model::OutputUnit::mm};
+  return {"the displacement of a rig", model::OutputUnit::mm};
 }
 
 tl::expected<std::vector<sysid::Log>, ExitCode> read_logs(const std::vector<std::string>& paths,
