@@ -17,7 +17,7 @@ using BlockLosses = std::vector<double>;
 struct Spread {
   double value = 0;
   double standard_error = 0;
-  double lower = 0;  ///< of the 95 % interval
+  double lower = 0;  ///< lower limit of the 95 % interval
   double upper = 0;
 };
 

@@ -45,7 +45,7 @@ struct SeparablePoint {
   double instantaneous = 0;        ///< alpha + 1/k0 [mm/kPa]
   double beta = 0;                 ///< [mm/kPa]
   std::vector<double> amplitude;   ///< 1/c, by branch [mm/(kPa s)]
-  std::vector<StartState> starts;  ///< by record
+  std::vector<StartState> starts;  ///< start state of each record
 };
 
 [[nodiscard]] SeparablePoint to_separable(const SeparableShape& shape, const FitPoint& point);

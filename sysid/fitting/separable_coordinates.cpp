@@ -166,7 +166,7 @@ MatrixXd SeparableSearch::coordinate_map(const SeparablePoint& point, std::size_
     const Coordinate& q = coordinates_[i];
     auto column = map.col(static_cast<Index>(i));
     switch (q.kind) {
-      case Coordinate::Kind::growing:  // gamma + eta moves with eta kept: gamma - eta moves alike
+      case Coordinate::Kind::growing:  // eta is fixed, so gamma - eta changes by the same amount
         column(c.growing()) = column(c.shrinking()) = q.scale;
         break;
       case Coordinate::Kind::eta:

@@ -1,5 +1,5 @@
 #pragma once
-// Arrays of a binary file, gathered into a table.
+// Collector of the arrays in a binary file. It makes a table of them.
 
 #include <cstddef>
 #include <optional>

@@ -120,7 +120,8 @@ std::size_t chunk_bytes(hid_t dataset, hid_t type) {
   std::array<hsize_t, 2> chunk{1, 1};
   if (H5Pget_layout(creation.get()) != H5D_CHUNKED || H5Pget_chunk(creation.get(), 2, chunk.data()) < 0)
     return 0;
-  // The library stores both sizes in 32 bits, so the product of three does not overflow where it matters.
+  // The library stores both sizes in 32 bits, so their product does not overflow. The size in bytes does not
+  // overflow either, because it is computed only for small products.
   const hsize_t values = chunk[0] * chunk[1];
   return values > most_chunk_bytes ? values : values * H5Tget_size(type);
 }

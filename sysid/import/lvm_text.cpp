@@ -278,7 +278,7 @@ class LvmReader {
   char separator_ = '\t';
   char decimal_ = '.';
   Nanoseconds first_moment_ = 0;
-  std::size_t lines_ = 1;       ///< of the file
+  std::size_t lines_ = 1;       ///< number of lines in the file
   std::size_t short_line_ = 0;  ///< the first line with too few cells
   bool good_ = true;
 };

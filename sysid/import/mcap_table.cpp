@@ -36,7 +36,7 @@ constexpr double clock_tolerance_s = 1;
 struct McapTopic {
   std::string name;
   std::vector<TableColumn> columns;
-  std::map<std::string, std::size_t> places;  ///< by key
+  std::map<std::string, std::size_t> places;  ///< index of the column of each key
   std::vector<std::size_t> rows;              ///< row of the table for each message
 
   [[nodiscard]] bool offers(Role role) const {

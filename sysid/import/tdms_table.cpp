@@ -136,7 +136,7 @@ struct TdmsChannel {
   TdmsType type = TdmsType::f64;
   bool has_index = false;   ///< a segment has stated how the values are stored
   std::uint64_t count = 0;  ///< values in a chunk
-  std::uint64_t bytes = 0;  ///< in a chunk
+  std::uint64_t bytes = 0;  ///< size of the values in a chunk
   std::vector<double> values;
   std::optional<Stamp> first;  ///< first value of a channel of time stamps
   double increment_s = 0;      ///< 0: not a waveform

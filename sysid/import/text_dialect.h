@@ -36,7 +36,7 @@ struct Dialect {
   std::vector<std::string> units;  ///< by column, from a row below the names; empty: there is none
   int names_line = 0;              ///< 0: there are no names
   std::size_t width = 0;           ///< number of columns
-  bool extra_cell = false;         ///< each row has one empty cell more than there are names
+  bool extra_cell = false;         ///< each row has an additional empty cell after the named columns
 };
 
 /// Detects the format from the rows of numbers. Returns nullopt and adds a problem if there are no such rows,

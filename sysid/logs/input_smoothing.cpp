@@ -128,7 +128,7 @@ Smooth disturbances(const Path& path, double drift_rate) {
   double r0 = 0, r1 = 0, n00 = 0, n01 = 0, n11 = 0;
   for (std::size_t i = n; i-- > 0;) {
     const Estimate& e = before[i];
-    if (i + 1 < n) {  // backwards over the step
+    if (i + 1 < n) {  // backward recursion over the step
       const double dt = path.step_s(i + 1);
       r1 += dt * r0;
       n11 += 2 * dt * n01 + dt * dt * n00;

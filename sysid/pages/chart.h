@@ -23,7 +23,7 @@ struct Series {
     line,
     points,
     band,   ///< filled between y and y_upper
-    bars,   ///< from 0 to y, as wide as their spacing allows
+    bars,   ///< bars from 0 to y with the largest possible width
     steps,  ///< a line that keeps its value until the next x
   };
   std::string label;  ///< text in the legend; "": not in the legend
@@ -46,7 +46,7 @@ struct Mark {
 
 /// One axis. Without limits, it covers the range of the data.
 struct Axis {
-  std::string label;  ///< with its unit: "displacement [mm]"
+  std::string label;  ///< name and unit: "displacement [mm]"
   std::optional<double> lower;
   std::optional<double> upper;
   bool logarithmic = false;

@@ -31,7 +31,7 @@ struct StructureChoiceOptions {
   double slow_from_s = 0;
   std::uint64_t seed = 1;
   unsigned threads = 0;
-  std::function<void(const std::string&)> progress;  ///< from any thread
+  std::function<void(const std::string&)> progress;  ///< callback; it can be called from any thread
 };
 
 /// Components that are removed from a structure to measure their contribution.
@@ -84,7 +84,7 @@ struct StructureTrial {
 };
 
 struct StructureChoice {
-  std::vector<StructureTrial> trials;  ///< the simplest first
+  std::vector<StructureTrial> trials;  ///< the simplest structure is first
   std::size_t chosen = 0;
   double ridge = 0;
   std::size_t blocks = 0;

@@ -30,7 +30,7 @@ enum class Validity : std::uint8_t {
 
 /// Reading of one channel.
 struct Reading {
-  double displacement = 0;                                          ///< in the unit of the model
+  double displacement = 0;                                          ///< displacement in the unit of the model
   double pressure_kpa = std::numeric_limits<double>::quiet_NaN();   ///< measured [kPa]; NaN: no sensor
   double temperature_c = std::numeric_limits<double>::quiet_NaN();  ///< [degrees Celsius]; NaN: no sensor
   std::chrono::nanoseconds sampled_at{0};                           ///< time of the sample
