@@ -423,7 +423,7 @@ class Converter {
         if (fingers.size() > most_fingers) break;
       }
       if (fingers.size() > 1 && fingers.size() <= most_fingers)
-        refuse("the rows are of " + std::to_string(fingers.size()) + " fingers: '" +
+        refuse("the rows belong to " + std::to_string(fingers.size()) + " fingers: '" +
                    document::shown(column.name, 40) + "' has " +
                    with_commas(fingers, [](const std::string& finger) { return finger; }),
                "export the rows of each finger, or a text with this column");

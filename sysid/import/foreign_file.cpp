@@ -55,11 +55,11 @@ std::string_view known_but_unread(std::string_view bytes) {
     return bytes.find(encrypted) == std::string_view::npos ? "an old spreadsheet (.xls)"
                                                            : "a workbook with a password";
   if (bytes.starts_with("PAR1")) return "a Parquet file";
-  if (bytes.starts_with("BZh")) return "packed by bzip2";
+  if (bytes.starts_with("BZh")) return "compressed with bzip2";
   if (bytes.starts_with("\xfd"
                         "7zXZ"))
-    return "packed by xz";
-  if (bytes.starts_with("\x28\xb5\x2f\xfd")) return "packed by zstd";
+    return "compressed with xz";
+  if (bytes.starts_with("\x28\xb5\x2f\xfd")) return "compressed with zstd";
   return {};
 }
 
@@ -104,7 +104,8 @@ std::optional<ForeignTable> read_bytes(const std::string& path, const std::strin
 tl::expected<std::string, std::string> gunzipped(std::string_view bytes, std::size_t bound) {
   z_stream stream{};
   constexpr int gzip_window = 15 + 16;
-  if (inflateInit2(&stream, gzip_window) != Z_OK) return tl::unexpected(std::string("zlib cannot begin"));
+  if (inflateInit2(&stream, gzip_window) != Z_OK)
+    return tl::unexpected(std::string("zlib cannot be initialised"));
   // zlib's interface reads through a pointer that is not const.
   stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
   stream.avail_in = static_cast<uInt>(bytes.size());

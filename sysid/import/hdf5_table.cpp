@@ -224,7 +224,7 @@ std::optional<ForeignTable> read_hdf5_table(const std::string& path, const std::
   const Handle file(H5Fopen(opened.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
   if (!file) {
     problems.add(
-        {path, {1, 1}, {}, "an HDF5 file that cannot be read: broken, cut off, or open for writing", {}});
+        {path, {1, 1}, {}, "this HDF5 file cannot be read: it is broken, cut off, or open for writing", {}});
     return std::nullopt;
   }
   ArrayCollector arrays(path);

@@ -242,7 +242,7 @@ class LvmReader {
     ++table_.account.rows;
     // Only the last line may be short, because a recording can be interrupted.
     if (short_line_ != 0 && !options_.skip_bad_lines) {
-      refuse(short_line_, "too few cells; --skip-bad-lines leaves such lines out");
+      refuse(short_line_, "too few cells; leave out such lines with --skip-bad-lines");
       return;
     }
     const std::vector<std::string> cells = cells_of(line, separator_);

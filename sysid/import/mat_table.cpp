@@ -181,7 +181,7 @@ std::optional<ForeignTable> read_mat_table(const std::string& path, const std::s
   Mat_LogInitFunc("softgrip", [](int /*level*/, auto* /*message*/) {});
   const MatFile file{Mat_Open(opened.c_str(), MAT_ACC_RDONLY), Mat_Close};
   if (!file) {
-    problems.add({path, {1, 1}, {}, "a MATLAB file that cannot be read: broken, or cut off", {}});
+    problems.add({path, {1, 1}, {}, "this MATLAB file cannot be read: it is broken or cut off", {}});
     return std::nullopt;
   }
   const mat_ft version = Mat_GetVersion(file.get());

@@ -167,8 +167,8 @@ class McapReader {
     if (!scan.good() || (complete && size != inside.size()))
       return refuse("a chunk is shorter than its stated length");
     if (!packing.empty())
-      return refuse("its chunks are packed by " + document::shown(packing, 20) +
-                    ", which is not read; write it without compression");
+      return refuse("its chunks are compressed with " + document::shown(packing, 20) +
+                    ", which is not supported; write it without compression");
     const auto* const data = reinterpret_cast<const Bytef*>(inside.data());
     if (complete && checksum != 0 && checksum != ::crc32_z(0, data, inside.size()))
       return refuse("a chunk does not match its checksum");
@@ -394,7 +394,7 @@ class McapReader {
       return "'" + document::shown(read_[static_cast<std::size_t>(at - offsets_s.begin())].name, 40) + "'";
     };
     refuse("the times '" + document::shown(time.name, 40) + "' of the topics " + topic(least) + " and " +
-               topic(most) + " are of two clocks: against log_time they differ by " +
+               topic(most) + " belong to two clocks: relative to log_time they differ by " +
                significant(*most - *least) + " s",
            "write the times of one clock, or no times: then log_time is used");
   }

@@ -187,7 +187,7 @@ FingerChoice choose_finger(const ForeignTable& table, const Mapping& given, Prop
     const std::string name = "'" + document::shown(given.channel) + "'";
     proposal.questions.push_back(
         choice.fingers.size() > 1
-            ? Proposal::Question{"no finger has the name " + name + ": the columns are of " +
+            ? Proposal::Question{"no finger has the name " + name + ": the columns belong to " +
                                      quoted(choice.fingers),
                                  "select one with --channel"}
             : Proposal::Question{"--channel " + name +
@@ -204,12 +204,12 @@ FingerChoice choose_finger(const ForeignTable& table, const Mapping& given, Prop
   } else if (choice.fingers.size() > 1) {
     const std::vector<std::string> read = read_fingers(table, choice.fingers);
     if (said.size() > 1)
-      proposal.warnings.push_back("the given columns are of " + std::to_string(said.size()) +
+      proposal.warnings.push_back("the given columns belong to " + std::to_string(said.size()) +
                                   " fingers: " + quoted(said));
     if (said.size() == 1) choice.meant = said.front();
     if (said.empty() && read.size() == 1) choice.meant = read.front();
     if (choice.meant.empty() && !given.complete())
-      proposal.questions.push_back({"the columns are of " + std::to_string(choice.fingers.size()) +
+      proposal.questions.push_back({"the columns belong to " + std::to_string(choice.fingers.size()) +
                                         " fingers: " + quoted(choice.fingers),
                                     "select one with --channel, or give --command and --displacement"});
   }

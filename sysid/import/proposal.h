@@ -16,7 +16,7 @@ struct Proposal {
   std::vector<Role> guessed;
   /// Required roles for which no column was found: "a time: --time COLUMN, or --rate-hz R".
   std::vector<std::string> missing;
-  /// A choice that only the user can make ("the columns are of 2 fingers"), and the option for it.
+  /// A choice that only the user can make ("the columns belong to 2 fingers"), and the option for it.
   struct Question {
     std::string text;
     std::string hint;

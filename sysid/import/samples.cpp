@@ -132,8 +132,8 @@ std::optional<SampleProblem> order_in_time(const Mapping& mapping, ForeignSample
           samples.row[i],
           "the time goes back, from " + significant(time_s[i - 1], 7) + " s to " + significant(time_s[i], 7) +
               " s after the first sample",
-          "two runs in one file? Cut it here and import each. A clock that was set? --rate-hz "
-          "R in place of --time counts the rows"};
+          "if the file has two runs, split it here and import each. If the clock was set, use "
+          "--rate-hz R instead of --time"};
   }
   std::vector<std::size_t> kept;
   std::size_t repeated = 0;

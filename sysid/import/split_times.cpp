@@ -76,7 +76,7 @@ void combine_split_times(std::vector<TableColumn>& columns, std::vector<std::str
     seconds.unit = "s";
     nanoseconds.is_part_of_time = true;
     std::string note = "'" + document::shown(seconds.name, 40) + "' and '" +
-                       document::shown(nanoseconds.name, 40) + "' are one time";
+                       document::shown(nanoseconds.name, 40) + "' are combined into one time";
     if (std::find(notes.begin(), notes.end(), note) == notes.end()) notes.push_back(std::move(note));
   }
 }

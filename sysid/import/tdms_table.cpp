@@ -232,7 +232,7 @@ class TdmsReader {
   }
   bool unread_type(TdmsType type, const std::string& of) {
     return unread("has " + of + " of type " + std::to_string(static_cast<std::uint32_t>(type)) +
-                  ", which is not read");
+                  ", which is not supported");
   }
 
   /// Leaves out a segment that is cut off. The number of its rows is unknown.
@@ -461,8 +461,11 @@ std::optional<ForeignTable> read_tdms_table(const std::string& file, std::string
     table->account.leave_out(LeftOut::cut_off_line, table->account.rows);
     return table;
   }
-  problems.add(
-      {file, {1, 1}, {}, "a LabVIEW file (.tdms) that is not read: " + reader.refused, "export it as CSV"});
+  problems.add({file,
+                {1, 1},
+                {},
+                "a LabVIEW file (.tdms) that cannot be read: " + reader.refused,
+                "export it as CSV"});
   return std::nullopt;
 }
 

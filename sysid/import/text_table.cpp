@@ -94,7 +94,7 @@ class RowReader {
                   closed ? std::to_string(cells_.size()) + " cells where the rows above have " +
                                std::to_string(dialect_.width)
                          : std::string("a quotation mark is not closed"),
-                  "--skip-bad-lines leaves such lines out and counts them");
+                  "leave out and count such lines with --skip-bad-lines");
     }
   }
 

@@ -26,11 +26,11 @@ tl::expected<WorkbookPackage, std::string> WorkbookPackage::open(std::string_vie
   if (bytes.size() > largest_archive_bytes)
     return tl::unexpected("the workbook has more than " + std::to_string(largest_archive_bytes) + " bytes");
   zip_source_t* source = zip_source_buffer_create(bytes.data(), bytes.size(), 0, nullptr);
-  if (source == nullptr) return tl::unexpected(std::string("libzip cannot begin"));
+  if (source == nullptr) return tl::unexpected(std::string("libzip cannot be initialised"));
   Archive archive(zip_open_from_source(source, ZIP_RDONLY, nullptr), zip_discard);
   if (!archive) {
     zip_source_free(source);
-    return tl::unexpected(std::string("a workbook or an archive that is broken or cut off"));
+    return tl::unexpected(std::string("this workbook or archive is broken or cut off"));
   }
   return WorkbookPackage(std::move(archive));
 }

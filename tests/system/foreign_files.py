@@ -363,7 +363,7 @@ def reports():
     return [
         File("three_fingers.csv", "the wide export of three fingers, one of them", three, "--channel index"),
         File("three_fingers_unsaid.csv", "the same without saying which", three,
-             refused="the columns are of 3 fingers: 'thumb', 'index', 'ring'"),
+             refused="the columns belong to 3 fingers: 'thumb', 'index', 'ring'"),
         File("channel_rows.csv", "fingers in rows, one of them", rows_of_two, "--channel B", left_out={"other_channel": 300}),
         File("channel_rows_none.csv", "the same and a name that is none", rows_of_two, "--channel C",
              refused="no row belongs to channel 'C'"),
@@ -474,7 +474,7 @@ def other_fingers_and_clocks():
         File("finger_numbers.csv", "fingers in rows by their number", by_number, "--channel 1", **of_first),
         File("finger_rows.mat", "MATLAB 5: fingers in rows by their number", matlab_5(structures("run", [
             {name: matrix("", values) for name, values in zip(names, zip(*rows))}])),
-             refused="the rows are of 2 fingers: 'run.finger' has 1, 2"),
+             refused="the rows belong to 2 fingers: 'run.finger' has 1, 2"),
         File("finger_readings.csv", "readings in a column called finger", readings, "--displacement finger --unit displacement=mm"),
         File("two_steps.lvm", "a LabVIEW measurement without X columns, with 2 rates", one_x.replace("0,01\t0,01", "0,01\t0,02"),
              refused="the channels have one X column, but differ in Delta_X: 0,01 and 0,02"),
@@ -486,10 +486,10 @@ def other_fingers_and_clocks():
             tdms.segment("valve", fast), tdms.segment("laser", slow)]), refused="'laser/tip' is skipped: 150 values where others have 300"),
         File("seconds_and_rest.csv", "seconds and nanoseconds in two columns", table(
             ["stamp_sec", "stamp_nsec", "set_kpa", "tip_mm"], [*stamp, COMMAND, TIP]), tolerance=1e-6,
-             says="'stamp_sec' and 'stamp_nsec' are one time"),
+             says="'stamp_sec' and 'stamp_nsec' are combined into one time"),
         File("header_stamp.csv", "the time of a ROS header, nanoseconds first", table(
             ["header.stamp.nanosec", "header.stamp.sec", "set_kpa", "tip_mm"], [*stamp[::-1], COMMAND, TIP]), tolerance=1e-6,
-             says="'header.stamp.sec' and 'header.stamp.nanosec' are one time"),
+             says="'header.stamp.sec' and 'header.stamp.nanosec' are combined into one time"),
         File("secs_nsecs.csv", "seconds and nanoseconds, numbers of the columns given", table(
             ["secs", "nsecs", "p", "y"], [*stamp, COMMAND, TIP]),
              "--time 1 --command 3 --unit command=kPa --displacement 4 --unit displacement=mm", tolerance=1e-6),
@@ -531,11 +531,11 @@ def signals(stamp):
              says="the messages of 2 topics are merged by 'header.stamp.sec'"),
         File("signals_apart.mcap", "the same with a laser that counts from its start", mcap(
             stamped("/valve", "set_kpa", COMMAND) + stamped("/laser", "tip_mm", TIP, begin=1717156000)),
-             refused="of the topics 'laser' and 'valve' are of two clocks: against log_time they differ by 1.717e+09 s"),
+             refused="of the topics 'laser' and 'valve' belong to two clocks: relative to log_time they differ by 1.717e+09 s"),
         File("signals_back.mcap", "the same with a clock that steps back", mcap(
             stamped("/valve", "set_kpa", COMMAND)[100:] + [(name, t + 10, content) for name, t, content in both[:100]]
             + stamped("/laser", "tip_mm", TIP)), refused="the time goes back"),
-        File("signals_fingers.mcap", "MCAP: a topic per signal of two fingers", mcap(fingers), refused="the columns are of 2 fingers: 'left', 'right'"),
+        File("signals_fingers.mcap", "MCAP: a topic per signal of two fingers", mcap(fingers), refused="the columns belong to 2 fingers: 'left', 'right'"),
         File("signals_left.mcap", "the same, and one of them", mcap(fingers), "--channel left", joined=COUNT, left_out={"empty": 2 * COUNT}),
         File("signals_nobody.mcap", "the same, and a finger that is not there", mcap(fingers), "--channel middle",
              refused="no finger has the name 'middle'"),
@@ -752,11 +752,11 @@ def files():
         File("two_times_chosen.csv", "the same, and a choice",
              table(["time_a_s", "time_b_s", "set_kpa", "tip_mm"], [T, [round(0.5 * t, 6) for t in T], COMMAND, TIP]),
              "--time time_a_s", says="the column 'time_b_s' looks like a time and is not used: it differs"),
-        File("fingers.csv", "two fingers in the columns", fingers, refused="the columns are of 2 fingers: 'left', 'right'"),
+        File("fingers.csv", "two fingers in the columns", fingers, refused="the columns belong to 2 fingers: 'left', 'right'"),
         File("fingers_right.csv", "the same, and one of them", fingers, "--channel right", columns=right,
              says="not used: 'P_left (kPa)', 'tip_left (mm)'"),
         File("fingers_none.csv", "the same, and a name that is none", fingers, "--channel thumb",
-             refused="no finger has the name 'thumb': the columns are of 'left', 'right'"),
+             refused="no finger has the name 'thumb': the columns belong to 'left', 'right'"),
         File("finger_alone.csv", "a channel of a file that has one finger", PLAIN, "--channel thumb",
              refused="--channel 'thumb': the file has no column 'channel'"),
         File("codes.csv", "999 where the sensor read nothing", table(["time_s", "set_kpa", "tip_mm"], [T, COMMAND, coded]),

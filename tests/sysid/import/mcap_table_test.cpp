@@ -151,7 +151,7 @@ TEST(McapTable, ReadsTheCompleteMessagesOfAFileThatIsCutOff) {
 }
 
 TEST(McapTable, RefusesWhatItCannotRead) {
-  EXPECT_TRUE(says(refusal(whole(chunk(two_fingers(), "zstd"))), "its chunks are packed by zstd"));
+  EXPECT_TRUE(says(refusal(whole(chunk(two_fingers(), "zstd"))), "its chunks are compressed with zstd"));
   EXPECT_TRUE(says(refusal(whole(chunk(two_fingers(), "", 1))), "a chunk does not match its checksum"));
   EXPECT_TRUE(says(refusal(whole(message(1, 0, "{}"))), "a message refers to an unknown channel"));
   EXPECT_TRUE(
