@@ -1,28 +1,29 @@
 #pragma once
-// Which of two hypotheses predicts better: the only rule by which one is preferred to another.
+// Compares two hypotheses by their losses on the same data. All decisions between two causes or models use
+// it.
 
 #include <cstdint>
 #include <vector>
 
 namespace softgrip::sysid {
 
-/// Paired losses of two hypotheses, by block.
+/// Losses of two hypotheses on the same blocks.
 struct PairedLosses {
   std::vector<double> worse, better;  ///< sums of squares
-  std::vector<double> rows;           ///< how many rows each block has
+  std::vector<double> rows;           ///< number of rows of each block
 };
 
 struct Comparison {
-  double share = 0;             ///< of the draws in which `better` wins by more than the tolerance
+  double share = 0;             ///< share of the draws in which `better` wins by more than the tolerance
   double lower = 0, upper = 0;  ///< 95 % interval of the difference per row
 };
 
 /// Draws weights of the blocks (Bayesian bootstrap: Rubin, Annals of Statistics 9, 1981) and compares the
 /// weighted mean losses per row.
-/// @param tolerance  per row. @param seed  the same seed gives the same answer.
+/// @param tolerance  required difference per row. @param seed  the same seed gives the same result.
 [[nodiscard]] Comparison compare(const PairedLosses& losses, double tolerance, std::uint64_t seed);
 
-/// Whether `better` wins by more than the tolerance as often as limits::probability asks.
+/// Returns true if `better` wins by more than the tolerance in at least limits::probability of the draws.
 [[nodiscard]] bool is_better(const Comparison& comparison);
 
 }  // namespace softgrip::sysid

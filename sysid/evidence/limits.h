@@ -1,33 +1,34 @@
 #pragma once
-// The numbers on which the evidence for a change rests. Each is a probability, a number of evaluations or a
-// property of repeated runs. None comes from a study of simulated cases.
+// Limits that decide whether a change is significant. Each is a probability, a number of evaluations or a
+// property of repeated runs. None was tuned on simulated cases.
 
 #include <cstddef>
 
 namespace softgrip::sysid::limits {
 
-/// A comparison decides at this probability: the customary level of a test.
+/// Confidence level of a comparison: the customary 95 %.
 inline constexpr double probability = 0.95;
-/// Repeated runs of one finger differ in about three directions: offset, gain, and the creep that the run
-/// before has left.
+/// Repeated runs of one finger differ in about three directions: offset, gain, and creep that remains from
+/// the previous run.
 inline constexpr double run_directions = 3;
-/// Draws of a bootstrap: the share of draws is then known to 1 % (one standard error).
+/// Number of bootstrap draws. The standard error of a share of 0.95 is then 1 %.
 inline constexpr int bootstrap_draws = 500;
-/// At most so many fits leave a unit out. With more runs, several runs are left out together.
+/// Largest number of fits that leave a unit out. With more runs, a unit contains several runs.
 inline constexpr std::size_t most_units = 6;
-/// Within a run, blocks of this length are drawn together [s]: longer than what a finger forgets at once.
+/// Length of the blocks of a run that are resampled together [s], longer than the fast part of the creep.
 inline constexpr double block_s = 5;
-/// A pressure within this share of its range above the lowest is no pressure: the resolution of a valve near
-/// zero.
+/// A pressure counts as zero if it is at most this share of the pressure range above the lowest pressure. The
+/// resolution of a valve near zero is of this size.
 inline constexpr double rest_share = 0.05;
-/// A condition that fewer bins than this meet cannot show an effect: less would be one sample of noise.
+/// Smallest number of bins that meet a condition. With fewer bins, single noisy samples could decide.
 inline constexpr std::size_t fewest_bins = 5;
-/// A command counts as one that follows the readings at this probability: one log in a thousand by chance.
+/// Confidence level of the test for feedback: 1 false detection in 1000 logs.
 inline constexpr double feedback_probability = 0.999;
-/// The noise of a planned command, as a share of its spread, is below this: only the resolution of its file
-/// roughens it. A controller adds the noise of the readings.
+/// Upper limit of the noise of a planned command as a share of its standard deviation. A planned command
+/// contains only the rounding of its file. The command of a controller also contains the noise of the
+/// readings.
 inline constexpr double planned_roughness = 1e-4;
-/// The phase of a loop counts as odd within 30 degrees of 90: a third of the way to 180.
+/// Lower limit of the phase ratio of an odd correlation: the phase lies within 30 degrees of 90 degrees.
 inline constexpr double odd_phase_ratio = 2.0 / 3;
 
 }  // namespace softgrip::sysid::limits

@@ -19,7 +19,8 @@ struct Pair {
   Eigen::VectorXd command, reading;
 };
 
-/// The samples that have both, each without its mean and in units of its spread; empty if one is constant.
+/// Returns the samples where both values are finite, without the mean and in units of the standard deviation.
+/// The result is empty if one series is constant.
 Pair pairs_of(const std::vector<double>& command, const std::vector<double>& reading) {
   std::vector<double> u, y;
   for (std::size_t i = 0; i < std::min(command.size(), reading.size()); ++i) {
@@ -44,7 +45,7 @@ double squares_left(const Eigen::MatrixXd& columns, const Eigen::VectorXd& targe
   return (target - columns * columns.colPivHouseholderQr().solve(target)).squaredNorm();
 }
 
-/// Lag of the first change of sign of sum(a(t) b(t + lag)), between two samples.
+/// Returns the interpolated lag at which sum(a(t) b(t + lag)) first changes sign.
 std::optional<double> first_crossing(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
   double before = a.dot(b);
   for (Eigen::Index lag = 1; lag < a.size(); ++lag) {
@@ -75,7 +76,7 @@ bool is_closed_loop(const std::vector<double>& command, const std::vector<double
   const Eigen::VectorXd target = u.tail(rows);
   const double own = squares_left(columns.leftCols(order), target), both = squares_left(columns, target);
   const auto free = static_cast<double>(rows - 2 * order);
-  // A command that its own past foretells to rounding has nothing left that the readings could explain.
+  // If the past of the command predicts it to rounding, no error remains that the readings could explain.
   if (!(own > 1e-12 * static_cast<double>(rows)) || !(both > 0)) return false;
   const double f = (own - both) / static_cast<double>(order) / (both / free);
   return f > f_quantile(limits::feedback_probability, static_cast<double>(order), free);

@@ -18,7 +18,7 @@ class Extent {
     low_ = (*low).*of;
     range_ = (*high).*of - low_;
   }
-  /// Where a value lies between them, 0 to 1.
+  /// Returns the position of a value between the lowest (0) and the highest (1).
   [[nodiscard]] double share(const OperatingPoint& condition) const {
     return range_ > 0 ? (condition.*of_ - low_) / range_ : 0;
   }

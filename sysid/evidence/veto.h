@@ -1,5 +1,5 @@
 #pragma once
-// The conditions that every named cause meets, whatever improvement it shows.
+// Conditions that a cause must meet before it is reported, regardless of its improvement.
 
 #include <optional>
 #include <string_view>
@@ -8,15 +8,15 @@
 
 namespace softgrip::sysid {
 
-/// What is claimed of one cause.
+/// Evidence for one cause.
 struct Claim {
-  std::optional<Interval> size;  ///< 95 % interval; none: the data do not determine it
-  double largest_size = 0;       ///< span or range of the signal that the cause acts on, in the size's unit
-  double error_without = 0;      ///< plain RMSE of all readings that are said to show it
+  std::optional<Interval> size;  ///< 95 % interval; nullopt: the data do not determine it
+  double largest_size = 0;   ///< span or range of the signal that the cause acts on, in the unit of the size
+  double error_without = 0;  ///< RMSE of all readings that should show the cause, without it
   double error_with = 0;
-  bool predicts_worse = false;  ///< readings to which the cause was not fitted
+  bool predicts_worse = false;  ///< the cause increases the error of readings to which it was not fitted
   bool condition_met = true;    ///< the data meet the condition under which the cause acts
-  bool shown_there = true;      ///< and the error is smaller there
+  bool shown_there = true;      ///< the cause reduces the error where the condition is met
 };
 
 enum class Veto {
@@ -29,9 +29,9 @@ enum class Veto {
   absent_where_required,
 };
 
-/// The first condition that the claim fails.
+/// Returns the first condition that the claim does not meet.
 [[nodiscard]] Veto veto_of(const Claim& claim);
-/// Why it was rejected, as a part of a sentence. Empty for Veto::none.
+/// Returns the reason of the rejection as a part of a sentence. Returns an empty text for Veto::none.
 [[nodiscard]] std::string_view reason_of(Veto veto);
 
 }  // namespace softgrip::sysid
