@@ -1,6 +1,6 @@
 #pragma once
-// What a finger shows of its parameters: sums and ratios that data can tell where the parameters alone are
-// not told apart (alpha and 1/k0 enter only as their sum).
+// Sums and ratios of parameters that the data determine even if they do not determine each parameter (alpha
+// and 1/k0 enter only as their sum).
 
 #include <functional>
 #include <string>
@@ -10,22 +10,22 @@
 
 namespace softgrip::sysid {
 
-/// A number that follows from a model.
+/// A quantity that is computed from the parameters of a model.
 struct Combination {
-  std::string name;  ///< with its unit
+  std::string name;  ///< including its unit
   std::string unit;
-  std::string formula;  ///< for people
-  double scale = 0;     ///< what counts as small: an interval below it is narrow whatever the value
+  std::string formula;  ///< formula for display
+  double scale = 0;     ///< an interval narrower than this counts as narrow for any value
   std::function<double(const model::Model&)> value;
 };
 
-/// Those that make sense for the blocks of this model.
+/// Returns the combinations that exist for the blocks of this model.
 [[nodiscard]] std::vector<Combination> combinations_of(const model::Model& model);
 
-/// beta over the instantaneous gain alpha + 1/k0 of a Bouc-Wen element; 0 without one. From 1 on the model
-/// moves the wrong way first.
+/// Returns beta divided by the instantaneous gain alpha + 1/k0 of a Bouc-Wen element, or 0 without one. From
+/// 1 on the model has an inverse response: it first moves opposite to the command.
 [[nodiscard]] double beta_over_gain(const model::Model& model);
-/// What is said of a model whose ratio is above 1.
+/// Returns the warning for a model whose ratio is above 1.
 [[nodiscard]] std::string wrong_way_sentence(double beta_over_gain);
 
 }  // namespace softgrip::sysid

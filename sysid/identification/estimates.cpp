@@ -10,7 +10,7 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Narrower than this share of the value, or of a typical change, counts as identified.
+/// A parameter is identified if half its interval is at most this share of its value or of a typical change.
 constexpr double narrow_share = 0.5;
 
 Estimate estimate_of(const FittedPoint& fit, std::size_t index) {

@@ -1,5 +1,5 @@
 #pragma once
-// From a minimum and its covariance to estimates with intervals.
+// Computes estimates with intervals from a minimum and its covariance.
 
 #include <vector>
 
@@ -8,20 +8,21 @@
 
 namespace softgrip::sysid {
 
-/// A minimum as the functions below need it.
+/// A minimum and its uncertainty.
 struct FittedPoint {
   const Residuals& residuals;
   const std::vector<double>& z;
   const Uncertainty& uncertainty;
 };
 
-/// Every parameter of the fitted model, free or not.
+/// Returns every parameter of the model, fitted or fixed.
 [[nodiscard]] std::vector<Estimate> parameter_estimates(const FittedPoint& fit);
-/// Says of alpha and k0 that only their sum alpha + 1/k0 is identifiable, and takes their intervals away.
+/// Marks alpha and k0 as not identifiable, because only their sum alpha + 1/k0 is. Removes their intervals.
 void name_the_sum(std::vector<Estimate>& parameters);
-/// The free start states.
+/// Returns the fitted start states.
 [[nodiscard]] std::vector<Estimate> start_estimates(const FittedPoint& fit);
-/// Combinations of parameters, by linear propagation (of the logarithm where they are positive).
+/// Returns combinations of parameters. Intervals follow from linear propagation, of the logarithm for
+/// positive values.
 [[nodiscard]] std::vector<Estimate> combination_estimates(const FittedPoint& fit);
 
 }  // namespace softgrip::sysid

@@ -1,5 +1,5 @@
 #pragma once
-// Which parameters a fit cannot know, because the logs do not excite them.
+// Names the parameters that a fit cannot determine because the logs do not excite them.
 
 #include <string>
 #include <vector>
@@ -9,7 +9,7 @@
 
 namespace softgrip::sysid {
 
-/// A sentence for each excitation that none of the logs contains, with the free parameters that need it.
+/// Returns a sentence for each excitation that no log contains, with the fitted parameters that need it.
 [[nodiscard]] std::vector<std::string> excitation_limits(const std::vector<Log>& logs,
                                                          const std::vector<Estimate>& parameters);
 

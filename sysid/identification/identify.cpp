@@ -24,13 +24,13 @@ namespace {
 
 using Failure = tl::unexpected<std::string>;
 
-/// A search that ends within this of the best RMSE has reached it.
+/// A search counts as successful if its RMSE exceeds the best by at most this share.
 constexpr double reached_share = 1e-3;
 
 /// Which values of the model are free, by flat index.
 struct FreeIndices {
   std::vector<std::size_t> flat;
-  bool k0_kept = false;  ///< although it was not asked for: alpha and 1/k0 enter as their sum
+  bool k0_kept = false;  ///< k0 is fixed by the program, because only the sum of alpha and 1/k0 acts
 };
 
 tl::expected<FreeIndices, std::string> free_indices(const model::Model& model,
@@ -61,7 +61,7 @@ tl::expected<FreeIndices, std::string> free_indices(const model::Model& model,
   return free;
 }
 
-/// 2.5 standard deviations of what the residuals are without their tails.
+/// Returns 2.5 robust standard deviations of the residuals [mm], from their median absolute value.
 double huber_width_mm(const Residuals& residuals, const std::vector<double>& z) {
   std::vector<double> r(residuals.count());
   if (!residuals.evaluate(z, r, {}) || r.empty()) return std::numeric_limits<double>::infinity();
@@ -69,7 +69,7 @@ double huber_width_mm(const Residuals& residuals, const std::vector<double>& z) 
   return std::max(2.5 * median_of(std::span(r)) / 0.6745, 1e-9);
 }
 
-/// The work of one exponent.
+/// Fits the model with one exponent.
 class Run {
  public:
   Run(std::vector<Record> records, model::Model start, const IdentifyOptions& options)
@@ -106,7 +106,7 @@ class Run {
     MinimiseOptions options;
     options.normal_equations = true;
     Minimum minimum = minimise(*residuals, z, options);
-    // The scale of the tails and the fit depend on each other: twice settles it.
+    // Huber's width and the fit depend on each other. Two passes are enough.
     for (int pass = 0; pass < 2 && options_.robust; ++pass) {
       options.huber_mm = result_.huber_mm = huber_width_mm(*residuals, minimum.z);
       minimum = minimise(*residuals, minimum.z, options);
@@ -146,7 +146,8 @@ class Run {
   Identification result_;
 };
 
-/// Another exponent with a hysteresis of about the same size: gamma and eta act on h^n instead of h.
+/// Returns the model with another exponent and about the same loop size. gamma and eta act on h^n instead of
+/// h.
 model::Model with_exponent(model::Model model, int exponent) {
   const auto position = model::position_of<model::BoucWen>(model);
   if (!position) return model;
@@ -159,10 +160,10 @@ model::Model with_exponent(model::Model model, int exponent) {
   return model;
 }
 
-/// The whole model again: the fitted blocks with their new numbers, the others as they were.
+/// Returns the complete start model with the fitted values. Blocks that were not fitted keep theirs.
 model::Model put_back(const model::Model& start, const model::Model& fitted) {
   model::Model whole = start;
-  std::size_t next = 0;  // the fitted blocks are some of the start's, in order
+  std::size_t next = 0;  // the fitted blocks are a subset of the start's blocks, in the same order
   for (model::BlockSpec& block : whole.blocks) {
     if (next < fitted.blocks.size() && fitted.blocks[next].type == block.type) {
       block.values = fitted.blocks[next++].values;
@@ -226,7 +227,7 @@ tl::expected<Identification, std::string> identify(std::vector<Record> records, 
     auto result = Run(records, exponent == 0 ? from : with_exponent(from, exponent), options).go();
     if (!result) return Failure(result.error());
     if (exponent != 0) tried.emplace_back(exponent, result->rmse_mm);
-    // A sharper exponent must earn its place.
+    // A higher exponent is accepted only if it reduces the RMSE by more than 1 %.
     constexpr double worth = 0.99;
     if (!best || result->rmse_mm < worth * best->rmse_mm) best = std::move(*result);
   }

@@ -12,7 +12,7 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Residuals no larger than this many times the sample-to-sample noise, or hardly correlated, are noise.
+/// Residuals count as noise up to this multiple of the sample-to-sample noise, or below this correlation.
 constexpr double noise_factor = 1.3;
 constexpr double hardly_correlated = 0.3;
 
@@ -64,7 +64,7 @@ Table estimate_table(const std::vector<Estimate>& list, std::string caption) {
   return table;
 }
 
-/// The correlation of the errors over lags of up to a tenth of the log, pooled over logs.
+/// Returns the autocorrelation of the errors, pooled over the logs, for lags of up to a tenth of the log.
 Chart correlation_chart(const Identification& r) {
   Chart chart;
   chart.width = 380;
@@ -169,7 +169,7 @@ void add_residuals(Page& page, const Identification& r) {
   }
 }
 
-/// What was tried, and what each ingredient of the chosen structure brings.
+/// Adds the candidate structures, and the contribution of each component of the chosen structure.
 void add_structure(Page& page, const StructureEvidence& s, model::OutputUnit unit) {
   const std::string fitted = model::in_unit("RMSE fitted [mm]", unit);
   const std::string held_out = model::in_unit("RMSE held-out blocks [mm]", unit);

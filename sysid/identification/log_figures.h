@@ -1,5 +1,5 @@
 #pragma once
-// The pictures of a log and its prediction, alike in every report.
+// Figures of a log and its prediction, equal in all reports.
 
 #include <vector>
 
@@ -10,21 +10,21 @@
 
 namespace softgrip::sysid {
 
-/// Measured and predicted displacement over time, and below it the error.
+/// Returns measured and predicted displacement over time, and the error below.
 [[nodiscard]] std::vector<Chart> overlay(const Record& record, const Score& score);
-/// Displacement over pressure, measured and predicted.
+/// Returns measured and predicted displacement over pressure.
 [[nodiscard]] Chart loops(const Record& record, const Score& score);
-/// The error over pressure, loading and unloading apart.
+/// Returns the error over pressure, separately for loading and unloading.
 [[nodiscard]] Chart error_by_pressure(const Record& record, const Score& score);
 
 /// Adds the figures of one log to a page.
 void add_log_figures(Page& page, const Record& record, const Score& score);
 
-/// One row per log: the signal that drives the model, samples, RMSE, % of span, first and settled cycles,
+/// Returns one row per log: signal that drives the model, samples, RMSE, % of span, first and settled cycles,
 /// largest error.
 [[nodiscard]] Table score_table(const std::vector<Record>& records, const std::vector<Score>& scores);
 
-/// A number for people, or a dash.
+/// Returns a formatted number, or a dash if it is not finite.
 [[nodiscard]] std::string or_dash(double value, int digits = 3);
 
 }  // namespace softgrip::sysid

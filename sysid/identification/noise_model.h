@@ -1,5 +1,5 @@
 #pragma once
-// What a fit's residuals are correlated like: an autoregressive process.
+// Models the correlation of the residuals of a fit by an autoregressive process.
 
 #include <span>
 #include <vector>
@@ -8,16 +8,17 @@ namespace softgrip::sysid {
 
 /// e_t = a_1 e_(t-1) + ... + a_p e_(t-p) + innovation.
 struct NoiseModel {
-  std::vector<double> coefficients;  ///< a_1 ... a_p; none: white
+  std::vector<double> coefficients;  ///< a_1 ... a_p; empty: white noise
   double innovation_mm = 0;          ///< standard deviation of the innovation
   double deviation_mm = 0;           ///< standard deviation of e itself
   double lag1_correlation = 0;
-  /// White samples that would tell as much about a constant as these do.
+  /// Number of white samples that would determine a constant with the same accuracy.
   double effective_samples = 0;
 };
 
-/// Autocovariances of several series (not finite: a gap) of one kind, pooled, up to a lag of `most_lags` or a
-/// tenth of all samples. Divided by the count of all samples, not of pairs: that keeps them a covariance.
+/// Pooled autocovariances of several series, up to a lag of `most_lags` or a tenth of all samples. Values
+/// that are not finite are gaps. Sums are divided by the number of all samples, not of pairs, so that the
+/// result is a valid covariance.
 struct Autocovariance {
   std::vector<double> lags;  ///< [mm^2], by lag from 0
   std::size_t samples = 0;
@@ -25,7 +26,8 @@ struct Autocovariance {
 [[nodiscard]] Autocovariance autocovariance_of(const std::vector<std::span<const double>>& series,
                                                int most_lags = 40);
 
-/// The process with these autocovariances: Yule-Walker's equations, the order by Akaike's criterion.
+/// Returns the process with these autocovariances by the Yule-Walker equations. Akaike's criterion selects
+/// the order.
 [[nodiscard]] NoiseModel fit_noise(const Autocovariance& covariance);
 
 }  // namespace softgrip::sysid

@@ -9,7 +9,7 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Walks one parameter away from the minimum in one direction.
+/// Moves one parameter away from the minimum in one direction and fits the others.
 class Profile {
  public:
   Profile(const Residuals& residuals, const std::vector<double>& z, const Uncertainty& u, double huber_mm,
@@ -19,12 +19,13 @@ class Profile {
     const double white = u.naive(i, i);
     const double inflation = white > 0 ? std::max(1.0, u.covariance(i, i) / white) : 1;
     step_ = std::sqrt(std::max(u.covariance(i, i), 1e-12));
-    // Cost is half the sum of squares: half of sigma^2 chi^2, with Student's quantile for normal's.
+    // The cost is half the sum of squares, so the threshold is half of sigma^2 chi^2. Student's quantile
+    // replaces the normal one.
     allowed_ = 0.5 * u.noise.deviation_mm * u.noise.deviation_mm * u.quantile * u.quantile * inflation;
     at_minimum_ = cost_at(z, z[index]).cost;
   }
 
-  /// Where the cost has risen by the allowed amount; the bound if it never does.
+  /// Returns the value at which the cost has risen by the threshold, or the bound if it never does.
   [[nodiscard]] double edge(double direction) const {
     const FreeParameter& p = residuals_.space().free()[index_];
     const double bound = direction < 0 ? p.lower_z() : p.upper_z();
@@ -57,7 +58,7 @@ class Profile {
   }
 
  private:
-  /// The best cost with the parameter held at a value, searched from `from`.
+  /// Returns the best cost with the parameter fixed at `held`. The search starts at `from`.
   [[nodiscard]] Minimum cost_at(const std::vector<double>& from, double held) const;
 
   const Residuals& residuals_;

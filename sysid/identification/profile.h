@@ -1,5 +1,5 @@
 #pragma once
-// Intervals by profile likelihood: how far a parameter can go while all others follow.
+// Intervals by profile likelihood: one parameter is moved while all others are fitted again.
 
 #include <functional>
 #include <vector>
@@ -9,9 +9,9 @@
 
 namespace softgrip::sysid {
 
-/// For every free model parameter of `estimates` (as parameter_estimates() orders them) fills profile95. The
-/// threshold on the sum of squares is that of a likelihood ratio, widened by how much the correlation of
-/// the residuals widens the parameter's variance.
+/// Fills profile95 of every free model parameter of `estimates`, in the order of parameter_estimates(). The
+/// threshold on the sum of squares is that of a likelihood ratio. It is widened by the factor by which the
+/// correlation of the residuals increases the variance of the parameter.
 void add_profiles(const Residuals& residuals, const std::vector<double>& z, const Uncertainty& uncertainty,
                   double huber_mm, unsigned threads, std::vector<Estimate>& estimates);
 

@@ -1,5 +1,6 @@
 #pragma once
-// Logs and scores as JSON, alike in identify.json and validate.json. Include where JSON is written only.
+// Writes logs and scores as JSON, equally in identify.json and validate.json. Only files that write JSON
+// include it.
 
 #include <cmath>
 #include <vector>
@@ -11,7 +12,7 @@
 
 namespace softgrip::sysid {
 
-/// A number, or null where there is none.
+/// Returns a number, or null if it is not finite.
 [[nodiscard]] inline nlohmann::ordered_json number_or_null(double value) {
   return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
 }
@@ -30,7 +31,7 @@ namespace softgrip::sysid {
   return json;
 }
 
-/// Adds drive, rmse_mm, rmse_percent_of_span and the rest, each an object by log.
+/// Adds drive, rmse_mm, rmse_percent_of_span and the other scores, each as an object with one entry per log.
 inline void add_scores(nlohmann::ordered_json& json, const std::vector<Score>& scores) {
   for (const Score& s : scores) {
     json["drive"][s.name] = name_of(s.drive);

@@ -1,5 +1,5 @@
 #pragma once
-// Where searches begin.
+// Draws the start points of searches.
 
 #include <cstdint>
 #include <vector>
@@ -10,16 +10,17 @@
 
 namespace softgrip::sysid {
 
-/// How large the numbers of a campaign are.
+/// Scale of the data of a campaign.
 struct CampaignSize {
-  double largest_kpa = 0;  ///< of the drive
-  double span_mm = 0;      ///< the largest of a record's readings
-  double longest_s = 0;    ///< of one record
+  double largest_kpa = 0;  ///< largest driving pressure
+  double span_mm = 0;      ///< largest span of the readings of a record
+  double longest_s = 0;    ///< duration of the longest record
 };
 [[nodiscard]] CampaignSize campaign_size(const std::vector<Record>& records);
 
-/// `count` points: the given model itself; then by turns points drawn around it and points drawn from the
-/// data's scale alone (pressure, span, length). Only what is free in `space` is drawn.
+/// Returns `count` points. The first is the given model. The others are drawn alternately from the scale of
+/// the data (pressure, span, length) and around the given model. Only parameters that are free in `space` are
+/// drawn.
 [[nodiscard]] std::vector<FitPoint> draw_starts(const FitSpace& space, const FitPoint& given,
                                                 const std::vector<Record>& records, std::size_t count,
                                                 std::uint64_t seed);

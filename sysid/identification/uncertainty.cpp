@@ -18,15 +18,15 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-/// Products of the correlated noise's covariance C with the Jacobian, record by record. With A the whitening
-/// filter of the autoregressive model, C = s^2 (A'A)^-1: C J is s^2 times J run backwards and then forwards
-/// through 1/A.
+/// Computes products of the covariance C of the correlated noise with the Jacobian, for each record. With A
+/// the whitening filter of the autoregressive model, C = s^2 (A'A)^-1. C J is then s^2 times J, filtered
+/// backwards and then forwards by 1/A.
 class CorrelatedNoise {
  public:
   CorrelatedNoise(const Jacobian& jacobian, const std::vector<std::size_t>& rows)
       : jacobian_(jacobian), rows_(rows) {}
 
-  /// J' C J
+  /// Returns J' C J.
   [[nodiscard]] MatrixXd product(const NoiseModel& noise) const {
     MatrixXd sum = MatrixXd::Zero(jacobian_.cols(), jacobian_.cols());
     for_each_record([&](Index first, Index count) {
@@ -36,8 +36,8 @@ class CorrelatedNoise {
     return noise.innovation_mm * noise.innovation_mm * sum;
   }
 
-  /// What a fit takes away from the autocovariances of its residuals: with H = J M J' (M the inverse of J'J)
-  /// the residuals' covariance is (I - H) C (I - H) instead of C.
+  /// Adds to the autocovariances of the residuals the part that the fit removes. With H = J M J' (M the
+  /// inverse of J'J), the covariance of the residuals is (I - H) C (I - H) instead of C.
   void give_back(const NoiseModel& noise, const MatrixXd& inverse, const MatrixXd& meat,
                  Autocovariance& covariance) const {
     const double s2 = noise.innovation_mm * noise.innovation_mm;
@@ -100,8 +100,8 @@ void scatter(const MatrixXd& part, const std::vector<Index>& keep, MatrixXd& who
   }
 }
 
-/// Directions along which the estimate may be off by more than half a unit of the fit's scale: half a typical
-/// change, or a factor of 1.6 where the scale is logarithmic.
+/// Returns directions along which the standard deviation of the estimate is at least 0.5 in the scale of the
+/// fit. This is half a typical change, or a factor of 1.6 on a logarithmic scale.
 std::vector<LooseDirection> loose_directions(const MatrixXd& covariance, const std::vector<Index>& keep,
                                              const FitSpace& space) {
   constexpr double loose_from = 0.5;
@@ -143,7 +143,7 @@ Uncertainty uncertainty_at(const Residuals& residuals, const std::vector<double>
   std::vector<double> r(rows);
   if (!residuals.evaluate(z, r, {jacobian.data(), rows * z.size()})) return u;
 
-  // Where Huber's loss is linear a sample pulls with constant force and has no curvature.
+  // Where Huber's loss is linear, a sample contributes a constant gradient and no curvature.
   double curved = 0;
   Jacobian bread = jacobian;
   for (std::size_t i = 0; i < rows; ++i) {
@@ -187,8 +187,8 @@ Uncertainty uncertainty_at(const Residuals& residuals, const std::vector<double>
   for (std::size_t i = 0; i < keep.size(); ++i) columns.col(static_cast<Index>(i)) = jacobian.col(keep[i]);
   const CorrelatedNoise correlated(columns, counts);
   MatrixXd meat = correlated.product(u.noise);
-  // The noise is more than the residuals show, and more correlated: the fit followed some of it. Lags well
-  // beyond the order do not come into it.
+  // The noise is larger and more correlated than the residuals, because the fit follows a part of it. Lags
+  // far beyond the order are not used.
   constexpr std::size_t lags_beyond = 5;
   for (int pass = 0; pass < 2; ++pass) {
     Autocovariance whole = observed;

@@ -1,8 +1,8 @@
 #pragma once
-// How far the estimates can be trusted when the residuals are correlated.
+// Covariance of the estimates if the residuals are correlated.
 //
-// Least squares stays unbiased under correlated noise, but its usual intervals are far too short. Here the
-// covariance is the sandwich (J'J)^-1 J' C J (J'J)^-1 with C from an autoregressive model of the residuals.
+// Least squares is unbiased under correlated noise, but its usual intervals are far too short. The covariance
+// is therefore the sandwich (J'J)^-1 J' C J (J'J)^-1, with C from an autoregressive model of the residuals.
 
 #include <string>
 #include <vector>
@@ -15,25 +15,26 @@
 
 namespace softgrip::sysid {
 
-/// A direction in which the parameters may move together without the data objecting.
+/// A combination of parameters that can change together with little effect on the error.
 struct LooseDirection {
-  std::vector<std::string> names;  ///< of the parameters that take part, the strongest first
-  std::vector<double> weights;     ///< of them, in the fit's scale
-  double deviation = 0;            ///< how far, in the fit's scale
+  std::vector<std::string> names;  ///< parameters that contribute, the largest weight first
+  std::vector<double> weights;     ///< of these parameters, in the scale of the fit
+  double deviation = 0;            ///< standard deviation in the scale of the fit
 };
 
-/// The covariance of the estimates in the coordinates of the fit.
+/// Covariance of the estimates in the coordinates of the fit.
 struct Uncertainty {
-  Eigen::MatrixXd covariance;  ///< of z; zero rows where a parameter stands at a bound or has no effect
-  Eigen::MatrixXd naive;       ///< the same if the noise were white
+  Eigen::MatrixXd covariance;  ///< of z; the rows of a parameter that is at a bound or has no effect are zero
+  Eigen::MatrixXd naive;       ///< the same for white noise
   std::vector<bool> at_bound;
   std::vector<bool> without_effect;
   NoiseModel noise;
-  double quantile = 1.96;  ///< of Student's t for 95 %, by the effective number of samples
+  double quantile = 1.96;  ///< of Student's t for 95 %, from the effective number of samples
   std::vector<LooseDirection> loose;
 };
 
-/// At a minimum. @param huber_mm  as in the minimisation.
+/// Computes the uncertainty at the minimum `z`.
+/// @param huber_mm  as in the minimisation.
 [[nodiscard]] Uncertainty uncertainty_at(const Residuals& residuals, const std::vector<double>& z,
                                          double huber_mm);
 

@@ -16,7 +16,7 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Below this share of the span a prediction is good.
+/// A prediction is good if its RMSE is below this share of the span [%].
 constexpr double good_percent = 2;
 
 double largest_percent(const Validation& v) {
@@ -29,7 +29,8 @@ bool is_above_bound(const Validation& v, const Score& s) {
   return v.at_most_percent && !(s.rmse_percent_of_span <= *v.at_most_percent);
 }
 
-/// ": 2 of them more than the 1 % that were allowed", or "" where no bound was given or none is above it.
+/// Returns ": 2 of them more than the 1 % that were allowed", or "" if there is no bound or no log exceeds
+/// it.
 std::string bound_text(const Validation& v) {
   const auto above =
       std::count_if(v.scores.begin(), v.scores.end(), [&](const Score& s) { return is_above_bound(v, s); });

@@ -1,5 +1,5 @@
 #pragma once
-// Validation: what a model predicts for logs that it was not fitted to.
+// Validation: compares the prediction of a model with logs that it was not fitted to.
 
 #include <optional>
 #include <string>
@@ -16,19 +16,19 @@ namespace softgrip::sysid {
 struct Validation {
   model::Model model;
   std::vector<Record> records;
-  std::vector<Score> scores;  ///< by log
+  std::vector<Score> scores;  ///< of each log
   std::vector<std::string> warnings;
-  std::optional<double> at_most_percent;  ///< bound of every log's RMSE, as a share of its span
-  std::vector<std::string> call;          ///< the command and what it was given; empty: by no command
+  std::optional<double> at_most_percent;  ///< largest permitted RMSE of a log, in % of its span
+  std::vector<std::string> call;  ///< command line; empty if the validation was not started by a command
   double wall_s = 0;
 };
 
-/// Predicts every log from its start, which its first readings tell (sysid/fitting/start_estimate.h).
+/// Predicts every log. The start state is estimated from the first readings (sysid/fitting/start_estimate.h).
 [[nodiscard]] Validation validate_logs(const model::Model& model, const std::vector<Log>& logs,
                                        const RecordOptions& options = {});
 
-/// Whether the prediction of a log stays within the bound, if there is one, and does not diverge. One whose
-/// readings have no span does not stay within a bound.
+/// Returns true if the prediction does not diverge and its RMSE does not exceed the bound, if there is one. A
+/// log whose readings have no span exceeds every bound.
 [[nodiscard]] bool is_acceptable(const Validation& validation, const Score& score);
 
 /// "3 logs predicted with an RMSE of 0.26 to 0.54 mm, at most 1.9 % of a log's span: 1 of them more than
