@@ -1,6 +1,6 @@
 #pragma once
-// What every block of a chain provides. One mechanism, one block, one file under model/blocks/, one line in
-// registry.h. docs/how-to/add-a-block.md goes through the steps.
+// The interface of a block of the chain. Each mechanism is one block with one file under model/blocks/ and
+// one line in registry.h. docs/how-to/add-a-block.md describes the steps.
 //
 // A block is a class template over the number type T (double; an automatic differentiation type):
 //
@@ -10,7 +10,7 @@
 //     static constexpr std::array parameters{parameter(...)};     // its only declaration
 //     ValveLag(std::span<const T> values, const Preparation&);
 //     void reset(const T& input);  // see "Rest"
-//     T output() const;            // where the block stands
+//     T output() const;            // current output
 //     ... and by kind:
 //   };
 //
@@ -20,37 +20,39 @@
 //     Segment<T> step(const Segment<T>& in, const Surroundings&);
 //   reading:
 //     T sample(const T& displacement_mm, const T& duration_s, const Surroundings&);
-//   whose info.inverse is Inverse::implicit, besides, without touching the state, from where the block
-//   stands:
+// If info.inverse is Inverse::implicit, a block also has a function that predicts its output from the current
+// state and does not change the state:
 //     element:                 U peek(const T& duration_s, const U& end_kpa, const Surroundings&) const;
 //     pressure, displacement:  U peek(const T& duration_s, const U& end, const Surroundings&) const;
 //     (a template over U: double, or Dual<double> for the derivative with respect to the newest pressure)
 //
-// The concepts below are this contract for the compiler; registry.h asks them of every block.
+// The concepts below state this contract for the compiler. registry.h checks them for every block.
 //
-// A step calls next(segment) one or more times; the durations of what it passes on sum to the duration of
-// what it got (a jump may be kept back by a delay), the first `begin` is the last `end` of the step before,
-// and a block whose output turns inside a sample passes two segments, so that Bouc-Wen sees the turn.
-// With its parameters at their neutral values a block passes on what it got; an element adds nothing.
+// A step calls next(segment) one or more times. The durations of the segments that it passes on sum to the
+// duration of its input (a delay may keep back a jump). The first `begin` is the last `end` of the previous
+// step. A block whose output reverses within a sample passes two segments, so that Bouc-Wen sees the
+// reversal. At its neutral parameter values a block passes its input on unchanged; an element adds nothing.
 //
-// Rest. reset(input) puts a block where it stands after its input rose from 0 to `input` once and has been
-// held ever since: lags and creep settled, hysteresis on its first loading curve, the delay line filled.
+// Rest. reset(input) sets the state that a block reaches after its input rose from 0 to `input` once and was
+// then held for a long time. Lags and creep are settled, hysteresis is on its first loading curve, the delay
+// line is filled.
 //
-// A block that remembers something for the whole campaign (the largest load so far) has rest(input) besides,
-// which does the same but keeps that memory.
+// A block with a memory over the whole campaign (the largest load so far) also has rest(input). It does the
+// same as reset(input) but keeps that memory.
 //
-// A block with repeated parts declares `repeated` (the parameters of one part, in order) and `max_parts`
-// besides, and `min_parts` if that is not one. A block whose parameters must fit each other declares
-// `static std::string_view objection(std::span<const double> values)`, empty when they do.
+// A block with repeated parts also declares `repeated` (the parameters of one part, in order) and
+// `max_parts`. It declares `min_parts` if that is not one. A block whose parameters depend on each other
+// declares `static std::string_view objection(std::span<const double> values)`. It returns an empty text for
+// valid values.
 //
-// A displacement block whose output at the end of a sample follows from its input and its surroundings there,
-// whatever the way to it was, declares `static constexpr bool at_samples = true`. Of reading blocks that is
-// so anyway; those whose random numbers depend on their place in the chain declare it false.
+// A displacement block declares `static constexpr bool at_samples = true` if its output at the end of a
+// sample depends only on its input and surroundings at that time. This is the default for reading blocks.
+// Reading blocks whose random numbers depend on their place in the chain declare it false.
 //
-// A block that is a part of the chain's Bouc-Wen hysteresis declares `void shape(BoucWen<T>&) const` besides,
-// which the chain calls once when it is made.
+// A block that is a part of the chain's Bouc-Wen hysteresis also declares `void shape(BoucWen<T>&) const`.
+// The chain calls it once when it is constructed.
 //
-// Blocks are copyable values; stepping allocates nothing once a block was prepared for a sample time.
+// Blocks are copyable values. Stepping allocates no memory if the block was prepared for a sample time.
 
 #include <array>
 #include <concepts>
@@ -64,9 +66,9 @@
 
 namespace softgrip::model {
 
-/// The station of a block in the chain. A chain's blocks are ordered by station and, inside a station, by
-/// kind: pressure blocks, elements, displacement blocks, reading blocks. Equal blocks keep the order of the
-/// model file.
+/// The station of a block in the chain. The blocks of a chain are ordered by station and, within a station,
+/// by kind: pressure blocks, elements, displacement blocks, reading blocks. Blocks of one kind keep the order
+/// of the model file.
 enum class Station : std::uint8_t { valve, actuator, load, sensor };
 
 /// The effect of a block on the signal in the chain.
@@ -74,17 +76,17 @@ enum class Kind : std::uint8_t {
   pressure,      ///< kPa in, kPa out, in series
   element,       ///< kPa in, mm out; all elements of a chain see the same pressure and their outputs add
   displacement,  ///< mm in, mm out, in series
-  reading,       ///< mm in, mm out, once per step at its end: what a sensor does to the value that is read
+  reading,       ///< mm in, mm out, once at the end of a step: an effect of the sensor on the reading
 };
 
-/// How the control side undoes a block.
+/// The method by which the control side inverts a block.
 enum class Inverse : std::uint8_t {
-  implicit,  ///< solved together with the actuator: output monotone in the newest pressure
+  implicit,  ///< solved together with the actuator; the output is monotone in the newest pressure
   lead,      ///< the derivative of the planned signal
-  preview,   ///< asking for the future value of the reference
+  preview,   ///< uses the future value of the reference
   play,      ///< half the band in the direction of travel
-  bound,     ///< no inverse: bounds the reference
-  ignored,   ///< not to be inverted (noise, quantisation)
+  bound,     ///< no inverse; it limits the reference
+  ignored,   ///< not inverted (noise, quantisation)
 };
 
 /// Description of a block type.
@@ -94,8 +96,8 @@ struct BlockInfo {
   Kind kind;
   Inverse inverse;
   std::string_view title;     ///< "Transport delay"
-  std::string_view meaning;   ///< one line for the manual
-  std::string_view equation;  ///< what it computes, in plain text
+  std::string_view meaning;   ///< one line for the reference page
+  std::string_view equation;  ///< its equation as plain text
   bool repeatable = false;    ///< may occur in a chain more than once (two stops, two disturbances)
 };
 
@@ -123,14 +125,14 @@ struct Preparation {
   std::uint64_t seed = 0;    ///< of this block's random numbers, distinct per block and channel
 };
 
-/// It says what it is and which numbers it has.
+/// Requires a description and a list of parameters.
 template <class Block>
 concept SaysWhatItIs = requires {
   { Block::info } -> std::same_as<const BlockInfo&>;
   std::span<const ParameterSpec>(Block::parameters);
 };
 
-/// With repeated parts it says what one of them has and how many there may be.
+/// A block with repeated parts: requires the parameters of one part and the limits of their number.
 template <class Block>
 concept SaysItsParts = requires {
   std::span<const ParameterSpec>(Block::repeated);
@@ -147,33 +149,33 @@ concept StandsSomewhere = std::copyable<Block> &&
   { still.output() } -> std::convertible_to<T>;
 };
 
-/// Pressure and displacement blocks: it passes segments on.
+/// Pressure and displacement blocks: step() passes segments on.
 template <class Block, class T>
 concept PassesOn = requires(Block block, const Segment<T>& in, const Surroundings& around,
                             void (&next)(const Segment<T>&)) {
   { block.step(in, around, next) } -> std::same_as<void>;
 };
 
-/// Elements: it turns pressure into displacement.
+/// Elements: step() converts pressure to displacement.
 template <class Block, class T>
 concept TurnsIntoDisplacement = requires(Block block, const Segment<T>& in, const Surroundings& around) {
   { block.step(in, around) } -> std::same_as<Segment<T>>;
 };
 
-/// Reading blocks: it samples a displacement.
+/// Reading blocks: sample() converts a displacement to a reading.
 template <class Block, class T>
 concept Samples = requires(Block block, const T& value, const Surroundings& around) {
   { block.sample(value, value, around) } -> std::same_as<T>;
 };
 
-/// Blocks that are undone implicitly: it says where it would go.
+/// Blocks that are inverted implicitly: peek() predicts the output.
 template <class Block, class T, class U>
 concept Foretells = requires(const Block block, const T& duration_s, const U& end,
                              const Surroundings& around) {
   { block.peek(duration_s, end, around) } -> std::same_as<U>;
 };
 
-/// The contract by kind.
+/// The complete contract of each kind.
 template <class Block, class T>
 concept SeriesBlock = SaysWhatItIs<Block> && StandsSomewhere<Block, T> && PassesOn<Block, T>;
 template <class Block, class T>
@@ -181,7 +183,8 @@ concept ElementBlock = SaysWhatItIs<Block> && StandsSomewhere<Block, T> && Turns
 template <class Block, class T>
 concept ReadingBlock = SaysWhatItIs<Block> && StandsSomewhere<Block, T> && Samples<Block, T>;
 
-/// Compiles for a block that fulfils its contract; otherwise the compiler's message names the missing part.
+/// Compiles only for a block that fulfils its contract. Otherwise the compiler's message names the missing
+/// part.
 template <template <class> class Block, class T>
 consteval bool keeps_contract() {
   using B = Block<T>;

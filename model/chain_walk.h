@@ -1,5 +1,5 @@
 #pragma once
-// How a Chain walks its blocks. Included by chain.h alone.
+// Implements the steps of a Chain. Only chain.h includes this file.
 
 #include <type_traits>
 #include <utility>
@@ -18,8 +18,8 @@ AnyBlock<T> make_block(std::size_t type, std::span<const T> values, const Prepar
   return AnyBlock<T>(std::in_place_index<I>, values, preparation);
 }
 
-// Returns the seed of a block, by its id and the number of earlier blocks with this id. Thus other blocks may
-// be added or removed.
+// Returns the seed of a block. It depends on the id and the number of earlier blocks with this id. The seed
+// therefore does not change if blocks with other ids are added or removed.
 inline std::uint64_t seed_of(const Model& model, std::size_t index, std::uint64_t seed) {
   std::uint64_t part = 0;
   for (const char c : catalogue()[model.blocks[index].type].info.id) {
@@ -31,11 +31,11 @@ inline std::uint64_t seed_of(const Model& model, std::size_t index, std::uint64_
 
 template <class Block>
 inline constexpr Kind kind_of = std::remove_cvref_t<Block>::info.kind;
-/// A longer way of the pressure within a segment is walked in parts where a block behind the elements, one
-/// that an inverse does not see, takes their sum for a parabola: behind 44 kPa within 10 ms an inertia of 45
-/// ms was off by 0.07 mm, in parts by 1e-4.
+/// A large pressure change within a segment is divided into parts of at most this size [kPa] if a block
+/// behind the elements, which an inverse ignores, approximates their sum by a parabola. For 44 kPa within 10
+/// ms, the error of an inertia of 45 ms was 0.07 mm without division and is 1e-4 mm with it.
 inline constexpr double longest_way_kpa = 5;
-/// Largest number of parts, for every command.
+/// Largest number of parts, for any command.
 inline constexpr double most_parts = 100;
 
 template <class Block>
@@ -70,7 +70,7 @@ Chain<T>::Chain(const Model& model, std::span<const T> values, double sample_tim
     if (info.kind <= Kind::displacement) first_reading_ = behind;
     leaps_in_parts_ |= info.kind == Kind::displacement && info.inverse == Inverse::ignored;
   }
-  // A block may shape the chain's hysteresis, of which it is a part.
+  // Blocks that are a part of the chain's hysteresis modify it.
   for (const AnyBlock<T>& any : blocks_) {
     visit_block(any, [&](const auto& block) {
       if constexpr (requires(BoucWen<T> & hysteresis) { block.shape(hysteresis); }) {
@@ -177,8 +177,8 @@ void Chain<T>::walk_elements(const Segment<T>& segment, const Surroundings& surr
   add_elements(segment, surroundings);
 }
 
-// The code for each block is always inlined, here and in peek(). By default, GCC 12 calls Kelvin-Voigt out of
-// line (41 ns instead of 17 for a trial with derivative).
+// The code for each block is always inlined, here and in peek(). By default, GCC 12 does not inline
+// Kelvin-Voigt (41 ns instead of 17 ns for a trial with derivative).
 template <class T>
 void Chain<T>::add_elements(const Segment<T>& segment, const Surroundings& surroundings) {
   Segment<T> sum{segment.duration_s, T(0.0), T(0.0), T(0.0)};

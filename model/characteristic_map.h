@@ -1,5 +1,5 @@
 #pragma once
-// A bent, monotone map through (0, 0) and (span, span).
+// A nonlinear, monotone map through (0, 0) and (span, span).
 
 #include <cmath>
 
@@ -8,8 +8,8 @@
 
 namespace softgrip::model {
 
-/// g(z) = span expm1(a z/span) / expm1(a) on [0, span], straight beyond; smooth in a through 0, where g(z) =
-/// z.
+/// g(z) = span expm1(a z/span) / expm1(a) on [0, span], continued as straight lines outside. The map is
+/// smooth in a through 0, where g(z) = z.
 template <class T>
 class CharacteristicMap {
  public:
@@ -23,7 +23,7 @@ class CharacteristicMap {
         last_slope_(exponential(curvature) / phi1_) {}
 
   [[nodiscard]] const T& curvature() const { return curvature_; }
-  /// g'(0) and g'(span).
+  /// The slopes g'(0) and g'(span).
   [[nodiscard]] const T& first_slope() const { return first_slope_; }
   [[nodiscard]] const T& last_slope() const { return last_slope_; }
 
@@ -43,7 +43,7 @@ class CharacteristicMap {
     if (value_of(y) <= 0.0) return y * phi1_;
     if (value_of(y) >= value_of(span_mm_)) return span_mm_ + (y - span_mm_) / last_slope_;
     const T share = y / span_mm_;
-    // Below this |a| the logarithm's quotient is 0/0 and the map straight to rounding.
+    // For |a| below this limit, the quotient of the logarithm is 0/0 and the map is linear up to rounding.
     if (std::abs(value_of(curvature_)) < 1e-9) return y;
     return span_mm_ * (log1p(share * (curvature_ * phi1_)) / curvature_);
   }
@@ -57,7 +57,7 @@ class CharacteristicMap {
   T curvature_;
   T span_mm_;
   T per_mm_;  ///< a/span
-  T phi1_;    ///< of a
+  T phi1_;    ///< phi_1(a)
   T first_slope_, last_slope_;
 };
 

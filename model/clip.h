@@ -1,23 +1,23 @@
 #pragma once
-// Clipping a monotone segment at a level, cut where it passes it.
+// Limits a monotone segment to a level and divides it where it crosses the level.
 
 #include "model/segment.h"
 
 namespace softgrip::model {
 
-/// The smaller of two, decided on the values.
+/// Returns the smaller of two numbers by their values, without derivatives.
 template <class T>
 [[nodiscard]] T lesser(const T& x, const T& y) {
   return value_of(y) < value_of(x) ? y : x;
 }
 
-/// The larger of two, decided on the values.
+/// Returns the larger of two numbers by their values, without derivatives.
 template <class T>
 [[nodiscard]] T greater(const T& x, const T& y) {
   return value_of(y) > value_of(x) ? y : x;
 }
 
-/// Passes on min(in, level), in two segments when `in` passes the level inside.
+/// Passes on min(in, level), in two segments if `in` crosses the level inside.
 template <class T, class Next>
 void clip_above(const Segment<T>& in, const T& level, Next&& next) {
   const double top = value_of(level);

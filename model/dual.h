@@ -1,11 +1,11 @@
 #pragma once
-// A number with one derivative carried along (forward mode): what an implicit solve needs for Newton's step.
+// A number with one derivative (forward mode), for the Newton steps of an implicit solution.
 
 #include <cmath>
 
 namespace softgrip::model {
 
-/// Value `a` and derivative `v` with respect to the variable that was seeded with v = 1.
+/// Value `a` and derivative `v` with respect to the variable that was initialised with v = 1.
 template <class S>
 struct Dual {
   S a{};
@@ -37,7 +37,7 @@ struct Dual {
   friend constexpr Dual operator-(const S& x, const Dual& y) { return {x - y.a, -y.v}; }
   friend constexpr Dual operator/(const Dual& x, const S& y) { return {x.a / y, x.v / y}; }
 
-  // Comparisons look at the value alone, as decisions do.
+  // Comparisons use only the value, as decisions do.
   friend constexpr bool operator<(const Dual& x, const Dual& y) { return x.a < y.a; }
   friend constexpr bool operator>(const Dual& x, const Dual& y) { return x.a > y.a; }
   friend constexpr bool operator<=(const Dual& x, const Dual& y) { return x.a <= y.a; }

@@ -1,26 +1,26 @@
 #pragma once
-// The pressure as the envelopes of generalised plays see it.
+// Maps the pressure to the envelope of generalised plays.
 
 #include "model/number.h"
 
 namespace softgrip::model {
 
-/// b(p) = p (1 - (1 - x)(bend - skew (1 - 2 x))), x = p/P, on [0, P], straight beyond: the cubic through (0,
-/// 0) and (P, P). A generalised play (Krasnosel'skii and Pokrovskii, Systems with Hysteresis, 1989,
-/// section 1.2) whose two envelopes are one curve apart is a play of b(p). Rises everywhere while |bend| +
-/// |skew| < 1.
+/// b(p) = p (1 - (1 - x)(bend - skew (1 - 2 x))) with x = p/P on [0, P], continued as straight lines outside:
+/// the cubic through (0, 0) and (P, P). A generalised play (Krasnosel'skii and Pokrovskii, Systems with
+/// Hysteresis, 1989, section 1.2) whose two envelopes are shifted copies of this curve equals a play of b(p).
+/// b rises everywhere if |bend| + |skew| < 1.
 template <class T>
 class EnvelopeMap {
  public:
-  /// Of either sign; both at once still rise.
+  /// Largest absolute values. b rises for any combination within them.
   static constexpr double most_bend = 0.6, most_skew = 0.35;
 
-  /// @param bend  b'(P) is above b'(0) by twice as much.  @param skew  above 0 the middle is less steep.
-  /// @param end_kpa  P, > 0; any where bend and skew are 0.
+  /// @param bend  b'(P) exceeds b'(0) by 2 bend.  @param skew  above 0, the middle is less steep.
+  /// @param end_kpa  P, > 0. It has no effect if bend and skew are 0.
   EnvelopeMap(const T& bend, const T& skew, const T& end_kpa)
       : bend_(bend), skew_(skew), end_kpa_(end_kpa), bends_(!(is_zero(bend) && is_zero(skew))) {}
 
-  /// false: b(p) = p.
+  /// Returns false if b(p) = p.
   [[nodiscard]] bool bends() const { return bends_; }
 
   template <class U>

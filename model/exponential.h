@@ -1,10 +1,10 @@
 #pragma once
-// First-order linear responses over one segment, exact for an input that is a parabola in time.
+// First-order linear responses over one segment. They are exact if the input is a parabola in time.
 //
-// Shared by everything with a time constant (valve lag, sensor lag, Kelvin-Voigt branches). With z = dt/tau
+// All blocks with a time constant use them (valve lag, sensor lag, Kelvin-Voigt branches). With z = dt/tau,
 // the solution is a combination of the phi functions of exponential integrators (Hochbruck and Ostermann,
-// Acta Numerica 19, 2010, section 2.1): phi_k(-z) = integral over s in [0, 1] of
-// exp(-z (1 - s)) s^(k-1) / (k-1)!, which stay accurate for z from 0 to infinity.
+// Acta Numerica 19, 2010, section 2.1): phi_k(-z) = integral over s in [0, 1] of exp(-z (1 - s)) s^(k-1) /
+// (k-1)!. They are accurate for z from 0 to infinity.
 
 #include <array>
 #include <cmath>
@@ -15,7 +15,7 @@
 
 namespace softgrip::model {
 
-/// phi_1(w) = (exp(w) - 1) / w, accurate through w = 0, for w of either sign.
+/// Returns phi_1(w) = (exp(w) - 1) / w, accurate for positive, negative and zero w.
 template <class T>
 [[nodiscard]] inline T phi1(const T& w) {
   using std::expm1;
@@ -33,7 +33,7 @@ struct PhiFunctions {
   T phi1, phi2, phi3, phi4;
 };
 
-/// For z >= 0.
+/// Returns phi_1(-z) to phi_4(-z) for z >= 0.
 template <class T>
 [[nodiscard]] inline PhiFunctions<T> phi_functions(const T& z) {
   using std::expm1;
@@ -55,9 +55,10 @@ template <class T>
   return {phi1, phi2, phi3, (1.0 / 6.0 - phi3) * inverse};
 }
 
-/// The response of x' = gain_rate * u(t) - x / tau over one segment, as weights on the old state and on what
-/// describes the parabola through the segment: u(s) = begin + (end - begin) s + bend s (1 - s), s in [0, 1].
-/// `gain_rate` is 1/tau for a lag, 1/c for a Kelvin-Voigt branch (which stays defined for k = 0).
+/// The response of x' = gain_rate * u(t) - x / tau over one segment. The response is a sum of weights times
+/// the old state and the coefficients of the parabola u(s) = begin + (end - begin) s + bend s (1 - s), s in
+/// [0, 1]. `gain_rate` is 1/tau for a lag and 1/c for a Kelvin-Voigt branch (which is also defined for k =
+/// 0).
 template <class T>
 struct ExponentialWeights {
   T loss;                           ///< x1 = x0 - loss x0 + ...

@@ -5,17 +5,19 @@
 
 namespace softgrip::model {
 
-/// A steady flow through the line into the open, both openings by ISO 6358-1 with a critical ratio of a half:
-/// through the line C sqrt(p dp), nearly, and through the leak that share of it at which the line loses
-/// `share` of a small pressure (the squared ratio of the conductances). Choked above one atmosphere.
-/// Pressures are gauge [kPa]. Increasing; below 0 a straight line goes on.
+/// A steady flow passes through the line and then through a leak to the atmosphere. Both restrictions follow
+/// ISO 6358-1 with a critical pressure ratio of 0.5. The flow through the line is approximately C sqrt(p dp).
+/// At small pressures, the line loses `share` times the pressure at the finger (the squared ratio of the
+/// conductances). The leak is choked above a gauge pressure of one atmosphere. Pressures are gauge [kPa]. The
+/// functions increase; below 0 they are linear.
 template <class T>
 struct LineLoss {
   T share;  ///< >= 0
 
   static constexpr double atmosphere_kpa = 101.325;
 
-  /// Before the line, of the pressure at the finger: p + share p a / (p + a) up to one atmosphere a.
+  /// Returns the pressure before the line from the pressure p at the finger: p + share p a / (p + a), up to
+  /// one atmosphere a.
   template <class U>
   [[nodiscard]] U before(const U& p) const {
     if (value_of(p) <= 0.0) return p * (1.0 + share);
@@ -23,7 +25,8 @@ struct LineLoss {
     return p + share * atmosphere_kpa * p / (p + atmosphere_kpa);
   }
 
-  /// At the finger, of the pressure before the line: the positive root of the above.
+  /// Returns the pressure at the finger from the pressure before the line: the positive root of the equation
+  /// above.
   template <class U>
   [[nodiscard]] U behind(const U& u) const {
     using std::sqrt;

@@ -1,13 +1,14 @@
 #pragma once
-// A signal multiplied by a gain that moves with its surroundings.
+// Multiplies a signal by a gain that changes with the surroundings.
 
 #include "model/gain.h"
 #include "model/segment.h"
 
 namespace softgrip::model {
 
-/// Multiplies segments by a gain that goes linearly from where it was to where the surroundings put it at the
-/// end of the sample. Within a sample of several segments the gain moves in the first.
+/// Multiplies segments by a gain that changes linearly over a sample, from its last value to the value for
+/// the surroundings at the end of the sample. If a sample has several segments, the gain changes during the
+/// first.
 template <class T>
 class MovingGain {
  public:
@@ -25,13 +26,13 @@ class MovingGain {
   T gain_{1.0};
 };
 
-/// A displacement block whose gain follows its surroundings and nothing else. `Block` declares
-/// `T law(const Surroundings&) const`; y is multiplied by positive_gain(law).
+/// A displacement block whose gain depends only on its surroundings. `Block` declares `T law(const
+/// Surroundings&) const`; y is multiplied by positive_gain(law).
 template <class Block, class T>
 class SurroundingsGain {
  public:
   static constexpr bool at_samples = true;
-  /// Where the surroundings put the gain, the next step says.
+  /// Sets the gain to 1. The next step sets it according to the surroundings.
   void reset(const T& input) {
     gain_.reset(T(1.0));
     output_ = input;

@@ -1,6 +1,6 @@
 #pragma once
-// Blocks of a model by their C++ type and their numbers by name, both checked by the compiler: a block that
-// is not registered or a name that it does not have is an error where it is written.
+// Access to blocks of a model by their C++ type and to their values by name. The compiler checks both: a
+// block that is not registered, or a name that the block does not have, is a compile error.
 //
 //   model::BlockSpec lag = model::block_of<model::ValveLag>({{"time_constant_s", 0.1}});
 //   if (const auto* spring = model::find_block<model::KelvinVoigt>(model))
@@ -18,7 +18,8 @@
 
 namespace softgrip::model {
 
-/// Index of a value in BlockSpec::values. Of repeated parts by the part's number: "k2_kpa_per_mm".
+/// Returns the index of a value in BlockSpec::values. Names in repeated parts contain the number of the part:
+/// "k2_kpa_per_mm".
 template <template <class> class Block>
 consteval std::size_t parameter_index(std::string_view name) {
   using B = Block<double>;
@@ -38,7 +39,7 @@ consteval std::size_t parameter_index(std::string_view name) {
   throw "the block has no parameter of this name";
 }
 
-/// The name of a value of a block, as its index.
+/// The name of a value of a block, stored as its index.
 template <template <class> class Block>
 struct ParameterName {
   std::size_t index;
@@ -46,14 +47,14 @@ struct ParameterName {
       : index(parameter_index<Block>(name)) {}
 };
 
-/// A value of a block with its name.
+/// A value of a block and its name.
 template <template <class> class Block>
 struct NamedValue {
   ParameterName<Block> name;
   double value;
 };
 
-/// A block with these values. One that is not named does nothing: it stands where neutral_block() puts it.
+/// Returns a block with these values. All other values are those of neutral_block().
 template <template <class> class Block>
 [[nodiscard]] BlockSpec block_of(std::initializer_list<NamedValue<Block>> values, std::size_t parts = 1) {
   BlockSpec block = neutral_block(block_type<Block>(), parts);
@@ -61,7 +62,7 @@ template <template <class> class Block>
   return block;
 }
 
-/// Whether a block is of one of these types: is<BoucWen, KelvinVoigt>(block).
+/// Returns true if a block has one of these types: is<BoucWen, KelvinVoigt>(block).
 template <template <class> class... Block>
 [[nodiscard]] constexpr bool is(const BlockSpec& block) {
   return ((block.type == block_type<Block>()) || ...);
@@ -71,7 +72,7 @@ template <template <class> class... Block>
   return ((info.id == Block<double>::info.id) || ...);
 }
 
-/// A value of a block of this type. Throws std::out_of_range for a part that it does not have.
+/// Returns a value of a block of this type. Throws std::out_of_range if the block does not have this part.
 template <template <class> class Block>
 [[nodiscard]] double value(const BlockSpec& block, ParameterName<Block> name) {
   return block.values.at(name.index);
@@ -81,13 +82,13 @@ template <template <class> class Block>
   return block.values.at(name.index);
 }
 
-/// Where the first block of this type stands in the model, or nothing.
+/// Returns the position of the first block of this type in the model, or nullopt.
 template <template <class> class Block>
 [[nodiscard]] std::optional<std::size_t> position_of(const Model& model) {
   return position_of(model, block_type<Block>());
 }
 
-/// The first block of this type, or nullptr.
+/// Returns the first block of this type, or nullptr.
 template <template <class> class Block>
 [[nodiscard]] const BlockSpec* find_block(const Model& model) {
   const auto position = position_of<Block>(model);
@@ -99,14 +100,14 @@ template <template <class> class Block>
   return position ? &model.blocks[*position] : nullptr;
 }
 
-/// A value of the first block of this type, or nothing.
+/// Returns a value of the first block of this type, or nullopt.
 template <template <class> class Block>
 [[nodiscard]] std::optional<double> value_in(const Model& model, ParameterName<Block> name) {
   const BlockSpec* const block = find_block<Block>(model);
   return block != nullptr ? std::optional(value<Block>(*block, name)) : std::nullopt;
 }
 
-/// Whether the model has a block of any of these types.
+/// Returns true if the model has a block of any of these types.
 template <template <class> class... Block>
 [[nodiscard]] bool has_any(const Model& model) {
   return (position_of<Block>(model).has_value() || ...);
@@ -117,7 +118,7 @@ template <template <class> class Block>
   return without_block(std::move(model), block_type<Block>());
 }
 
-/// The model with only the blocks of these types.
+/// Returns the model with only the blocks of these types.
 template <template <class> class... Block>
 [[nodiscard]] Model only(Model model) {
   std::erase_if(model.blocks, [](const BlockSpec& block) { return !is<Block...>(block); });

@@ -1,12 +1,12 @@
 #pragma once
-// What the blocks need of their number type: double, Dual, or an automatic differentiation type with the
-// members `a` (value) and `v` (derivatives). Functions of <cmath> are found by argument-dependent lookup.
+// Functions that blocks need for their number type: double, Dual, or an automatic differentiation type with
+// the members `a` (value) and `v` (derivatives). Functions of <cmath> are found by argument-dependent lookup.
 
 #include <type_traits>
 
 namespace softgrip::model {
 
-/// The plain value, without derivatives. Decisions are taken on it.
+/// Returns the plain value, without derivatives. Decisions use this value.
 template <class T>
 [[nodiscard]] constexpr double value_of(const T& x) noexcept {
   if constexpr (std::is_arithmetic_v<T>) {
@@ -16,7 +16,7 @@ template <class T>
   }
 }
 
-/// Equal in value and in every derivative: interchangeable in any formula.
+/// Returns true if value and all derivatives are equal. Such numbers are interchangeable in any formula.
 template <class T>
 [[nodiscard]] constexpr bool same(const T& x, const T& y) noexcept {
   if constexpr (std::is_arithmetic_v<T>) {
@@ -26,7 +26,7 @@ template <class T>
   }
 }
 
-/// Zero in value and in every derivative. A duration may be 0 s and still depend on a delay that is fitted.
+/// Returns true if value and all derivatives are zero. A duration of 0 s can still depend on a fitted delay.
 template <class T>
 [[nodiscard]] constexpr bool is_zero(const T& x) noexcept {
   return same(x, T(0.0));

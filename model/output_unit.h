@@ -1,8 +1,8 @@
 #pragma once
-// The unit of what the sensor of a finger reads: of the readings of a log, and of the answer of a model.
+// The unit of a finger's sensor: of the readings of a log, and of the output of a model.
 //
 // Names in files, JSON and code end with _mm, because most fingers are measured in mm. Their values are in
-// the output unit, which may be deg. Texts for people use in_unit().
+// the output unit, which may be deg. Texts for display use in_unit().
 
 #include <array>
 #include <numbers>
@@ -13,17 +13,17 @@ namespace softgrip::model {
 
 enum class OutputUnit {
   mm,
-  deg,  ///< of a bending angle
+  deg,  ///< bending angle
 };
 inline constexpr std::array all_output_units{OutputUnit::mm, OutputUnit::deg};
 inline constexpr double deg_per_rad = 180 / std::numbers::pi;
 
-/// "mm", "deg": the word of a model file and of JSON.
+/// Returns "mm" or "deg", as in model files and JSON.
 [[nodiscard]] std::string_view name_of(OutputUnit unit) noexcept;
 
-/// A text of the program that speaks of mm, in this unit: of deg, "displacement [mm]" becomes "bending angle
-/// [deg]", "mm/kPa" becomes "deg/kPa". Words that only contain these, as "gap_mm", stay. Names that users
-/// gave must not come in here.
+/// Returns a text of the program about mm in another unit. For deg, "displacement [mm]" becomes "bending
+/// angle [deg]" and "mm/kPa" becomes "deg/kPa". Words that only contain these, such as "gap_mm", do not
+/// change. The text must not contain names from users.
 [[nodiscard]] std::string in_unit(std::string_view text, OutputUnit unit);
 
 }  // namespace softgrip::model

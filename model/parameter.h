@@ -1,5 +1,6 @@
 #pragma once
-// What a block says of a parameter, once: the YAML key, its check, the fit's bounds and scale, the manual.
+// Declaration of a parameter of a block: YAML key, limits, bounds and scale of a fit, text of the reference
+// page.
 
 #include <cstddef>
 #include <limits>
@@ -7,28 +8,28 @@
 
 namespace softgrip::model {
 
-/// One parameter of a block. `name` ends with the unit where there is one and is the YAML key, the JSON key
-/// and the name in reports. In a block with repeated parts (Kelvin-Voigt branches) `#` in the name stands
-/// for the part's number, counted from 1.
+/// One parameter of a block. `name` ends with the unit, if it has one, and is the YAML key, the JSON key and
+/// the name in reports. In a block with repeated parts (Kelvin-Voigt branches), `#` in the name represents
+/// the number of the part, counted from 1.
 struct ParameterSpec {
   std::string_view name;
   std::string_view unit;     ///< "" for a pure number
   std::string_view meaning;  ///< one line
-  double default_value = 0;  ///< a value at which the block does something typical
-  double lower = 0;          ///< smallest allowed, itself allowed
-  double upper = 0;          ///< largest allowed, itself allowed
+  double default_value = 0;  ///< a value with a typical effect of the block
+  double lower = 0;          ///< smallest permitted value, inclusive
+  double upper = 0;          ///< largest permitted value, inclusive
   double scale = 1;          ///< a typical change, for the scaling of a fit
-  bool whole = false;        ///< only whole numbers (an exponent)
-  bool placed = false;       ///< stands where it was put, and fits move what hangs on it (a threshold)
-  /// The value at which the block does nothing, when all its parameters that have one stand there;
-  /// NaN where the value does not matter then.
+  bool whole = false;        ///< only integers (an exponent)
+  bool placed = false;       ///< remains fixed while a fit changes the values that depend on it (a threshold)
+  /// If all parameters with a neutral value have that value, the block has no effect. NaN: the parameter then
+  /// has no influence.
   double neutral = std::numeric_limits<double>::quiet_NaN();
-  /// The value that a model file means when it leaves this one out; NaN: it must be given. For a parameter
-  /// that came to a block later, so that older files say what they always said.
+  /// Value of a parameter that a model file omits; NaN: it is required. It lets files from before the
+  /// parameter was introduced keep their meaning.
   double if_left_out = std::numeric_limits<double>::quiet_NaN();
 };
 
-// The words of a declaration, each for the member of the same sense above.
+// Named arguments of a declaration. Each sets the member of the same meaning above.
 struct Typical {
   double value;
 };
@@ -62,7 +63,7 @@ constexpr void add(ParameterSpec& spec, Placed) {
 }
 }  // namespace declaration
 
-/// The declaration of one parameter:
+/// Declares one parameter:
 ///   parameter("rate_mm_per_h", "mm/h", "steady drift", Typical{0.5}, Within{-1e5, 1e5}, Scale{1.0},
 ///   Neutral{0.0})
 /// Numbers outside their own bounds do not compile.
@@ -81,7 +82,7 @@ consteval ParameterSpec parameter(std::string_view name, std::string_view unit, 
   return spec;
 }
 
-/// Whether `declared`, with part's number in the place of `#`, is `name`.
+/// Returns true if `name` is `declared` with the number of a part in place of `#`.
 constexpr bool is_name_of_part(std::string_view declared, std::size_t part, std::string_view name) {
   const std::size_t mark = declared.find('#');
   const std::string_view behind = declared.substr(mark + 1);

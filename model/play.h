@@ -1,5 +1,5 @@
 #pragma once
-// The play operator: an output that is dragged along once its input has moved by half the play.
+// The play operator: its output follows the input with a gap of half the play on either side.
 
 #include <type_traits>
 
@@ -8,30 +8,30 @@
 
 namespace softgrip::model {
 
-/// Output o with |input - o| <= reach at all times, moving only when it must. Rate independent.
+/// The output o satisfies |input - o| <= reach and moves only if necessary. Rate independent.
 template <class T>
 class Play {
  public:
   explicit Play(const T& reach) : reach_(reach) {}
 
-  /// As if the input had risen from 0.
+  /// Sets the state after a rise of the input from 0.
   void reset(const T& input) {
     output_ = T(0.0);
     settle(input);
   }
-  /// The input went straight to `input`, however long ago.
+  /// Moves the input directly to `input`. The duration has no effect.
   void settle(const T& input) {
     output_ = dragged(input, output_);
     dragging_ = false;
   }
   [[nodiscard]] const T& output() const { return output_; }
-  /// Where the output would be if the input went straight to `input`.
+  /// Returns the output for an input that changes directly to `input`.
   template <class U>
   [[nodiscard]] U peek(const U& input) const {
     return dragged(input, U(output_));
   }
 
-  /// Passes the output on, in two segments when it begins to move inside.
+  /// Passes the output on, in two segments if it begins to move inside.
   template <class Next>
   void step(const Segment<T>& in, Next&& next) {
     const T begin = output_;
@@ -47,9 +47,9 @@ class Play {
     dragging_ = true;
     upwards_ = upwards;
     const T side = upwards ? T(-reach_) : reach_;
-    const T start = begin - side;  // the input at which it begins to move
+    const T start = begin - side;  // the input at which the output begins to move
     const double share = (value_of(start) - value_of(in.begin)) / (value_of(in.end) - value_of(in.begin));
-    // A move that begins with the segment is split for the sake of derivatives alone.
+    // If the motion begins with the segment, it is divided only to keep the derivatives.
     const double least = std::is_arithmetic_v<T> ? 1e-12 : -1e-12;
     if (went_on || !(share > least && share < 1.0)) {
       next(Segment<T>{in.duration_s, begin, end, in.mean + side});
@@ -69,7 +69,7 @@ class Play {
   }
 
   T reach_;
-  bool dragging_ = false;  // the last move was one of the output, not of the input alone
+  bool dragging_ = false;  // the last change of the input also moved the output
   bool upwards_ = false;
   T output_{0.0};
 };

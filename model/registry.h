@@ -1,6 +1,6 @@
 #pragma once
-// The list of blocks: the only one in the project. To add a block, write model/blocks/<id>.h and add its line
-// here; everything else (files, names, bounds, reference page, chain, tests of properties) follows.
+// The only list of blocks in the project. To add a block, write model/blocks/<id>.h and add its line here.
+// Files, names, bounds, the reference page, the chain and the property tests use this list.
 
 #include <cstddef>
 #include <type_traits>
@@ -57,7 +57,7 @@
 
 namespace softgrip::model {
 
-/// The registered blocks, each under the contract of block.h.
+/// The registered blocks. Each fulfils the contract of block.h.
 template <template <class> class... Block>
 struct BlockList {
   template <class T>
@@ -66,7 +66,8 @@ struct BlockList {
   static_assert((keeps_contract<Block, double>() && ...));
   static_assert((keeps_contract<Block, Dual<double>>() && ...));
 
-  /// Where B, a block over double, stands in the list; behind its end when it is not registered.
+  /// Returns the index of B, a block over double, in the list, or the length of the list if B is not
+  /// registered.
   template <class B>
   static consteval std::size_t index_of() {
     std::size_t index = 0;
@@ -75,7 +76,7 @@ struct BlockList {
   }
 };
 
-/// All blocks, in the order in which the signal meets them; with_block() puts blocks there.
+/// All blocks, in the order in which the signal passes them. with_block() uses this order.
 using Blocks = BlockList<TransportDelay,          //
                          ValveDeadband,           //
                          ValveStiction,           //
@@ -124,11 +125,11 @@ using Blocks = BlockList<TransportDelay,          //
                          Sampling,                //
                          Quantisation>;
 
-/// One block of any type. The index of a type is BlockSpec::type and its place in catalogue().
+/// One block of any type. The index of a type equals BlockSpec::type and its index in catalogue().
 template <class T>
 using AnyBlock = Blocks::Any<T>;
 
-/// BlockSpec::type of a block: block_type<ValveLag>() or, of one over a number type,
+/// Returns BlockSpec::type of a block: block_type<ValveLag>() or, with a number type,
 /// block_type<ValveLag<double>>().
 template <template <class> class Block>
 [[nodiscard]] consteval std::size_t block_type() {

@@ -1,7 +1,7 @@
 #pragma once
-// What a pressure regulator does: a spool, moved by the error and its integral, opens a port to the supply or
-// to the atmosphere, and does not open at all within its overlap (Beater, Pneumatic Drives, 2007, chapters 5
-// and 8).
+// Model of a pressure regulator. The error and its integral move a spool, which opens a port to the supply or
+// to the atmosphere. Within its overlap the spool opens neither port (Beater, Pneumatic Drives, 2007,
+// chapters 5 and 8).
 
 #include <algorithm>
 #include <cmath>
@@ -12,22 +12,24 @@
 
 namespace softgrip::model {
 
-/// The numbers of a regulator. Each does nothing at 0; without time constants the pressure follows at once.
+/// Parameters of a regulator. A parameter of 0 has no effect. Without time constants, the pressure equals the
+/// command.
 template <class T>
 struct RegulatorNumbers {
   T filling_s{0.0};      ///< time constant while the port to the supply is open
-  T venting_s{0.0};      ///< while the port to the atmosphere is, at 50 kPa
-  T overlap_kpa{0.0};    ///< error within which neither is
-  T integral_s{0.0};     ///< time in which a steady error moves the spool as far again as it does at once
-  T full_open_kpa{0.0};  ///< error beyond which a port opens no further
+  T venting_s{0.0};      ///< time constant while the port to the atmosphere is open, at 50 kPa
+  T overlap_kpa{0.0};    ///< largest error at which both ports are closed
+  T integral_s{0.0};     ///< integral time: a constant error doubles the spool position in this time
+  T full_open_kpa{0.0};  ///< error at which a port is fully open
 };
 
-/// With v = e + integral of e / integral_s, e = u - p, clamped to full_open_kpa:
-///   filling_s p' = v - overlap where v > overlap;  venting_s p' / outflow(p) = v + overlap where v <
-///   -overlap; else p' = 0. The integral stands still while v is clamped and would grow.
-/// With no more than its time constants it is a TwoWayLag but for the outflow. In steps of at most
-/// `longest_step_s`, in each of which the integral is straight and the outflow is that of its middle;
-/// else exact for straight input.
+/// With v = e + integral of e / integral_s and e = u - p, v clamped to full_open_kpa:
+///   filling_s p' = v - overlap if v > overlap;
+///   venting_s p' / outflow(p) = v + overlap if v < -overlap;
+///   otherwise p' = 0.
+/// The integral stops if v is clamped and would grow. With only its time constants it is a TwoWayLag, except
+/// for the outflow. Steps are at most `longest_step_s`. In each step the integral is linear in time and the
+/// outflow is that at the middle of the step. Apart from that it is exact for straight input.
 template <class T>
 class RegulatedPressure {
  public:
@@ -38,11 +40,11 @@ class RegulatedPressure {
     integral_kpa_ = T(0.0);
   }
   [[nodiscard]] const T& output() const { return pressure_kpa_; }
-  /// What the integral has added to the error [kPa].
+  /// Returns the contribution of the integral to v [kPa].
   [[nodiscard]] const T& integral_kpa() const { return integral_kpa_; }
   [[nodiscard]] const RegulatorNumbers<T>& numbers() const { return n_; }
 
-  /// Passes one segment on, or one for every direction that the pressure takes.
+  /// Passes on one segment for each direction of the pressure change.
   template <class Next>
   void step(const Segment<T>& in, Next&& next) {
     if (value_of(n_.filling_s) <= 0 && value_of(n_.venting_s) <= 0) {
@@ -50,7 +52,7 @@ class RegulatedPressure {
       next(in);
       return;
     }
-    if (is_zero(in.duration_s)) return;  // no air flows at once
+    if (is_zero(in.duration_s)) return;  // the pressure cannot jump
     const double wanted = std::ceil(value_of(in.duration_s) / longest_step_s - 1e-9);
     const int steps = static_cast<int>(std::clamp(wanted, 1.0, most_steps));
     const T step_s = in.duration_s / static_cast<double>(steps);
@@ -60,7 +62,7 @@ class RegulatedPressure {
       const T from = in.at(T(static_cast<double>(i) / steps)), to = in.at(T((i + 1.0) / steps));
       const T before = pressure_kpa_;
       if (rests(from, to)) {
-        // Whatever else there is of a long rest.
+        // The regulator is at rest for the remaining steps.
         const T rest_s = step_s * static_cast<double>(steps - i);
         out.duration_s += rest_s;
         area += before * rest_s;
@@ -84,16 +86,17 @@ class RegulatedPressure {
 
  private:
   static constexpr double longest_step_s = 0.005;
-  /// Of a segment, more than an hour of it; a longer one has come to rest before.
+  /// Largest number of steps of a segment: more than an hour. A longer segment has come to rest before.
   static constexpr double most_steps = 1e6;
   static constexpr double atmosphere_kpa = 101.325;
-  /// ISO 6358-1: critical pressure ratio of a usual port, and the ratio above which its flow is linear.
+  /// ISO 6358-1: critical pressure ratio of a common port, and the ratio above which its flow is linear.
   static constexpr double critical_ratio = 0.3, linear_above = 0.995;
-  /// Pressure at which venting_s is meant.
+  /// Gauge pressure for which venting_s is defined.
   static constexpr double usual_kpa = 50;
   static constexpr double shortest_s = 1e-4;
 
-  /// Flow to the atmosphere over what it is without any back pressure [kPa], for a pressure above it [kPa].
+  /// Returns the flow to the atmosphere divided by the sonic conductance of the port [kPa], from the gauge
+  /// pressure [kPa].
   static T outflow(const T& gauge_kpa) {
     using std::sqrt;
     if (value_of(gauge_kpa) <= 0) return T(0.0);
@@ -107,14 +110,15 @@ class RegulatedPressure {
     return from_kpa * subsonic(T(linear_above)) * ((1.0 - ratio) * (1 / (1 - linear_above)));
   }
 
-  /// Nothing is asked for, and nothing will be.
+  /// Returns true if the pressure equals a constant command and the integral is within the overlap.
   [[nodiscard]] bool rests(const T& from, const T& to) const {
     constexpr double nothing_kpa = 1e-9;
     return value_of(from) == value_of(to) && std::abs(value_of(to) - value_of(pressure_kpa_)) < nothing_kpa &&
            std::abs(value_of(integral_kpa_)) <= value_of(n_.overlap_kpa);
   }
 
-  /// One step on input from `from` to `to`; the mean of the pressure over it.
+  /// Makes one step while the input changes from `from` to `to`. Returns the mean of the pressure over the
+  /// step.
   T go(const T& step_s, const T& from, const T& to) {
     if (!(value_of(n_.integral_s) > 0)) return follow(step_s, from, to);
     const T begins = from - pressure_kpa_;
@@ -123,7 +127,8 @@ class RegulatedPressure {
     const T mean = follow(step_s, from + integral_kpa_, to + integral_kpa_ + drift);
     const T ends = to - pressure_kpa_;
     const double stopped_after = stops_by(ends);
-    // By the error, now that the pressure is known, over the part of the step in which the integral moves.
+    // Updates the integral with the error from the new pressure, over the part of the step in which the
+    // integral changes.
     if (stopped_before > 0 && stopped_after > 0) return mean;
     T error = (from + to) * 0.5 - mean;
     double share = 1;
@@ -138,15 +143,16 @@ class RegulatedPressure {
     return mean;
   }
 
-  /// By how much the integral is beyond where it stands still [kPa]; not above 0: it moves.
+  /// Returns the distance of v beyond the limit at which the integral stops [kPa]. If it is not above 0, the
+  /// integral changes.
   [[nodiscard]] double stops_by(const T& error) const {
     const double full = value_of(n_.full_open_kpa), asked = value_of(error) + value_of(integral_kpa_);
     if (!(full > 0)) return -1;
     return asked * value_of(error) > 0 ? std::abs(asked) - full : -1;
   }
 
-  /// The band around what is wanted goes straight from `wanted` to `wanted_after`; the pressure goes towards
-  /// the edge that is nearer, if it is outside. The mean over the step.
+  /// Moves the band around the target linearly from `wanted` to `wanted_after`. If the pressure is outside
+  /// the band, it moves towards the nearer edge. Returns the mean of the pressure over the step.
   T follow(const T& step_s, const T& wanted, const T& wanted_after) {
     const double p = value_of(pressure_kpa_), band = value_of(n_.overlap_kpa);
     const bool fills = p < value_of(wanted) - band;
@@ -162,7 +168,8 @@ class RegulatedPressure {
     return (mean * lasts_s + wait(rest_s, met, wanted_after) * rest_s) / step_s;
   }
 
-  /// Within the band, until an edge of it comes along.
+  /// Keeps the pressure within the band until an edge of the band reaches it. Returns the mean of the
+  /// pressure.
   T wait(const T& step_s, const T& wanted, const T& wanted_after) {
     const double p = value_of(pressure_kpa_), band = value_of(n_.overlap_kpa);
     const bool fills = p < value_of(wanted_after) - band;
@@ -177,17 +184,19 @@ class RegulatedPressure {
     return before * waits + mean * (1.0 - waits);
   }
 
-  /// The time constant at the pressure where the venting towards `target_kpa` is halfway through the step.
+  /// Returns the time constant for the pressure that venting towards `target_kpa` reaches halfway through the
+  /// step.
   T venting_s(const T& target_kpa, const T& step_s) const {
     static const double usual = value_of(outflow(T(usual_kpa)));
     const T begins = outflow(pressure_kpa_);
-    if (value_of(begins) <= 0) return T(1e9);  // nothing leaves a chamber without pressure
+    if (value_of(begins) <= 0) return T(1e9);  // a chamber without pressure has no outflow
     const T z = step_s * begins / (n_.venting_s * usual);
     const T halfway = outflow(pressure_kpa_ + (target_kpa - pressure_kpa_) * (z / (2.0 + z)));
     return n_.venting_s * (usual / (value_of(halfway) > 0 ? halfway : begins));
   }
 
-  /// Lags behind a straight target until it meets it. How long that lasts, and the mean meanwhile.
+  /// Moves the pressure as a lag behind a straight target until it meets the target. Returns the duration and
+  /// sets `mean` to the mean pressure of that time.
   T towards(const T& step_s, const T& target, const T& target_after, const T& time_constant, T& mean) {
     using std::log1p;
     const T tau = value_of(time_constant) > shortest_s ? time_constant : T(shortest_s);
@@ -196,7 +205,7 @@ class RegulatedPressure {
     const double way = value_of(gap) != 0 ? value_of(gap) : value_of(slope);
     const double sign = way > 0 ? 1 : -1;
     if (value_of(n_.full_open_kpa) > 0 && std::abs(value_of(gap)) > value_of(most)) {
-      // The port is as open as it gets.
+      // The port is fully open.
       const T rate = sign * most / tau;
       open_s = step_s;
       if (sign * (value_of(rate) - value_of(slope)) > 0) {

@@ -1,5 +1,5 @@
 #pragma once
-// The signal between two blocks: a stretch of time over which the signal moves monotonically.
+// The signal between two blocks: a time interval over which the signal is monotone.
 
 #include <cmath>
 #include <limits>
@@ -8,10 +8,10 @@
 
 namespace softgrip::model {
 
-/// A stretch of a signal. `duration_s` may be zero: a jump from `begin` to `end`. `mean` is the average over
-/// the stretch, so that blocks downstream see curvature (a lag's exponential) to second order: they take the
-/// signal for the parabola through the three. Of a straight stretch the mean is the middle. Pressures are
-/// monotone within a segment. T is double or an automatic differentiation type.
+/// One interval of a signal. A `duration_s` of zero is a jump from `begin` to `end`. `mean` is the average
+/// over the interval. The next blocks treat the signal as the parabola through these three values, so that
+/// they reproduce its curvature (the exponential of a lag) to second order. In a straight interval, the mean
+/// is the middle. Pressures are monotone within a segment. T is double or an automatic differentiation type.
 template <class T>
 struct Segment {
   T duration_s;
@@ -23,33 +23,35 @@ struct Segment {
     return {duration_s, begin, end, (begin + end) * 0.5};
   }
 
-  /// How far the parabola bends: its value is begin + (end - begin) s + bend s (1 - s), s in [0, 1].
-  /// Exactly 0 for a straight stretch.
+  /// Returns the curvature: the parabola is begin + (end - begin) s + bend s (1 - s), s in [0, 1]. It is
+  /// exactly 0 for a straight interval.
   [[nodiscard]] T bend() const { return (mean - (begin + end) * 0.5) * 6.0; }
 
-  /// The value at a fraction of the duration.
+  /// Returns the value at a fraction of the duration.
   [[nodiscard]] T at(const T& fraction) const {
     return begin + (end - begin) * fraction + bend() * (fraction * (1.0 - fraction));
   }
 
-  /// The part from `begin` to a fraction in (0, 1).
+  /// Returns the part from `begin` to a fraction in (0, 1).
   [[nodiscard]] Segment before(const T& fraction) const {
     const T value = at(fraction);
     const T middle = at(fraction * 0.5);
     return {duration_s * fraction, begin, value, (begin + value + middle * 4.0) * (1.0 / 6.0)};
   }
 
-  /// The part from a fraction in (0, 1) to `end`.
+  /// Returns the part from a fraction in (0, 1) to `end`.
   [[nodiscard]] Segment beyond(const T& fraction) const {
     const T value = at(fraction);
     const T middle = at((fraction + 1.0) * 0.5);
     return {duration_s * (1.0 - fraction), value, end, (value + end + middle * 4.0) * (1.0 / 6.0)};
   }
 
-  /// The fraction at which a monotone segment passes `level`, which lies strictly between begin and end.
+  /// Returns the fraction at which a monotone segment crosses `level`, which is strictly between begin and
+  /// end.
   [[nodiscard]] T fraction_at(const T& level) const {
     using std::sqrt;
-    // bend s^2 - (rise + bend) s + (level - begin) = 0; the root without cancellation, straight included.
+    // Root of bend s^2 - (rise + bend) s + (level - begin) = 0 without cancellation, also for straight
+    // segments.
     const T sum = (end - begin) + bend();
     const T discriminant = sum * sum - 4.0 * bend() * (level - begin);
     if (value_of(discriminant) <= 0.0) return (level - begin) / (end - begin);
@@ -58,11 +60,11 @@ struct Segment {
   }
 };
 
-/// What surrounds the rig while a sample passes; blocks that do not depend on it ignore it.
+/// Surroundings of the rig during a sample. Blocks that do not depend on them ignore them.
 struct Surroundings {
-  /// since the start of the campaign, at the end of the sample; NaN: the chain's own clock since reset()
+  /// time since the start of the campaign at the end of the sample; NaN: the clock of the chain since reset()
   double time_s = std::numeric_limits<double>::quiet_NaN();
-  double supply_kpa = 1e9;    ///< supply pressure; the default never limits
+  double supply_kpa = 1e9;    ///< supply pressure; the default has no effect
   double temperature_c = 20;  ///< of the actuator
 };
 

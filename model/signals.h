@@ -1,5 +1,5 @@
 #pragma once
-// The test signals, defined once: pressure commands that start and end at 0 and stay at or below 60 kPa.
+// The test signals: pressure commands that start and end at 0 and do not exceed 60 kPa.
 
 #include <optional>
 #include <string_view>
@@ -9,15 +9,15 @@ namespace softgrip::model {
 
 enum class SignalName { tp1, tp2, sp1, sp2, steps, hold };
 
-/// The name as users write it, or nothing.
+/// Returns the signal with this name, or nullopt.
 [[nodiscard]] std::optional<SignalName> signal_named(std::string_view name);
 [[nodiscard]] std::string_view name_of(SignalName signal);
-/// All of them, for help texts and tests.
+/// Returns all signals, for help texts and tests.
 [[nodiscard]] const std::vector<SignalName>& all_signals();
 
-/// How long the signal lasts [s].
+/// Returns the duration of the signal [s].
 [[nodiscard]] double duration_s(SignalName signal);
-/// The commanded pressure [kPa] at `time_s` (0 outside [0, duration_s]).
+/// Returns the commanded pressure at `time_s` [kPa]; 0 outside [0, duration_s].
 [[nodiscard]] double value_kpa(SignalName signal, double time_s);
 
 }  // namespace softgrip::model

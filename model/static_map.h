@@ -1,12 +1,12 @@
 #pragma once
-// A segment seen through a function without memory.
+// Applies a function without memory to a segment.
 
 #include "model/segment.h"
 
 namespace softgrip::model {
 
-/// Ends mapped, mean by Simpson's rule over the parabola through the segment.
-/// @param begin  where the output stood (the map of in.begin, unless the map moves with time).
+/// Maps both ends and computes the mean by Simpson's rule over the parabola through the segment.
+/// @param begin  last output (the map of in.begin, unless the map changes with time).
 template <class T, class Map>
 [[nodiscard]] Segment<T> mapped(const Segment<T>& in, Map&& map, const T& begin) {
   const T end = map(in.end);

@@ -1,6 +1,6 @@
 #pragma once
-// A first-order lag with a time constant for either direction: what air through a port does, which fills a
-// volume from a high pressure and vents it into a low one.
+// A first-order lag with different time constants for rising and falling input. It models air through a port,
+// which fills a volume from a high pressure and vents it into a low one.
 
 #include <cmath>
 
@@ -11,9 +11,9 @@
 
 namespace softgrip::model {
 
-/// tau p' = u - p, tau = filling while u > p, venting while u < p. Exact for straight input: where the output
-/// meets the input, two segments are passed on. With a time constant of 0 it follows at once in that
-/// direction.
+/// tau p' = u - p, where tau is the filling time constant if u > p and the venting time constant if u < p.
+/// Exact for straight input: where the output meets the input, two segments are passed on. With a time
+/// constant of 0, the output follows immediately in that direction.
 template <class T>
 class TwoWayLag {
  public:
@@ -45,7 +45,7 @@ class TwoWayLag {
     const T rest_s = in.duration_s - turn_s;
     const double least_s = 1e-6 * value_of(in.duration_s);
     if (!(value_of(turn_s) > least_s && value_of(rest_s) > least_s)) {
-      // A meeting within a millionth of either end is not worth a segment.
+      // If they meet within a millionth of either end, no separate segment is made.
       go(value_of(turn_s) <= least_s ? then : now, in, next);
       return;
     }
@@ -77,9 +77,9 @@ class TwoWayLag {
     next(Segment<T>::straight(in.duration_s, begin, output_));
   }
 
-  // The gap d = input - output obeys d' = slope - d / tau on straight input, so it closes after
-  // tau log(1 - d(0) / (slope tau)) where input and output move towards each other; never: the whole
-  // duration.
+  // Returns the time at which the output meets the input. On a straight input, the gap d = input - output
+  // follows d' = slope - d / tau. It closes after tau log(1 - d(0) / (slope tau)) if input and output move
+  // towards each other. Otherwise the result is the whole duration.
   T meeting(const Segment<T>& in, const T& gap, const Direction& now) const {
     using std::log1p;
     const T slope = (in.end - in.begin) / in.duration_s;

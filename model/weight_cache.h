@@ -1,6 +1,6 @@
 #pragma once
-// Response weights kept for the durations that come again: the nominal sample time and the pieces a delay
-// cuts it into.
+// Keeps response weights for recurring durations: the nominal sample time and the pieces into which a delay
+// divides it.
 
 #include <array>
 #include <cstddef>
@@ -12,13 +12,14 @@
 
 namespace softgrip::model {
 
-/// The weights of `branches` responses for each of the last few durations, replaced in turn.
+/// The weights of `branches` responses for each of the most recent durations. A new duration replaces the
+/// oldest entry.
 template <class T>
 class WeightCache {
  public:
   explicit WeightCache(std::size_t branches) : branches_(branches), weights_(branches * slots) {}
 
-  /// The weights for a duration; `fill(span)` computes those of all branches when it is new.
+  /// Returns the weights for a duration. `fill(span)` computes those of all branches if the duration is new.
   template <class Fill>
   const ExponentialWeights<T>* at(const T& duration_s, Fill&& fill) {
     for (std::size_t slot = 0; slot < used_; ++slot) {
@@ -32,7 +33,7 @@ class WeightCache {
     return &weights_[slot * branches_];
   }
 
-  /// The same without keeping anything: nothing when the duration is not kept.
+  /// Returns the stored weights for a duration, or nullptr if it is not stored. It stores nothing.
   [[nodiscard]] const ExponentialWeights<T>* find(const T& duration_s) const {
     for (std::size_t slot = 0; slot < used_; ++slot) {
       if (same(durations_[slot], duration_s)) return &weights_[slot * branches_];

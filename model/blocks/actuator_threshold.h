@@ -1,11 +1,11 @@
 #pragma once
-// No motion below a threshold pressure: the bladder must fill, the fold must open.
+// No motion below a threshold pressure, for example until the bladder is filled or a fold opens.
 
 #include "model/block.h"
 
 namespace softgrip::model {
 
-/// q = p - p0 above p0, 0 between 0 and p0, p below 0.
+/// q = p - p0 above p0, q = 0 between 0 and p0, and q = p below 0.
 template <class T>
 class ActuatorThreshold {
  public:
@@ -24,7 +24,7 @@ class ActuatorThreshold {
   template <class Next>
   void step(const Segment<T>& in, const Surroundings&, Next&& next) {
     const auto pass = [&](const Segment<T>& piece) {
-      // Inside one of the three zones the map is a shift or nothing moves.
+      // Within one of the three zones, the map is either a shift or zero.
       const double middle = 0.5 * (value_of(piece.begin) + value_of(piece.end));
       const T begin = output_;
       output_ = map(piece.end);

@@ -1,12 +1,12 @@
 #pragma once
-// The gain of the actuator drifts steadily across a campaign.
+// The gain of the actuator drifts linearly over a campaign.
 
 #include "model/block.h"
 #include "model/moving_gain.h"
 
 namespace softgrip::model {
 
-/// y times 1 + a t, kept positive; t is the time of the campaign.
+/// Multiplies y by 1 + a t, limited to positive values. t is the time of the campaign.
 template <class T>
 class Ageing : public SurroundingsGain<Ageing<T>, T> {
  public:

@@ -1,13 +1,13 @@
 #pragma once
-// Loading and unloading numbers of the chain's Bouc-Wen element that differ.
+// Differences between loading and unloading of the chain's Bouc-Wen element.
 
 #include "model/block.h"
 #include "model/blocks/bouc_wen.h"
 
 namespace softgrip::model {
 
-/// Skews the chain's own Bouc-Wen element, which levels off faster or follows the pressure closer one way
-/// than the other (bouc_wen.h says whose form it is).
+/// Makes the chain's Bouc-Wen element saturate faster, or follow the pressure more closely, in one direction
+/// than in the other. bouc_wen.h names the source of the equation.
 template <class T>
 class AsymmetricBoucWen : public BoucWenPart<T> {
  public:

@@ -6,7 +6,7 @@
 
 namespace softgrip::model {
 
-/// See TwoWayLag.
+/// The equation is that of TwoWayLag.
 template <class T>
 class AsymmetricValveLag {
  public:

@@ -6,7 +6,7 @@
 
 namespace softgrip::model {
 
-/// The measured point is dragged along with half the gap on either side.
+/// The measured point follows the actuator with a gap of half the backlash on either side.
 template <class T>
 class Backlash {
  public:

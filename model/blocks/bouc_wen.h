@@ -2,17 +2,18 @@
 // Bouc-Wen hysteresis, stepped in pressure. Zhang et al., Actuators 2025, 14(4), 193, equation 1,
 // with signs and bars in their standard reading:
 //   B(t) = alpha p - h,   h' = beta p' - gamma p' |h|^n - eta |p'| |h|^(n-1) h
-// The model is rate independent: dh/dp = beta - (gamma + eta s) |h|^n with s = sgn(p' h), whatever the time.
-// An AsymmetricBoucWen beside it adds a term that differs between loading and unloading,
+// The model is rate independent: dh/dp = beta - (gamma + eta s) |h|^n with s = sgn(p' h).
+// An AsymmetricBoucWen in the chain adds a term that differs between loading and unloading,
 //   dh/dp = beta (1 + b sgn(p')) - (gamma + eta s + delta sgn(p') + epsilon sgn(p') s) |h|^n
-// (the term in the sign of the velocity alone of the generalised Bouc-Wen models: Wang and Wen, Journal of
-// Engineering Mechanics 126, 2000; Song and Der Kiureghian, Journal of Engineering Mechanics 132, 2006; with
-// b and epsilon loading and unloading have numbers of their own altogether).
-// A RateDependentWidth beside it makes the loop wider where the pressure moves fast,
+// (the term in the sign of the velocity alone is that of the generalised Bouc-Wen models: Wang and Wen,
+// Journal of Engineering Mechanics 126, 2000; Song and Der Kiureghian, Journal of Engineering Mechanics 132,
+// 2006. With b and epsilon, loading and unloading have independent parameters).
+// A RateDependentWidth in the chain makes the loop wider at high pressure rates,
 //   B = alpha p - h (1 + growth r/(r + rate)), settling r' = |p'| - r
-// (heights of the loop that grow with the rate: Ang, Khosla and Riviere, IEEE/ASME Transactions on
-// Mechatronics 12, 2007; here they level off); a RateDependentLevelling lets it level off sooner there,
-//   eta (1 + levelling r/(r + rate)).
+// (loop heights that grow with the rate: Ang, Khosla and Riviere, IEEE/ASME Transactions on Mechatronics 12,
+// 2007; here they saturate). A RateDependentLevelling makes the hysteretic state saturate earlier at high
+// rates, because it replaces eta by
+//   eta (1 + saturation r/(r + rate)).
 
 #include <array>
 #include <cmath>
@@ -23,23 +24,23 @@
 
 namespace softgrip::model {
 
-/// Difference of loading (plus) and unloading (minus) from their mean. All zero: no effect.
+/// Deviation of loading (plus) and unloading (minus) from their mean. Zeros have no effect.
 template <class T>
 struct BoucWenSkew {
-  T delta_per_kpa{0.0};    ///< of gamma
-  T epsilon_per_kpa{0.0};  ///< of eta
-  T beta_share{0.0};       ///< of beta, as a share of it
+  T delta_per_kpa{0.0};    ///< deviation of gamma
+  T epsilon_per_kpa{0.0};  ///< deviation of eta
+  T beta_share{0.0};       ///< deviation of beta, as a share of beta
 };
 
-/// Change of the loop at a high rate of the pressure.
+/// Change of the loop at high pressure rates.
 template <class T>
 struct BoucWenRate {
-  T share{0.0};           ///< of its width, or of eta
-  T half_kpa_per_s{1.0};  ///< rate at which it is half of that
-  T settling_s{1.0};      ///< over which the rate is averaged
+  T share{0.0};           ///< largest change of the width or of eta, as a share
+  T half_kpa_per_s{1.0};  ///< rate at which half the change is reached
+  T settling_s{1.0};      ///< time constant of the average of the rate
 };
 
-/// r of settling r' = |p'| - r, and how much of a share it makes.
+/// The averaged rate r, which follows settling r' = |p'| - r, and its effect.
 template <class T>
 class AveragedRate {
  public:
@@ -49,7 +50,8 @@ class AveragedRate {
   void reset() { kpa_per_s_ = T(0.0); }
   void step(const T& change_kpa, const T& duration_s) { kpa_per_s_ = after(change_kpa, duration_s); }
 
-  /// r after `duration_s`: it relaxes toward |p'|; a jump throws it up by the jump per settling time.
+  /// Returns r after `duration_s`. It relaxes toward |p'|. A jump increases it by the jump divided by the
+  /// settling time.
   template <class U>
   [[nodiscard]] U after(const U& change_kpa, const T& duration_s) const {
     const T z = duration_s * settling_per_s_;
@@ -57,7 +59,7 @@ class AveragedRate {
     return kpa_per_s_ + (size * settling_per_s_ - z * kpa_per_s_) * phi1(T(-z));
   }
 
-  /// `base` times the share: nothing at rest, all of it where the pressure moves much faster than half.
+  /// Returns `base` times the share: zero at rest, and the full share if the rate is far above the half rate.
   template <class U>
   [[nodiscard]] U share_of(const T& base, const U& kpa_per_s) const {
     return base * rate_.share * (kpa_per_s / (kpa_per_s + rate_.half_kpa_per_s));
@@ -70,13 +72,14 @@ class AveragedRate {
   T kpa_per_s_{0.0};
 };
 
-/// For exponent 1, dh/dp is linear between sign changes of h: stepped in closed form, exact for any step
-/// size, at most one sign change per monotone step. For the others, classical Runge-Kutta in sub-steps of the
-/// pressure so short that the relative change of the slope over one stays below 1/100 (local error about
-/// 1e-11 of h), cut at the sign change, whose place is an integral over h taken by Gauss-Legendre. The mean
-/// of a segment is exact to the fourth power of its pressure change (1e-7 mm at 0.5 kPa).
+/// For exponent 1, dh/dp is linear between sign changes of h. It is integrated in closed form, exact for any
+/// step size, with at most one sign change per monotone step. Other exponents use the classical Runge-Kutta
+/// method in sub-steps of the pressure. The relative change of the slope in a sub-step is below 1/100 (local
+/// error about 1e-11 of h). Sub-steps end at the sign change, whose position is an integral over h computed
+/// by Gauss-Legendre quadrature. The error of the mean of a segment is of the fourth order in its pressure
+/// change (1e-7 mm at 0.5 kPa).
 ///
-/// gamma and eta carry the unit 1/(kPa mm^(exponent-1)): 1/kPa for exponent 1, which the names state.
+/// gamma and eta have the unit 1/(kPa mm^(exponent-1)). The parameter names state that of exponent 1: 1/kPa.
 template <class T>
 class BoucWen {
  public:
@@ -131,21 +134,22 @@ class BoucWen {
     growing_ = {not_below(growing_[0] - skew.epsilon_per_kpa, 0.0),
                 not_below(growing_[1] + skew.epsilon_per_kpa, 0.0)};
     shrinking_ = {shrinking_[0] + skew.epsilon_per_kpa, shrinking_[1] - skew.epsilon_per_kpa};
-    // Where h has levelled off one way it must shrink on the way back.
+    // If h has saturated in one direction, it must decrease in the other.
     for (const std::size_t way : {0U, 1U}) {
       const T bound = growing_[1 - way] * beta_[way] / beta_[1 - way];
       if (value_of(shrinking_[way]) > value_of(bound)) shrinking_[way] = bound;
     }
   }
 
-  /// Makes the loop wider by up to `rate.share` of itself where the pressure moves much faster than
-  /// `rate.half_kpa_per_s`. Exact at the end of a straight segment.
+  /// Makes the loop wider by up to `rate.share` of its width at pressure rates far above
+  /// `rate.half_kpa_per_s`. The result is exact at the end of a straight segment.
   void widen(const BoucWenRate<T>& rate) {
     follows_rate_ = true;
     widening_ = AveragedRate<T>(rate);
   }
 
-  /// Makes eta larger by up to `rate.share` of itself there. During a segment eta is that of its beginning.
+  /// Increases eta by up to `rate.share` of its value at such rates. During a segment, eta keeps its value
+  /// from the beginning.
   void level_off(const BoucWenRate<T>& rate) {
     follows_rate_ = true;
     levelling_ = AveragedRate<T>(rate);
@@ -165,7 +169,7 @@ class BoucWen {
   }
 
   [[nodiscard]] T output() const { return output_; }
-  /// h [mm]
+  /// Returns the hysteretic state h [mm].
   [[nodiscard]] const T& hysteresis_mm() const { return hysteresis_; }
   /// Returns dh/dp at the present state, for a rising or falling pressure [mm/kPa].
   [[nodiscard]] T slope(bool rising) const { return slope_at(hysteresis_, rising ? 1.0 : -1.0); }
@@ -184,7 +188,8 @@ class BoucWen {
     hysteresis_ = moved(change, direction);
     pressure_ = in.end;
     direction_ = direction;
-    // Mean of h over the segment: the cubic through both ends and their slopes, moved along by the bend of p.
+    // Mean of h over the segment: a cubic through both ends and their slopes, corrected for the curvature of
+    // p.
     const T slope_before = slope_at(before, direction);
     const T slope_after = slope_at(hysteresis_, direction);
     const T off_middle = in.mean - (in.begin + in.end) * 0.5;
@@ -215,8 +220,8 @@ class BoucWen {
   }
 
  private:
-  // +1 while the pressure rises, -1 while it falls. A change of value zero carries derivatives of the motion
-  // that led here.
+  // Returns +1 while the pressure rises and -1 while it falls. A change of value zero still has the
+  // derivatives of the previous motion.
   template <class U>
   [[nodiscard]] double direction_of(const U& change) const {
     const double value = value_of(change);
@@ -227,8 +232,8 @@ class BoucWen {
 
   static T not_below(const T& value, double bound) { return value_of(value) < bound ? T(bound) : value; }
 
-  // gamma + eta s + (delta + epsilon s) sgn(p') for the state h and the direction of the pressure. At h = 0
-  // the state follows the pressure.
+  // Returns gamma + eta s + (delta + epsilon s) sgn(p') for the state h and the direction of the pressure. At
+  // h = 0, s is +1.
   [[nodiscard]] T rate(double h, double direction) const {
     const std::size_t way = direction > 0.0 ? 1 : 0;
     const bool grows = h * direction >= 0.0;
@@ -236,7 +241,7 @@ class BoucWen {
     return grows ? T(growing_[way] + more_eta_) : T(shrinking_[way] - more_eta_);
   }
 
-  // |h|^n
+  // Returns |h|^n.
   template <class U>
   [[nodiscard]] U power(const U& h) const {
     const U magnitude = value_of(h) < 0.0 ? U(-h) : h;
@@ -256,13 +261,13 @@ class BoucWen {
     return beta(direction) - rate(value_of(h), direction) * power(h);
   }
 
-  // The state after a monotone change of the pressure from here.
+  // Returns the state after a monotone change of the pressure.
   template <class U>
   [[nodiscard]] U moved(const U& change, double direction) const {
     return exponent_ == 1 ? moved_linear(change, direction) : moved_in_steps(change, direction);
   }
 
-  // dh/dp = beta - k h on either side of h = 0, k = sgn(h) (gamma + eta s).
+  // dh/dp = beta - k h on either side of h = 0, with k = sgn(h) (gamma + eta s).
   template <class U>
   [[nodiscard]] U moved_linear(const U& change, double direction) const {
     const double h0 = value_of(hysteresis_);
@@ -270,8 +275,8 @@ class BoucWen {
     const T k = rate(h0, direction) * (h0 * direction >= 0.0 ? direction : -direction);
     const U end = hysteresis_ + change * (gain - k * hysteresis_) * phi1(U(-k * change));
     if (h0 * value_of(end) >= 0.0) return end;
-    // h passes zero after -h0/beta * log(1 + x)/x of pressure, x = -k h0 / beta; the integration continues
-    // from there.
+    // h passes zero after a pressure change of -h0/beta * log(1 + x)/x, where x = -k h0 / beta. The
+    // integration continues from there.
     using std::log1p;
     const T x = -k * hysteresis_ / gain;
     const T stretch = std::abs(value_of(x)) < 1e-5 ? T(1.0 - x * 0.5 + x * x * (1.0 / 3.0)) : T(log1p(x) / x);
@@ -296,8 +301,8 @@ class BoucWen {
     return h;
   }
 
-  // So many that over one n k |h|^(n-1) dp, the relative change of the slope, stays below 1/100, and h moves
-  // by at most 1/40 of where it levels off.
+  // Returns the number of sub-steps. In each, the relative change of the slope, n k |h|^(n-1) dp, is below
+  // 1/100, and h changes by at most 1/40 of its saturation value.
   [[nodiscard]] int steps_for(double change_kpa, double direction) const {
     constexpr int most = 100000;
     const double beta = value_of(this->beta(direction));
@@ -325,8 +330,8 @@ class BoucWen {
     return h + change * (s1 + 2.0 * s2 + 2.0 * s3 + s4) * (1.0 / 6.0);
   }
 
-  // How much pressure takes a shrinking h to zero: the integral of dv / (beta - k v^n) over v from 0 to |h|,
-  // by Gauss-Legendre with five points.
+  // Returns the pressure change that reduces h to zero: the integral of dv / (beta - k v^n) over v from 0 to
+  // |h|, by Gauss-Legendre quadrature with five points.
   template <class U>
   [[nodiscard]] U to_zero(const U& h, const T& gain, const T& k) const {
     constexpr std::array<double, 5> nodes{0.04691007703066800, 0.2307653449471585, 0.5, 0.7692346550528415,
@@ -344,7 +349,7 @@ class BoucWen {
   T alpha_;
   std::array<T, 2> beta_;       // while the pressure falls and while it rises
   std::array<T, 2> growing_;    // gamma + eta, while the pressure falls and while it rises
-  std::array<T, 2> shrinking_;  // gamma - eta, likewise
+  std::array<T, 2> shrinking_;  // gamma - eta, for the same two directions
   int exponent_;
   double direction_ = 1.0;
   bool follows_rate_ = false;
@@ -358,8 +363,8 @@ class BoucWen {
 };
 
 /// Common base of the parts of the chain's Bouc-Wen element that are separate blocks in the model. They
-/// declare `void shape(BoucWen<T>&) const`, which the chain calls once after all its blocks are made. They
-/// add nothing to the displacement themselves. Without bouc_wen in the chain, they have no effect.
+/// declare `void shape(BoucWen<T>&) const`, which the chain calls once after all its blocks are constructed.
+/// They add nothing to the displacement themselves. Without bouc_wen in the chain, they have no effect.
 template <class T>
 class BoucWenPart {
  public:

@@ -1,12 +1,12 @@
 #pragma once
-// First-order lag between the point at which the pressure is measured and the finger's chamber.
+// First-order lag between the pressure sensor and the chamber of the finger.
 
 #include "model/block.h"
 #include "model/two_way_lag.h"
 
 namespace softgrip::model {
 
-/// See TwoWayLag.
+/// The equation is that of TwoWayLag.
 template <class T>
 class ChamberLag {
  public:

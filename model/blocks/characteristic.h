@@ -1,5 +1,5 @@
 #pragma once
-// A bent map between what the elements sum up to and the displacement.
+// A nonlinear map from the sum of the elements to the displacement.
 
 #include "model/block.h"
 #include "model/characteristic_map.h"
@@ -7,7 +7,7 @@
 
 namespace softgrip::model {
 
-/// See CharacteristicMap: monotone for every curvature.
+/// The equation is that of CharacteristicMap. It is monotone for every curvature.
 template <class T>
 class Characteristic {
  public:

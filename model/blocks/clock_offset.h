@@ -1,12 +1,12 @@
 #pragma once
-// The clock of the reading is ahead: the reading leads its command.
+// The clock of the reading is ahead, so that the reading leads its command.
 
 #include "model/block.h"
 
 namespace softgrip::model {
 
-/// z = y + lead dy/dt, with the slope from the sample before: the reading that a straight motion has after
-/// `lead`. Exact between corners of the motion; a corner is seen `lead` too late.
+/// z = y + lead dy/dt, with the slope of the last sample. This extrapolates a straight motion by `lead` and
+/// is exact between corners of the motion. A corner appears `lead` too late.
 template <class T>
 class ClockOffset {
  public:

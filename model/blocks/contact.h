@@ -1,12 +1,12 @@
 #pragma once
-// Stiffer beyond a position: an object that is touched, a stop.
+// The stiffness increases beyond a position: contact with an object or an end stop.
 
 #include "model/block.h"
 #include "model/static_map.h"
 
 namespace softgrip::model {
 
-/// y up to the position; beyond it the motion is divided by 1 + stiffening.
+/// z = y up to the position. Beyond it, the motion is divided by 1 + stiffening.
 template <class T>
 class Contact {
  public:

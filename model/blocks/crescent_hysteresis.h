@@ -1,16 +1,16 @@
 #pragma once
-// A loop that is wide in the middle of the pressures and closes at both ends.
+// A hysteresis loop that is wide at medium pressure and closes at both ends.
 
 #include "model/block.h"
 #include "model/clip.h"
 
 namespace softgrip::model {
 
-/// A generalised play (Krasnosel'skii and Pokrovskii, Systems with Hysteresis, 1989, chapter 2): c rests
-/// until it meets one of two envelopes and then follows it, the lower one up and the upper one down. Over x =
-/// p/range the upper one is straight and the lower one sags, x/(1 + bend (1 - x)); outside [0, 1] both are
-/// one line and nothing is added. The middle of both is taken away, so that a base keeps its gain. Rate
-/// independent.
+/// A generalised play (Krasnosel'skii and Pokrovskii, Systems with Hysteresis, 1989, chapter 2). c is
+/// constant until it meets one of two envelopes and then follows it: the lower one upwards, the upper one
+/// downwards. With x = p/range, the upper envelope is straight and the lower one is x/(1 + bend (1 - x)).
+/// Outside [0, 1] both envelopes are one line and the block adds nothing. The mean of both envelopes is
+/// subtracted, so that the gain of the model does not change. Rate independent.
 template <class T>
 class CrescentHysteresis {
  public:
@@ -35,7 +35,7 @@ class CrescentHysteresis {
   }
   [[nodiscard]] T output() const { return output_; }
 
-  // The mean by Simpson's rule of a straight p.
+  // Mean by Simpson's rule for a straight p.
   Segment<T> step(const Segment<T>& in, const Surroundings&) {
     const T begin = output_;
     const T half = (in.begin + in.end) * 0.5 / range_kpa_, end = in.end / range_kpa_;

@@ -1,15 +1,15 @@
 #pragma once
-// Loading and unloading loops that differ in shape: an element with a length of its own for either way.
+// Loading and unloading loops of different shape: an element with one characteristic pressure per direction.
 
 #include "model/block.h"
 #include "model/exponential.h"
 
 namespace softgrip::model {
 
-/// A Duhem operator that unloading winds up and loading unwinds, each over its own pressure: while the
-/// pressure falls, z approaches the unloading length; while it rises, z fades over the loading length. Rate
-/// independent; nothing on the first loading. With both lengths equal the settled loop is point symmetric, as
-/// Bouc-Wen's own is; with different ones it is not. Exact for any step size.
+/// A Duhem operator. While the pressure falls, z approaches the unloading length. While the pressure rises, z
+/// decays over the loading length. It is rate independent and zero on the first loading. With equal lengths,
+/// the settled loop is point symmetric, as that of Bouc-Wen. With different lengths it is not. Exact for any
+/// step size.
 template <class T>
 class DuhemHysteresis {
  public:
@@ -45,7 +45,7 @@ class DuhemHysteresis {
     wound_kpa_ = moved(change, falling_);
     pressure_ = in.end;
     output_ = gain_ * wound_kpa_;
-    // The cubic through both ends and their slopes.
+    // Mean of the cubic through both ends and their slopes.
     const T size = falling_ ? T(-change) : change;
     const T bow =
         size * (falling_ ? unloading_per_kpa_ : loading_per_kpa_) * (wound_kpa_ - before) * (1.0 / 12.0);
@@ -65,7 +65,8 @@ class DuhemHysteresis {
     return value < 0.0 || (value == 0.0 && falling_);
   }
 
-  // z after a monotone change: dz/d|p| = 1 - z/unloading or -z/loading.
+  // Returns z after a monotone change: dz/d|p| = 1 - z/unloading while p falls, and -z/loading while it
+  // rises.
   template <class U>
   [[nodiscard]] U moved(const U& change, bool falling) const {
     const T& per_kpa = falling ? unloading_per_kpa_ : loading_per_kpa_;

@@ -1,5 +1,5 @@
 #pragma once
-// Ringing: the mass of finger and load on the spring of the actuator.
+// Oscillation of the mass of finger and load on the stiffness of the actuator.
 
 #include <cmath>
 #include <numbers>
@@ -8,8 +8,8 @@
 
 namespace softgrip::model {
 
-/// z'' + 2 d w z' + w^2 z = w^2 y with w = 2 pi / period. Exact for a displacement that is a parabola over
-/// each segment. Period 0 passes the displacement on.
+/// z'' + 2 d w z' + w^2 z = w^2 y with w = 2 pi / period. Exact if the displacement is a parabola over each
+/// segment. With period 0 the displacement is passed on unchanged.
 template <class T>
 class Inertia {
  public:
@@ -40,7 +40,7 @@ class Inertia {
       next(in);
       return;
     }
-    if (!(value_of(in.duration_s) > 0.0)) return;  // a jump moves no mass
+    if (!(value_of(in.duration_s) > 0.0)) return;  // a jump of the input does not move the mass
     const T begin = output_;
     const T speed = speed_;
     advance(in);
@@ -50,7 +50,7 @@ class Inertia {
   }
 
  private:
-  // Parabola a + b t + c t^2 that solves the equation, plus the decaying rest.
+  // The particular solution, a parabola a + b t + c t^2, plus the decaying homogeneous solution.
   void advance(const Segment<T>& in) {
     using std::cos;
     using std::exp;
@@ -58,7 +58,7 @@ class Inertia {
     using std::sqrt;
     const T& dt = in.duration_s;
     const T bend =
-        value_of(omega_) * value_of(dt) < 1e-6 ? T(0.0) : in.bend();  // below, rounding is all of it
+        value_of(omega_) * value_of(dt) < 1e-6 ? T(0.0) : in.bend();  // below, only rounding errors remain
     const T c = -bend / (dt * dt);
     const T b = (in.end - in.begin + bend) / dt - 4.0 * damping_ * c / omega_;
     const T a = in.begin - 2.0 * damping_ * b / omega_ - 2.0 * c / (omega_ * omega_);

@@ -45,9 +45,9 @@ class KelvinVoigt {
   }
 
   [[nodiscard]] T output() const { return output_; }
-  /// 1/k0: the part that follows the pressure at once [mm/kPa].
+  /// Returns 1/k0, the compliance without delay [mm/kPa].
   [[nodiscard]] const T& instantaneous_mm_per_kpa() const { return compliance_; }
-  /// How many branches.
+  /// Returns the number of branches.
   [[nodiscard]] std::size_t branches() const { return branches_.size(); }
 
   Segment<T> step(const Segment<T>& in, const Surroundings&) {
@@ -91,7 +91,7 @@ class KelvinVoigt {
  private:
   struct Branch {
     T k, c;
-    T x;  // its displacement [mm]
+    T x;  // displacement of the branch [mm]
 
     [[nodiscard]] ExponentialWeights<T> weights(const T& duration_s) const {
       return ExponentialWeights<T>::make(duration_s, T(k / c), T(1.0 / c));

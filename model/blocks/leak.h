@@ -1,12 +1,12 @@
 #pragma once
-// Pressure is lost on the way to the finger, while it holds too.
+// Pressure drop between valve and finger, also while the pressure is held.
 
 #include "model/block.h"
 #include "model/line_loss.h"
 
 namespace softgrip::model {
 
-/// See LineLoss.
+/// The equation is that of LineLoss.
 template <class T>
 class Leak {
  public:
@@ -28,7 +28,8 @@ class Leak {
   void step(const Segment<T>& in, const Surroundings&, Next&& next) {
     const T begin = output_;
     output_ = loss_.behind(in.end);
-    // By the chord between its ends: what curves within a sample is the lag before it.
+    // The chord between both ends is used, because only the preceding lag curves the pressure within a
+    // sample.
     const T middle = (begin + output_) * 0.5;
     const double way = value_of(in.end) - value_of(in.begin);
     const T slope = way != 0.0 ? T((output_ - begin) / (in.end - in.begin)) : T(1.0);

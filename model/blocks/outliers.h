@@ -1,5 +1,5 @@
 #pragma once
-// Isolated wrong samples: a reflection, a dust particle in the beam, a disturbed telegram.
+// Isolated wrong readings, for example from a reflection, a dust particle in the beam or a corrupted message.
 
 #include <cstdint>
 
@@ -8,7 +8,8 @@
 
 namespace softgrip::model {
 
-/// A share of the readings is off by `size`, up or down by chance. A step of zero duration does not draw.
+/// Shifts a random share of the readings by `size`, up or down at random. A step of zero duration draws no
+/// random number.
 template <class T>
 class Outliers {
  public:

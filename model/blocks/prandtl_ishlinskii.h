@@ -13,11 +13,11 @@
 
 namespace softgrip::model {
 
-/// y += w1 play_r1(p) + w2 play_r2(p) + ..., a play with threshold 0 being the elastic gain. Rate
-/// independent. With weights that are not negative it rises with the pressure, and so has an inverse. A
-/// finger that had been loaded before begins with operators that were dragged along then, and its first
-/// loading is no steeper than later ones; y is 0 where that left it. With bent envelopes (see EnvelopeMap)
-/// the plays are generalised ones: loops are wider where the envelopes are steeper.
+/// y += w1 play_r1(p) + w2 play_r2(p) + ... A play with threshold 0 is the elastic gain. Rate independent.
+/// With nonnegative weights, y rises with the pressure and has an inverse. If the finger was loaded before,
+/// the operators start in the positions that the earlier load left. The first loading is then no steeper than
+/// later ones, and y is 0 at that state. With nonlinear envelopes (see EnvelopeMap) the plays are
+/// generalised: loops are wider where the envelopes are steeper.
 template <class T>
 class PrandtlIshlinskii {
  public:
@@ -92,7 +92,7 @@ class PrandtlIshlinskii {
     T weight;
   };
 
-  /// @param in  as the operators see it.
+  /// @param in  pressure after the envelope map.
   Segment<T> moved(const Segment<T>& in) {
     const T begin = output_;
     T end = -untouched_, mean = -untouched_;
@@ -110,7 +110,7 @@ class PrandtlIshlinskii {
   T trained_kpa_;
   EnvelopeMap<T> envelopes_;
   std::vector<Operator> operators_;
-  T untouched_{0.0};  ///< the sum at no pressure, as the finger's past left it
+  T untouched_{0.0};  ///< sum of the operators at zero pressure after the earlier load
   T output_{0.0};
 };
 

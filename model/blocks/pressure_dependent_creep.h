@@ -1,5 +1,5 @@
 #pragma once
-// Creep that sets in above a pressure.
+// Creep that starts above a threshold pressure.
 
 #include <algorithm>
 #include <cstddef>
@@ -11,8 +11,9 @@
 
 namespace softgrip::model {
 
-/// Kelvin-Voigt branches, each behind a hinge: tau x' = c max(p - hinge, 0) - x. Exact for straight pressure
-/// that does not pass a hinge inside the segment, and up to the corner where it does.
+/// Kelvin-Voigt branches, each above its own threshold pressure (hinge): tau x' = c max(p - hinge, 0) - x.
+/// Exact for straight pressure that does not pass a hinge within the segment, and up to the corner if it
+/// does.
 template <class T>
 class PressureDependentCreep {
  public:
@@ -104,7 +105,7 @@ class PressureDependentCreep {
     const U first(above(begin, hinge)), last = above(end, hinge);
     const bool begins = value_of(begin) >= value_of(hinge), ends = value_of(end) >= value_of(hinge);
     if (begins == ends) return (first + last) * 0.5;
-    // The part above is a triangle as high as the end that is there.
+    // The part above the hinge is a triangle. Its height is that of the end above the hinge.
     const U height = begins ? first : last;
     return height * height * 0.5 / (begins ? U(begin - end) : U(end - begin));
   }

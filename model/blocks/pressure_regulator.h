@@ -1,5 +1,5 @@
 #pragma once
-// A pressure regulator whose spool has an overlap and whose control integrates.
+// A pressure regulator with spool overlap and integral control.
 
 #include <string_view>
 
@@ -8,7 +8,7 @@
 
 namespace softgrip::model {
 
-/// See RegulatedPressure.
+/// The equation is that of RegulatedPressure.
 template <class T>
 class PressureRegulator {
  public:

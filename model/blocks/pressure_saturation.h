@@ -1,5 +1,5 @@
 #pragma once
-// The pressure stops below the command: the regulator's or the supply's ceiling.
+// The pressure does not reach the command: the regulator or the supply limits it.
 
 #include "model/block.h"
 #include "model/clip.h"

@@ -1,5 +1,5 @@
 #pragma once
-// The valve delivers another share of what is asked.
+// The valve delivers a constant multiple of the commanded pressure.
 
 #include "model/block.h"
 

@@ -1,5 +1,5 @@
 #pragma once
-// Softer the further the pressure lies below the largest one so far (the Mullins effect).
+// The material is softer the further the pressure lies below its largest value so far (Mullins effect).
 
 #include <algorithm>
 #include <cmath>
@@ -10,11 +10,11 @@
 namespace softgrip::model {
 
 /// Pseudo-elasticity (Ogden and Roxburgh, Proc. R. Soc. A 455, 1999; with the hyperbolic tangent of Dorfmann
-/// and Ogden, Int. J. Solids Struct. 41, 2004), with the drive q that the finger answers to in the place of
-/// the stored energy: beyond the largest load nothing is changed; below it p = q/(1 + s m tanh((m -
-/// q)/range)) with m the largest pressure so far. Every way back and up again is the same and joins the first
-/// loading at m. Rises with p whatever the numbers are. Runs through a campaign: rest() keeps m, only reset()
-/// forgets it.
+/// and Ogden, Int. J. Solids Struct. 41, 2004). The driving pressure q replaces the stored energy. Above the
+/// largest load, q = p. Below it, p = q/(1 + s m tanh((m - q)/range)), where m is the largest pressure so
+/// far. All later unloading and loading follows one curve, which joins the first loading at m. q rises with p
+/// for all parameter values. The block has a memory over the campaign: rest() keeps m, only reset() clears
+/// it.
 template <class T>
 class PseudoElasticSoftening {
  public:
@@ -98,7 +98,7 @@ class PseudoElasticSoftening {
     return 1 + pressure * value_of(softening_per_kpa_) * largest * (1 - t * t) / range;
   }
 
-  /// Of what is not negative.
+  /// Returns tanh(x) for x >= 0.
   template <class U>
   [[nodiscard]] static U hyperbolic_tangent(const U& x) {
     using std::expm1;
@@ -106,7 +106,7 @@ class PseudoElasticSoftening {
     return -e / (2.0 + e);
   }
 
-  // The mean of what softening adds is Simpson's of a straight p.
+  // The mean of the softening is computed by Simpson's rule for a straight p.
   template <class Next>
   void below(const Segment<T>& in, Next&& next) {
     const T begin = output_, halfway = (in.begin + in.end) * 0.5;

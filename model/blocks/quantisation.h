@@ -1,5 +1,5 @@
 #pragma once
-// The reading comes in steps: the converter's resolution.
+// The reading has the finite resolution of the converter.
 
 #include <cmath>
 
@@ -7,7 +7,8 @@
 
 namespace softgrip::model {
 
-/// The nearest multiple of the step. Derivatives pass unchanged: those of the stairs would be useless.
+/// Rounds to the nearest multiple of the step. Derivatives pass unchanged, because those of a step function
+/// are useless.
 template <class T>
 class Quantisation {
  public:

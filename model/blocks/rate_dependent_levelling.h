@@ -1,12 +1,12 @@
 #pragma once
-// The chain's Bouc-Wen element that levels off sooner where the pressure moves fast.
+// Earlier saturation of the chain's Bouc-Wen element at high pressure rates.
 
 #include "model/block.h"
 #include "model/blocks/bouc_wen.h"
 
 namespace softgrip::model {
 
-/// Makes the chain's own Bouc-Wen element level off sooner with the rate (bouc_wen.h says how).
+/// Increases eta of the chain's Bouc-Wen element with the rate, so that h saturates earlier (see bouc_wen.h).
 template <class T>
 class RateDependentLevelling : public BoucWenPart<T> {
  public:

@@ -6,8 +6,8 @@
 
 namespace softgrip::model {
 
-/// Widens the loop of the chain's own Bouc-Wen element with the rate (bouc_wen.h says how, and whose form it
-/// is).
+/// Widens the loop of the chain's Bouc-Wen element with the rate. bouc_wen.h states the equation and its
+/// source.
 template <class T>
 class RateDependentWidth : public BoucWenPart<T> {
  public:

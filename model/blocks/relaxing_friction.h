@@ -1,14 +1,14 @@
 #pragma once
-// Loop width that grows with rate beyond the viscous part: a friction that relaxes.
+// Loop width that grows with the rate: a friction force that relaxes.
 
 #include "model/block.h"
 #include "model/exponential.h"
 
 namespace softgrip::model {
 
-/// Dahl's friction that relaxes: z' = p' - z (|p'|/width + 1/tau), y -= gain z. Far faster than the width per
-/// tau it is a hysteresis of that width, far slower a viscous branch whose loop shrinks with the rate. Exact
-/// for straight pressure and any step size.
+/// Dahl's friction with relaxation: z' = p' - z (|p'|/width + 1/tau), y -= gain z. At rates far above
+/// width/tau it is a hysteresis of that width. At rates far below, it is a viscous branch whose loop shrinks
+/// with the rate. Exact for straight pressure and any step size.
 template <class T>
 class RelaxingFriction {
  public:

@@ -1,5 +1,5 @@
 #pragma once
-// The gain of the actuator drifts while it runs in.
+// The gain of the actuator drifts during the running-in period.
 
 #include <cmath>
 
@@ -8,7 +8,7 @@
 
 namespace softgrip::model {
 
-/// y times 1 + r (1 - exp(-t/tau)), kept positive; t is the time of the campaign.
+/// Multiplies y by 1 + r (1 - exp(-t/tau)), limited to positive values. t is the time of the campaign.
 template <class T>
 class RunningIn : public SurroundingsGain<RunningIn<T>, T> {
  public:

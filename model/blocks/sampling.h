@@ -1,5 +1,5 @@
 #pragma once
-// The reading is sampled more slowly than the log.
+// The sensor is sampled more slowly than the log.
 
 #include <cmath>
 
@@ -7,8 +7,8 @@
 
 namespace softgrip::model {
 
-/// Sample and hold: the output is the reading at the last multiple of the interval. Derivatives pass through
-/// the samples only.
+/// Sample and hold: the output is the reading at the last multiple of the interval. The output has the
+/// derivatives of the sampled reading.
 template <class T>
 class Sampling {
  public:

@@ -1,11 +1,11 @@
 #pragma once
-// The zero of the sensor drifts steadily.
+// Linear drift of the sensor zero.
 
 #include "model/block.h"
 
 namespace softgrip::model {
 
-/// z = y + rate t, t the time of the campaign: nothing at its start.
+/// z = y + rate t, where t is the time of the campaign. The drift is zero at its start.
 template <class T>
 class SensorDrift {
  public:

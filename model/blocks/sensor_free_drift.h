@@ -1,5 +1,5 @@
 #pragma once
-// The zero of the sensor keeps to no law.
+// Piecewise linear drift of the sensor zero.
 
 #include <cstddef>
 #include <vector>
@@ -8,8 +8,8 @@
 
 namespace softgrip::model {
 
-/// z = y + straight lines between knots, one every interval after the start of the campaign, where it is
-/// zero; beyond the last knot it stays.
+/// Adds straight lines between knots, one knot per interval after the start of the campaign. The drift is
+/// zero at the start and constant after the last knot.
 template <class T>
 class SensorFreeDrift {
  public:

@@ -1,5 +1,5 @@
 #pragma once
-// The reading lags the displacement: the filter of the sensor or of its amplifier.
+// Lag of the reading behind the displacement, from the filter of the sensor or its amplifier.
 
 #include "model/block.h"
 #include "model/exponential.h"
@@ -7,7 +7,7 @@
 
 namespace softgrip::model {
 
-/// tau z' = y - z. Exact for a displacement that is a parabola over each segment.
+/// tau z' = y - z. Exact if the displacement is a parabola over each segment.
 template <class T>
 class SensorLag {
  public:

@@ -1,5 +1,5 @@
 #pragma once
-// Random error of the reading, white or with a correlation time.
+// Random error of the reading, white or correlated.
 
 #include <cmath>
 #include <cstdint>
@@ -9,8 +9,9 @@
 
 namespace softgrip::model {
 
-/// Normal noise of the given root mean square; with a correlation time, exp(-dt/tau) from one reading to the
-/// next (Ornstein-Uhlenbeck, exact for any dt). A step of zero duration does not draw.
+/// Gaussian noise of the given root mean square. With a correlation time, the correlation of consecutive
+/// readings is exp(-dt/tau) (Ornstein-Uhlenbeck process, exact for any dt). A step of zero duration draws no
+/// random number.
 template <class T>
 class SensorNoise {
  public:
@@ -54,7 +55,7 @@ class SensorNoise {
   double correlation_time_s_;
   std::uint64_t seed_;
   std::uint64_t drawn_ = 0;
-  double noise_ = 0.0;  // of rms 1
+  double noise_ = 0.0;  // scaled to a root mean square of 1
   T output_{0.0};
 };
 

@@ -1,13 +1,13 @@
 #pragma once
-// The scale of the sensor is bent between its calibration points.
+// Nonlinearity of the sensor between its calibration points.
 
 #include "model/block.h"
 
 namespace softgrip::model {
 
-/// x = y/range: z = y + 4 bow x (1 - x) + 6 sqrt(3) wave x (1 - x) (1 - 2x) inside the range, straight
-/// continuations outside. Right at both ends of the range, off by `bow` in the middle, and by up to `wave`
-/// the one way and the other to either side of it.
+/// With x = y/range: z = y + 4 bow x (1 - x) + 6 sqrt(3) wave x (1 - x) (1 - 2x) within the range, continued
+/// as straight lines outside. The error is zero at both ends of the range and `bow` in the middle. The second
+/// term adds up to `wave` below the middle and down to -`wave` above it.
 template <class T>
 class SensorNonlinearity {
  public:
@@ -39,8 +39,8 @@ class SensorNonlinearity {
     return y + x * (1.0 - x) * (bow_mm_ + wave_mm_ * (1.0 - 2.0 * x));
   }
 
-  T bow_mm_;   // times 4
-  T wave_mm_;  // times 6 sqrt(3)
+  T bow_mm_;   // 4 bow
+  T wave_mm_;  // 6 sqrt(3) wave
   T range_mm_;
   T output_{0.0};
 };

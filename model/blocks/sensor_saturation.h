@@ -1,12 +1,12 @@
 #pragma once
-// The reading clips at the ends of the sensor's range.
+// The reading saturates at the ends of the measuring range.
 
 #include "model/block.h"
 #include "model/clip.h"
 
 namespace softgrip::model {
 
-/// z = y between the ends.
+/// z = y between the limits, and the nearer limit outside.
 template <class T>
 class SensorSaturation {
  public:

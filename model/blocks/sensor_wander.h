@@ -8,8 +8,8 @@
 
 namespace softgrip::model {
 
-/// z = y + a sin(w t) + b (cos(w t) - 1), w = 2 pi / period, t the time of the campaign: nothing at its
-/// start. Slow, as the temperature of a room; an oscillation is PeriodicDisturbance.
+/// z = y + a sin(w t) + b (cos(w t) - 1), w = 2 pi / period, where t is the time of the campaign. The drift
+/// is zero at its start. It is slow, like a room temperature. PeriodicDisturbance models oscillations.
 template <class T>
 class SensorWander {
  public:

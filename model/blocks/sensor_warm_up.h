@@ -1,5 +1,5 @@
 #pragma once
-// The zero of the sensor drifts while it warms up.
+// Drift of the sensor zero during warm-up.
 
 #include <cmath>
 
@@ -7,7 +7,7 @@
 
 namespace softgrip::model {
 
-/// z = y + warm_up (1 - exp(-t/tau)), t the time of the campaign: nothing at its start.
+/// z = y + warm_up (1 - exp(-t/tau)), where t is the time of the campaign. The drift is zero at its start.
 template <class T>
 class SensorWarmUp {
  public:

@@ -1,5 +1,5 @@
 #pragma once
-// Creep slower than the slowest branch of the model: one more Kelvin-Voigt branch, given by what it adds.
+// Creep that is slower than the slowest branch of the given model: an additional Kelvin-Voigt branch.
 
 #include "model/block.h"
 #include "model/exponential.h"
@@ -64,7 +64,7 @@ class SlowCreep {
   T gain_;
   T rate_;  // 1/tau
   T pressure_{0.0};
-  T creep_kpa_{0.0};  // the pressure as the creep has felt it so far
+  T creep_kpa_{0.0};  // filtered pressure that drives the creep
   T output_{0.0};
   WeightCache<T> weights_;
 };

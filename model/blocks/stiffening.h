@@ -1,12 +1,13 @@
 #pragma once
-// The gain changes with displacement, both ways alike.
+// A gain that changes with the displacement, equally in both directions.
 
 #include "model/block.h"
 #include "model/static_map.h"
 
 namespace softgrip::model {
 
-/// z = y / (1 + s |y|) for s >= 0, y (1 - s |y|) below: odd, monotone for every s, smooth in s through 0.
+/// z = y / (1 + s |y|) for s >= 0 and y (1 - s |y|) for s < 0. The map is odd, monotone for every s, and
+/// smooth in s through 0.
 template <class T>
 class Stiffening {
  public:

@@ -1,14 +1,14 @@
 #pragma once
-// Softer after the largest load so far (the Mullins effect of filled rubbers).
+// The material is softer after the largest load so far (Mullins effect of filled rubbers).
 
 #include "model/block.h"
 #include "model/clip.h"
 
 namespace softgrip::model {
 
-/// q = p (1 + s m/(1 + b m)) with m the largest pressure so far: the first loading curve is steeper than a
-/// line, and every later one up to m is straight, above it. b levels the softening off. Runs through a
-/// campaign: rest() keeps m, only reset() forgets it.
+/// q = p (1 + s m/(1 + b m)), where m is the largest pressure so far. The first loading curve is steeper than
+/// a line. Every later curve up to m is straight and lies above it. b makes the softening saturate. The block
+/// has a memory over the campaign: rest() keeps m, only reset() clears it.
 template <class T>
 class StressSoftening {
  public:
@@ -61,7 +61,7 @@ class StressSoftening {
     return p * (1.0 + softening_per_kpa_ * largest / (1.0 + levelling_per_kpa_ * largest));
   }
 
-  // Below the largest load: a straight line.
+  // Below the largest load, the map is a straight line.
   template <class Next>
   void again(const Segment<T>& in, Next&& next) {
     const T begin = output_;
@@ -69,8 +69,8 @@ class StressSoftening {
     next(Segment<T>{in.duration_s, begin, output_, map(in.mean, largest_kpa_)});
   }
 
-  // Beyond it the load is the largest so far at every moment. The mean of what softening adds is Simpson's
-  // of a straight p: exact while nothing levels off.
+  // Above it, the current load is the largest so far. Simpson's rule for a straight p gives the mean of the
+  // added pressure. It is exact if b is zero.
   template <class Next>
   void anew(const Segment<T>& in, Next&& next) {
     const T begin = output_;

@@ -1,5 +1,5 @@
 #pragma once
-// The pressure follows a falling supply.
+// The pressure decreases with the supply pressure.
 
 #include "model/block.h"
 #include "model/gain.h"
@@ -7,8 +7,8 @@
 
 namespace softgrip::model {
 
-/// p = u (1 - coupling * loss), loss = max(0, 1 - supply/nominal). The supply comes with the surroundings; a
-/// log needs its supply_kpa column.
+/// p = u (1 - coupling * loss), loss = max(0, 1 - supply/nominal). The supply pressure is a part of the
+/// surroundings. A log needs its supply_kpa column.
 template <class T>
 class SupplySag {
  public:

@@ -1,13 +1,13 @@
 #pragma once
-// The gain of the actuator follows its temperature.
+// The gain of the actuator depends on its temperature.
 
 #include "model/block.h"
 #include "model/moving_gain.h"
 
 namespace softgrip::model {
 
-/// y times 1 + a (temperature - 20 degC), kept positive. The temperature comes with the surroundings; a log
-/// needs its temperature_c column.
+/// Multiplies y by 1 + a (temperature - 20 degC), limited to positive values. The temperature is a part of
+/// the surroundings. A log needs its temperature_c column.
 template <class T>
 class ThermalGain : public SurroundingsGain<ThermalGain<T>, T> {
  public:

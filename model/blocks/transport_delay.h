@@ -1,5 +1,5 @@
 #pragma once
-// Dead time between command and pressure: a line that holds the last `delay_s` of the signal.
+// Dead time between command and pressure. A delay line holds the last `delay_s` of the signal.
 
 #include <algorithm>
 #include <cstddef>
@@ -10,9 +10,9 @@
 
 namespace softgrip::model {
 
-/// Exact for piecewise-parabolic signals and any delay: a sample whose delayed stretch contains a kink passes
-/// on two segments, cut at the kink. Jumps arrive as jumps, at the start of the first step that ends after
-/// them. The output is differentiable in the delay.
+/// Exact for piecewise parabolic signals and any delay. If the delayed signal has a kink within a sample, two
+/// segments are passed on, divided at the kink. A jump is passed on as a jump, at the start of the first step
+/// that ends after it. The output is differentiable in the delay.
 template <class T>
 class TransportDelay {
  public:
@@ -76,7 +76,8 @@ class TransportDelay {
     T mean;
   };
 
-  // Two pieces per sample (a jump and a ramp) and as many again when they are shorter than nominal.
+  // Two pieces per sample (a jump and a ramp), doubled for samples that are shorter than the nominal sample
+  // time.
   static std::size_t initial_size(double delay_s, double sample_time_s) {
     if (sample_time_s <= 0) return 64;
     const std::size_t needed = 16 + static_cast<std::size_t>(4.0 * delay_s / sample_time_s);
@@ -85,8 +86,8 @@ class TransportDelay {
     return size;
   }
 
-  // Rounding must not decide on which side of a sample a kink or a jump falls: lengths that agree to 1e-9 are
-  // equal. With derivatives there is no snapping, they would be lost.
+  // Rounding must not decide whether a kink or a jump falls before or after a sample: lengths within 1e-9 are
+  // equal. With derivatives the tolerance is zero, because it would remove the derivatives.
   static constexpr double snap = std::is_arithmetic_v<T> ? 1e-9 : 0.0;
   static bool ends_in(const T& piece_s, const T& remaining_s) {
     const double piece = value_of(piece_s);
@@ -98,7 +99,7 @@ class TransportDelay {
     return same(piece_s, remaining_s);
   }
 
-  /// The place of the i-th piece from the oldest on.
+  /// Returns the index of the i-th piece, counted from the oldest.
   [[nodiscard]] std::size_t place(std::size_t i) const { return (head_ + i) & (line_.size() - 1); }
 
   void push(const Segment<T>& s) {
@@ -118,10 +119,10 @@ class TransportDelay {
   }
 
   T delay_s_;
-  T front_begin_{0.0};  // where the oldest piece begins: the output
+  T front_begin_{0.0};  // beginning of the oldest piece: the output
   std::size_t head_ = 0;
   std::size_t count_ = 0;
-  std::vector<Piece> line_;  // a ring; its size is a power of two
+  std::vector<Piece> line_;  // a ring buffer; its size is a power of two
 };
 
 }  // namespace softgrip::model

@@ -1,13 +1,12 @@
 #pragma once
-// The valve ignores changes smaller than a band: dead band of its regulator, play of its linkage.
+// The valve ignores changes smaller than a band: dead band of its regulator or play of its linkage.
 
 #include "model/block.h"
 #include "model/play.h"
 
 namespace softgrip::model {
 
-/// After a reversal the pressure stays where it is until the command has come back by the band, then it moves
-/// along.
+/// After a reversal, the pressure is constant until the command has moved back by the band. Then it follows.
 template <class T>
 class ValveDeadband {
  public:

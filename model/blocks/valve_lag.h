@@ -9,8 +9,8 @@
 
 namespace softgrip::model {
 
-/// Exact for straight input, including the turn: where the output has its extremum inside a segment (the
-/// moment it meets the input), two segments are passed on.
+/// Exact for straight input, including the reversal of the output. If the output has its extremum within a
+/// segment (it meets the input), two segments are passed on.
 template <class T>
 class ValveLag {
  public:
@@ -36,7 +36,7 @@ class ValveLag {
       next(in);
       return;
     }
-    if (is_zero(in.duration_s)) return;  // a jump of the input does not move the output yet
+    if (is_zero(in.duration_s)) return;  // a jump of the input does not move the output immediately
     const ExponentialWeights<T>& w = weights(in.duration_s);
     const T bend = in.bend();
     const T begin = output_;
@@ -58,9 +58,9 @@ class ValveLag {
     })[0];
   }
 
-  // The gap d = input - output obeys d' = r - d / tau on a straight input of slope r, so it closes after
-  // t = tau log(1 - d(0) / (r tau)), and there output = input. A turn within a millionth of either end is
-  // not worth a segment: what Bouc-Wen would see of it is of the order of its square.
+  // The gap d = input - output follows d' = r - d / tau on a straight input of slope r. It closes after t =
+  // tau log(1 - d(0) / (r tau)), when output = input. A reversal within a millionth of either end is ignored:
+  // its effect on Bouc-Wen is of second order in that time.
   template <class Next>
   bool turns(const Segment<T>& in, const T& begin, const T& gap_begin, const T& end, Next&& next) const {
     using std::log1p;

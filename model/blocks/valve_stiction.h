@@ -1,5 +1,5 @@
 #pragma once
-// The valve sticks and jumps: stiction of its spool, dead band of a digital regulator.
+// Stick-slip motion of the valve: stiction of its spool, or the dead band of a digital regulator.
 
 #include <cmath>
 
@@ -7,11 +7,12 @@
 
 namespace softgrip::model {
 
-/// Keeps the pressure until the command differs by more than the band, then jumps to the command and sticks
-/// again; a ramp becomes a series of steps. It models the stiction of positioners (stick band equal to slip
-/// jump: Choudhury, Thornhill and Shah, Control Engineering Practice 13, 2005) and the dead band of digital
-/// regulators. All jumps of a segment are passed on at their times. If a command crosses a band in less than
-/// `rest_s`, the valve follows it to its end, because the spool does not come to rest in between.
+/// Keeps the pressure until the command differs by more than the band. Then it jumps to the command and
+/// sticks again, so that a ramp becomes a series of steps. It models the stiction of positioners (stick band
+/// equal to slip jump: Choudhury, Thornhill and Shah, Control Engineering Practice 13, 2005) and the dead
+/// band of digital regulators. All jumps of a segment are passed on at their times. If a command crosses a
+/// band in less than `rest_s`, the valve follows it to its end, because the spool does not come to rest in
+/// between.
 template <class T>
 class ValveStiction {
  public:
@@ -22,7 +23,7 @@ class ValveStiction {
   static constexpr std::array parameters{parameter("band_kpa", "kPa",
                                                    "change of the command at which it jumps", Typical{1.0},
                                                    Within{0.0, 1000.0}, Scale{0.5}, Neutral{0.0})};
-  /// Within this time no spool moves and comes to rest again [s].
+  /// Shortest time in which a spool can move and come to rest again [s].
   static constexpr double rest_s = 2e-3;
 
   ValveStiction(std::span<const T> values, const Preparation&) : band_(values[0]) {}
@@ -50,7 +51,7 @@ class ValveStiction {
     return change * rest_s > value_of(band_) * value_of(in.duration_s);
   }
 
-  /// The command at which the spool breaks loose.
+  /// Returns the command at which the spool breaks loose.
   [[nodiscard]] T level(bool up) const { return up ? T(held_ + band_) : T(held_ - band_); }
   [[nodiscard]] static bool is_beyond(const T& command, const T& level, bool up) {
     return up ? value_of(command) > value_of(level) : value_of(command) < value_of(level);
@@ -67,7 +68,7 @@ class ValveStiction {
     next(Segment<T>{duration_s, held_, held_, held_});
   }
 
-  // Faster than it can stick: once loose it goes along.
+  // The command is too fast for the spool to stick again: follow it.
   template <class Next>
   void follow(const Segment<T>& in, Next& next) {
     const bool up = rises(in);
@@ -90,7 +91,7 @@ class ValveStiction {
     next(rest);
   }
 
-  // A staircase, one jump per band.
+  // Pass on a series of jumps, one per band.
   template <class Next>
   void climb(const Segment<T>& in, Next& next) {
     moving_ = false;
@@ -98,7 +99,7 @@ class ValveStiction {
     T past(0.0);
     for (T start = level(up); is_beyond(in.end, start, up); start = level(up)) {
       if (is_beyond(in.begin, start, up)) {
-        jump(in.begin, next);  // from the beginning
+        jump(in.begin, next);  // at the beginning of the segment
         continue;
       }
       const T now = in.duration_s * in.fraction_at(start);
@@ -111,7 +112,7 @@ class ValveStiction {
 
   T band_;
   bool moving_ = false;   // follows a fast command
-  bool upwards_ = false;  // which way
+  bool upwards_ = false;  // direction of that motion
   T held_{0.0};
 };
 

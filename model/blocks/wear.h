@@ -7,8 +7,8 @@
 
 namespace softgrip::model {
 
-/// y times 1 + c l, kept positive; l is the way that the actuator has gone in the campaign, up and down. Runs
-/// through a campaign: rest() keeps l, only reset() forgets it.
+/// Multiplies y by 1 + c l, limited to positive values. l is the total travel of the actuator in the
+/// campaign, up and down. The block has a memory over the campaign: rest() keeps l, only reset() clears it.
 template <class T>
 class Wear {
  public:

@@ -1,6 +1,6 @@
 #pragma once
-// Blocks of earlier versions that held several mechanisms, which are blocks of their own now: what a model
-// file that names one of them means.
+// Blocks of earlier versions that contained several mechanisms. Each mechanism is a separate block today.
+// This table states how a model file with an earlier block is read.
 
 #include <cstddef>
 #include <string_view>
@@ -8,15 +8,16 @@
 
 namespace softgrip::model {
 
-/// A block as it was. Its keys are those of the blocks that it became, under the same names.
+/// An earlier block. Its keys are those of its successors, under the same names.
 struct EarlierBlock {
   std::string_view id;
-  std::vector<std::size_t> types;  ///< what it became
-  std::string_view choice;  ///< the key whose number chose one of them; empty: all that its numbers woke
-  bool adds = false;        ///< several of them together do what it did with the numbers of both
+  std::vector<std::size_t> types;  ///< its successors
+  std::string_view choice;  ///< key whose number selects one successor; empty: every successor with a value
+                            ///< that is not neutral
+  bool adds = false;        ///< several successors together have the same effect as the earlier block
 };
 
-/// The earlier block of this id, or nullptr. Some ids have gone to one of the blocks that it became.
+/// Returns the earlier block of this id, or nullptr. Some ids are also used by one of the successors.
 [[nodiscard]] const EarlierBlock* find_earlier_block(std::string_view id);
 
 }  // namespace softgrip::model

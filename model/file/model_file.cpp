@@ -29,7 +29,7 @@ std::vector<std::string> ids_of(Station station) {
   return ids;
 }
 
-// Reads one value by its declaration.
+// Reads one value and checks it against its declaration.
 double read_value(MapReader& map, const ParameterSpec& spec, const std::string& name) {
   if (!std::isnan(spec.if_left_out) && !map.has(name)) return spec.if_left_out;
   if (spec.whole) {
@@ -39,7 +39,7 @@ double read_value(MapReader& map, const ParameterSpec& spec, const std::string& 
   return map.number(name, {spec.lower, spec.upper});
 }
 
-// Parts are counted by the first missing number: k1, c1, k2, c2, ...
+// Counts parts up to the first missing number: k1, c1, k2, c2, ...
 std::size_t count_parts(const MapReader& map, const BlockDescriptor& descriptor) {
   std::size_t parts = 0;
   for (std::size_t part = 1; part <= descriptor.max_parts; ++part) {
@@ -142,8 +142,8 @@ class ModelReader {
     model.blocks.push_back(std::move(block));
   }
 
-  /// A block of an earlier version, read into those of what it became that its numbers wake; when they wake
-  /// none, into the first.
+  /// Reads a block of an earlier version into those successors that have an effect with its numbers. If none
+  /// has an effect, the first successor is used.
   void read_earlier(const Node::Entry& entry, const EarlierBlock& earlier, Model& model) {
     MapReader map(document_, entry.value, problems_, entry.key);
     std::vector<std::size_t> types = earlier.types;
@@ -191,7 +191,7 @@ class ModelReader {
         document_.problem(entry.key_at, "unknown block " + entry.key + " in the station " + where, hint));
   }
 
-  // Checks the order of kinds inside the station, and blocks that must not occur twice.
+  // Checks the order of kinds within the station, and that a block which is not repeatable occurs once.
   void check_place(const Node::Entry& entry, const BlockInfo& info, const Model& model) {
     for (const BlockSpec& block : model.blocks) {
       const BlockInfo& other = catalogue()[block.type].info;
@@ -207,7 +207,7 @@ class ModelReader {
     }
   }
 
-  /// @param absent_is_neutral  a number that is not given is where the block does nothing.
+  /// @param absent_is_neutral  a number that is not given has its neutral value.
   BlockSpec read_values(MapReader& map, std::size_t type, bool absent_is_neutral = false) {
     const BlockDescriptor& descriptor = catalogue()[type];
     const std::size_t parts = descriptor.repeated.empty() ? 0 : count_parts(map, descriptor);
@@ -232,7 +232,7 @@ class ModelReader {
   bool has_element_ = false;
 };
 
-// A double-quoted YAML scalar.
+// Returns a double-quoted YAML scalar.
 std::string double_quoted(const std::string& text) {
   std::string result = "\"";
   for (const char c : text) {

@@ -1,5 +1,5 @@
 #pragma once
-// Model files: YAML to Model and back without loss.
+// Converts model files (YAML) to Model and back without loss.
 //
 //   name: bench_twin
 //   source: where the numbers come from, one line
@@ -10,8 +10,8 @@
 //     - bouc_wen: {alpha_mm_per_kpa: 0.21105, ..., exponent: 1}
 //     - kelvin_voigt: {k0_kpa_per_mm: 325.9, k1_kpa_per_mm: 18.16, c1_kpa_s_per_mm: 299.8, ...}
 //
-// A station without blocks may be left out or be an empty list. `output_unit: deg` says that the model
-// answers with a bending angle; then mm in the names of numbers stands for deg.
+// A station without blocks may be omitted or be an empty list. With `output_unit: deg`, the output of the
+// model is a bending angle; `mm` in parameter names then means deg.
 
 #include <cstdint>
 #include <optional>
@@ -22,20 +22,20 @@
 
 namespace softgrip::model {
 
-/// Reads a model out of a parsed document. All errors are added to `problems`; nothing is returned then.
+/// Reads a model from a parsed document. All errors are added to `problems`; the result is then nullopt.
 [[nodiscard]] std::optional<Model> read_model(const document::Document& document,
                                               document::Problems& problems);
 
-/// read_model() for a rig, which measures in mm: a model with another output unit is refused.
+/// Like read_model(), for a rig, which measures in mm: a model with another output unit is an error.
 [[nodiscard]] std::optional<Model> read_rig_model(const document::Document& document,
                                                   document::Problems& problems);
 
-/// parse_file() and read_model().
+/// Calls parse_file() and read_model().
 [[nodiscard]] std::optional<Model> load_model(const std::string& path, document::Problems& problems);
-/// parse_file() and read_rig_model().
+/// Calls parse_file() and read_rig_model().
 [[nodiscard]] std::optional<Model> load_rig_model(const std::string& path, document::Problems& problems);
 
-/// The YAML text of a model. Numbers are written with the fewest digits that read back to the same double:
+/// Returns the YAML text of a model. Each number has the fewest digits that read back to the same double:
 /// read_model(parse(to_yaml(m))) == m for every valid m.
 [[nodiscard]] std::string to_yaml(const Model& model);
 
