@@ -6,7 +6,7 @@
 namespace softgrip::simulation {
 namespace {
 
-// A stone as wide as a hand leaves the fingers 12 mm; a screw's head lets them go farther and gives less.
+// A stone as wide as a hand stops the fingers at 12 mm. A screw head lets them go further and is stiffer.
 constexpr simulation::PlantObject stone{12, 0.1};
 constexpr simulation::PlantObject screw{17, 0.05};
 

@@ -1,11 +1,11 @@
 #pragma once
-// Control commands of the emulator, one line each, for scripts and people:
+// Control commands of the emulator for scripts and users, one line each:
 //
-//   status                 one line of JSON: the truth about board, fingers and faults
+//   status                 one line of JSON: true state of board, fingers and faults
 //   fault NAME             begins a fault of the faults file
-//   clear NAME             ends it
-//   object out | back      pulls the object out, puts it back
-//   object stone | screw | POSITION_MM[:YIELDING]    another object
+//   clear NAME             ends that fault
+//   object out | back      removes the object, puts it back
+//   object stone | screw | POSITION_MM[:YIELDING]    sets another object
 //   quit
 
 #include <optional>
@@ -17,15 +17,15 @@
 
 namespace softgrip::simulation {
 
-/// An object as users write it: "stone", "screw", "13", "13:0.2".
+/// Returns the object for a text of a user: "stone", "screw", "13", "13:0.2".
 [[nodiscard]] std::optional<simulation::PlantObject> object_named(std::string_view text);
 
 struct ControlAnswer {
-  std::string line;  ///< "ok", "error: ...", or what was asked for; no line break
+  std::string line;  ///< "ok", "error: ..." or the requested value, without line break
   bool quit = false;
 };
 
-/// Carries out one line at `now`.
+/// Executes one command line at `now`.
 [[nodiscard]] ControlAnswer control(Emulator& emulator, Nanoseconds now, std::string_view line);
 
 }  // namespace softgrip::simulation

@@ -77,7 +77,7 @@ void EmulatedBoard::define_registers() {
     define_block({clients->function, clients->address, 1, drivers::RegisterKind::uint16},
                  Registers::Access::read_only);
   }
-  // Last: where a read-back or a flag lies on the outputs themselves, they stay writable.
+  // Define the outputs last: if a read-back or a flag uses the same register, the register stays writable.
   define_block(map_.outputs.registers, Registers::Access::read_write);
   fill_readable_gaps();
   allow_functions();
@@ -153,7 +153,8 @@ Registers::Answer EmulatedBoard::answer(Nanoseconds now, std::span<const std::ui
   if (touched) {
     commanded_ = true;
     if (!tripped_ && !writes_ignored_) take_outputs();
-    // The registers show what the terminals deliver: a write without effect is seen by who reads back.
+    // The registers show the values at the terminals, so that a client that reads back detects an ignored
+    // write.
     show_outputs();
   }
   return answer;
@@ -168,7 +169,8 @@ void EmulatedBoard::advance(Nanoseconds now) {
   show_tripped();
 }
 
-/// The trip ends with the last of the writes that clear it; where there are none, with any to the outputs.
+/// Ends a trip after the last of the writes that clear it. If the map names no such write, any write to the
+/// outputs ends it.
 void EmulatedBoard::note_clearing(std::span<const std::uint8_t> pdu, bool wrote_outputs) {
   for (std::size_t i = 0; i < cleared_.size(); ++i) {
     if (is_write(pdu, map_.watchdog.clear[i])) cleared_[i] = true;
@@ -235,7 +237,8 @@ void EmulatedBoard::put_raw(const RegisterBlock& block, std::size_t index, doubl
   }
 }
 
-/// A heartbeat that does not change is that of a program that hangs.
+/// Returns true if the request feeds the heartbeat. A heartbeat with a constant value does not count, because
+/// it comes from a program that hangs.
 bool EmulatedBoard::is_heartbeat(std::span<const std::uint8_t> pdu) {
   drivers::FixedWrite write = *map_.watchdog.feed_write;
   if (!write.alternate) return is_write(pdu, write);

@@ -1,6 +1,6 @@
 #pragma once
-// The board that the emulator pretends to be: registers as a board map describes them, converters, and the
-// board's own watchdog. Knows terminals and their volts or milliamperes, nothing of what is wired to them.
+// Emulates the board: registers according to a board map, converters and the watchdog of the board. It knows
+// terminals and their voltages or currents, but not the devices that are wired to them.
 
 #include <cstddef>
 #include <cstdint>
@@ -15,33 +15,34 @@ namespace softgrip::simulation {
 
 class EmulatedBoard {
  public:
-  /// As after power-on: outputs at their safe values (0 where the map gives none), the watchdog asleep until
-  /// the first request that feeds it.
+  /// Starts in the state after power-on. Outputs have their safe values (0 if the map gives none), and the
+  /// watchdog is inactive until the first request that feeds it.
   explicit EmulatedBoard(const drivers::BoardMap& map);
 
   [[nodiscard]] const drivers::BoardMap& map() const noexcept { return map_; }
 
-  /// The answer to a request that arrives at `now`. Not before an earlier `now`.
+  /// Returns the reply to a request that arrives at `now`. Calls must be in order of time.
   Registers::Answer answer(Nanoseconds now, std::span<const std::uint8_t> pdu);
 
-  /// Lets the watchdog act if it is due by `now`.
+  /// Trips the watchdog if it is due by `now`.
   void advance(Nanoseconds now);
-  /// When the watchdog trips unless it is fed; nothing while it sleeps, has tripped, or does not exist.
+  /// Returns the time at which the watchdog trips if it is not fed. Returns nullopt if it is inactive, has
+  /// tripped or does not exist.
   [[nodiscard]] std::optional<Nanoseconds> watchdog_due() const noexcept;
   [[nodiscard]] bool tripped() const noexcept { return tripped_; }
-  /// True once a client wrote an output.
+  /// Returns true after a client has written an output.
   [[nodiscard]] bool commanded() const noexcept { return commanded_; }
 
-  /// What an output terminal delivers [V or mA].
+  /// Returns the signal of an output terminal [V or mA].
   [[nodiscard]] double output(std::size_t terminal) const { return outputs_.at(terminal); }
-  /// Shows the number of connected clients, if the map has a register for it.
+  /// Writes the number of connected clients to its register, if the map has one.
   void count_clients(std::size_t clients);
-  /// While true, writes are answered as usual and have no effect.
+  /// While true, writes are confirmed but have no effect.
   void ignore_writes(bool ignored) noexcept { writes_ignored_ = ignored; }
 
-  /// What an input terminal receives [V or mA].
+  /// Sets the signal at an input terminal [V or mA].
   void set_input(std::size_t terminal, double electrical);
-  /// The board's own error value on an input, or its upper end where the map knows none.
+  /// Sets an input to the board's error value, or to its upper end if the map has no error value.
   void set_input_error(std::size_t terminal);
 
  private:
@@ -66,12 +67,12 @@ class EmulatedBoard {
   Registers registers_;
   std::vector<double> outputs_;  // V or mA
   Nanoseconds fed_at_ = 0;
-  std::optional<bool> alternated_;  // the last write of the heartbeat had its second value
+  std::optional<bool> alternated_;  // the last heartbeat write had the second of its two values
   bool watchdog_awake_ = false;
   bool tripped_ = false;
   bool commanded_ = false;
   bool writes_ignored_ = false;
-  std::vector<bool> cleared_;  // which of the clearing writes came since the watchdog tripped
+  std::vector<bool> cleared_;  // clearing writes received since the watchdog tripped
 };
 
 }  // namespace softgrip::simulation

@@ -28,7 +28,7 @@ Nanoseconds interval_of(const FaultSpec& fault) {
   return std::max<Nanoseconds>(1, std::llround(fault.interval_s * 1e9));
 }
 
-/// A jumping sensor is off in the first, third, ... interval.
+/// Returns true while a jumping sensor has its offset: in the first, third, ... interval.
 bool is_off(const FaultSpec& fault, Nanoseconds since, Nanoseconds now) {
   return (now - since) / interval_of(fault) % 2 == 0;
 }
@@ -58,7 +58,7 @@ void Emulator::advance(Nanoseconds now) {
       ++watchdog_trips_;
       take_commands();
     }
-    // Also between changes: a jumping sensor toggles.
+    // A jumping sensor also changes between the changes of the schedule.
     faults_.advance(now_);
     apply_faults();
     if (now_ % grid == 0 && observer_) observer_();
@@ -85,7 +85,7 @@ bool Emulator::tripped() const noexcept {
 Reply Emulator::serve(Nanoseconds now, const Request& request, std::size_t link, Nanoseconds opened_at) {
   advance(now);
   EmulatedBoard* const board = board_at(link, request.unit);
-  // On a serial line everybody hears everything, and answers only what is meant for him.
+  // On a serial line all modules receive all requests. Only the addressed module replies.
   if (board == nullptr && wire_ == Wire::rtu) return {};
   ++requests_;
   const auto index = wire_fault(request, now - opened_at);

@@ -1,6 +1,6 @@
 #pragma once
-// The rig in real time: board, fingers and what goes wrong with them, moved by the times at which requests
-// arrive. No sockets, no clock of its own.
+// The emulated rig in real time: board, fingers and faults. The times at which requests arrive advance it. It
+// has no sockets and no clock.
 
 #include <cstddef>
 #include <cstdint>
@@ -16,16 +16,16 @@
 
 namespace softgrip::simulation {
 
-/// One module of the board, and where it answers.
+/// One module of the board and its address.
 struct EmulatedModule {
   drivers::BoardMap map;
   std::uint8_t unit = 1;
-  std::size_t link = 0;  ///< which of the wires leads to it
+  std::size_t link = 0;  ///< index of the link that leads to the module
 };
 
 struct EmulatorSettings {
-  /// Requests to a unit that is not on their link are answered with exception 11 on a network, and with
-  /// silence on a serial line.
+  /// A request to a unit that is not on its link gets exception 11 on a network and no reply on a serial
+  /// line.
   std::vector<EmulatedModule> modules;
   Wire wire = Wire::tcp;
   std::vector<drivers::ChannelWiring> wiring;
@@ -35,41 +35,41 @@ struct EmulatorSettings {
 
 class Emulator {
  public:
-  /// Plants move in steps that end on this grid, at every request, and wherever something happens.
+  /// Plants move in steps that end at multiples of this time, at every request and at every event [ns].
   static constexpr Nanoseconds grid = 1'000'000;
-  /// A fault that always exists: triggered, it takes the object away.
+  /// Name of a fault that always exists. It removes the object while it is active.
   static constexpr std::string_view object_out = "object_out";
 
-  /// The first moment is 0.
+  /// Starts at time 0.
   explicit Emulator(EmulatorSettings settings);
 
-  /// Moves on. Not before an earlier `now`.
+  /// Advances to `now`. Calls must be in order of time.
   void advance(Nanoseconds now);
-  /// A request that arrives at `now` on a link, over a connection that was opened at `opened_at`, and what
-  /// becomes of it.
+  /// Processes a request that arrives at `now` on a link, over a connection that was opened at `opened_at`.
+  /// Returns the reply or its absence.
   [[nodiscard]] Reply serve(Nanoseconds now, const Request& request, std::size_t link = 0,
                             Nanoseconds opened_at = 0);
   /// Sets the number of clients that are connected to a link.
   void count_clients(std::size_t clients, std::size_t link);
-  /// Whether new connections are let in.
+  /// Returns true if new connections are accepted.
   [[nodiscard]] bool reachable() const { return !faults_.first_active(FaultKind::disconnect); }
 
-  /// Begins or ends a fault. False: there is none of that name.
+  /// Begins or ends a fault. Returns false if no fault has this name.
   bool trigger(std::string_view name, Nanoseconds now);
   bool clear(std::string_view name, Nanoseconds now);
   /// Puts an object between the fingers (all channels), or none.
   void set_object(const std::optional<simulation::PlantObject>& object);
 
-  /// Called at every point of the grid.
+  /// Sets a function that is called at every multiple of `grid`.
   void on_grid(std::function<void()> observer) { observer_ = std::move(observer); }
 
   [[nodiscard]] Wire wire() const noexcept { return wire_; }
   [[nodiscard]] Nanoseconds now() const noexcept { return now_; }
   [[nodiscard]] const std::vector<Finger>& fingers() const noexcept { return fingers_; }
   [[nodiscard]] const std::vector<EmulatedBoard>& modules() const noexcept { return boards_; }
-  /// True once a client wrote an output.
+  /// Returns true after a client has written an output.
   [[nodiscard]] bool commanded() const noexcept;
-  /// True while the watchdog of a module holds its outputs.
+  /// Returns true while the watchdog of a module holds its outputs.
   [[nodiscard]] bool tripped() const noexcept;
   [[nodiscard]] const FaultSchedule& faults() const noexcept { return faults_; }
   [[nodiscard]] std::uint64_t requests() const noexcept { return requests_; }
@@ -91,7 +91,7 @@ class Emulator {
   [[nodiscard]] EmulatedBoard* board_at(std::size_t link, std::uint8_t unit) noexcept;
 
   std::vector<EmulatedBoard> boards_;
-  std::vector<Place> places_;  // of the boards
+  std::vector<Place> places_;  // unit and link of each board
   Wire wire_;
   std::vector<Finger> fingers_;
   FaultSchedule faults_;

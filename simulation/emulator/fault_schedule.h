@@ -1,5 +1,5 @@
 #pragma once
-// Which faults are there at a moment: by the clock, by trigger, until their end.
+// Determines the active faults at a time: they begin by the clock or by a trigger and last until their end.
 
 #include <cstddef>
 #include <optional>
@@ -15,33 +15,33 @@ class FaultSchedule {
  public:
   explicit FaultSchedule(std::vector<FaultSpec> faults);
 
-  /// The moment from which at_s counts. Only the first call counts.
+  /// Sets the time from which at_s counts. Later calls have no effect.
   void start(Nanoseconds now);
   [[nodiscard]] bool started() const noexcept { return started_at_.has_value(); }
-  /// Begins and ends what is due by `now`. True if something changed.
+  /// Begins and ends the faults that are due by `now`. Returns true if a fault changed.
   bool advance(Nanoseconds now);
-  /// The next moment at which something begins or ends by the clock.
+  /// Returns the next time at which the clock begins or ends a fault.
   [[nodiscard]] std::optional<Nanoseconds> next_change() const;
 
-  /// Begins a fault now, whatever its at_s. False: there is none of that name.
+  /// Begins a fault now, independent of its at_s. Returns false if no fault has this name.
   bool trigger(std::string_view name, Nanoseconds now);
-  /// Ends a fault, for good unless triggered again. False: there is none of that name.
+  /// Ends a fault. Only a trigger begins it again. Returns false if no fault has this name.
   bool clear(std::string_view name);
 
-  /// A fault of the wire that touched a reply counts it, and ends with its last one.
+  /// Counts a reply that a fault of the wire affected. The fault ends with the last reply that it may affect.
   void count_reply(std::size_t index);
 
   [[nodiscard]] const std::vector<FaultSpec>& faults() const noexcept { return faults_; }
   [[nodiscard]] bool active(std::size_t index) const { return states_[index].active; }
-  /// When the active fault began.
+  /// Returns the time at which the active fault began.
   [[nodiscard]] Nanoseconds since(std::size_t index) const { return states_[index].since; }
-  /// The first active fault of this kind, or nothing.
+  /// Returns the first active fault of this kind, or nullopt.
   [[nodiscard]] std::optional<std::size_t> first_active(FaultKind kind) const;
 
  private:
   struct State {
     bool active = false;
-    bool spent = false;  ///< its at_s was used
+    bool spent = false;  ///< the clock has already begun the fault
     Nanoseconds since = 0;
     std::uint32_t replies = 0;
   };

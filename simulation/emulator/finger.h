@@ -1,5 +1,5 @@
 #pragma once
-// One emulated finger on the board: its plant, and the terminals it is wired to.
+// One emulated finger on the board: its plant and its wiring.
 
 #include <optional>
 #include <span>
@@ -17,21 +17,20 @@ class Finger {
   [[nodiscard]] const std::string& name() const noexcept { return wiring_.name; }
   [[nodiscard]] const simulation::Plant& plant() const noexcept { return plant_; }
 
-  /// Takes the pressure that the output asks for. `modules` are those of the board, as the wiring counts
-  /// them.
+  /// Sets the commanded pressure from the output terminal. `modules` are those of the board, indexed as in
+  /// the wiring.
   void take_command(std::span<const EmulatedBoard> modules);
-  /// Moves on by `duration_s` under the held command.
+  /// Advances by `duration_s` with a constant command.
   void advance(double duration_s) noexcept { plant_.advance(duration_s); }
-  /// Puts what the sensors show on the inputs.
+  /// Writes the sensor signals to the inputs.
   void show(std::span<EmulatedBoard> modules) const;
 
-  /// Faults as they should be from now on; unchanged ones are left alone (a stuck sensor stays where it
-  /// stuck).
+  /// Sets the faults. A fault that has not changed is not restarted: a stuck sensor keeps its value.
   void set_faults(const simulation::LineFault& line, const simulation::SensorFault& sensor);
-  /// Puts the object of the settings there, or takes it away.
+  /// Places the object of the settings, or removes it.
   void place_object(bool there);
   [[nodiscard]] bool has_object() const noexcept { return plant_.object().has_value(); }
-  /// What place_object() places.
+  /// Sets the object that place_object() places.
   void set_object(const std::optional<simulation::PlantObject>& object) noexcept { object_ = object; }
 
  private:

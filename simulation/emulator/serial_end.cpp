@@ -72,7 +72,7 @@ tl::expected<void, std::string> SerialEnd::open_device() {
   modbus_t* const context = drivers::new_context(line_);
   const drivers::SerialFailure failed = drivers::open_serial(context, line_, kept_);
   end_ = Descriptor{::modbus_get_socket(context)};
-  ::modbus_free(context);  // leaves the descriptor open
+  ::modbus_free(context);  // does not close the descriptor
   if (failed.what != nullptr) return failure(std::string(failed.what) + " " + line_.device, failed.error);
   pseudo_ = is_pseudo_terminal(line_.device);
   return {};
@@ -82,7 +82,7 @@ tl::expected<SerialEnd, std::string> SerialEnd::open(const drivers::SerialLine& 
   SerialEnd end(line);
   struct stat about {};
   if (::stat(line.device.c_str(), &about) != 0 && errno == ENOENT) {
-    // A link that an emulator left behind when it was killed leads nowhere.
+    // Remove a dangling link of an emulator that was killed.
     if (::lstat(line.device.c_str(), &about) == 0 && S_ISLNK(about.st_mode)) ::unlink(line.device.c_str());
     if (auto made = end.make_pseudo(); !made) return tl::unexpected{made.error()};
     return end;

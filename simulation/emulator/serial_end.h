@@ -1,5 +1,5 @@
 #pragma once
-// The board's end of a serial line: a device, or a pseudo-terminal whose other end the daemon opens.
+// The board's end of a serial line: a device, or a pseudo-terminal. The daemon opens its other end.
 
 #include <string>
 
@@ -13,8 +13,8 @@ namespace softgrip::simulation {
 
 class SerialEnd {
  public:
-  /// A device that exists is opened. A path that does not becomes a link to a new pseudo-terminal, and goes
-  /// with this object. The error is one sentence.
+  /// Opens an existing device. If the path does not exist, it creates a link with this name to a new
+  /// pseudo-terminal. The destructor removes the link. The error is one sentence.
   [[nodiscard]] static tl::expected<SerialEnd, std::string> open(const drivers::SerialLine& line);
   SerialEnd(SerialEnd&& other) noexcept;
   SerialEnd& operator=(SerialEnd&& other) noexcept;
@@ -22,10 +22,10 @@ class SerialEnd {
   SerialEnd& operator=(const SerialEnd&) = delete;
   ~SerialEnd();
 
-  /// The line's times, as far as they must be simulated: those of bytes on a pseudo-terminal, existing or
-  /// new.
+  /// Returns the times that must be simulated: the turnaround, and on a pseudo-terminal also the times of the
+  /// bytes.
   [[nodiscard]] WireTime wire_time() const noexcept;
-  /// What is read and written; once.
+  /// Returns the descriptor for reading and writing. It can be taken once.
   [[nodiscard]] Descriptor take() noexcept { return std::move(end_); }
   [[nodiscard]] bool taken() const noexcept { return !end_; }
 
@@ -36,8 +36,8 @@ class SerialEnd {
 
   drivers::SerialLine line_;
   Descriptor end_;
-  // Of a pseudo-terminal the daemon's end: without it the line would hang up when the daemon leaves. Of a
-  // device what keeps others from opening it.
+  // For a pseudo-terminal: the daemon's end, so that the line does not hang up when the daemon closes it. For
+  // a device: a descriptor that keeps other programs from opening it.
   Descriptor kept_;
   std::string link_;
   bool pseudo_ = false;

@@ -1,5 +1,5 @@
 #pragma once
-// The emulator on the wire: one thread, poll(), Modbus clients, control clients, signals.
+// The server of the emulator: one thread that uses poll() for Modbus clients, control clients and signals.
 
 #include <csignal>
 #include <cstddef>
@@ -18,24 +18,24 @@
 namespace softgrip::simulation {
 
 struct ServerSockets {
-  std::vector<Descriptor> modbus;  ///< listening, one per link of a network
-  /// A serial line in the place of the network: how it is opened, and opened again after `disconnect`.
+  std::vector<Descriptor> modbus;  ///< listening sockets, one per link of a network
+  /// If set, a serial line replaces the network. It is opened with these settings, again after `disconnect`.
   std::optional<drivers::SerialLine> line;
   std::optional<SerialEnd> end;
-  Descriptor control;           ///< listening, or empty
-  Descriptor signals;           ///< a signalfd: SIGUSR1 pulls the object out, all others end run()
-  bool standard_input = false;  ///< take control commands from there as well
+  Descriptor control;           ///< listening socket, or empty
+  Descriptor signals;           ///< a signalfd: SIGUSR1 removes the object, all other signals end run()
+  bool standard_input = false;  ///< also read control commands from the standard input
 };
 
 class Server {
  public:
   Server(Emulator& emulator, ServerSockets sockets);
-  /// Until a signal or the control command `quit`. `idle` is called many times a second.
+  /// Runs until a signal or the control command `quit`. `idle` is called at least every 20 ms.
   void run(const std::function<void()>& idle);
 
  private:
   struct ControlClient {
-    Descriptor socket;  ///< empty: the standard input
+    Descriptor socket;  ///< empty: standard input
     std::string pending;
     bool open = true;
     [[nodiscard]] int input() const noexcept;
@@ -43,7 +43,7 @@ class Server {
 
   [[nodiscard]] Nanoseconds now() const;
   [[nodiscard]] std::chrono::nanoseconds timeout() const;
-  /// The limit of descriptors was lowered. False: there is no client to give up.
+  /// Closes a client after the limit of descriptors was lowered. Returns false if no client is left.
   [[nodiscard]] bool give_up_client();
   void accept_modbus(std::size_t link);
   void count_clients();

@@ -1,9 +1,10 @@
 #pragma once
-// What really happened, as the emulator knows it: a log with a `channel` column and true values.
+// Writes the true state of the emulated rig: a log with a `channel` column and true values.
 //
 //   time_s,channel,pressure_command_kpa,displacement_mm,pressure_kpa,reading_mm,object,watchdog_tripped
 //
-// displacement_mm and pressure_kpa are without noise; reading_mm is what the sensor showed (empty: nothing).
+// displacement_mm and pressure_kpa are without noise. reading_mm is the sensor signal (empty: no valid
+// reading).
 
 #include <cstdint>
 #include <fstream>
@@ -15,13 +16,13 @@ namespace softgrip::simulation {
 
 class TruthLog {
  public:
-  /// One row per channel every `decimation` calls of add().
+  /// Writes one row per channel at every `decimation`-th call of add().
   TruthLog(const std::string& path, std::uint32_t decimation);
 
   void add(const Emulator& emulator);
-  /// Hands all rows to the system.
+  /// Writes all buffered rows to the file.
   void flush() { file_.flush(); }
-  /// False once something could not be written.
+  /// Returns false after a write has failed.
   [[nodiscard]] bool good() const { return file_.good(); }
 
  private:

@@ -1,5 +1,5 @@
 #pragma once
-// The words of a Modbus server that the emulator uses as its own.
+// Names of the Modbus server that the emulator uses without a prefix.
 
 #include "drivers/modbus_server/connection.h"
 #include "drivers/modbus_server/registers.h"

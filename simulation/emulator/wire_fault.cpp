@@ -36,7 +36,8 @@ Reply longer_than_it_is(Wire wire, const Request& request, const Bytes& pdu) {
   return at_once(std::move(whole));
 }
 
-/// Of another question, as far as the wire can tell: its transaction id, or its checksum.
+/// Returns the reply to a different request: with another transaction id, or a wrong checksum on a serial
+/// line.
 Reply of_another_question(Wire wire, const Request& request, const Bytes& pdu) {
   const auto next_transaction = static_cast<std::uint16_t>(request.transaction + 1);
   Bytes whole = frame_on(wire, next_transaction, request.unit, pdu);
@@ -44,7 +45,7 @@ Reply of_another_question(Wire wire, const Request& request, const Bytes& pdu) {
   return at_once(std::move(whole));
 }
 
-/// Registers that a request reads or writes, the larger number of both. Bits do not count.
+/// Returns the larger of the numbers of registers that a request reads and writes. Bits do not count.
 std::size_t most_registers_in(const Bytes& pdu) noexcept {
   constexpr std::size_t counted = 5;  // function, address, count
   constexpr std::size_t counted_twice = 9;

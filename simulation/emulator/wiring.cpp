@@ -10,7 +10,7 @@ constexpr double pressure_span_kpa = 100;
 constexpr double nearest_mm = -5;
 constexpr double farthest_mm = 45;
 
-/// Both ends of the usual signal, whatever the converter can do beyond.
+/// Returns both ends of the usual signal range, not of the range of the converter.
 struct Span {
   double low;
   double high;
@@ -27,7 +27,7 @@ Span span_of(const drivers::Terminal& terminal) {
   return {0, terminal.highest};
 }
 
-/// A terminal and the module that has it.
+/// A terminal and the module that contains it.
 struct Place {
   std::size_t module;
   std::size_t index;
@@ -36,8 +36,8 @@ struct Place {
 
 struct Places {
   std::vector<Place> outputs;
-  std::vector<Place> signals;    // inputs for sensors
-  std::vector<Place> pressures;  // inputs that measure the pressure themselves
+  std::vector<Place> signals;    // inputs for displacement sensors
+  std::vector<Place> pressures;  // inputs that measure pressure directly
 };
 
 Places places_of(std::span<const drivers::BoardMap> modules) {
@@ -84,7 +84,8 @@ drivers::OutputWiring output_at(const Place& place) {
   return wiring;
 }
 
-/// A pressure monitor shows what it measures as it is; one on an electrical input as the valves are scaled.
+/// Returns the wiring of a pressure monitor. A monitor with an electrical input has the same scale as the
+/// valve.
 drivers::InputWiring monitor_at(const Place& place, const drivers::OutputWiring& valve) {
   if (place.terminal.unit != drivers::ElectricalUnit::kilopascal) {
     return input_at(place, valve.scaling.y0, valve.scaling.y1);

@@ -1,5 +1,5 @@
 #pragma once
-// How fingers are wired to an emulated board when no rig file says it.
+// Default wiring of fingers to an emulated board, without a rig file.
 
 #include <cstddef>
 #include <span>
@@ -13,11 +13,11 @@
 
 namespace softgrip::simulation {
 
-/// Channels left, right, finger_3, ...: valve i on output i, sensor i on input i and, where there are inputs
-/// enough, pressure monitors on the last inputs; terminals count on from module to module. The lower end of
-/// the terminals' span (0 V or 4 mA) is 0 kPa and -5 mm, the upper (10 V or 20 mA) 100 kPa and 45 mm: as
-/// config/rig_tcp.yaml has it. Terminals in kilopascals are valves and pressure monitors themselves.
-/// The error is one sentence.
+/// Returns the wiring of channels left, right, finger_3, ... Valve i is on output i and sensor i on input i.
+/// Pressure monitors are on the last inputs if there are enough inputs. Terminals are numbered across
+/// modules. The lower end of the terminal range (0 V or 4 mA) is 0 kPa and -5 mm. The upper end (10 V or 20
+/// mA) is 100 kPa and 45 mm, as in config/rig_tcp.yaml. Terminals in kilopascals are valves and pressure
+/// monitors themselves. The error is one sentence.
 [[nodiscard]] tl::expected<std::vector<drivers::ChannelWiring>, std::string> default_wiring(
     std::span<const drivers::BoardMap> modules, std::size_t channels);
 

@@ -1,6 +1,6 @@
 #pragma once
-// Reads the faults of a finger from YAML, with equal words and bounds for the events of a rig file and the
-// emulator's faults file.
+// Reads the faults of a finger from YAML. The keys and limits are equal in the events of a rig file and in
+// the emulator's faults file.
 
 #include <string_view>
 
@@ -9,11 +9,11 @@
 
 namespace softgrip::simulation {
 
-/// Reads the keys of a line fault in addition to its kind: `share` of a leak.
+/// Reads the keys of a line fault other than its kind: `share` of a leak.
 void read_own_keys(document::MapReader& reader, LineFault& fault);
-/// Reads the keys of a sensor fault in addition to its kind: its size under `offset_key` [mm].
+/// Reads the keys of a sensor fault other than its kind: its size under `offset_key` [mm].
 void read_own_keys(document::MapReader& reader, SensorFault& fault, std::string_view offset_key);
-/// `{position_mm, yielding}`
+/// Reads an object: `{position_mm, yielding}`.
 [[nodiscard]] PlantObject read_object(const document::Document& document, const document::Node& node,
                                       document::Problems& problems);
 

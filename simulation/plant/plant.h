@@ -10,11 +10,10 @@
 
 namespace softgrip::simulation {
 
-/// Something between the fingers. Beyond `position_mm` the finger moves only `yielding` times as far as it
-/// would without it.
+/// An object between the fingers. Beyond `position_mm`, the motion of the finger is multiplied by `yielding`.
 struct PlantObject {
   double position_mm = 0;
-  double yielding = 0.1;  ///< 0 (rigid) to 1 (nothing there)
+  double yielding = 0.1;  ///< 0 (rigid) to 1 (no effect)
 
   bool operator==(const PlantObject&) const = default;
 };
@@ -23,8 +22,8 @@ struct PlantObject {
 struct LineFault {
   enum class Kind : std::uint8_t {
     none,
-    blocked,  ///< commands have no effect any more: the finger stays at the pressure it has
-    leaking,  ///< a share of every command is lost
+    blocked,  ///< commands have no effect; the finger keeps its pressure
+    leaking,  ///< the pressure is lower by a share of the command
   };
   Kind kind = Kind::none;
   double share = 0;  ///< leaking: 0 to 1
@@ -35,8 +34,8 @@ struct SensorFault {
   enum class Kind : std::uint8_t {
     none,
     stuck,         ///< repeats its last value
-    offset,        ///< off by value_mm: a sensor that jumped
-    out_of_range,  ///< sees nothing; the board shows its error value or an electrical end
+    offset,        ///< offset of value_mm, as after a jump
+    out_of_range,  ///< no valid reading; the board shows its error value or an electrical limit
   };
   Kind kind = Kind::none;
   double value_mm = 0;
@@ -44,20 +43,20 @@ struct SensorFault {
 
 struct PlantSettings {
   model::Model model;
-  std::optional<PlantObject> object;  ///< there from the start
-  double sample_time_s = 0;           ///< usual duration of advance(), 0 if irregular
-  double displacement_noise_mm = 0;   ///< standard deviation, besides the model's own sensor blocks
-  double pressure_noise_kpa = 0;      ///< of the measured pressure
-  double temperature_c = 20;          ///< of the finger's surroundings
-  double temperature_noise_c = 0;     ///< of the measured temperature
+  std::optional<PlantObject> object;  ///< object at the start
+  double sample_time_s = 0;           ///< usual duration of advance(); 0 if irregular
+  double displacement_noise_mm = 0;   ///< standard deviation, in addition to the sensor blocks of the model
+  double pressure_noise_kpa = 0;      ///< standard deviation of the measured pressure
+  double temperature_c = 20;          ///< ambient temperature of the finger
+  double temperature_noise_c = 0;     ///< standard deviation of the measured temperature
   std::uint64_t seed = 0;
 };
 
-/// A finger that moves in time. The command is held between changes, as a board's output holds it.
-/// advance() allocates nothing when sample_time_s is above 0.
+/// Simulates a finger over time. The command is constant between changes, like an output that a board holds.
+/// advance() allocates no memory if sample_time_s is above 0.
 class Plant {
  public:
-  /// At rest, command 0. The model must be valid.
+  /// Starts at rest with command 0. The model must be valid.
   explicit Plant(const PlantSettings& settings);
   Plant(const Plant&) = delete;
   Plant& operator=(const Plant&) = delete;
@@ -65,9 +64,9 @@ class Plant {
   Plant& operator=(Plant&&) noexcept;
   ~Plant();
 
-  /// The output of the board from now on [kPa]. Not finite: ignored.
+  /// Sets the output of the board [kPa]. A value that is not finite is ignored.
   void command(double command_kpa) noexcept;
-  /// Moves on by `duration_s` >= 0 under the held command.
+  /// Advances by `duration_s` >= 0 with a constant command.
   void advance(double duration_s) noexcept;
 
   [[nodiscard]] double held_command_kpa() const noexcept;
@@ -77,14 +76,14 @@ class Plant {
   [[nodiscard]] double displacement_mm() const noexcept;
   /// Returns the reading of a pressure monitor [kPa], with noise.
   [[nodiscard]] double measured_pressure_kpa() const noexcept;
-  /// Without noise.
+  /// Returns the true pressure [kPa], without noise.
   [[nodiscard]] double pressure_kpa() const noexcept;
-  /// Returns the reading of a temperature sensor, with noise.
+  /// Returns the reading of a temperature sensor [degC], with noise.
   [[nodiscard]] double measured_temperature_c() const noexcept;
-  /// True while the sensor is out of range: reading_mm() means nothing.
+  /// Returns true while the sensor is out of range. reading_mm() is then not valid.
   [[nodiscard]] bool sees_nothing() const noexcept;
 
-  /// Puts an object there, or takes it away. The finger follows with the next advance().
+  /// Places an object, or removes it. The finger reacts at the next advance().
   void set_object(const std::optional<PlantObject>& object) noexcept;
   [[nodiscard]] const std::optional<PlantObject>& object() const noexcept;
   void set_fault(const LineFault& fault) noexcept;

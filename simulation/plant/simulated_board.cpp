@@ -41,8 +41,8 @@ struct SimulatedBoard::Parts {
   std::size_t next_event = 0;
   bool started = false;
   Nanoseconds started_at = 0;
-  Nanoseconds plants_at = 0;  ///< up to where the plants have moved
-  Nanoseconds fed_at = 0;     ///< last exchange that reached the board
+  Nanoseconds plants_at = 0;  ///< time of the plants
+  Nanoseconds fed_at = 0;     ///< time of the last exchange that reached the board
   bool connected = false;
   bool tripped = false;
   bool refuses_writes = false;
@@ -68,7 +68,7 @@ void SimulatedBoard::Parts::move_to(Nanoseconds time) noexcept {
   plants_at = time;
 }
 
-/// Events and the watchdog act at their own times, not at those of the exchanges.
+/// Processes events and the watchdog at their own times, which differ from those of the exchanges.
 void SimulatedBoard::Parts::act_until(Nanoseconds time) noexcept {
   while (true) {
     constexpr Nanoseconds never = std::numeric_limits<Nanoseconds>::max();
@@ -82,7 +82,7 @@ void SimulatedBoard::Parts::act_until(Nanoseconds time) noexcept {
       move_to(event_at);
       happen(settings.events[next_event++]);
     } else if (trip_at == time) {
-      break;  // fed just in time
+      break;  // fed before the time-out
     } else {
       move_to(trip_at);
       tripped = true;

@@ -1,6 +1,6 @@
 #pragma once
-// The rig in process: N plants behind the board interface. Deterministic: the same settings, the same clock
-// readings and the same commands give the same bits.
+// A simulated rig in this process: several plants behind the board interface. It is deterministic: equal
+// settings, clock readings and commands give bit-identical results.
 
 #include <cstddef>
 #include <cstdint>
@@ -16,18 +16,18 @@
 
 namespace softgrip::simulation {
 
-/// Something that happens at a scripted time.
+/// An event at a scripted time.
 struct SimulatedEvent {
   enum class Kind : std::uint8_t {
-    object,         ///< places `object` in the way of the finger; none: removes it
-    line_fault,     ///< `line`
-    sensor_fault,   ///< `sensor`
-    bus_lost,       ///< every exchange ends with `status`; while that is `disconnected`, connect() fails too
-    bus_restored,   ///< exchanges work again, after a connect() if the status was one that ends the session
-    write_refused,  ///< outputs keep their value; an exchange with a new value reports it
-    write_taken,    ///< outputs follow again
+    object,         ///< places `object` in the path of the finger; nullopt: removes it
+    line_fault,     ///< sets the fault `line`
+    sensor_fault,   ///< sets the fault `sensor`
+    bus_lost,       ///< every exchange returns `status`; if it is `disconnected`, connect() also fails
+    bus_restored,   ///< exchanges succeed again; if `status` ended the session, only after connect()
+    write_refused,  ///< outputs keep their values; an exchange with a new value reports the refusal
+    write_taken,    ///< outputs follow commands again
   };
-  /// All channels.
+  /// Applies an event to all channels.
   static constexpr std::size_t every_channel = static_cast<std::size_t>(-1);
 
   double at_s = 0;  ///< since the first exchange
@@ -44,28 +44,28 @@ struct SimulatedChannel {
   PlantSettings plant;
   bool measures_pressure = false;
   bool measures_temperature = false;
-  double valve_min_kpa = 0;  ///< lowest output, below 0 for vacuum
-  double valve_max_kpa = 0;  ///< full scale of the output, above the lowest; commands outside are refused
-  double vented_kpa = 0;     ///< what the watchdog puts out
-  double sensor_min_mm = 0;  ///< measuring range of the sensor; beyond it readings are out of range
+  double valve_min_kpa = 0;  ///< lowest output; below 0 for vacuum
+  double valve_max_kpa = 0;  ///< largest output, above the lowest; commands outside the range are refused
+  double vented_kpa = 0;     ///< output after a watchdog trip
+  double sensor_min_mm = 0;  ///< lower limit of the measuring range; readings outside the range are marked
   double sensor_max_mm = 0;
-  int output_bits = 0;  ///< over the output's range; 0: not quantised
-  int input_bits = 0;   ///< over the measuring range, and over the output's for pressure; 0: not quantised
+  int output_bits = 0;  ///< resolution over the output range; 0: not quantised
+  int input_bits = 0;   ///< resolution over the measuring range and over the pressure range; 0: not quantised
 };
 
 struct SimulatedBoardSettings {
   std::vector<SimulatedChannel> channels;
   std::vector<SimulatedEvent> events;  ///< in any order
-  /// Time without an exchange after which the outputs go to `vented_kpa` [s]; they stay there until
-  /// connect(). 0: no watchdog.
+  /// Time without an exchange after which the outputs change to `vented_kpa` [s], until connect(). 0: no
+  /// watchdog.
   double watchdog_timeout_s = 0;
 };
 
-/// An exchange at time t: the plants move on to t under the commands held so far, the readings are taken,
-/// then the new commands are applied. The reading of an exchange thus never knows the command written in it.
+/// An exchange at time t first advances the plants to t with the previous commands, then takes the readings,
+/// then applies the new commands. A reading therefore never depends on the command of the same exchange.
 class SimulatedBoard final : public drivers::Board {
  public:
-  /// `clock` outlives the board.
+  /// `clock` must outlive the board.
   SimulatedBoard(const SimulatedBoardSettings& settings, const Clock& clock);
   ~SimulatedBoard() override;
 
@@ -80,9 +80,10 @@ class SimulatedBoard final : public drivers::Board {
   [[nodiscard]] bool has_watchdog() const noexcept override;
   [[nodiscard]] std::chrono::nanoseconds watchdog_time() const noexcept override;
 
-  /// The plant of a channel, to be poked by tests and by scripts at run time (from the exchanging thread).
+  /// Returns the plant of a channel, for tests and scripts that change it (only from the thread that
+  /// exchanges).
   [[nodiscard]] Plant& plant(std::size_t channel);
-  /// Lets something happen now.
+  /// Applies an event now.
   void happen(const SimulatedEvent& event) noexcept;
 
  private:
