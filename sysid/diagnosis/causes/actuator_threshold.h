@@ -16,7 +16,7 @@ struct ActuatorThreshold : FormOf<model::ActuatorThreshold> {
   static Starts starts(const Scales& s) {
     return every({{"threshold_kpa", {0.02 * s.largest_kpa, 0.08 * s.largest_kpa, 0.2 * s.largest_kpa}}});
   }
-  /// Below nearly all pressures nothing moves: then the data are of another actuator.
+  /// At a higher threshold, nearly all data would show no motion. They would then belong to another actuator.
   static Bounds bounds(const Scales& s, const model::Model&) {
     return {{"threshold_kpa", 0, 0.6 * s.largest_kpa}};
   }

@@ -17,7 +17,7 @@ struct AsymmetricHysteresis {
        "Run up and down slowly three times with the load taken off."},
       {{{HealthNumber::loop_width, Moves::either_way}}}};
 
-  /// An element that takes another way up than down.
+  /// A separate element whose loading and unloading curves differ.
   struct OwnLoop : FormOf<model::DuhemHysteresis> {
     static Starts starts(const Scales& s) {
       const double gain = s.gain_mm_per_kpa();
@@ -25,18 +25,18 @@ struct AsymmetricHysteresis {
                     {"unloading_kpa", {0.3 * s.largest_kpa}},
                     {"loading_kpa", {0.08 * s.largest_kpa, 0.3 * s.largest_kpa, s.largest_kpa}}});
     }
-    /// Longer than all pressures, the way is a straight line.
+    /// For lengths far above the largest pressure, the curve is a straight line.
     static Bounds bounds(const Scales& s, const model::Model&) {
       return {{"unloading_kpa", 0.01 * s.largest_kpa, 3 * s.largest_kpa},
               {"loading_kpa", 0.01 * s.largest_kpa, 3 * s.largest_kpa}};
     }
   };
 
-  /// The base's hysteresis, skewed.
+  /// The hysteresis of the base with different loading and unloading.
   struct Skew : FormOf<model::AsymmetricBoucWen> {
     static Starts starts(const Scales& s) {
       Starts starts;
-      // The state of the hysteresis levels off over some tenths of the pressures.
+      // The hysteretic state saturates over some tenths of the pressure range.
       for (const double delta : {-2.0, -0.8, -0.3, 0.3, 0.8, 2.0}) {
         starts.push_back(start({{"delta_per_kpa", delta / s.largest_kpa}}));
         starts.push_back(start({{"epsilon_per_kpa", delta / s.largest_kpa}}));
@@ -46,15 +46,16 @@ struct AsymmetricHysteresis {
     }
   };
 
-  /// A loop that is wide in the middle. Where it closes is the largest pressure.
+  /// A loop that is wide at medium pressure. It closes at the largest pressure.
   struct Crescent : FormOf<model::CrescentHysteresis> {
     static constexpr std::array<Parameter, 2> fitted{"gain_mm_per_kpa", "bend"};
     static Starts starts(const Scales& s) {
       const double gain = s.gain_mm_per_kpa();
       return every({{"gain_mm_per_kpa", {0.05 * gain}}, {"bend", {2, 6}}, {"range_kpa", {s.largest_kpa}}});
     }
-    /// Straight it is nothing, bent more it is a step at the end. Below zero it would give back more than it
-    /// was given: what is then too wide is the base's own loop.
+    /// For a bend near zero, the element has no effect. For a large bend, it is a step at the end of the
+    /// range. A negative gain would release more than it stores; a loop that is too wide is described by the
+    /// base.
     static Bounds bounds(const Scales&, const model::Model&) {
       return {{"gain_mm_per_kpa", 0}, {"bend", 0.5, 30}};
     }

@@ -137,7 +137,7 @@ constexpr auto table_from(List<C...>) {
 }
 constexpr auto table = table_from(causes::All{});
 
-// Every block of the catalogue has its place in the registry.
+// Compile-time check: the registry assigns every block of the catalogue.
 
 template <class Block, class... F>
 constexpr bool is_block_of(List<F...>) {

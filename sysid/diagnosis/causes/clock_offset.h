@@ -6,7 +6,7 @@
 
 namespace softgrip::sysid::causes {
 
-/// A reading that is late is a dead time: no log separates them.
+/// A late reading equals a dead time: no log separates them.
 struct ClockOffset : FormOf<model::ClockOffset> {
   static constexpr bool is_ideal = true;
   static constexpr Appears appears = Appears::moving;

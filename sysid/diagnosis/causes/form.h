@@ -2,28 +2,29 @@
 // Defines the format of a cause's file, with helpers that name its parameters. docs/how-to/add-a-cause.md
 // shows an example.
 //
-// A cause is a struct in a file of its own. One with a single form is that form; one with several lists them
-// as `using Forms = List<...>`. The first form's block gives the cause its id, title and station; a
-// cause whose id is another says `id` and `title` itself.
+// Each cause is a struct in its own file. A cause with a single form is that form. A cause with several forms
+// lists them as `using Forms = List<...>`. The block of the first form defines id, title and station. A cause
+// with another id declares `id` and `title` itself.
 //
 // A form is a struct derived from FormOf<a block>:
-//   static Starts starts(const Scales&);                   from where fits begin; at least one
+//   static Starts starts(const Scales&);                   start points of fits; at least one
 //   static Bounds bounds(const Scales&, const model::Model&);  limits beyond which the block would duplicate
 //                                                          another effect as a false alternative
 //   static constexpr std::array<Parameter, N> fitted{...}; parameters that a fit moves; default: all
-//   static bool holds(const model::BlockSpec&);            where several forms share a block: whether it is
-//                                                          this one
-//   static constexpr bool free_form = true;                it can follow anything slow: named only where no
+//   static bool holds(const model::BlockSpec&);            required if several forms share a block: returns
+//                                                          true if the block has this form
+//   static constexpr bool free_form = true;                it can follow any slow signal: named only if no
 //                                                          law explains nearly as much
 //
-// A cause must say:
+// A cause must declare:
 //   static constexpr WhenChanged when_changed{words, {step, step}, {{{number, way}, ...}}, size};
-//                                                          for the operator of a rig that has acquired it;
-//                                                          the indicators of a recorded grip that it moves
-//                                                          (health_sign.h); optionally, the quantity that
-//                                                          states its size (SizedBy)
+//                                                          for the operator of a rig that has acquired the
+//                                                          cause; `number` and `way` name the indicators
+//                                                          of a recorded grip that change (health_sign.h);
+//                                                          optionally, the quantity that states the size
+//                                                          (SizedBy)
 //
-// A cause may say, besides:
+// A cause may also declare:
 //   static constexpr Column needs = ...;                   the column that its test requires
 //   static constexpr std::array advice{Advice::...};       actions that separate it if no waveform does
 //   static constexpr std::string_view indistinguishable = "...";
@@ -32,17 +33,19 @@
 //       sensor causes that may replace an actuator or load cause, or the reverse, in the order of testing
 //   static constexpr std::array<std::string_view, N> confounded_with{...};
 //       causes that increase the uncertainty of its parameters beyond that of its fit, if they are present
-//   static constexpr bool is_stop = true;                  holds the readings back at a place
+//   static constexpr bool is_stop = true;                  the displacement stops at a position
 //   static constexpr bool makes_distinguishable = true;
-//       has memory, between actuator and sensor: equal causes before and behind it give different readings
+//       has memory and acts between actuator and sensor: equal causes before and behind it give different
+//       readings
 //   static constexpr bool is_ideal = true;
-//       no mechanism is quite like it: among causes that tie and have as many numbers, the other one is named
+//       an ideal that no mechanism matches exactly: of two causes with equal loss and equally many
+//       parameters, the other one is named
 //   static constexpr std::string_view sensor_shape = "...";
-//       a sensor without memory, in words: a gauge shows it
+//       description of a sensor without memory, which a gauge can detect
 //   static constexpr Appears appears = ...;
 //       where its effect must appear (evidence/signature.h)
 //   static constexpr bool found_by_fitting = false;
-//       no trajectory shows it: it has no starts
+//       a fit of a trajectory cannot find it: it has no start points
 
 #include <array>
 #include <cstddef>
@@ -70,16 +73,16 @@ enum class Advice : std::uint8_t {
 /// The quantity that an operator checks after a change, and its relation to the fitted parameters.
 struct SizedBy {
   enum class Of : std::uint8_t {
-    full_pressure,  ///< what it does at the highest pressures
-    span,           ///< the same, as a share of all that the finger does
-    largest,        ///< the most it does, with its sign
-    amplitude,      ///< without
-    number,         ///< a number of the block as it is
+    full_pressure,  ///< mean effect at more than 90 % of the largest pressure
+    span,           ///< the same, as a share of the span of the readings
+    largest,        ///< largest effect, with its sign
+    amplitude,      ///< largest effect, without its sign
+    number,         ///< a parameter of the block
   };
   Of of = Of::full_pressure;
   std::string_view what = "at full pressure";
-  std::string_view unit{};    ///< empty: the reading's
-  std::string_view number{};  ///< by name; a form that has none of that name: full_pressure
+  std::string_view unit{};    ///< empty: unit of the reading
+  std::string_view number{};  ///< name of the parameter; a form without it uses full_pressure
   double factor = 1;
 };
 
@@ -87,8 +90,8 @@ struct SizedBy {
 /// does not develop over time.
 struct WhenChanged {
   std::string_view words;                      ///< "the finger rings"
-  std::array<std::string_view, 2> next_steps;  ///< what a person can do about it, the quicker first
-  HealthSigns signs{};                         ///< how recorded grips show it; none: they do not
+  std::array<std::string_view, 2> next_steps;  ///< actions for the operator, the quicker first
+  HealthSigns signs{};                         ///< effects on indicators of recorded grips; empty: no effect
   SizedBy size{};                              ///< quantity that states the size
 };
 
@@ -98,7 +101,7 @@ struct Range {
   double upper = std::numeric_limits<double>::infinity();
 };
 
-/// Forms of a cause, causes of the registry.
+/// A list of forms of a cause, or of causes of the registry.
 template <class... T>
 struct List {};
 
@@ -111,7 +114,7 @@ struct FormOf {
   /// Selects a parameter of the block by name. An unknown name is a compile-time error.
   struct Parameter {
     std::size_t index;
-    // NOLINTNEXTLINE(google-explicit-constructor): so that a name can be written where a parameter is meant.
+    // NOLINTNEXTLINE(google-explicit-constructor): a name is accepted wherever a parameter is expected.
     consteval Parameter(const char* name) : index(0) {
       while (Block<double>::parameters.at(index).name != std::string_view(name)) ++index;
     }

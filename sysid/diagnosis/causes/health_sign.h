@@ -24,7 +24,7 @@ inline constexpr std::size_t health_numbers = 9;
 
 struct HealthNumberInfo {
   std::string_view id;     ///< as in JSON, with its unit
-  std::string_view title;  ///< "gain", for people
+  std::string_view title;  ///< "gain", for display
   std::string_view unit;
 };
 inline constexpr std::array<HealthNumberInfo, health_numbers> health_number_infos{{

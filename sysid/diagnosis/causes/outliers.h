@@ -6,7 +6,8 @@
 
 namespace softgrip::sysid::causes {
 
-/// Counted against their neighbours (residual/outliers.h), not fitted: no trajectory shows them.
+/// Found by comparison with neighbouring readings (residual/outliers.h), not by a fit, because no trajectory
+/// contains them.
 struct Outliers : FormOf<model::Outliers> {
   static constexpr bool found_by_fitting = false;
   static constexpr WhenChanged when_changed{

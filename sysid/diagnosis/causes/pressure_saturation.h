@@ -1,5 +1,5 @@
 #pragma once
-// The pressure stops below the command.
+// The pressure does not reach the command.
 
 #include "model/blocks/pressure_saturation.h"
 #include "sysid/diagnosis/causes/form.h"

@@ -6,8 +6,8 @@
 
 namespace softgrip::sysid::causes {
 
-/// The alternative of a leak (verdict/valve_findings.h), never a name: a scale is a thing to enter, and in
-/// displacements it is a gain.
+/// Only an alternative to a leak (verdict/valve_findings.h), never a named cause. The user enters the scale,
+/// and in the displacement it looks like a gain.
 struct PressureScale : FormOf<model::PressureScale> {
   static constexpr bool found_by_fitting = false;
   /// As a change, it looks like a leak or a change of the finger. No recorded quantity separates them.

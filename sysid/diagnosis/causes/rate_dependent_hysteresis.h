@@ -1,5 +1,5 @@
 #pragma once
-// The width of a loop changes with the rate, beyond what creep does.
+// The width of a loop changes with the rate, in addition to the effect of creep.
 
 #include "model/blocks/rate_dependent_levelling.h"
 #include "model/blocks/rate_dependent_width.h"
@@ -18,7 +18,7 @@ struct RateDependentHysteresis {
        "Look for rubbing, dried lubricant or a swollen seal, and record again."},
       {{{HealthNumber::loop_width, Moves::up}, {HealthNumber::lag, Moves::up}}}};
 
-  /// A loop of its own that relaxes.
+  /// A separate hysteresis element that relaxes.
   struct Relaxing : FormOf<model::RelaxingFriction> {
     static Starts starts(const Scales& s) {
       const double gain = s.gain_mm_per_kpa();
@@ -27,36 +27,37 @@ struct RateDependentHysteresis {
                     {"time_constant_s", {0.3, 3.0}}});
     }
     static Bounds bounds(const Scales& s, const model::Model&) {
-      return {// A loop that no pressure of the data saturates is linear in the pressure: a viscous branch.
+      return {// An element that does not saturate within the pressure range is linear in the pressure: a
+              // viscous branch.
               {"width_kpa", 0.01 * s.largest_kpa, 0.5 * s.largest_kpa},
-              // One that does not relax within the data's cycles does not know their rate.
+              // The data do not determine a relaxation that is slower than their load cycles.
               {"time_constant_s", s.sample_s, 0.1 * s.campaign_s}};
     }
   };
 
-  /// The base's loop changes with a rate.
+  /// The hysteresis of the base changes with the rate.
   template <template <class> class Block>
   struct Following : FormOf<Block> {
     using Form = FormOf<Block>;
     static typename Form::Starts sized(typename Form::Parameter size, const std::vector<double>& sizes,
                                        const Scales& s) {
-      // The largest pressure in five seconds, in one, in a fifth.
+      // The largest pressure in 5 s, in 1 s and in 0.2 s.
       return Form::every({{"rate_kpa_per_s", {0.2 * s.largest_kpa, s.largest_kpa, 5 * s.largest_kpa}},
                           {"settling_s", {0.03, 0.2}},
                           {size, sizes}});
     }
     static typename Form::Bounds bounds(const Scales& s, const model::Model&) {
-      return {// A loop that is wider by the same at all rates of the data is only wider.
+      return {// A change that is equal at all rates of the data is only a different loop width.
               {"rate_kpa_per_s", 0.05 * s.largest_kpa, 20 * s.largest_kpa},
               // A longer memory describes the history of the pressure, not its rate.
               {"settling_s", 0.5 * s.sample_s, 0.5}};
     }
   };
-  /// It grows.
+  /// Its width grows.
   struct Growing : Following<model::RateDependentWidth> {
     static Starts starts(const Scales& s) { return sized("growth", {0.06, 0.2, 0.6}, s); }
   };
-  /// It levels off sooner or later.
+  /// Its saturation changes.
   struct Levelling : Following<model::RateDependentLevelling> {
     static Starts starts(const Scales& s) { return sized("levelling", {-0.3, 0.5, 3.0}, s); }
   };

@@ -1,6 +1,6 @@
 #pragma once
-// The list of causes: the only one in the project. To add a cause, write its file here and add its line
-// (docs/how-to/add-a-cause.md). A block of the catalogue that is in no list below does not compile.
+// The only list of causes in the project. To add a cause, write its file and add its line here
+// (docs/how-to/add-a-cause.md). A block of the catalogue that is in no list below is a compile error.
 
 #include "model/registry.h"
 #include "sysid/diagnosis/causes/actuator_threshold.h"
@@ -61,7 +61,7 @@ using All = List<ActuatorThreshold,        //
                  ValveDeadband,            //
                  ValveLag>;
 
-/// Blocks that are no form of a cause: the base structure, and the sensor's random error.
+/// Blocks that are not a form of a cause: the base structure, and the random error of the sensor.
 using NoCauses = List<model::AsymmetricValveLag<double>,      //
                       model::PressureRegulator<double>,       //
                       model::ChamberLag<double>,              //

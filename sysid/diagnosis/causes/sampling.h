@@ -1,12 +1,12 @@
 #pragma once
-// The reading is slower than its command, or frozen for an interval.
+// The sensor is sampled more slowly than the command, or its reading is frozen for some time.
 
 #include "model/blocks/sampling.h"
 #include "sysid/diagnosis/causes/form.h"
 
 namespace softgrip::sysid::causes {
 
-/// Found by readings that repeat (residual/sampling.h), not fitted.
+/// Found by repeated readings (residual/sampling.h), not by a fit.
 struct Sampling : FormOf<model::Sampling> {
   static constexpr bool found_by_fitting = false;
   static constexpr WhenChanged when_changed{

@@ -38,7 +38,7 @@ struct SensorDrift {
       return every(
           {{"warm_up_mm", {-0.05 * s.span_mm, 0.05 * s.span_mm}}, {"warm_up_time_s", {0.3 * s.campaign_s}}});
     }
-    /// Warming up faster than this is creep of the actuator, slower a steady drift.
+    /// A faster warm-up equals creep of the actuator. A slower one equals a steady drift.
     static Bounds bounds(const Scales& s, const model::Model&) {
       return {{"warm_up_time_s", s.soonest_s(), s.campaign_s}};
     }
@@ -46,7 +46,7 @@ struct SensorDrift {
 
   /// The zero oscillates slowly.
   struct Wander : FormOf<model::SensorWander> {
-    /// Waves of every phase, small and not so small.
+    /// Starts with all phases and with two amplitudes.
     static Starts starts(const Scales& s) {
       Starts starts;
       for (const double campaigns : {0.15, 0.25, 0.4, 0.65, 1.0, 1.7}) {
@@ -73,7 +73,7 @@ struct SensorDrift {
     static constexpr bool free_form = true;
     static constexpr std::array<Parameter, 0> fitted{};
     static Starts starts(const Scales& s) {
-      constexpr double closest_s = 12;  // closer together, they would follow the loops
+      constexpr double closest_s = 12;  // with shorter intervals, the knots would follow the hysteresis loops
       const auto knots = static_cast<std::size_t>(std::clamp(s.campaign_s / closest_s, 2.0, 16.0));
       Values values = start({{"knot_interval_s", s.campaign_s / static_cast<double>(knots)}});
       values.resize(values.size() + knots, 0.0);

@@ -1,5 +1,5 @@
 #pragma once
-// The scale of the sensor is bent.
+// The scale of the sensor is nonlinear.
 
 #include "model/blocks/sensor_nonlinearity.h"
 #include "sysid/diagnosis/causes/form.h"
@@ -15,14 +15,14 @@ struct SensorNonlinearity : FormOf<model::SensorNonlinearity> {
       "the scale of the sensor is bent",
       {"Look whether the sensor was knocked out of place or its target is askew.",
        "Hold a gauge at five positions (`softgrip diagnose --gauge`)."}};
-  /// The calibrated range is where the bend is counted from.
+  /// The calibrated range is fixed: it is the reference of the nonlinearity.
   static constexpr std::array<Parameter, 2> fitted{"bow_mm", "wave_mm"};
 
   static Starts starts(const Scales& s) {
     return every(
         {{"bow_mm", {-0.02 * s.span_mm, 0.02 * s.span_mm}}, {"wave_mm", {0.0}}, {"range_mm", {s.span_mm}}});
   }
-  /// For a fit to gauge readings.
+  /// Returns start values for a fit to gauge readings.
   static Values bent(double bow_mm, double wave_mm, double range_mm) {
     return start({{"bow_mm", bow_mm}, {"wave_mm", wave_mm}, {"range_mm", range_mm}});
   }

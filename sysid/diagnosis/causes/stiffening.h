@@ -1,5 +1,5 @@
 #pragma once
-// The gain changes with displacement, both ways alike.
+// The gain changes with the displacement, equally in both directions.
 
 #include "model/blocks/stiffening.h"
 #include "sysid/diagnosis/causes/form.h"

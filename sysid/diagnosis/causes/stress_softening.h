@@ -1,5 +1,5 @@
 #pragma once
-// Softer after the largest load so far (Mullins).
+// The finger is softer after the largest load so far (Mullins effect).
 
 #include "model/blocks/pseudo_elastic_softening.h"
 #include "model/blocks/stress_softening.h"
@@ -16,7 +16,7 @@ struct StressSoftening {
        "Leave it vented overnight and record again: what comes back is not wear."},
       {{{HealthNumber::gain, Moves::up}, {HealthNumber::loop_width, Moves::up}}}};
 
-  /// In proportion to the largest load.
+  /// The softening is proportional to the largest load.
   struct Proportional : FormOf<model::StressSoftening> {
     static constexpr std::array<Parameter, 1> fitted{"softening_per_kpa"};
     static bool holds(const model::BlockSpec& block) {
@@ -26,7 +26,7 @@ struct StressSoftening {
       return every({{"softening_per_kpa", {0.05 / s.largest_kpa, 0.3 / s.largest_kpa}}});
     }
   };
-  /// Less and less with larger loads.
+  /// The softening saturates at large loads.
   struct Levelling : FormOf<model::StressSoftening> {
     static Starts starts(const Scales& s) {
       return every({{"softening_per_kpa", {0.5 / s.largest_kpa}},
@@ -34,13 +34,13 @@ struct StressSoftening {
     }
   };
 
-  /// Not at once, but over some way below the largest load.
+  /// The softening sets in gradually below the largest load.
   struct PseudoElastic : FormOf<model::PseudoElasticSoftening> {
     static Starts starts(const Scales& s) {
       return every({{"softening_per_kpa", {0.05 / s.largest_kpa, 0.3 / s.largest_kpa}},
                     {"range_kpa", {0.1 * s.largest_kpa, 0.3 * s.largest_kpa}}});
     }
-    /// Narrower than what a log shows of a turn it comes at once; wider it never comes.
+    /// A smaller range equals an immediate change. A larger range has no visible effect.
     static Bounds bounds(const Scales& s, const model::Model&) {
       return {{"range_kpa", 0.02 * s.largest_kpa, 2 * s.largest_kpa}};
     }

@@ -1,5 +1,5 @@
 #pragma once
-// The pressure follows a supply that falls.
+// The pressure decreases with the supply pressure.
 
 #include "model/blocks/supply_sag.h"
 #include "sysid/diagnosis/causes/form.h"
@@ -14,7 +14,7 @@ struct SupplySag : FormOf<model::SupplySag> {
        "Move other users to another line, or set the supply regulator higher, and record again."},
       {{{HealthNumber::pressure_loss, Moves::up}}},
       {SizedBy::Of::number, "of a loss of supply that reaches the finger", "%", "coupling", 100}};
-  /// The nominal supply is only where the coupling is counted from.
+  /// The nominal supply is fixed: it is the reference of the coupling.
   static constexpr std::array<Parameter, 1> fitted{"coupling"};
 
   static Starts starts(const Scales& s) {

@@ -1,5 +1,5 @@
 #pragma once
-// The valve ignores changes smaller than a band: it drags along behind the command, or sticks and jumps.
+// The valve ignores changes smaller than a band. It follows the command with play, or it sticks and jumps.
 
 #include <cmath>
 
@@ -18,14 +18,14 @@ struct ValveDeadband {
       {},
       {SizedBy::Of::number, "band that the valve ignores", "kPa", "band_kpa"}};
 
-  /// It is dragged along.
+  /// The valve follows with play.
   struct Play : FormOf<model::ValveDeadband> {
     static Starts starts(const Scales& s) {
       return every({{"band_kpa", {0.01 * s.largest_kpa, 0.05 * s.largest_kpa, 0.15 * s.largest_kpa}}});
     }
   };
 
-  /// It sticks and jumps.
+  /// The valve sticks and jumps.
   struct Stiction : FormOf<model::ValveStiction> {
     static Starts starts(const Scales& s) {
       Starts starts;

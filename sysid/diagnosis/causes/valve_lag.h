@@ -1,5 +1,5 @@
 #pragma once
-// The regulator and its tube lag the command.
+// The pressure lags the command because of the regulator and its tube.
 
 #include "model/blocks/valve_lag.h"
 #include "sysid/diagnosis/causes/form.h"

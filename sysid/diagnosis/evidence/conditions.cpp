@@ -11,7 +11,7 @@ namespace softgrip::sysid {
 namespace {
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
-/// Half of the window over which a slope is taken: shorter than what a hand or a regulator does on purpose.
+/// Half the window for the slope: shorter than deliberate changes by a user or a regulator.
 constexpr double half_window_s = 0.05;
 constexpr std::size_t most_cycles = 8;
 
@@ -24,7 +24,7 @@ void add_rates(const Record& record, DriveHistory& h) {
     while (record.time_s[i] - record.time_s[before] > half_window_s) ++before;
     while (after + 1 < p.size() && record.time_s[after] - record.time_s[i] < half_window_s) ++after;
     after = std::max(after, i);
-    // Straight neighbours where samples are wider apart than the window.
+    // If samples are further apart than the window, the direct neighbours are used.
     const std::size_t a = before == i && i > 0 ? i - 1 : before;
     const double change = p[after] - p[a];
     const double time = record.time_s[after] - record.time_s[a];
@@ -84,7 +84,7 @@ bool varies(const std::vector<double>& values) {
   return high - low > 1e-6 * std::max(1.0, std::abs(high));
 }
 
-/// Fills one condition from a function of (record, index in it).
+/// Returns one condition. A function of (record, index in it) gives its values.
 template <class Value>
 Condition condition(std::string id, std::string axis, std::string phrase, const Samples& samples,
                     Value&& value) {

@@ -58,10 +58,10 @@ struct Condition {
   std::string why_not;  ///< reason why the condition was not tested, or empty
 };
 
-/// branch, cycle, amplitude, rate, dwell, history, position, loop (position by the direction of the last
-/// motion), campaign_time, temperature, supply; in this order.
-/// @param prediction_mm  by record: the position is the model's, for the reading shares its error with the
-///                       residual.
+/// Returns the conditions branch, cycle, amplitude, rate, dwell, history, position, loop (position by the
+/// direction of the last motion), campaign_time, temperature and supply, in this order.
+/// @param prediction_mm  by record. The position is that of the model, because the reading and the residual
+/// share their error.
 [[nodiscard]] std::vector<Condition> conditions_of(const std::vector<Record>& records,
                                                    const std::vector<std::vector<double>>& prediction_mm,
                                                    const Samples& samples);

@@ -27,7 +27,8 @@ constexpr std::size_t fewest_blocks = 12;
 /// Below this share of the noise variance, there is no unexplained error to divide among conditions.
 constexpr double worth = 0.01;
 
-/// Integral of the autocorrelation of what is not white: from the first lag on, relative to it.
+/// Returns the correlation time of the coloured part of the residual: the integral of the autocorrelation
+/// from the first lag on, relative to the value at that lag.
 double memory_s(const Samples& samples, const std::vector<double>& residual, double interval_s) {
   const double mean =
       std::accumulate(residual.begin(), residual.end(), 0.0) / static_cast<double>(residual.size());
@@ -44,7 +45,7 @@ double memory_s(const Samples& samples, const std::vector<double>& residual, dou
   if (first < 4 / std::sqrt(static_cast<double>(residual.size()))) return interval_s;
   double sum = 0;
   const std::size_t furthest = residual.size() / fewest_blocks / 2;
-  // Steps that grow with the lag keep the sum short: the correlation is smooth there.
+  // The step grows with the lag, because the correlation is smooth at large lags.
   for (std::size_t lag = 1, step = 1; lag < furthest; lag += step) {
     const double r = correlation(lag) / first;
     if (r < 0.05) break;
@@ -54,7 +55,7 @@ double memory_s(const Samples& samples, const std::vector<double>& residual, dou
   return std::max(interval_s, sum * interval_s);
 }
 
-/// The block of every sample: stretches of about block_s, never across records.
+/// Assigns each sample to a block of about block_s within its record.
 std::vector<std::size_t> blocks_of(const Samples& samples, double block_s, std::size_t& count) {
   std::vector<std::size_t> block(samples.size());
   count = 0;
@@ -71,7 +72,7 @@ std::vector<std::size_t> blocks_of(const Samples& samples, double block_s, std::
   return block;
 }
 
-/// Which bin each sample belongs to; none_bin: to none.
+/// The bin of each sample; none_bin: the sample is in no bin.
 struct Binning {
   static constexpr std::size_t none_bin = std::numeric_limits<std::size_t>::max();
   std::vector<std::size_t> bin;
@@ -144,11 +145,11 @@ Binning bin(const Condition& c) {
   return kept;
 }
 
-/// Sums by block and bin: all that tests and intervals need.
+/// Sums by block and bin. All tests and intervals use only these.
 struct Sums {
   std::size_t bins = 0, blocks = 0;
   std::vector<double> sum;    ///< [block * bins + bin]
-  std::vector<double> count;  ///< the same
+  std::vector<double> count;  ///< [block * bins + bin]
 
   [[nodiscard]] double total(const std::vector<double>& of, std::size_t bin) const {
     double t = 0;
@@ -170,7 +171,8 @@ Sums sums_of(const Binning& binning, const std::vector<double>& residual,
   return s;
 }
 
-/// Sum of squares between bins when every block's residual is multiplied by its sign.
+/// Returns the sum of squares between bins if the residual of every block is multiplied by the sign of the
+/// block.
 double between(const Sums& s, const std::vector<double>& counts, const std::vector<double>& sign,
                std::vector<double>& scratch) {
   scratch.assign(s.bins, 0.0);
@@ -200,7 +202,8 @@ double sign_flip_p(const Sums& s, std::uint64_t seed) {
   return static_cast<double>(as_large + 1) / static_cast<double>(draws + 1);
 }
 
-/// How much less square error the means of the other blocks leave in a block than their overall mean.
+/// Returns the reduction of the squared error in each block by the bin means of the other blocks, relative to
+/// their overall mean.
 double cross_validated_gain(const Sums& s) {
   std::vector<double> sum(s.bins), count(s.bins);
   for (std::size_t k = 0; k < s.bins; ++k) {
@@ -292,7 +295,7 @@ void adjust(std::vector<ConditionEvidence>& list) {
   }
 }
 
-/// Square error of all samples about the mean of the other blocks.
+/// Returns the squared error of all samples relative to the mean of the other blocks.
 double squares_about_others(const std::vector<double>& residual, const std::vector<std::size_t>& block,
                             std::size_t blocks) {
   std::vector<double> sum(blocks, 0.0), count(blocks, 0.0);

@@ -2,11 +2,12 @@
 // Locates the error of a model: the residual by condition. The tests remain valid if neighbouring errors are
 // correlated.
 //
-// The samples are cut into blocks longer than the correlation time of the residual. The interval of a
-// conditional mean is that of a mean of clusters (Liang and Zeger 1986). Differences between conditional
+// The samples are divided into blocks that are longer than the correlation time of the residual. The interval
+// of a conditional mean is that of a mean of clusters (Liang and Zeger 1986). Differences between conditional
 // means are tested with random signs of whole blocks (wild bootstrap, Liu 1988, on blocks). If the error does
 // not depend on the condition, both signs of a block's error are equally likely. The test preserves the
 // correlation inside a block and unequal variances. The share that a condition explains is evaluated on
+// blocks that are not used for the means.
 // blocks whose own samples are not in the means.
 
 #include <cstddef>
@@ -28,7 +29,7 @@ struct ConditionBin {
   std::size_t group = 0;
   std::size_t samples = 0;
   double mean_mm = 0;
-  double lower_mm = 0;  ///< 95 % interval of the mean; NaN where all lie in one block
+  double lower_mm = 0;  ///< 95 % interval of the mean; NaN if all samples are in one block
   double upper_mm = 0;
   double rms_mm = 0;
 };
@@ -47,21 +48,21 @@ struct ConditionEvidence {
 struct SpectrumEvidence {
   std::vector<double> frequency_hz;
   std::vector<double> density_mm2_per_hz;
-  double peak_hz = 0;  ///< of the line that stands out most against its neighbourhood
+  double peak_hz = 0;  ///< frequency of the most significant line
   double peak_amplitude_mm = 0;
   double share_percent = 0;  ///< of the structural variance in that line
-  double p_value = 1;        ///< that a smooth spectrum shows such a line anywhere (Bonferroni)
+  double p_value = 1;  ///< probability of such a line in a smooth spectrum, at any frequency (Bonferroni)
   std::string why_not;
 };
 
-/// All about one model's residual.
+/// Complete description of the residual of one model.
 struct ResidualEvidence {
   double rms_mm = 0;
-  double structure_mm = 0;  ///< root of the variance beyond the noise
-  double memory_s = 0;      ///< integral of the autocorrelation of what is not white
+  double structure_mm = 0;  ///< square root of the variance beyond the noise
+  double memory_s = 0;      ///< correlation time of the residual without its white part
   double block_s = 0;
   std::size_t blocks = 0;
-  std::vector<ConditionEvidence> conditions;  ///< those that explain most first, those not judged last
+  std::vector<ConditionEvidence> conditions;  ///< those with the largest share first, untested ones last
   SpectrumEvidence spectrum;
 };
 

@@ -17,9 +17,10 @@ namespace {
 using Complex = std::complex<double>;
 
 constexpr std::size_t shown = 100;
-/// Bins on either side that make a line's neighbourhood, in units of one record's own resolution.
+/// Number of bins on either side that form the neighbourhood of a line, in units of the resolution of one
+/// record.
 constexpr std::size_t around = 40;
-/// Half the width of a Hann window's main lobe, and what it leaves unsure around it.
+/// Half the width of the main lobe of a Hann window plus a margin.
 constexpr std::size_t lobe = 3;
 
 /// Sum over the records of |window * residual|^2 by frequency, on one common grid.
@@ -104,7 +105,7 @@ double level_around(const Periodogram& p, std::size_t b, std::size_t padding) {
   return high.size() < fewest ? below : std::max(below, median_of(std::span(high)));
 }
 
-/// Returns true if the command itself has a line there. Every response to it then has one too.
+/// Returns true if the command has a line at this frequency. Every response to the command then has one too.
 bool driven(const Periodogram& drive, std::size_t b, std::size_t padding) {
   constexpr double stands_out = 10;
   const std::size_t width = lobe * padding;
@@ -133,7 +134,8 @@ void find_line(const Periodogram& p, const Periodogram& drive, double structural
   const double amplitude2 = 4 * std::max(0.0, p.power[at] - background) / p.window_mean_square;
   evidence.peak_amplitude_mm = std::sqrt(amplitude2);
   const auto lines = static_cast<double>(p.power.size()) / static_cast<double>(padding);
-  // Of one record the ratio to the mean is exponential; the sum over several has a shorter tail.
+  // For one record, the ratio to the mean has an exponential distribution. For several records the tail is
+  // shorter.
   evidence.p_value = std::min(1.0, lines * std::exp(-strongest * std::numbers::ln2));
   if (structural_mm2 > 0)
     evidence.share_percent = std::clamp(100 * amplitude2 / 2 / structural_mm2, 0.0, 100.0);

@@ -16,19 +16,19 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Beyond this a separation is as good as certain, and more of it is worth nothing.
+/// Above this separation the result is practically certain. A larger separation gives no further benefit.
 constexpr double certain_sigma = 40;
 /// Number of alternatives that are tested for each cause.
 constexpr std::size_t most_alternatives = 4;
 /// Number of waveforms whose separation is confirmed by nonlinear fits.
 constexpr std::size_t confirmed = 2;
 constexpr double usual_slew_kpa_per_s = 300;
-/// Time that a rig needs before the start, to find rest.
+/// Time in which a rig comes to rest before the start.
 constexpr double rest_before_s = 10;
 
 /// The alternative causes for one position.
 struct Contest {
-  std::vector<Hypothesis> hypotheses;  ///< what is named first
+  std::vector<Hypothesis> hypotheses;  ///< the named cause first
   std::vector<std::string> ids;
 };
 
@@ -120,7 +120,7 @@ class Designer {
     add_contest(rest, alternatives, std::string(named.cause.id), d_.extended);
   }
 
-  /// Nothing was named: the model as it is, against the best of what was not worth naming.
+  /// If no cause is named: compares the model without changes with the best rejected causes.
   void add_contest_of_rejected() {
     std::vector<Cause> alternatives;
     for (const CandidateScore& score : d_.rejected) {
@@ -143,7 +143,7 @@ class Designer {
     contests_.push_back(std::move(contest));
   }
 
-  /// The waveform as a record that follows the campaign, in the surroundings of its end.
+  /// Returns the waveform as a record after the campaign, with the surroundings at its end.
   [[nodiscard]] Record record_of(const Waveform& waveform) const {
     const Record& last = d_.records.back();
     Record record;
@@ -172,8 +172,7 @@ class Designer {
 
   [[nodiscard]] double distance(const Record& record, const Pair& pair, Way way) const {
     const Contest& contest = contests_[pair.contest];
-    if (pair.indistinguishable)
-      return 0;  // what parts them is the form that each happens to have in the catalogue
+    if (pair.indistinguishable) return 0;  // only the form of the catalogue blocks separates them
     const auto from = [&](std::size_t truth, std::size_t alternative) {
       const std::vector<double> truth_mm = contest.hypotheses[truth].prediction(record);
       const bool finite =
@@ -206,7 +205,8 @@ class Designer {
     rank();
   }
 
-  /// Separations of the first `count` entries; a later, truer way can only lower them.
+  /// Computes the separations of the first `count` entries. A more accurate method later can only reduce
+  /// them.
   void separate(std::size_t count, Way way) {
     parallel_for(count * pairs_.size(), options_.threads, [&](std::size_t job) {
       JudgedWaveform& judged = result_.menu[job / pairs_.size()];
@@ -216,7 +216,8 @@ class Designer {
     });
   }
 
-  /// Separations add up as squares when an experiment is repeated, so a square per minute is what counts.
+  /// Squared separations add up over repetitions of an experiment. The merit is therefore the square per
+  /// minute.
   void rank() {
     for (JudgedWaveform& judged : result_.menu) {
       double learnt = 0;

@@ -58,7 +58,7 @@ struct NextExperiment {
   std::optional<JudgedWaveform> best;
   std::vector<std::string> separates;             ///< ids that `best` separates
   double predicted_separation_sigma = 0;          ///< smallest separation among the pairs that it separates
-  std::vector<JudgedWaveform> menu;               ///< all that was judged
+  std::vector<JudgedWaveform> menu;               ///< all evaluated entries
   std::optional<ProposedGaugeCheck> gauge_check;  ///< empty if it separates no causes or was already made
   /// Actions that no waveform can replace: a column to record, a load to change. Full sentences.
   std::vector<std::string> advice;
@@ -73,12 +73,13 @@ inline constexpr double separation_needed_sigma = 5;
 /// Returns an empty design if the verdict needs no experiment.
 [[nodiscard]] NextExperiment design_experiment(const Diagnosis& diagnosis, const ExperimentOptions& options);
 
-/// A sequence file of one pressure step, as softgripd reads it. @param channel  "" for all of the rig.
+/// Returns a sequence file of one pressure step for softgripd. @param channel  empty: all channels of the
+/// rig.
 [[nodiscard]] std::string sequence_yaml(const NextExperiment& experiment, const std::string& channel = "");
 /// Returns the sequence file of any entry of the menu.
 [[nodiscard]] std::string sequence_yaml(const Waveform& waveform, const std::string& channel);
 
-/// Fills in next_experiment and gauge_check (null without one) and experiment_advice of a diagnosis.json.
+/// Adds next_experiment, gauge_check (null without one) and experiment_advice to a diagnosis.json.
 void add_experiment(nlohmann::ordered_json& diagnosis_json, const NextExperiment& experiment,
                     const std::string& file);
 

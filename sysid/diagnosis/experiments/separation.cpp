@@ -14,14 +14,14 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Share of a parameter's own information that is added to it: a direction of which nothing is known stays
-/// solvable, and moves no further than a fit would move it.
+/// Share of the information about a parameter that is added to its diagonal element. Directions without
+/// information remain solvable and move no further than a fit would move them.
 constexpr double ridge = 1e-9;
-/// A fit of a new record together with the old ones, on copies thinned to this.
+/// The existing records are thinned to this interval for a fit together with the new record.
 constexpr double thinned_interval_s = 0.05;
 constexpr FitEffort few_iterations{.most_iterations = 10, .tolerance = 1e-6};
 
-/// Every column whitened from row `first` to `last`.
+/// Whitens every column from row `first` to `last`.
 void whiten(Jacobian& matrix, std::size_t first, std::size_t last, const NoiseModel& noise) {
   const std::vector<double>& a = noise.coefficients;
   const auto row = [](std::size_t i) { return static_cast<Eigen::Index>(i); };
@@ -37,7 +37,7 @@ std::size_t readings_of(const Record& record) {
                                                 [](double y) { return std::isfinite(y); }));
 }
 
-/// Jacobian over all readings, whitened record by record; empty where the model is not defined.
+/// Returns the Jacobian over all readings, whitened for each record. It is empty if the model is not defined.
 Jacobian whitened_jacobian(const std::vector<Record>& records, const FitSpace& space, const FitPoint& point,
                            const NoiseModel& noise) {
   const auto residuals = residuals_for(records, space);
@@ -55,7 +55,8 @@ Jacobian whitened_jacobian(const std::vector<Record>& records, const FitSpace& s
   return jacobian;
 }
 
-/// The upper left `keep` x `keep` of an information matrix with the rest eliminated.
+/// Returns the upper left `keep` x `keep` block of an information matrix after elimination of the other
+/// parameters.
 Eigen::MatrixXd eliminated(const Eigen::MatrixXd& information, Eigen::Index keep) {
   const Eigen::Index rest = information.rows() - keep;
   if (rest == 0) return information;

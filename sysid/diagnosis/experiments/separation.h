@@ -13,7 +13,7 @@ namespace softgrip::sysid {
 /// A structure that may be true, and the information of the existing records about its parameters.
 class Hypothesis {
  public:
-  /// `records` outlives this.
+  /// `records` must outlive this object.
   Hypothesis(const std::vector<Record>& records, StructureFit fit, const NoiseModel& noise);
 
   [[nodiscard]] const StructureFit& fit() const noexcept { return fit_; }
@@ -30,7 +30,7 @@ class Hypothesis {
   StructureFit fit_;
   NoiseModel noise_;
   std::vector<std::size_t> free_;
-  Eigen::MatrixXd information_;  ///< about the model's parameters, the records' starts eliminated
+  Eigen::MatrixXd information_;  ///< about the parameters, after elimination of the initial states
 };
 
 /// Returns the innovations of a series in units of their standard deviation. They are white if the noise

@@ -7,13 +7,13 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Share of the rig's slew limit that is used: a command that touches it is reshaped by the rig.
+/// Used share of the rig's slew limit. A rig reshapes a command that reaches its limit.
 constexpr double slew_share = 0.9;
-/// At rest before and after, so that the first and the last motion are seen whole.
+/// Rest before and after the waveform [s], so that the first and the last motion are recorded completely.
 constexpr double lead_s = 1;
 constexpr double tail_s = 5;
 
-/// Appends corners; levels are shares of the largest pressure.
+/// Appends corners. Levels are shares of the largest pressure.
 class Pen {
  public:
   Pen(std::string name, std::string about, const RigLimits& limits) : limits_(limits) {
@@ -26,7 +26,7 @@ class Pen {
     const double target = level * limits_.pressure_max_kpa;
     const Corner last = waveform_.corners.back();
     const double fastest_s = std::abs(target - last.pressure_kpa) / (slew_share * limits_.slew_kpa_per_s);
-    // Times on a millisecond: readable in the file, and on the grid of most rigs.
+    // Times are multiples of 1 ms: readable in the file, and on the time grid of most rigs.
     const double taken_s = std::ceil(1000 * std::max(seconds, fastest_s) - 1e-9) / 1000;
     waveform_.corners.push_back({round_ms(last.time_s + std::max(taken_s, 0.001)), target});
     return *this;

@@ -1,5 +1,5 @@
 #pragma once
-// The menu of experiments: pressures over time that a rig can play, from 0 back to 0.
+// Waveforms of the proposed experiments: pressures over time that a rig can execute, from 0 back to 0.
 
 #include <string>
 #include <vector>
@@ -18,20 +18,20 @@ struct Corner {
   double pressure_kpa = 0;
 };
 
-/// One experiment of the menu. Between corners it never changes faster than the limits allow.
+/// One experiment of the menu. Its rate never exceeds the limits.
 struct Waveform {
   std::string name;   ///< "rest_and_repeat"
-  std::string about;  ///< one line for people
+  std::string about;  ///< one line for display
   std::vector<Corner> corners;
 
   [[nodiscard]] double duration_s() const { return corners.empty() ? 0 : corners.back().time_s; }
 };
 
-/// Rest and repeat; triangles at three rates over two decades; a staircase with holds; minor loops; an
-/// amplitude ladder; sharp steps. All within the limits.
+/// Returns the waveforms: rest and repeat; triangles at three rates over two decades; steps with holds; minor
+/// loops; increasing amplitudes; sharp steps. All are within the limits.
 [[nodiscard]] std::vector<Waveform> experiment_menu(const RigLimits& limits);
 
-/// The command at every `interval_s` from 0 to the end.
+/// Returns the command every `interval_s` from 0 to the end.
 [[nodiscard]] std::vector<double> sampled_kpa(const Waveform& waveform, double interval_s);
 
 }  // namespace softgrip::sysid

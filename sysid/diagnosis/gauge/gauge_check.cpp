@@ -16,8 +16,8 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Beyond the logs' readings, as a share of their span and in standard deviations: enough to see that a
-/// sensor goes on where another one ends.
+/// Margin beyond the range of the logs' readings, as a share of their span and in standard deviations. It is
+/// large enough to see that one sensor continues where another saturates.
 constexpr double beyond_share = 0.05;
 constexpr double beyond_noise = 10;
 /// Share of the difference between two hypotheses.
@@ -29,7 +29,7 @@ constexpr double least_covered_share = 0.5;
 /// Normal deviate of 1 in 1000, one-sided.
 constexpr double deviate = 3.09;
 
-using Line = std::pair<double, double>;  // value at 0, slope
+using Line = std::pair<double, double>;  // (value at 0, slope)
 
 /// Returns the limit of chi-square, approximated as in Wilson and Hilferty 1931.
 double chi_square_limit(double freedom) {
@@ -113,8 +113,8 @@ class Checker {
     return values;
   }
 
-  /// Where zero and scale may begin: the line through all readings, and through their lower half, which an
-  /// end of the sensor does not reach.
+  /// Returns start values of zero and scale: the line through all readings, through those that are not
+  /// limited, and through their lower half, which a saturation does not affect.
   [[nodiscard]] std::vector<Line> starts(double offset_mm) const {
     const double middle = (scales_.lowest_mm + scales_.highest_mm) / 2;
     const auto all = [](std::size_t) { return true; };
@@ -134,7 +134,8 @@ class Checker {
   using Bent = causes::SensorNonlinearity;
   using Ending = causes::SensorSaturation;
 
-  /// Fits zero and scale, and `own` further numbers that `shape_of` makes a shape of.
+  /// Fits zero and scale together with further parameters. `shape_of` converts these parameters to a sensor
+  /// shape, and `own` contains their start values.
   [[nodiscard]] GaugeFit fitted_with(const std::function<SensorShape(Numbers own)>& shape_of,
                                      const std::vector<std::vector<double>>& own, double offset_mm) const {
     const auto residuals = [&](Numbers p, std::span<double> r) {
@@ -187,7 +188,7 @@ class Checker {
         ends, offset_mm);
   }
 
-  /// Root mean square of what two hypotheses differ by.
+  /// Returns the root mean square of the difference between two hypotheses.
   [[nodiscard]] double apart_mm(const GaugeFit& one, const GaugeFit& other) const {
     double sum = 0;
     for (std::size_t i = 0; i < readings_.size(); ++i)
@@ -205,7 +206,8 @@ class Checker {
     return chi_square(fit, tolerance_mm) <= chi_square_limit(freedom);
   }
 
-  /// Every hypothesis against the most likely one, with a share of what these two differ by allowed.
+  /// Compares every hypothesis with the most likely one. A share of the difference between the two is
+  /// tolerated.
   void compare() {
     std::vector<GaugeFit>& fits = result_.fits;
     const auto likelier = [](const GaugeFit& a, const GaugeFit& b) { return a.rms_mm < b.rms_mm; };
@@ -238,7 +240,8 @@ class Checker {
   }
 
   void judge_coverage() {
-    // By the line, not by the readings: noise of a sensor that does not follow covers nothing.
+    // The range comes from the fitted line, because the noise of a sensor that does not move must not count
+    // as coverage.
     const auto [least, most] =
         std::minmax_element(result_.straight.predicted_mm.begin(), result_.straight.predicted_mm.end());
     result_.covered_share = (*most - *least) / std::max(1e-9, scales_.highest_mm - scales_.lowest_mm);
@@ -303,7 +306,7 @@ GaugeCheck::Departure GaugeCheck::departure() const {
     result.largest_mm = std::max(result.largest_mm, std::abs(apart));
   }
   result.rms_mm = std::sqrt(sum / n);
-  // Against the noise alone: nothing is expected that a tolerance could be a share of.
+  // Compared with the noise alone, because no hypothesis defines a tolerance.
   const double gained = n * (square(straight.rms_mm) - square(fit.rms_mm)) / (2 * square(noise_mm));
   const auto more = static_cast<double>(fit.free - straight.free);
   result.clear = n > static_cast<double>(fit.free) && gained - more >= gauge_log_likelihood_needed;

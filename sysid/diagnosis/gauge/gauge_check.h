@@ -48,11 +48,11 @@ struct GaugeFit {
   double zero_mm = 0;
   double scale = 1;
   std::size_t free = 2;
-  std::vector<double> predicted_mm;  ///< per reading, cut as the readings are
-  double rms_mm = 0;                 ///< of reading minus prediction, both cut
+  std::vector<double> predicted_mm;  ///< for each reading, limited like the readings
+  double rms_mm = 0;                 ///< of reading minus prediction, both limited
   /// allowed in addition to the noise in the comparison with the most likely hypothesis
   double tolerance_mm = 0;
-  bool explains = false;  ///< the readings
+  bool explains = false;  ///< the hypothesis explains the readings
   bool ruled_out = false;
   double behind = 0;  ///< log likelihood ratio of the most likely hypothesis over this one
 };
@@ -68,12 +68,12 @@ enum class GaugeOutcome {
 
 struct GaugeCheck {
   GaugeOutcome outcome = GaugeOutcome::undecided;
-  double lower_mm = 0;  ///< where readings are cut
+  double lower_mm = 0;  ///< limits of the readings
   double upper_mm = 0;
-  std::vector<double> cut_mm;  ///< the readings, cut
+  std::vector<double> cut_mm;  ///< the readings within the limits
   double covered_share = 0;    ///< of the logs' readings
-  double repeat_noise_mm = 0;  ///< 0: no position came twice
-  double noise_mm = 0;         ///< that was used
+  double repeat_noise_mm = 0;  ///< scatter of repeated readings; 0: no position was repeated
+  double noise_mm = 0;         ///< noise that the test used
   std::vector<GaugeFit> fits;  ///< in the order of the hypotheses
   std::size_t best = 0;        ///< the most likely one
   /// Log likelihood ratio of the best hypothesis over the next one; 0 with a single hypothesis.

@@ -1,10 +1,11 @@
 #pragma once
-// Reads and writes the readings of a displacement sensor at positions that a gauge knows: gauge blocks, a
+// Reads and writes readings of a displacement sensor at positions that a gauge defines: gauge blocks or a
 // dial gauge.
 //
 //   gauge_mm,displacement_mm[,samples][,...]
 //
-// Of a bending angle the columns are gauge_deg and angle_deg, or gauge_rad and angle_rad, which become deg.
+// For a bending angle the columns are gauge_deg and angle_deg, or gauge_rad and angle_rad, which are
+// converted to degrees.
 // One row per reading, in the order in which the readings were taken. Positions may repeat and need not
 // increase. `samples`: number of sensor samples that a reading averages (1 without the column). Other columns
 // are ignored.
@@ -20,28 +21,28 @@
 namespace softgrip::sysid {
 
 struct GaugeReading {
-  double position_mm = 0;  ///< true, by the gauge; its zero may be anywhere
-  double reading_mm = 0;   ///< of the sensor
-  double samples = 1;      ///< that the reading is the mean of, at least 1
+  double position_mm = 0;  ///< position by the gauge; its zero is arbitrary
+  double reading_mm = 0;   ///< reading of the sensor
+  double samples = 1;      ///< number of samples that the reading averages, at least 1
 
   bool operator==(const GaugeReading&) const = default;
 };
 
 struct GaugeFile {
   std::string path;    ///< as the user named it
-  std::string sha256;  ///< of its bytes, lower-case hexadecimal
+  std::string sha256;  ///< of the file's bytes, lower-case hexadecimal
   std::vector<GaugeReading> readings;
   model::OutputUnit output_unit = model::OutputUnit::mm;  ///< of positions and readings
 };
 
-/// Two positions fit a straight line exactly.
+/// At least three positions are needed, because two fit a straight line exactly.
 inline constexpr std::size_t fewest_gauge_positions = 3;
 
 /// Adds all problems to `problems`. If there is a problem, no file is returned. `file` names it in messages.
 [[nodiscard]] std::optional<GaugeFile> parse_gauge(const std::string& file, std::string_view text,
                                                    document::Problems& problems);
 
-/// Reads and parses a gauge file. A file that cannot be read is a problem too.
+/// Reads and parses a gauge file. A file that cannot be read is reported as a problem.
 [[nodiscard]] std::optional<GaugeFile> read_gauge(const std::string& path, document::Problems& problems);
 
 /// Returns the CSV text. parse_gauge() of this text gives the same readings.

@@ -21,10 +21,10 @@ constexpr double worth_telling = 0.5;
 struct Standing {
   Cause cause;
   StructureFit fit;
-  bool implied = false;  ///< no alternative of the logs' verdict: only the gauge may add it
+  bool implied = false;  ///< not an alternative in the verdict of the logs; only the gauge may add it
 };
 
-/// One explanation of the logs: of every place one cause.
+/// One explanation of the logs: one cause for each position.
 struct Explanation {
   std::vector<std::size_t> standing;  ///< by position, index among the possible causes there
   std::size_t shape = 0;
@@ -76,7 +76,7 @@ class Weighing {
     for (const Cause& cause : sensor_counterparts(chosen.cause)) {
       if (std::find(others.begin(), others.end(), cause) == others.end()) others.push_back(cause);
     }
-    // Where no sensor that is bent or ends is among them, a gauge has nothing to say.
+    // A gauge is relevant only if one of the causes is a nonlinear or saturated sensor.
     std::vector<Cause> all = others;
     all.push_back(chosen.cause);
     const bool matters =
@@ -184,7 +184,7 @@ class Weighing {
     for (const Cause& alternative : chosen.alternatives) {
       const auto fitted = std::find_if(standing.begin(), standing.end(),
                                        [&](const Standing& s) { return s.cause == alternative; });
-      // One that has no fit could not be weighed.
+      // An alternative without a fit could not be tested, so it remains.
       const bool stays = fitted == standing.end() ||
                          std::find(left.begin() + 1, left.end(),
                                    static_cast<std::size_t>(fitted - standing.begin())) != left.end();
@@ -252,7 +252,7 @@ class Weighing {
     return "over " + significant(positions.front(), 3) + " to " + significant(positions.back(), 3) + unit();
   }
 
-  /// How a sensor that is no straight line departs from one.
+  /// Describes the deviation of a nonlinear sensor from a straight line.
   [[nodiscard]] std::string bend_in_words() const {
     const GaugeCheck::Departure departure = evidence_.check.departure();
     if (!departure.clips) return "bent by up to " + with_unit(departure.largest_mm);
@@ -279,7 +279,7 @@ class Weighing {
            with_unit(best.rms_mm) + ": the sensor is to blame, not the finger.";
   }
 
-  /// Where more than one shape is left.
+  /// Returns the sentence if more than one shape remains.
   [[nodiscard]] std::string sentence_open(bool bent) const {
     const GaugeCheck& check = evidence_.check;
     std::string left, out;

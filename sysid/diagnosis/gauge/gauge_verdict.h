@@ -23,7 +23,8 @@ struct GaugeQuestion {
   const GaugeFile& file;
   double noise_mm = 0;  ///< of the logs
   std::uint64_t seed = 1;
-  /// False: the alternatives were fitted to other records. The named causes and their alternatives stay.
+  /// False: the alternatives were fitted to other records. Named causes and their alternatives then do not
+  /// change.
   bool may_replace = true;
 };
 

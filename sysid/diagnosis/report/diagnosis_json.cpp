@@ -167,7 +167,7 @@ Json gauge_json(const GaugeEvidence& gauge) {
                                   {"zero_mm", fit.zero_mm},
                                   {"scale", fit.scale}});
   }
-  // Without the logs: how the sensor is bent by the gauge alone.
+  // Independent of the logs: the nonlinearity of the sensor by the gauge alone.
   const GaugeCheck::Departure departure = check.departure();
   json["sensor_alone"] = {{"straight_rms_mm", check.straight.rms_mm},
                           {"bent_rms_mm", check.free_bend.rms_mm},

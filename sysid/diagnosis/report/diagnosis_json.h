@@ -1,5 +1,5 @@
 #pragma once
-// diagnosis.json, a contract.
+// Writes diagnosis.json, whose format is documented.
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -7,7 +7,7 @@
 
 namespace softgrip::sysid {
 
-/// The contract's JSON. `next_experiment` is null here; add_experiment() fills it in.
+/// Returns the content of diagnosis.json. `next_experiment` is null; add_experiment() replaces it.
 [[nodiscard]] nlohmann::ordered_json json_of(const Diagnosis& diagnosis);
 
 }  // namespace softgrip::sysid

@@ -81,7 +81,7 @@ void add_found(Page& page, const DiagnosisReport& report) {
   page.figure(error_figure(d, logs_by_gain(d).front()));
   if (const auto looped = first_with_loops(d)) page.figure(loops_figure(d, *looped));
   if (!report.closed_loop) return;
-  // The PID alone says nothing of the models.
+  // The curve of the PID alone shows nothing about the models.
   if (report.closed_loop->schemes.size() > 1) {
     page.figure(closed_loop_figure(*report.closed_loop));
   } else {

@@ -1,5 +1,5 @@
 #pragma once
-// The diagnosis as a page: for a technician its first sentence, for a referee the rest.
+// The diagnosis as an HTML page: the first sentence is for technicians, the rest for readers who check it.
 
 #include <cstdint>
 #include <optional>
@@ -13,23 +13,23 @@
 
 namespace softgrip::sysid {
 
-/// An experiment that separates what the logs could not, as the report shows it.
+/// An experiment that separates causes which the logs do not separate.
 struct ProposedExperiment {
-  std::string file;                    ///< beside the report
+  std::string file;                    ///< in the folder of the report
   std::vector<std::string> separates;  ///< ids of causes
   double predicted_separation_sigma = 0;
   double rig_minutes = 0;
-  std::string waveform;  ///< in words
+  std::string waveform;  ///< description
 };
 
-/// A reference, tracked in simulation with each model in the feedforward.
+/// A reference trajectory, tracked in simulation with each model in the feedforward.
 struct ClosedLoopCurves {
   struct Scheme {
-    std::string name;  ///< "PID alone", "recalibrated model", "extended model": it says how it is drawn
+    std::string name;  ///< "PID alone", "recalibrated model", "extended model"; it determines the line style
     double rmse_mm = 0;
-    std::vector<double> displacement_mm;  ///< by time_s
+    std::vector<double> displacement_mm;  ///< at time_s
   };
-  std::string reference;  ///< in words
+  std::string reference;  ///< description
   std::vector<double> time_s;
   std::vector<double> reference_mm;
   std::vector<Scheme> schemes;  ///< the best last; at most three
@@ -37,14 +37,14 @@ struct ClosedLoopCurves {
   model::OutputUnit output_unit = model::OutputUnit::mm;
 };
 
-/// The content of the page.
+/// Content of the page.
 struct DiagnosisReport {
   const Diagnosis& result;
   const std::vector<Log>& logs;
   const model::Model& given;
   std::uint64_t seed = 1;
   std::optional<ProposedExperiment> next_experiment;
-  std::vector<std::string> advice;  ///< further measurements that would help; sentences
+  std::vector<std::string> advice;  ///< further measurements that would help, one sentence each
   std::optional<ClosedLoopCurves> closed_loop;
 };
 

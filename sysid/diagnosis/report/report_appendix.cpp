@@ -18,7 +18,7 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Logs whose figures are shown, with that of the first part.
+/// Number of logs with figures, including the log of the first part.
 constexpr std::size_t logs_shown = 3;
 
 void add_other_logs(Page& page, const Diagnosis& d) {

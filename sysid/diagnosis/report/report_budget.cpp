@@ -22,7 +22,7 @@ std::string letter(std::size_t i) {
   return {static_cast<char>('A' + static_cast<char>(i))};
 }
 
-/// "0.012 mm²", in the unit of the readings.
+/// Returns a text such as "0.012 mm²", in the square of the unit of the readings.
 std::string square_text(double mm2, model::OutputUnit unit) {
   return significant(mm2, 3) + model::in_unit(" mm\xc2\xb2", unit);
 }
@@ -31,8 +31,8 @@ std::string amount(double mm2, double whole_mm2, model::OutputUnit unit) {
   return square_text(mm2, unit) + ", " + fixed(100 * mm2 / whole_mm2, 1) + " %";
 }
 
-/// Draws the given model's error, and the part of it that the bar below shows enlarged. Returns where that
-/// bar begins; above it there is room for its title, within the lines that lead to it.
+/// Draws the error of the given model and marks the part that the bar below shows enlarged. Returns the top
+/// of that bar. The space above it, between the connecting lines, is for its title.
 double given_bar(Canvas& canvas, const Budget& budget, model::OutputUnit unit, double top) {
   const double kept = std::clamp(budget.recalibrated / budget.as_given, 0.0, 1.0);
   const double split = right - kept * (right - left);
@@ -91,7 +91,7 @@ std::vector<BudgetPart> budget_parts(const Diagnosis& d) {
                      significant(gain.lower, 3) + " to " + significant(gain.upper, 3)});
   }
   const double together = taken - scale * one_by_one;
-  // Below a thousandth nothing could be seen.
+  // A part below 0.1 % would not be visible.
   if (together > 1e-3 * budget.recalibrated)
     parts.push_back({d.causes.empty() ? (d.base.empty() ? "Part of it, not named" : "Another structure")
                                       : "These together only",

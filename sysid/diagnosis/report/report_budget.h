@@ -1,5 +1,5 @@
 #pragma once
-// The error budget as a picture: from the given model to the noise.
+// The error budget as a figure: from the error of the given model down to the noise.
 
 #include <string>
 #include <vector>
@@ -9,7 +9,7 @@
 
 namespace softgrip::sysid {
 
-/// A part of what the recalibrated model leaves.
+/// A part of the error of the recalibrated model.
 struct BudgetPart {
   std::string name;
   double mm2 = 0;
@@ -17,10 +17,10 @@ struct BudgetPart {
   std::string interval;  ///< "0.01 to 0.02", or empty
 };
 
-/// They sum up to the recalibrated model's mean square of held-out readings: what each finding takes,
-/// measured by leaving it out; what findings take only together; what is left; the noise. Where findings
-/// overlap, so that what they take one by one is more than they take together, each stands for its share of
-/// that.
+/// Returns the parts of the recalibrated model's mean square of held-out readings; they add up to it. The
+/// parts are: the reduction by each cause, measured by its removal; the reduction that several causes only
+/// achieve together; the unexplained rest; the noise. If the reductions of single causes add up to more than
+/// their common reduction, each is scaled down in proportion.
 [[nodiscard]] std::vector<BudgetPart> budget_parts(const Diagnosis& diagnosis);
 
 [[nodiscard]] Figure budget_figure(const Diagnosis& diagnosis);

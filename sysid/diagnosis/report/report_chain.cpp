@@ -24,7 +24,7 @@ double box_width(std::size_t boxes) {
   return (width_px - 2 * ends_px - (count - 1) * gap_px) / count;
 }
 
-/// "alpha_mm_per_kpa" without what its unit says.
+/// Returns a name such as "alpha_mm_per_kpa" without its unit.
 std::string without_unit(std::string name, std::string_view unit) {
   std::string tail = "_";
   for (const char c : unit) {
@@ -55,7 +55,7 @@ std::vector<std::string> lines_of(const model::BlockSpec& block, model::OutputUn
   return lines;
 }
 
-/// As many boxes in a row as their words leave room for.
+/// Returns the number of boxes per row for which the texts leave space.
 std::size_t boxes_in_a_row(const model::Model& model) {
   double widest = 0;
   for (const model::BlockSpec& block : model.blocks) {

@@ -17,7 +17,7 @@ namespace {
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
-/// One of the models that a diagnosis compares.
+/// One of the compared models.
 struct Shown {
   const char* label;
   Colour colour;
@@ -32,11 +32,11 @@ std::vector<Shown> shown(const Diagnosis& d) {
   return list;
 }
 
-/// The model that a diagnosis ends with.
+/// Returns the final model of a diagnosis.
 const StructureFit& final_fit(const Diagnosis& d) {
   return is_extended(d) ? d.extended : d.recalibrated;
 }
-/// The model that it is compared with.
+/// Returns the model that the final one is compared with.
 const StructureFit& first_fit(const Diagnosis& d) {
   return is_extended(d) ? d.recalibrated : d.as_given;
 }
@@ -81,8 +81,8 @@ std::vector<double> prediction(const StructureFit& fit, const Record& record, st
   return predict(fit.point.model, record, fit.point.starts[k]);
 }
 
-/// Around the sample where the first and the final model differ most: a tenth of the pressures, and high
-/// enough to show what they differ by.
+/// Returns the window around the sample where the first and the final model differ most. It covers a tenth of
+/// the pressure range and is high enough to show the difference.
 Window window_of(const Record& record, const std::vector<double>& first, const std::vector<double>& final) {
   std::size_t at = 0;
   double most = 0;
@@ -101,7 +101,7 @@ Window window_of(const Record& record, const std::vector<double>& first, const s
   return {kpa - half_kpa, kpa + half_kpa, mm - half_mm, mm + half_mm};
 }
 
-/// Lowest and highest value of a chart's curves, and a little more.
+/// Returns the lowest and the highest value of a chart's curves with a margin of 4 %.
 std::pair<double, double> reach_of(const Chart& chart) {
   double lowest = std::numeric_limits<double>::infinity();
   double highest = -lowest;
@@ -117,7 +117,7 @@ std::pair<double, double> reach_of(const Chart& chart) {
   return {lowest - margin, highest + margin};
 }
 
-/// Returns the part of a curve in the window; the pen is lifted elsewhere.
+/// Returns the part of a curve in the window. Points outside become gaps.
 Series within(Series series, const Window& window) {
   for (std::size_t i = 0; i < series.x.size(); ++i) {
     if (!window.holds(series.x[i], series.y[i])) series.y[i] = none;
@@ -125,7 +125,7 @@ Series within(Series series, const Window& window) {
   return series;
 }
 
-/// The bins of one group as points with whiskers.
+/// Draws the bins of one group as points with intervals.
 void add_bins(Chart& chart, const ConditionEvidence& e, std::size_t group, const std::string& label,
               Colour colour, bool whiskers) {
   Series means, intervals;
@@ -218,12 +218,12 @@ std::optional<std::size_t> first_with_loops(const Diagnosis& d) {
 
 Figure error_figure(const Diagnosis& d, std::size_t k) {
   const Record& record = d.records[k];
-  // The curve of a model that is far off would press the others flat.
+  // A model with a very large error would compress the scale of the other curves.
   constexpr double far_off = 4;
   const bool given_far_off = std::sqrt(mean_square(d.as_given.residual_mm[k])) >
                              far_off * std::sqrt(mean_square(d.recalibrated.residual_mm[k]));
   Chart values, before, after;
-  // Their titles say what they show: along so low an axis there is room for the unit alone.
+  // The titles name the quantities. The short axes have space for the unit only.
   const std::string unit(model::name_of(record.output_unit));
   values.title = record.name + ": " + model::in_unit("displacement", record.output_unit);
   values.y.label = before.y.label = after.y.label = "[" + unit + "]";
@@ -338,7 +338,7 @@ Figure closed_loop_figure(const ClosedLoopCurves& curves) {
   values.series.push_back(curve("reference", Colour::measured, 2.4, curves.time_s, curves.reference_mm));
   std::string numbers;
   for (const ClosedLoopCurves::Scheme& scheme : curves.schemes) {
-    // A model looks as it does in the other figures, also if some of them are missing.
+    // A model has the same line style in all figures, even if some models are missing.
     const bool extended = scheme.name.starts_with("extended");
     const bool recalibrated = scheme.name.starts_with("recalibrated");
     const Colour colour = extended ? Colour::good : recalibrated ? Colour::model : Colour::other;
@@ -397,7 +397,7 @@ Figure spectrum_figure(const Diagnosis& d) {
   if (is_extended(d)) add(models[2], d.evidence->extended);
   const SpectrumEvidence& s = d.evidence->recalibrated.spectrum;
   if (!s.frequency_hz.empty()) {
-    // White noise of this deviation, up to half the sampling rate.
+    // Level of white noise with this standard deviation, up to half the sampling rate.
     const double density = d.noise_mm * d.noise_mm / s.frequency_hz.back();
     chart.marks.push_back({Mark::Direction::horizontal, density, "noise of the readings"});
   }

@@ -12,23 +12,25 @@
 
 namespace softgrip::sysid {
 
-/// The logs' indices: those first of which extending (or recalibrating, where nothing was added) takes most.
+/// Returns the indices of the logs in order of the error reduction by the extended (or else the recalibrated)
+/// model, the largest first.
 [[nodiscard]] std::vector<std::size_t> logs_by_gain(const Diagnosis& diagnosis);
-/// Returns true if the pressure moves for 10 % of the time: a pressure that only steps shows no loops.
+/// Returns true if the pressure changes for 10 % of the time. A pressure with steps only shows no loops.
 [[nodiscard]] bool has_loops(const Record& record);
-/// The first of logs_by_gain that has loops.
+/// Returns the first log of logs_by_gain() with loops.
 [[nodiscard]] std::optional<std::size_t> first_with_loops(const Diagnosis& diagnosis);
 
-/// Measured and the models over time, and on the same axis the errors before and after.
+/// Returns the measured and predicted displacement over time, with the errors before and after on the same
+/// time axis.
 [[nodiscard]] Figure error_figure(const Diagnosis& diagnosis, std::size_t record);
-/// The error of every run that was left out of the fit, under the models that there are.
+/// Returns the error of every run that was left out of the fit, under each available model.
 [[nodiscard]] Figure runs_figure(const Diagnosis& diagnosis);
-/// Displacement over pressure, as a whole and where the models differ most.
+/// Returns displacement over pressure: the complete loops, and the part where the models differ most.
 [[nodiscard]] Figure loops_figure(const Diagnosis& diagnosis, std::size_t record);
-/// The reference and what follows it, and the tracking errors.
+/// Returns the reference with the tracked displacements, and the tracking errors.
 [[nodiscard]] Figure closed_loop_figure(const ClosedLoopCurves& curves);
-/// Conditional means with their intervals of conditions on which the error clearly depends, two beside each
-/// other. No charts where there are none.
+/// Returns conditional means with intervals for the conditions on which the error significantly depends, two
+/// per row. The figure has no charts if there are no such conditions.
 [[nodiscard]] Figure conditions_figure(const Diagnosis& diagnosis);
 [[nodiscard]] Figure spectrum_figure(const Diagnosis& diagnosis);
 

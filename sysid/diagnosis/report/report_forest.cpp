@@ -22,11 +22,11 @@ constexpr double inclusion_px = 742;
 constexpr double row_px = 24;
 constexpr double top_px = 34;
 
-/// A line of the plot.
+/// One row of the plot.
 struct Row {
   std::string name;
   bool alternative = false;
-  const Spread* gain = nullptr;  ///< none: no command separates it from the cause above
+  const Spread* gain = nullptr;  ///< nullptr: no command separates the cause from the one above
   double inclusion = 0;
 };
 

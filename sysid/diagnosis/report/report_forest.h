@@ -1,12 +1,12 @@
 #pragma once
-// Every cause and its alternatives with their error reductions, as a forest plot.
+// A forest plot of the error reductions of all causes and their alternatives.
 
 #include "sysid/diagnosis/verdict/diagnosis.h"
 #include "sysid/pages/figure.h"
 
 namespace softgrip::sysid {
 
-/// At least one cause, named or in part.
+/// Requires at least one cause, named or partial.
 [[nodiscard]] Figure forest_figure(const Diagnosis& diagnosis);
 
 }  // namespace softgrip::sysid

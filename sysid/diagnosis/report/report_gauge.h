@@ -7,10 +7,11 @@
 
 namespace softgrip::sysid {
 
-/// Readings and hypotheses beside the straight line that fits the readings best, over the gauge's position.
+/// Returns readings and hypotheses relative to the straight line that fits the readings best, over the gauge
+/// position.
 [[nodiscard]] Chart gauge_chart(const GaugeEvidence& gauge);
 
-/// The section of the page.
+/// Adds the section to the page.
 void add_gauge_section(Page& page, const GaugeEvidence& gauge);
 
 }  // namespace softgrip::sysid

@@ -41,7 +41,7 @@ std::string alternatives_text(const NamedCause& named, const model::Model& exten
   return text;
 }
 
-/// How often the search finds something where nothing is.
+/// Adds the frequency at which the search finds a cause in simulated data without one.
 void add_null_calibration(Page& page, const NullCalibration& nulls) {
   page.paragraph(
       "Searched in the same way, " + std::to_string(nulls.campaigns) +

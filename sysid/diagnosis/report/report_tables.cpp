@@ -39,8 +39,9 @@ std::string outcome_of(const CandidateScore& c, const NamedCause* chosen, double
          significant(chosen_rmse_mm, 3) + " " + std::string(model::name_of(unit));
 }
 
-/// The candidates, their errors, and the reason why each was not kept.
-/// @param chosen  the cause in whose place these were tried; nullptr: one more cause was looked for.
+/// Returns the candidates, their errors, and the reason why each was rejected.
+/// @param chosen  the cause for whose position they were tested; nullptr: they were tested as a further
+/// cause.
 Table candidate_table(const std::vector<CandidateScore>& candidates, const NamedCause* chosen,
                       double chosen_rmse_mm, model::OutputUnit unit, std::string caption) {
   Table table;
@@ -121,7 +122,7 @@ Table condition_table(const Evidence& evidence, bool extended) {
                           after != nullptr ? p_text(after->p_adjusted) : dash, e.clear ? "clear" : ""});
   }
   if (extended) return table;
-  constexpr long first = 4, count = 2;  // the extended model's columns
+  constexpr long first = 4, count = 2;  // columns of the extended model
   table.header.erase(table.header.begin() + first, table.header.begin() + first + count);
   table.numeric.erase(table.numeric.begin() + first, table.numeric.begin() + first + count);
   for (auto& row : table.rows) row.erase(row.begin() + first, row.begin() + first + count);
@@ -181,7 +182,7 @@ Table cause_parameter_table(const Diagnosis& d, std::size_t most) {
     const bool short_enough = size <= most;
     std::size_t shown = 0;
     for (const CauseParameter& p : named->parameters) {
-      // Of many, those that were measured.
+      // If there are many parameters, only those with an interval are shown.
       if (!short_enough && (!p.determined() || shown + 1 >= most)) continue;
       table.rows.push_back(row(*named, p));
       ++shown;

@@ -1,5 +1,5 @@
 #pragma once
-// The tables of a diagnosis.
+// Tables of a diagnosis.
 
 #include <string>
 #include <vector>
@@ -10,23 +10,23 @@
 
 namespace softgrip::sysid {
 
-/// "41.2 (33.6 to 46.6)": a share in per cent with its interval.
+/// Returns a percentage with its interval: "41.2 (33.6 to 46.6)".
 [[nodiscard]] std::string percent_range(const Spread& share);
-/// Errors of the three models: all readings, blocks held out, logs held out.
+/// Returns the errors of the three models: for all readings, held-out blocks and held-out logs.
 [[nodiscard]] Table rmse_table(const Diagnosis& diagnosis);
-/// Share and p-value of every condition, for the models that there are.
+/// Returns share and p-value of every condition for each available model.
 [[nodiscard]] Table condition_table(const Evidence& evidence, bool extended);
-/// The candidates in the place of every cause, and beside all of them.
+/// Returns the candidates for the position of every cause and for a further cause.
 [[nodiscard]] std::vector<Table> candidate_tables(const Diagnosis& diagnosis);
-/// Errors of every run that was left out of the fit.
+/// Returns the errors of every run that was left out of the fit.
 [[nodiscard]] Table run_table(const Diagnosis& diagnosis);
 /// Returns the causes of the first part: the named ones, and those that explain a part if the interval of
 /// their error reduction excludes zero.
 [[nodiscard]] std::vector<const NamedCause*> shown_causes(const Diagnosis& diagnosis);
-/// The numbers of these causes with their intervals; of a cause with more than `most`, the first ones
-/// of those that have an interval.
+/// Returns the parameters of these causes with their intervals. If a cause has more than `most`, only the
+/// first ones with an interval are shown.
 [[nodiscard]] Table cause_parameter_table(const Diagnosis& diagnosis, std::size_t most);
-/// Parameters as given, recalibrated and extended.
+/// Returns the parameters of the given, the recalibrated and the extended model.
 [[nodiscard]] Table moved_table(const Diagnosis& diagnosis, const model::Model& given);
 
 }  // namespace softgrip::sysid

@@ -6,7 +6,7 @@
 
 namespace softgrip::sysid {
 
-/// The section of the page.
+/// Adds the section to the page.
 void add_valve_section(Page& page, const ValveFindings& in_valve);
 
 }  // namespace softgrip::sysid

@@ -18,7 +18,7 @@ void add_third_differences(const std::vector<double>& y, std::vector<double>& si
   }
 }
 
-/// The readings without the samples between them.
+/// Returns the finite readings without the gaps between them.
 std::vector<double> readings_alone(std::vector<double> y) {
   y.erase(std::remove_if(y.begin(), y.end(), [](double value) { return !std::isfinite(value); }), y.end());
   return y;
@@ -37,8 +37,8 @@ double measured_noise_mm(const std::vector<Record>& records) {
     add_third_differences(is_slow ? readings : record.reading_mm, sizes);
   }
   if (sizes.empty()) return 0;
-  // The median alone would be as coarse as the quantisation; it only bounds what a wrong sample or a corner
-  // of the motion may contribute. Cutting at 4 deviations loses 0.1 % of a normal variance.
+  // The median alone would be as coarse as the quantisation. It therefore only limits the contribution of a
+  // wrong sample or a corner of the motion. A limit of 4 deviations removes 0.1 % of a normal variance.
   std::vector<double> sorted = sizes;
   const double bound = 4 * median_of(std::span(sorted)) / 0.6745;
   double sum = 0;

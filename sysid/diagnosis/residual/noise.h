@@ -17,9 +17,9 @@ inline constexpr double distorting_share = 0.25;
 
 /// The unexplained error: the part of a residual beyond the noise.
 struct UnexplainedError {
-  double excess_mm = 0;         ///< root of mean square minus noise squared, 0 where that is negative
+  double excess_mm = 0;         ///< root of mean square minus noise squared; 0 if negative
   double slow_correlation = 0;  ///< mean autocorrelation over the first lags (about a quarter of a second)
-  bool present = false;         ///< the residual is not just noise
+  bool present = false;         ///< the residual is more than noise
 };
 
 /// @param residual_mm  by record; NaN where there is no reading.

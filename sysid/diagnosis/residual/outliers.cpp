@@ -12,8 +12,8 @@
 namespace softgrip::sysid {
 namespace {
 
-/// A reading against the median of its four neighbours has a deviation of about 1.15 of the noise; beyond
-/// this many a normal one falls less than once in ten million.
+/// Limit of the distance to the median of four neighbours [noise]. For a normal reading, the standard
+/// deviation of this distance is about 1.15. It exceeds the limit less than once in 10 million readings.
 constexpr double beyond = 6.0;
 /// A smaller number of outliers is not significant.
 constexpr std::size_t fewest = 5;
@@ -24,7 +24,7 @@ double neighbours_median(const std::vector<double>& y, std::size_t i) {
   return 0.5 * (near[1] + near[2]);
 }
 
-/// Motion over the neighbourhood, so that a fast move is no outlier.
+/// Returns the motion over the neighbourhood, so that a fast motion does not count as an outlier.
 double motion(const std::vector<double>& y, std::size_t i) {
   return std::abs(0.5 * (y[i + 1] + y[i + 2]) - 0.5 * (y[i - 1] + y[i - 2]));
 }
@@ -37,8 +37,8 @@ constexpr double alone = 4.0;
 /// Uncertainty of clocks, latencies and corners, in samples.
 constexpr double timing_samples = 1.5;
 
-/// Median of the neighbours (readings or residuals), and how far they lie from it: the second largest
-/// distance, for one of them may be an outlier itself.
+/// Median of the neighbours (readings or residuals) and their spread. The spread is the second largest
+/// distance to the median, because one neighbour may be an outlier too.
 struct Neighbourhood {
   double median_mm = 0;
   double spread_mm = 0;
@@ -73,7 +73,7 @@ bool is_outlier(const std::vector<double>& y, std::size_t i, double noise_mm, do
   return near.known && std::abs(size) > alone * near.spread_mm;
 }
 
-/// The largest change of the prediction from one sample to the next near sample i.
+/// Returns the largest change of the prediction between neighbouring samples near sample i.
 double largest_step(const std::vector<double>& y, const std::vector<double>& r, std::size_t i) {
   double largest = 0;
   for (std::size_t j = i < reach ? 1 : i - reach + 1; j <= std::min(i + reach, r.size() - 1); ++j) {
@@ -105,7 +105,7 @@ void weigh(OutlierEvidence& evidence, double noise_mm) {
   const double deviation = std::sqrt(std::max(0.0, fourth / count - square / count * square / count) / count);
   evidence.size_low_mm = std::sqrt(std::max(0.0, square / count - z * deviation));
   evidence.size_high_mm = std::sqrt(square / count + z * deviation);
-  // At six deviations noise gives none; a handful may be a knock on the table.
+  // Noise alone does not exceed six deviations. A few outliers may come from a knock on the table.
   evidence.distorts = evidence.excess_mm > distorting_share * noise_mm;
   evidence.present = evidence.count >= fewest && evidence.distorts;
 }
@@ -130,7 +130,7 @@ void hide_codes(Record& record, OutlierEvidence& evidence) {
   }
 }
 
-/// The readings that are there, and their samples.
+/// The finite readings and their sample indices.
 struct Readings {
   std::vector<std::size_t> samples;
   std::vector<double> mm;
@@ -146,8 +146,8 @@ Readings readings_of(const Record& record) {
   return readings;
 }
 
-/// Readings without enough neighbours for the rule of the others. 0 belongs to the others: a log may begin
-/// with the last readings before a step.
+/// Tests the first and last readings, which have too few neighbours for the other rule. The value 0 is always
+/// permitted: a log may begin with the last readings before a step.
 void hide_far_ends(Record& record, OutlierEvidence& evidence) {
   constexpr std::size_t ends = 2;
   constexpr double far_outside = 3;

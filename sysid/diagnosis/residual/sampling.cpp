@@ -9,14 +9,15 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Fewer stretches than this do not show how often a sensor is read.
+/// With fewer intervals, the sampling rate of the sensor is uncertain.
 constexpr std::size_t fewest_stretches = 20;
-/// The smallest changes of a fine sensor are less than this share of the usual ones.
+/// A sensor with fine resolution has changes smaller than this share of the typical change.
 constexpr double fine_share = 0.25;
-/// A frozen stretch is this many times as long as the usual longest one, while the drive moves by this share.
+/// An interval is frozen if it is this many times as long as the usual longest one while the drive changes by
+/// this share of its range.
 constexpr double frozen_ratio = 5, moved_share = 0.1;
 
-/// Equal readings, one after the other: places in `samples`.
+/// Consecutive equal readings: indices in `samples`.
 struct Stretch {
   std::size_t first = 0, length = 0;
 };
@@ -43,7 +44,7 @@ double quantile(std::vector<double> values, double share) {
   return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
 }
 
-/// The first and the last stretch may be cut off.
+/// Returns the lengths without the first and the last interval, which may be incomplete.
 std::vector<double> whole_lengths(const Stretches& readings) {
   std::vector<double> lengths;
   for (std::size_t k = 1; k + 1 < readings.stretches.size(); ++k)
@@ -61,7 +62,7 @@ bool is_fine(const Record& record, const Stretches& readings) {
   return quantile(changes, 0.05) < fine_share * quantile(changes, 0.5);
 }
 
-/// Samples from one new reading to the next; 1: each is new.
+/// Returns the number of samples per new reading; 1: each is new.
 std::size_t samples_per_reading(const Record& record, const Stretches& readings) {
   const std::vector<double> lengths = whole_lengths(readings);
   if (lengths.size() < fewest_stretches || quantile(lengths, 0.1) < 2 || !is_fine(record, readings)) return 1;
@@ -83,7 +84,7 @@ bool is_frozen(const Record& record, const Stretches& readings, const Stretch& s
   return *most - *least > moved_share * (*highest - *lowest);
 }
 
-/// Squared distances of hidden readings to the line between the kept readings around them.
+/// Returns the sum of squared distances of hidden readings to the line between the kept readings around them.
 double squares_beside_lines(const Record& before, const Record& after) {
   double squares = 0;
   std::size_t last = after.size();

@@ -11,21 +11,22 @@ namespace softgrip::sysid {
 
 struct SamplingEvidence {
   double interval_s = 0;  ///< median time between new readings; 0: each sample is a new reading
-  double frozen_s = 0;    ///< in total, while the reading is frozen and the drive moves
+  double frozen_s = 0;    ///< total time in which the reading is frozen while the drive moves
   /// Root mean square, over all readings, of the distance of repeated readings to a line through the new
-  /// ones.
+  /// readings.
   double excess_mm = 0;
   std::size_t hidden = 0, readings = 0;
   bool present = false;  ///< the excess is more than a quarter of the noise
 };
 
-/// Hides readings that repeat (NaN), if that is `present`.
+/// Replaces repeated readings by NaN if they are `present`.
 ///
-/// A log is slower than its samples if at most one change of the reading in ten comes sooner than 2 samples
-/// after the change before, and the changes differ in size: a coarse sensor changes by one step at a time.
-/// The first reading of each interval is kept. A stretch of equal readings is frozen if it is 5 times as long
-/// as 95 % of all others, the drive moves by a tenth of its range meanwhile, and the value is not the lowest
-/// or highest of the log (saturation).
+/// A sensor is slower than its log under two conditions. At most one change of the reading in ten follows the
+/// previous change after fewer than 2 samples. The changes differ in size, because a coarse sensor changes by
+/// one step at a time. The first reading of each interval is kept.
+///
+/// An interval of equal readings is frozen if it is 5 times as long as 95 % of all others and the drive moves
+/// by a tenth of its range in this time. Its value must not be the lowest or highest of the log (saturation).
 [[nodiscard]] SamplingEvidence hide_repeated(std::vector<Record>& records);
 
 }  // namespace softgrip::sysid

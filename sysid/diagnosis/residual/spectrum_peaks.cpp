@@ -17,12 +17,12 @@ namespace {
 
 using Complex = std::complex<double>;
 
-/// Bins on either side that make a peak's neighbourhood.
+/// Number of bins on either side that form the neighbourhood of a peak.
 constexpr std::size_t around = 60;
 constexpr double highest_looked_at_hz = 25;
 
-/// The residuals of all records on one grid of campaign time. A sample between two grid points counts at
-/// both, by its distance: enough to know where to begin.
+/// Returns the residuals of all records on one grid of campaign time. A sample between two grid points is
+/// divided between both by its distance, which is sufficient for a start value.
 std::vector<Complex> on_one_grid(const std::vector<Record>& records,
                                  const std::vector<std::vector<double>>& residual_mm, double interval_s,
                                  std::size_t size) {
@@ -69,7 +69,7 @@ std::vector<Line> spectrum_peaks(const std::vector<Record>& records,
   }
   const double campaign_s = records.back().campaign_time_s + records.back().time_s.back() -
                             records.front().campaign_time_s - records.front().time_s.front();
-  // Twice the length: the grid of frequencies is finer than what the campaign resolves.
+  // Twice the length, so that the frequency grid is finer than the resolution of the campaign.
   const std::size_t size = std::bit_ceil(2 * static_cast<std::size_t>(campaign_s / interval_s) + 4);
   std::vector<Complex> x = on_one_grid(records, residual_mm, interval_s, size);
   std::vector<Complex> transformed;
@@ -88,7 +88,7 @@ std::vector<Line> spectrum_peaks(const std::vector<Record>& records,
   std::vector<Line> lines;
   for (std::size_t i = 0; i < std::min(count, peaks.size()); ++i) {
     const double frequency_hz = step_hz * static_cast<double>(peaks[i].second);
-    // The transform's time begins with the first sample, the line's with the campaign.
+    // The time of the transform begins with the first sample, that of the line with the campaign.
     const Complex amplitude = 2 / readings * transformed[peaks[i].second] *
                               std::polar(1.0, -2 * std::numbers::pi * frequency_hz * began_s);
     lines.push_back({frequency_hz, -amplitude.imag(), amplitude.real()});

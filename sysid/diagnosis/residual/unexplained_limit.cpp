@@ -5,7 +5,7 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Share of the recalibrated model's excess, as a mean square.
+/// Largest share of the recalibrated model's excess mean square.
 constexpr double may_be_left = 0.15;
 /// Limits for a remaining error clearly above the noise. In that case the data could have shown the whole
 /// cause, but did not. A smaller remainder may result from the form of an equation alone.

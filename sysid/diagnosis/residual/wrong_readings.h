@@ -1,5 +1,5 @@
 #pragma once
-// Wrong readings taken out of logs, before a fit and its errors contain them.
+// Removes wrong readings from logs before they affect a fit and its errors.
 
 #include <string>
 #include <vector>
@@ -8,9 +8,9 @@
 
 namespace softgrip::sysid {
 
-/// Takes out the readings that hide_outliers() finds (NaN: no reading), unless they are few and small: what
-/// adds less than a quarter of the noise to the error stays. A sentence for each log that lost some, with
-/// their number and the first of them.
+/// Replaces the readings that hide_outliers() finds by NaN. Readings that add less than a quarter of the
+/// noise to the error are kept. Returns a sentence for each log with removed readings: their number and the
+/// first of them.
 [[nodiscard]] std::vector<std::string> take_out_wrong_readings(std::vector<Log>& logs);
 
 }  // namespace softgrip::sysid

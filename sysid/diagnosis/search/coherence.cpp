@@ -18,7 +18,8 @@ constexpr FitEffort alone{.most_iterations = 40, .tolerance = 1e-6};
 constexpr double least_explained_share = 0.2;
 constexpr double apart_share = 0.1;
 
-/// Of the readings' variance about the mean of all; below 0 where the mean alone would be nearer.
+/// Returns the share of the variance of the readings that the fit explains. It is negative if their mean
+/// alone fits better.
 double explained_share(const std::vector<Record>& records, const StructureFit& fit) {
   double sum = 0, squares = 0, count = 0;
   for (const Record& record : records) {
@@ -34,7 +35,7 @@ double explained_share(const std::vector<Record>& records, const StructureFit& f
   return variance > 0 ? 1 - fit.mean_square_mm2 / variance : 0;
 }
 
-/// How much larger one log's motion is than what a model predicts of it.
+/// Returns the ratio of the motion of one log to the motion that a model predicts for it.
 double relative_gain(const Record& record, const std::vector<double>& prediction_mm) {
   double count = 0, p = 0, y = 0, pp = 0, py = 0;
   for (std::size_t i = 0; i < record.size(); ++i) {
@@ -67,7 +68,7 @@ double rmse_apart_mm(const std::vector<Record>& records, const StructureFit& fit
   double squares = 0, count = 0;
   for (std::size_t k = 0; k < records.size(); ++k) {
     std::vector<Record> one{records[k]};
-    // A rig of its own has a zero of its own.
+    // A different rig has a different sensor zero.
     one.front().offset_free = true;
     const double gain = relative_gain(records[k], predict(fit.point.model, records[k], fit.point.starts[k]));
     const FitPoint from{fit.point.model, {fit.point.starts[k]}};

@@ -12,7 +12,7 @@ namespace softgrip::sysid {
 struct Confounded {
   Cause cause;
   StructureFit fit;
-  BlockLosses losses;  ///< held out
+  BlockLosses losses;  ///< held-out losses
 };
 
 /// Fits each cause that is confounded with a cause of the structure and is not yet part of it. All causes are

@@ -1,5 +1,5 @@
 #pragma once
-// A structure (a base model with some causes' blocks) fitted to a campaign.
+// A structure, that is a base model with the blocks of some causes, fitted to a campaign.
 
 #include <cstddef>
 #include <vector>
@@ -13,17 +13,17 @@ namespace softgrip::sysid {
 
 /// A fitted structure.
 struct StructureFit {
-  std::vector<Cause> causes;  ///< in the order in which they were added; empty: the base alone
+  std::vector<Cause> causes;  ///< in the order in which they were added; empty: only the base
   FitPoint point;
   std::vector<std::vector<double>> residual_mm;  ///< reading minus prediction, by record; NaN without reading
-  double mean_square_mm2 = 0;                    ///< of the readings that were fitted
+  double mean_square_mm2 = 0;                    ///< mean square of the fitted readings
   std::size_t free_parameters = 0;
 };
 
 struct FitEffort {
   int most_iterations = 40;
   double tolerance = 1e-8;
-  bool hold_starts = false;  ///< the records begin as they do at the point from which the fit starts
+  bool hold_starts = false;  ///< the records keep the initial states of the start point
 };
 
 /// Returns the flat indices that a fit of this structure moves. In the base these are all parameters except
@@ -40,7 +40,7 @@ struct FitEffort {
 [[nodiscard]] FitSpace cause_space(const std::vector<Record>& records, const FitPoint& point,
                                    const Cause& cause);
 
-/// Least squares from `from`, over all readings of `records`.
+/// Minimises the squared error over all readings of `records`, starting at `from`.
 [[nodiscard]] StructureFit fit_structure(const std::vector<Record>& records, std::vector<Cause> causes,
                                          const FitPoint& from, const FitEffort& effort = {});
 

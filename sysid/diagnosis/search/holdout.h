@@ -1,5 +1,5 @@
 #pragma once
-// Held-out evidence of a structure, by refits (linear_holdout.h: without them).
+// Held-out losses of a structure by refits (linear_holdout.h computes them without refits).
 
 #include <vector>
 
@@ -10,18 +10,19 @@
 
 namespace softgrip::sysid {
 
-/// Of the blocks on which causes are judged: what resembles itself for longer is rare.
+/// Length of the blocks on which causes are compared [s]. Longer correlation times are rare.
 inline constexpr double block_length_s = 8;
 
-/// The structure refitted without each fold. The starts of the records stay as they are in `fit`.
+/// Returns the losses of the structure, refitted without each fold. The records keep their initial states in
+/// `fit`.
 [[nodiscard]] BlockLosses held_out_losses(const std::vector<Record>& records, const Division& division,
                                           const StructureFit& fit);
-/// The structure refitted without each unit (sysid/evidence/units.h). The first readings of a log
-/// that is left out as a whole determine its start (sysid/fitting/start_estimate.h).
+/// Returns the losses of the structure, refitted without each unit (sysid/evidence/units.h). The first
+/// readings of a completely omitted log determine its initial state (sysid/fitting/start_estimate.h).
 /// @param by_unit  divide_by_unit(records).
 [[nodiscard]] BlockLosses left_out_losses(const std::vector<Record>& records, const Division& by_unit,
                                           const StructureFit& fit);
-/// Of a model that is not refitted.
+/// Returns the losses of a model without a refit.
 [[nodiscard]] BlockLosses losses_of(const StructureFit& fit, const Division& division);
 
 }  // namespace softgrip::sysid

@@ -34,7 +34,7 @@ struct Jump {
   double held_kpa = 0;
   double distance_kpa = 0;
   bool resolved = false;
-  std::size_t before = no_jump;  ///< index of the jump before it
+  std::size_t before = no_jump;  ///< index of the previous jump
 };
 
 struct Track {
@@ -44,8 +44,8 @@ struct Track {
   std::size_t last = no_jump;
 };
 
-/// Tracks whose chains stay where they are when they are dropped: another one is then copied into them, which
-/// allocates nothing.
+/// A list of tracks. A dropped track keeps its chain. A later track is copied into it, which allocates no
+/// memory.
 class Tracks {
  public:
   void clear() { count_ = 0; }
@@ -60,7 +60,7 @@ class Tracks {
       all_[count_] = track;
     return all_[count_++];
   }
-  /// Leaves `track` with any chain.
+  /// Moves `track` into the list. It is then in a valid but unspecified state.
   Track& take(Track& track) {
     if (count_ == all_.size())
       all_.push_back(track);
@@ -70,7 +70,7 @@ class Tracks {
   }
 
  private:
-  std::vector<Track> all_;  ///< the first `count_` are in use
+  std::vector<Track> all_;  ///< only the first `count_` are in use
   std::size_t count_ = 0;
 };
 
@@ -177,7 +177,7 @@ class JumpTracker {
     std::sort(order_.begin(), order_.end(),
               [&](std::size_t a, std::size_t b) { return next_[a].cost_mm2 < next_[b].cost_mm2; });
     const double least_mm2 = next_[order_.front()].cost_mm2;
-    is_beaten_ = least_mm2 > worth_mm2_;  // and grows with every sample
+    is_beaten_ = least_mm2 > worth_mm2_;  // the sum of squares can only grow with further samples
     const double most_mm2 = least_mm2 + give_up_mm2_;
     tracks_.clear();
     for (const std::size_t at : order_) {

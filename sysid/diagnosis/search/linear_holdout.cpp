@@ -12,16 +12,16 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Share of the diagonal of the normal matrix.
+/// Damping as a share of the diagonal of the normal matrix.
 constexpr double block_damping = 1e-3;
 
-/// Row ranges of a block's readings, and of the readings too near to it to be fitted.
+/// Row ranges of the readings of a block, and of the neighbouring readings that are not fitted.
 struct BlockRows {
   Eigen::Index first, last, hidden_first, hidden_last;
 };
 
 std::vector<BlockRows> rows_of(const std::vector<Record>& records, const Division& division) {
-  std::vector<std::vector<Eigen::Index>> before(records.size());  // readings before sample i
+  std::vector<std::vector<Eigen::Index>> before(records.size());  // number of readings before sample i
   Eigen::Index row = 0;
   for (std::size_t k = 0; k < records.size(); ++k) {
     before[k].reserve(records[k].size() + 1);

@@ -35,14 +35,14 @@ constexpr int look_iterations = 15;
 /// A fit starts where the base responds best to the cause. For a strongly nonlinear base, the full linear
 /// step is too large.
 constexpr std::array answers{1.0, 0.5, 0.2, 0.0};
-/// By how much, as a log ratio of a block's losses, a cause is ahead of one that it clearly beats: a contact
-/// and a sensor that clips are 0.01 apart, in every block (textbook worlds).
+/// Smallest log ratio of block losses by which a cause significantly exceeds another. For a contact and a
+/// sensor saturation, the ratio is 0.01 in every block (textbook test cases).
 constexpr double clearly_ahead = 0.05;
-/// The mean of the blocks' log ratios from which a gain is one of most blocks, see LeastTaken.
+/// Smallest mean of the log ratios of the blocks for a reduction in most blocks; see LeastTaken.
 constexpr double in_most_blocks = 0.15;
-/// Operators of which less than this share is elastic may be making up for a backlash.
+/// Limit of the elastic share of play operators. Below it they may compensate for a backlash.
 constexpr double little_elastic = 0.3;
-/// Causes that a named one does not clearly beat.
+/// Largest number of causes that the named one does not significantly exceed.
 constexpr std::size_t most_undecided = 2;
 /// Smallest share of the remaining mean square beyond the noise that a further cause must remove. The correct
 /// cause removes a second effect almost entirely.
@@ -76,9 +76,9 @@ class ResidualsBesideBase final : public Residuals {
 
 /// One cause on a base, fitted to thinned records.
 struct Look {
-  FitPoint beside;  ///< the base where it was, and the cause's numbers
+  FitPoint beside;  ///< the unchanged base with the parameters of the cause
   Eigen::VectorXd left;
-  double mean_square_mm2 = std::numeric_limits<double>::infinity();  ///< the base moved as it answers
+  double mean_square_mm2 = std::numeric_limits<double>::infinity();  ///< after the linear response
 };
 
 Look look_from(const std::vector<Record>& records, const Scan& base, const Cause& cause,
@@ -95,7 +95,7 @@ Look look_from(const std::vector<Record>& records, const Scan& base, const Cause
   return {numbers.point(minimum.z), std::move(left), minimum.rmse_mm * minimum.rmse_mm};
 }
 
-/// Where a fit may begin, and what is left there.
+/// A start point of a fit and its mean square.
 struct Start {
   FitPoint point;
   double left_mm2 = std::numeric_limits<double>::infinity();
@@ -137,8 +137,8 @@ class SelectorUpon {
   }
 
  private:
-  /// Every cause that the structure lacks, with the best of its looks by a law and by a free form; best
-  /// first.
+  /// Returns every cause that the structure lacks, with its best fit of a physical law and of a free form;
+  /// best first.
   std::vector<std::pair<Cause, Look>> looks(const Scan& scan) {
     const StructureFit& current = result_.extended;
     if (!scan.usable()) return {};
@@ -148,7 +148,7 @@ class SelectorUpon {
           unanswerable(cause, scales_).empty())
         causes.push_back(cause);
     }
-    std::vector<std::array<Look, 2>> best(causes.size());  // by a law, by a free form
+    std::vector<std::array<Look, 2>> best(causes.size());  // physical law, free form
     std::atomic<std::size_t> tried{0};
     parallel_for(causes.size(), data_.threads, [&](std::size_t i) {
       for (const FitPoint& start : best_starts({&scan, 1}, causes[i], scales_, fewest_looks)) {
@@ -172,8 +172,8 @@ class SelectorUpon {
     return list;
   }
 
-  /// A base that was fitted while a cause was missing has bent itself to it: the base and the cause's numbers
-  /// in turns, each to what the other leaves. The cause is the last of `causes`.
+  /// A base that was fitted without a cause has absorbed a part of it. Fits the base and the cause
+  /// alternately, each to the remainder of the other. The cause is the last of `causes`.
   [[nodiscard]] FitPoint settled(Start best, const std::vector<Cause>& causes) const {
     if (!options_.base_again) return best.point;
     const Cause& cause = causes.back();
@@ -198,7 +198,7 @@ class SelectorUpon {
     return best.point;
   }
 
-  /// The last of `causes` from where it is best, on all readings and held out.
+  /// Fits the last of `causes` to all readings from its best start, and computes the held-out losses.
   [[nodiscard]] ScoredCandidate finished(Start best, const std::vector<Cause>& causes) const {
     ScoredCandidate one;
     one.candidate.cause = causes.back();
@@ -317,7 +317,7 @@ class SelectorUpon {
     return false;
   }
 
-  /// @param before  the losses without it.
+  /// @param before  the losses without the cause.
   [[nodiscard]] bool is_worth_its_place(const BlockLosses& before) const {
     return is_gain(before, result_.extended_losses, further_share_mm2(before));
   }
@@ -353,7 +353,7 @@ class SelectorUpon {
     return std::pow(rmse_mm(losses), 2) - noise_mm_ * noise_mm_;
   }
 
-  /// No cause takes what is not there.
+  /// Returns true if the remaining error is large enough for a further cause.
   [[nodiscard]] bool more_can_be_worth() const {
     const double least_mm2 = options_.least_taken.in_most_blocks * noise_mm_ * noise_mm_;
     return beyond_noise_mm2(result_.extended_losses) > std::max(least_mm2, share_worth_mm2());
@@ -386,7 +386,7 @@ class SelectorUpon {
   const SelectionOptions& options_;
   Scales scales_;
   Selection result_;
-  std::vector<ScoredCandidate> in_first_place_;  ///< what was tried there
+  std::vector<ScoredCandidate> in_first_place_;  ///< candidates that were tested as the first cause
 };
 
 }  // namespace

@@ -10,7 +10,7 @@ namespace softgrip::sysid {
 inline constexpr FitEffort finishing_effort{.most_iterations = 15, .tolerance = 1e-6};
 
 /// @param base  the base fitted to data.records.
-/// @param options  one_cause_stands and to_beat_mm2 are not asked.
+/// @param options  one_cause_stands and to_beat_mm2 are ignored.
 [[nodiscard]] Selection select_causes_upon(const SearchData& data, StructureFit base, double noise_mm,
                                            const Division& division, const SelectionOptions& options);
 

@@ -19,7 +19,7 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// The range of the signal that a number of this unit is a part of.
+/// Returns the range of the signal with this unit; infinity for other units.
 double range_of(const std::vector<Record>& records, std::string_view unit) {
   double span_mm = 0, largest_kpa = 0, length_s = 0;
   for (const Record& record : records) {
@@ -57,12 +57,12 @@ void claim_size(Claim& claim, const std::vector<Record>& records, const Cause& c
     farthest = distance;
     claim.size =
         Interval{free.to_value(z[j] - half) - spec.neutral, free.to_value(z[j] + half) - spec.neutral};
-    // A limit does nothing far above all signals, where its distance from there says nothing.
+    // A limit has its neutral value far above all signals. The distance to it has no meaning.
     claim.largest_size = spec.neutral == 0 ? range_of(records, spec.unit) : infinity;
   }
 }
 
-/// Of every reading whether the cause must act there, record after record.
+/// Returns for every reading, in the order of the records, whether the cause must act there.
 std::vector<bool> required_readings(const std::vector<Record>& records, Appears appears,
                                     const StructureFit& without) {
   std::vector<OperatingPoint> conditions;
@@ -78,11 +78,11 @@ std::vector<bool> required_readings(const std::vector<Record>& records, Appears 
   return required_at(appears, conditions);
 }
 
-/// Squares of both residuals where the cause must act, by block.
+/// Returns the squared residuals with and without the cause, by block, for the readings where it must act.
 PairedLosses losses_there(const std::vector<Record>& records, const std::vector<bool>& required,
                           const StructureFit& with, const StructureFit& without) {
   PairedLosses losses;
-  std::vector<std::size_t> before{0};  // readings of earlier records
+  std::vector<std::size_t> before{0};  // number of readings in earlier records
   for (const Record& record : records) before.push_back(before.back() + record.readings);
   std::vector<std::size_t> next = before;
   for (const Block& block : divide(records, limits::block_s).blocks) {
@@ -122,7 +122,7 @@ Veto veto_of(const std::vector<Record>& records, const Cause& cause, const Struc
 bool put_nameable_first(std::vector<ScoredCandidate>& scored, const std::vector<Record>& records,
                         const StructureFit& without, const std::function<bool(const ScoredCandidate&)>& gains,
                         const LeftOutLosses& left_out, std::uint64_t seed) {
-  std::optional<BlockLosses> losses_without;  // the same for every candidate
+  std::optional<BlockLosses> losses_without;  // equal for all candidates
   const LeftOutLosses once = [&](const StructureFit& fit) {
     if (&fit != &without) return left_out(fit);
     if (!losses_without) losses_without = left_out(without);

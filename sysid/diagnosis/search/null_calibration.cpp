@@ -20,7 +20,7 @@ namespace {
 constexpr FitEffort recalibration{.most_iterations = 12, .tolerance = 1e-6};
 constexpr std::size_t burn_in = 500;
 
-/// The innovations of a residual that is treated as noise.
+/// Innovations of a residual that is treated as noise.
 struct Innovations {
   NoiseModel model;
   std::vector<double> samples_mm;
@@ -57,21 +57,22 @@ std::vector<double> drawn_noise(const Innovations& innovations, std::size_t coun
   return e;
 }
 
-/// The records with other readings: those of the recalibrated model, with noise.
+/// Returns the records with simulated readings: those of the recalibrated model plus noise.
 std::vector<Record> null_records(const SearchData& data, const StructureFit& recalibrated,
                                  const Innovations& innovations, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   std::vector<Record> records = data.records;
   for (std::size_t k = 0; k < records.size(); ++k) {
     const std::vector<double> noise = drawn_noise(innovations, records[k].size(), random);
-    // reading - residual is the prediction; where there is no reading there is no residual either.
+    // reading - residual is the prediction. Samples without a reading have no residual either.
     for (std::size_t i = 0; i < records[k].size(); ++i)
       records[k].reading_mm[i] += noise[i] - recalibrated.residual_mm[k][i];
   }
   return records;
 }
 
-/// The held-out gain of what the search names in one null campaign; 0: it names nothing.
+/// Returns the held-out error reduction of the cause that the search names in one null campaign [%], or 0 if
+/// it names none.
 double searched_gain_percent(const SearchData& data, const StructureFit& recalibrated,
                              const Innovations& innovations, const Division& division, std::uint64_t seed) {
   SearchData null = make_search_data(null_records(data, recalibrated, innovations, seed), data.given.model);
@@ -81,7 +82,7 @@ double searched_gain_percent(const SearchData& data, const StructureFit& recalib
   null.scales.residual_lines = spectrum_peaks(null.records, base.residual_mm);
   SelectionOptions options;
   options.seed = seed;
-  options.most_causes = 1;  // whether anything is named is decided with the first
+  options.most_causes = 1;  // the first cause decides if the search names any
   const double noise_mm = measured_noise_mm(null.records);
   const Selection selection = select_causes(null, std::move(base), noise_mm, division, options);
   if (selection.chosen.empty()) return 0;

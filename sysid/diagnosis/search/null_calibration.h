@@ -19,7 +19,7 @@ inline constexpr std::size_t enough_nulls = 19;
 /// Result of the search on campaigns that the refitted model generates.
 struct NullCalibration {
   std::size_t campaigns = 0;
-  std::size_t named = 0;            ///< in which the search named something
+  std::size_t named = 0;            ///< campaigns in which the search named a cause
   double largest_gain_percent = 0;  ///< largest held-out error reduction of the named causes
   /// (1 + campaigns with at least the measured reduction) / (1 + campaigns). The smallest possible value is
   /// 1/(1 + campaigns).
@@ -32,7 +32,7 @@ struct NullCalibration {
 struct NullOptions {
   std::size_t campaigns = enough_nulls;
   std::uint64_t seed = 1;
-  std::function<void(std::size_t done)> progress;  ///< from any thread, never from two at once
+  std::function<void(std::size_t done)> progress;  ///< called from any thread, never concurrently
 };
 
 /// Simulates campaigns with the measured inputs. The readings are the prediction of the refitted model plus

@@ -14,7 +14,8 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Of the diagonal of the normal matrix; along directions that the data hardly show, no step is worth having.
+/// Share of the diagonal of the normal matrix. It suppresses steps along directions that the data hardly
+/// determine.
 constexpr double damping = 1e-3;
 constexpr double least_size = 0.7;
 constexpr double largest_size = 1.4;

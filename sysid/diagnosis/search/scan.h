@@ -15,17 +15,17 @@
 
 namespace softgrip::sysid {
 
-/// A place in the parameters of a structure, with the derivatives of its prediction there. For a start, whose
-/// effect on the prediction is d, the mean square of r + a d + J delta is minimised over the small movement
-/// delta of the structure's own parameters (one Gauss-Newton step, damped as a minimiser's first) and over a
-/// within [0.7, 1.4], as a start need not have quite the right size.
+/// A point in the parameters of a structure, with the derivatives of its prediction. For a start whose effect
+/// on the prediction is d, the scan minimises the mean square of r + a d + J delta. delta is a small change
+/// of the structure's parameters (one damped Gauss-Newton step). a is within [0.7, 1.4], because the size of
+/// a start is only approximate.
 class Scan {
  public:
   /// @param records  must outlive the scan.
   Scan(const std::vector<Record>& records, const std::vector<Cause>& causes, FitPoint place);
 
   [[nodiscard]] const FitPoint& place() const noexcept { return place_; }
-  /// False: the prediction or its derivatives are not finite, so no start can be ranked from here.
+  /// Returns false if the prediction or its derivatives are not finite. No start can then be ranked.
   [[nodiscard]] bool usable() const noexcept { return usable_; }
   /// Returns the mean square that the structure with this block would reach [mm^2], or infinity if it is
   /// undetermined.
@@ -42,7 +42,7 @@ class Scan {
 
   const std::vector<Record>& records_;
   FitPoint place_;
-  FitSpace space_;  ///< the structure's own numbers
+  FitSpace space_;  ///< parameters of the structure
   bool usable_ = false;
   Eigen::MatrixXd jacobian_;
   Eigen::LDLT<Eigen::MatrixXd> normal_;

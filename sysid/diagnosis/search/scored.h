@@ -1,5 +1,5 @@
 #pragma once
-// Judges candidates on held-out blocks and compares the chosen one with the others.
+// Compares candidates on held-out blocks, and the chosen one with the others.
 
 #include <cstdint>
 #include <vector>
@@ -17,7 +17,7 @@ inline constexpr double one_more_share = 0.05;
 
 struct ScoredCandidate {
   Candidate candidate;
-  BlockLosses losses;  ///< empty: too far behind to be judged
+  BlockLosses losses;  ///< empty: too far behind for a comparison
 };
 
 /// Returns true for a form that can follow any slow signal. It is named only if no physical law explains

@@ -14,11 +14,10 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Interval to which records are thinned until a candidate is finished on all samples: a valve's lag must
-/// still be seen. A ringing above half this rate is seen as well: the prediction is thinned as the readings
-/// are.
+/// Interval of thinned records until the final fit on all samples [s]. It must resolve the lag of a valve. A
+/// resonance above half this rate is still visible, because prediction and readings are thinned equally.
 constexpr double look_interval_s = 0.02;
-/// Which of the causes may be the best shows on fewer samples.
+/// Interval of the records with which the best causes are preselected [s].
 constexpr double glance_interval_s = 0.04;
 /// Coarse fits of every start, then medium fits of those that may become the best or an alternative.
 constexpr FitEffort coarse_fit{.most_iterations = 8, .tolerance = 1e-5};
@@ -30,7 +29,7 @@ constexpr double worth_a_look = 1.5;
 constexpr FitEffort full{.most_iterations = 40, .tolerance = 1e-8};
 /// Number of medium fits that are continued to a full fit.
 constexpr std::size_t followed = 2;
-/// By what share of the mean square a form with more numbers must be better.
+/// Smallest reduction of the mean square by a form with more parameters.
 constexpr double more_numbers_gain = 0.02;
 /// Number of candidates that always get a full fit: first on thinned records, then on all samples. More
 /// candidates get one if they are as near.
@@ -47,7 +46,7 @@ void sort_and_keep(std::vector<StructureFit>& fits, std::size_t count) {
   if (fits.size() > count) fits.resize(count);
 }
 
-/// Where searches on top of `current` may start from.
+/// Returns the points from which searches for a cause in addition to `current` may start.
 std::vector<Scan> places(const SearchData& data, const StructureFit& current) {
   std::vector<Scan> scans;
   scans.emplace_back(data.glimpsed, current.causes, current.point);
@@ -79,7 +78,8 @@ std::vector<StructureFit> looks(const SearchData& data, const std::vector<Struct
   return fits;
 }
 
-/// Of two forms of a cause the one with more numbers must be better by more than they could be by chance.
+/// Returns true if the fit is better. Of two forms of a cause, the one with more parameters must be better by
+/// more than chance.
 bool is_better(const StructureFit& fit, const StructureFit& best) {
   double needed = 1;
   if (fit.free_parameters > best.free_parameters) needed = 1 - more_numbers_gain;
@@ -170,7 +170,7 @@ class CandidateFitter {
     });
   }
 
-  /// On all samples.
+  /// Makes the final fits on all samples.
   void finish() {
     const std::vector<std::size_t> order = ranking();
     const double best = best_of(order.front());
@@ -184,7 +184,7 @@ class CandidateFitter {
 
   [[nodiscard]] double best_of(std::size_t i) const { return fits_[i].front().mean_square_mm2; }
 
-  /// Indices of what there is, smallest mean square first.
+  /// Returns the indices of the candidates with a fit, smallest mean square first.
   [[nodiscard]] std::vector<std::size_t> ranking() const {
     std::vector<std::size_t> order;
     for (std::size_t i = 0; i < fits_.size(); ++i) {
@@ -199,8 +199,8 @@ class CandidateFitter {
   const StructureFit& current_;
   const CandidateSearch& search_;
   std::vector<Candidate> candidates_;
-  std::vector<std::vector<StructureFit>> fits_;  ///< to thinned records, of every candidate, best first
-  std::optional<std::size_t> leader_;            ///< followed before the others
+  std::vector<std::vector<StructureFit>> fits_;  ///< of every candidate to thinned records, best first
+  std::optional<std::size_t> leader_;            ///< received its full fit before the others
 };
 
 }  // namespace

@@ -1,5 +1,5 @@
 #pragma once
-// Searching for causes: every candidate fitted together with the base, from several starts.
+// Searches for causes: every candidate is fitted together with the base, from several starts.
 
 #include <cstddef>
 #include <functional>
@@ -11,20 +11,20 @@
 
 namespace softgrip::sysid {
 
-/// A campaign as the search sees it.
+/// The data of a campaign for the search.
 struct SearchData {
   std::vector<Record> records;
-  std::vector<Record> thinned;   ///< until a candidate is finished
-  std::vector<Record> glimpsed;  ///< further, for a first look
+  std::vector<Record> thinned;   ///< used until the final fit of a candidate
+  std::vector<Record> glimpsed;  ///< thinned further, for the preselection
   Scales scales;
-  unsigned threads = 0;  ///< 0: as many as there are cores
-  FitPoint given;        ///< the model as it was given: a second place to start from
+  unsigned threads = 0;  ///< 0: one per core
+  FitPoint given;        ///< the given model, a second start point
 };
 
 /// Prepares records for the search: thinned copies, scales.
 [[nodiscard]] SearchData make_search_data(std::vector<Record> records, const model::Model& given);
 
-/// One candidate, fitted. `why_not` says why there is no fit.
+/// One fitted candidate. `why_not` is the reason if there is no fit.
 struct Candidate {
   Cause cause;
   std::optional<StructureFit> fit;
@@ -33,12 +33,12 @@ struct Candidate {
 
 struct CandidateSearch {
   std::vector<Cause> only = {};  ///< empty: all
-  /// Asked with the mean square that the best one leaves: whether the others are not worth following.
+  /// Called with the smallest mean square of all candidates. Returns true if the others need no full fit.
   std::function<bool(double best_mm2)> is_hopeless = {};
-  std::function<void(std::size_t tried, std::size_t of)> progress = {};  ///< from any thread
+  std::function<void(std::size_t tried, std::size_t of)> progress = {};  ///< called from any thread
 };
 
-/// Fits `current` plus each cause that it does not have yet. In the order of all_causes().
+/// Fits `current` plus each cause that it does not have, in the order of all_causes().
 [[nodiscard]] std::vector<Candidate> fit_candidates(const SearchData& data, const StructureFit& current,
                                                     const CandidateSearch& search = {});
 

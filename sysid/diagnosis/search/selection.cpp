@@ -57,8 +57,8 @@ class Selector {
  private:
   using Scored = ScoredCandidate;
 
-  /// All candidates for one more cause on top of `current`, fitted, the best ones scored held out; best
-  /// first.
+  /// Fits all candidates for a cause in addition to `current`. The best ones get held-out losses. Returns
+  /// them best first.
   std::vector<Scored> score(const StructureFit& current) {
     CandidateSearch search;
     if (!result_.extended.causes.empty() && options_.to_beat_mm2)
@@ -103,8 +103,8 @@ class Selector {
     return best_mm2 > near_the_other * *to_beat_mm2_;
   }
 
-  /// A gain whose interval excludes nothing and whose size is worth having. `without` and `with` are the
-  /// structures that it lies between.
+  /// Returns true if the error reduction is significant and large enough. `without` and `with` are the
+  /// structures before and after it.
   [[nodiscard]] bool is_gain(const BlockLosses& before, const BlockLosses& after, const StructureFit& without,
                              const StructureFit& with) const {
     const Spread difference = mean_difference(before, after, options_.seed);
@@ -173,7 +173,7 @@ class Selector {
     return *losses;
   }
 
-  /// Looks whether another cause serves better in an earlier one's place, now that one more is there.
+  /// Tests if another cause is better in the position of an earlier one, now that a further cause is present.
   void swap_others() {
     for (std::size_t i = 0; i + 1 < result_.extended.causes.size(); ++i) {
       const Cause old = result_.extended.causes[i];
@@ -241,14 +241,14 @@ class Selector {
   const SelectionOptions& options_;
   Division by_unit_;
   Selection result_;
-  std::optional<double> to_beat_mm2_;  ///< of another explanation, once computed
-  /// The structure without one cause: its fit and its held-out losses, as far as they were computed.
+  std::optional<double> to_beat_mm2_;  ///< mean square of another explanation, if computed
+  /// A structure without one cause: its fit and its held-out losses, if computed.
   struct Without {
     std::optional<StructureFit> fit;
     std::optional<BlockLosses> losses;
   };
-  std::map<std::size_t, std::vector<Scored>> fresh_;  ///< searches that still hold, by place
-  std::map<std::size_t, Without> without_;            ///< by place
+  std::map<std::size_t, std::vector<Scored>> fresh_;  ///< results that are still valid, by position
+  std::map<std::size_t, Without> without_;            ///< by position
 };
 
 }  // namespace

@@ -17,10 +17,10 @@ namespace softgrip::sysid {
 /// Result of one candidate, for the report.
 struct CandidateScore {
   Cause cause;
-  std::string why_not;         ///< it could not be fitted, or why it was not kept
+  std::string why_not;         ///< reason why it has no fit or was rejected
   double rmse_mm = 0;          ///< fitted, all readings
-  double heldout_rmse_mm = 0;  ///< NaN where it was too far behind to be refitted
-  Spread gain_percent;         ///< held out, over the structure without it
+  double heldout_rmse_mm = 0;  ///< NaN if it was too far behind for a refit
+  Spread gain_percent;         ///< held-out error reduction relative to the structure without it
 };
 
 /// One cause of the selected set.
@@ -29,7 +29,7 @@ struct ChosenCause {
   std::vector<Cause>
       alternatives;     ///< each explains the data equally well, or is indistinguishable from the cause
   Spread gain_percent;  ///< held-out error reduction of the whole set relative to the set without it
-  std::vector<CandidateScore> candidates;  ///< those tried in its place, best first
+  std::vector<CandidateScore> candidates;  ///< candidates for its position, best first
   Spread gain_mm2;                         ///< decrease of the held-out mean square with the cause
   /// Bootstrap inclusion frequency: share of block resamples in which a structure with the cause has a lower
   /// loss than the best one without it. Indistinguishable causes share it, because their losses are equal.
@@ -39,13 +39,13 @@ struct ChosenCause {
 /// The selected structure.
 struct Selection {
   StructureFit base;
-  StructureFit extended;  ///< equal to base when nothing was chosen
+  StructureFit extended;  ///< equal to base if no cause was selected
   std::vector<ChosenCause> chosen;
-  std::vector<CandidateScore> last_candidates;  ///< of the search that found nothing more
+  std::vector<CandidateScore> last_candidates;  ///< of the last search, which found no further cause
   BlockLosses base_losses;
   BlockLosses extended_losses;
   UnexplainedError base_unexplained;
-  UnexplainedError left;  ///< in the extended structure's residual
+  UnexplainedError left;  ///< of the extended structure
   /// fitted next to the extended structure, without a significant reduction
   std::vector<Confounded> undecided;
 };

@@ -18,7 +18,7 @@ namespace {
 
 /// Ratio of neighbouring trial bands; the tracker tolerates a larger one.
 constexpr double next_band = 1.3;
-/// As shares of the largest pressure.
+/// Limits of the trial bands as shares of the largest pressure.
 constexpr double narrowest = 0.004, widest = 0.25;
 /// The band and the chain behind the valve are estimated in turns. The iteration ends if the relative changes
 /// of the band and the remaining error are below these limits.
@@ -26,7 +26,7 @@ constexpr int most_rounds = 20;
 constexpr double band_stays = 5e-4, rest_stays = 0.01;
 /// Number of rounds after which the distances of a true band scatter less than by chance.
 constexpr int rounds_of_chance = 6;
-/// A sum that is larger by more than rounding can make it.
+/// A ratio of sums that exceeds rounding errors.
 constexpr double clearly_more = 1 + 1e-9;
 
 struct ValvePaths {
@@ -63,7 +63,7 @@ double best_band(const std::vector<Record>& records, const FitPoint& point, cons
   return bands[static_cast<std::size_t>(std::min_element(left.begin(), left.end()) - left.begin())];
 }
 
-/// The bands whose jumps the readings can show.
+/// Returns the bands whose jumps the readings can resolve.
 std::vector<double> bands_of(const Scales& scales, double resolution_kpa) {
   std::vector<double> bands;
   double band = std::max(narrowest * scales.largest_kpa, 4 * resolution_kpa);
@@ -74,7 +74,7 @@ std::vector<double> bands_of(const Scales& scales, double resolution_kpa) {
   return bands;
 }
 
-/// Distances over which the valve jumped, sorted.
+/// Returns the distances of the valve's jumps, sorted.
 std::vector<double> distances_of(const ValvePaths& paths) {
   std::vector<double> distances;
   for (const ValvePath& path : paths.by_record)
@@ -87,8 +87,8 @@ double mean(std::span<const double> values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
-/// Mean and spread of the distances without the tenth that lies outermost: a jump that was seen a sample late
-/// makes a wrong one of its own.
+/// Computes mean and spread of the distances without the outermost 10 %. A jump that is detected one sample
+/// late causes a wrong distance.
 void measure_band(std::span<const double> distances, StickSlip& found) {
   found.jumps = distances.size();
   if (distances.size() < fewest_jumps) return;
@@ -133,7 +133,7 @@ std::optional<StickSlip> stick_slip_from(const std::vector<Record>& records, con
   return found;
 }
 
-/// Half the noise, in pressure.
+/// Returns half the noise, converted to pressure.
 double resolution_of(const Scales& scales, double noise_mm) {
   return 0.5 * noise_mm * scales.largest_kpa / scales.span_mm;
 }
@@ -165,8 +165,8 @@ std::optional<StickSlip> find_stick_slip(const std::vector<Record>& records, con
   const std::vector<double> bands = bands_of(scales, resolution_kpa);
   if (bands.empty()) return std::nullopt;
   const double band_kpa = best_band(records, behind.point, bands, resolution_kpa, threads);
-  // With jumps over half the band, a path can reach nearly every position. It then leaves less error than the
-  // right one until the chain behind the valve is known well.
+  // If jumps over half the band are permitted, a path can reach nearly every position. It then has a smaller
+  // error than the correct path until the chain behind the valve is accurate.
   for (const double start_kpa : {band_kpa, 2 * band_kpa}) {
     auto found = stick_slip_from(records, behind, start_kpa, resolution_kpa, threads);
     if (found && is_a_band(*found, resolution_kpa) && found->fit.mean_square_mm2 < behind.mean_square_mm2)

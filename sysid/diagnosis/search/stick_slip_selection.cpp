@@ -63,7 +63,7 @@ class BestStickSlip {
   BestStickSlip(const SearchData& data, const Cause& dead_band, double noise_mm)
       : data_(data), dead_band_(dead_band), noise_mm_(noise_mm) {}
 
-  /// @param beside  a structure with the mean of the stick-slip motions in front.
+  /// @param beside  a structure with the mean of the stick-slip motions before it.
   void look(const std::optional<StructureFit>& beside) {
     if (!beside) return;
     auto found = find_stick_slip(data_.records, without_cause(*beside, dead_band_), noise_mm_, data_.threads);

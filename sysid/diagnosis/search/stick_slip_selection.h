@@ -14,9 +14,9 @@ namespace softgrip::sysid {
 struct StickSlipEvidence {
   double band_kpa = 0;
   Interval band_ci95;
-  std::size_t jumps = 0;       ///< that the band was estimated from
+  std::size_t jumps = 0;       ///< number of jumps from which the band was estimated
   double scatter = 0;          ///< of the distances of these jumps, standard deviation over mean
-  double heldout_rmse_mm = 0;  ///< with the moments of the jumps taken from the readings
+  double heldout_rmse_mm = 0;  ///< with the jump times from the readings
   Spread gain_percent;         ///< held-out error reduction relative to the refitted model
 };
 

@@ -21,9 +21,10 @@
 namespace softgrip::sysid {
 namespace {
 
-/// A richer base must leave less than this share of the error that was reached without it, held out.
+/// Largest ratio of the held-out error of a richer base to that of the selection on the given base.
 constexpr double worth_having = 0.9;
-/// Where a cause was missing a choice of the ridge and of the simplest structure says little.
+/// Largest ridge of the choice. If a cause is missing, the choice of the ridge and of the simplest structure
+/// is unreliable.
 constexpr double most_ridge = 1e-5;
 /// Smallest error increase if a present cause is removed, in squares of the noise. The values are 1.9 to 100
 /// for causes hidden at 2 and 8 times the noise, and 0.001 to 0.5 for absent causes (60 textbook test cases).
@@ -75,7 +76,8 @@ std::optional<BetterStructure> better_structure(const std::vector<Record>& recor
                                                 const StructureChoiceOptions& options) {
   const StructureChoice choice = choose_structure(records, options);
   const StructureTrial& chosen = choice.trials[choice.chosen];
-  // The published element with delay and lag is the given one with two causes: they are searched as causes.
+  // The published element with delay and lag equals the given base with two causes. The search for causes
+  // covers it.
   if (chosen.structure.published || !foretells_better(records, chosen, given, options.drive))
     return std::nullopt;
   return BetterStructure{chosen, ablation_of(records, choice, options, named_ingredients())};
@@ -101,7 +103,7 @@ void take_back_confounded(BaseFindings& found, const SearchData& data, const Bas
   });
 }
 
-/// The numbers of all names as they are beside each other.
+/// Recomputes the parameters of all named causes in the common fit.
 void renumber(BaseFindings& found, const SearchData& data) {
   const FitSpace space = structure_space(data.records, found.fit.point.model, found.fit.causes);
   const UncertainPoint at = uncertain_point(data.records, found.fit.point, space);
@@ -162,8 +164,9 @@ void take_back_alternatives(BaseFindings& found) {
   }
 }
 
-/// The base was fitted again beside the causes, and may leave less by itself than it did: a cause is there
-/// only if it is missed once the base has answered to its absence with all its numbers.
+/// Removes causes that are not needed. The base was fitted again together with the causes and may now have a
+/// smaller error by itself. A cause is present only if a refit of the base without it has a significantly
+/// larger loss.
 /// @param losses  of `with`.
 void drop_what_is_not_missed(StructureFit& with, BlockLosses& losses, std::vector<ChosenCause>& chosen,
                              const SearchData& data, const BaseQuestion& question) {
@@ -186,8 +189,8 @@ bool has_some_of(const BaseFindings& found, const Selection& plain) {
   return !some.empty() && some.size() < all.size() && std::all_of(some.begin(), some.end(), is_in_all);
 }
 
-/// On a base with many parameters every fit is expensive. Thinned records show equally well which cause is
-/// present.
+/// Fits on a base with many parameters are expensive. Thinned records are sufficient to determine which cause
+/// is present.
 Selection select_among_thinned(const FitPoint& base, const SearchData& data, const BaseQuestion& question,
                                const SelectionOptions& options) {
   SearchData thinned = data;
@@ -212,7 +215,8 @@ std::optional<BaseFindings> find_base(const BaseSearch& search) {
   options.progress = question.progress;
   options.published_yields_below = worth_having;
   options.starts = published_starts;
-  // An effect that no structure has may spoil all of them; a drift that an unfit base hides is among none.
+  // An effect outside all structures may increase the error of all of them. Therefore the search also uses
+  // readings without the causes that were found, and without a drift.
   using Readings = std::vector<Record>;
   std::vector<std::function<Readings(const Readings&)>> views{std::identity{}};
   if (!plain.extended.causes.empty()) {
@@ -244,7 +248,8 @@ std::optional<BaseFindings> find_base(const BaseSearch& search) {
 }
 
 bool has_lower_loss(const BaseFindings& found, const Selection& plain, double noise_mm, bool plain_explains) {
-  // Nothing is named of causes that leave too much: what leaves no more and has names says more.
+  // If the selection leaves too much error, none of its causes is named. A base with an equal loss and named
+  // components is then more informative.
   const bool says_more = !plain_explains && !plain.extended.causes.empty() && !found.named.empty();
   const bool needs_fewer = plain.left.excess_mm > noise_mm && has_some_of(found, plain);
   const double at_most = needs_fewer ? as_good_with_fewer : says_more ? 1 : worth_having;

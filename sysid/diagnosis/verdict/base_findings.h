@@ -18,12 +18,12 @@ namespace softgrip::sysid {
 
 struct BaseFindings {
   StructureFit fit;       ///< the richer base, with the causes that were found on it
-  StructureTrial chosen;  ///< the richer base, as it was found or as it is beside causes
-  bool off_grid = false;  ///< `fit` is of the readings as they are, its time constants where they are best
+  StructureTrial chosen;  ///< the richer base as it was found, or as it is together with causes
+  bool off_grid = false;  ///< `fit` uses the original readings and has free time constants
   std::string description;
-  BlockLosses losses;                ///< held out, on the given division
-  std::vector<NamedCause> named;     ///< at full inclusion
-  std::vector<NamedCause> possible;  ///< below it
+  BlockLosses losses;                ///< held-out losses on the given division
+  std::vector<NamedCause> named;     ///< causes at full inclusion
+  std::vector<NamedCause> possible;  ///< causes below full inclusion
 };
 
 struct BaseQuestion {
@@ -31,7 +31,7 @@ struct BaseQuestion {
   double noise_mm = 0;
   std::uint64_t seed = 1;
   unsigned threads = 0;
-  Division division;  ///< of held-out blocks
+  Division division;  ///< held-out blocks
   std::function<void(const std::string&)> progress;
 };
 

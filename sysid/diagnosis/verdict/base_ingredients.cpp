@@ -104,10 +104,10 @@ class Labeller {
     if (!finding.alternative.empty()) named.alternatives.push_back(*find_cause(finding.alternative));
     if (finding.ingredient == Ingredient::play_operators && stands_still_)
       named.alternatives.push_back(*find_cause(causes::Backlash::id));
-    // Behind the command or the measured pressure, before or behind the finger.
+    // The lag may be in the valve or in the sensor.
     if (finding.ingredient == Ingredient::lag)
       named.alternatives.push_back(*find_cause(causes::SensorLag::id));
-    // Behind a lag a second one looks like a delay.
+    // A second lag in series resembles a delay.
     if (finding.ingredient == Ingredient::delay && chosen_.structure.lag)
       named.alternatives.push_back(*find_cause(causes::ValveLag::id));
     named.heldout_gain_percent =
@@ -121,7 +121,8 @@ class Labeller {
  private:
   const StructureTrial& chosen_;
   const BaseQuestion& question_;
-  bool stands_still_;  ///< after a reversal, until the pressure has come back by some kPa
+  bool stands_still_;  ///< the finger does not move after a reversal until the pressure has changed by some
+                       ///< kPa
   FitSpace space_;
   UncertainPoint at_;
 };

@@ -12,7 +12,7 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Which causes cannot be judged without a column.
+/// Adds a warning for causes that cannot be tested without a column.
 void warn_of_columns(const Scales& scales, std::vector<std::string>& warnings) {
   for (const Column column : {Column::temperature_c, Column::supply_kpa}) {
     std::string ids;

@@ -32,7 +32,8 @@ using Failure = tl::unexpected<std::string>;
 
 constexpr double clearly_correlated = 0.05;
 constexpr std::size_t fewest_samples = 200;
-/// The base fitted from the given model and, since recalibration can start far off, from the data's scale.
+/// Refits the base from the given model and from the scale of the data, because the given model may be far
+/// from the data.
 tl::expected<StructureFit, std::string> recalibrate(const SearchData& data, const DiagnosisOptions& options) {
   StructureFit best = fit_structure(data.records, {}, data.given);
   IdentifyOptions wide;
@@ -43,7 +44,7 @@ tl::expected<StructureFit, std::string> recalibrate(const SearchData& data, cons
   auto found = identify(data.records, data.given.model, wide);
   if (found) {
     FitPoint point{found->fitted, rest_starts(found->fitted, data.records)};
-    // The starts that identification has estimated.
+    // Use the initial states from the identification.
     for (std::size_t k = 0; k < data.records.size(); ++k) point.starts[k] = found->scores[k].start;
     StructureFit other = fit_structure(data.records, {}, point);
     if (other.mean_square_mm2 < best.mean_square_mm2 * (1 - 1e-4)) best = std::move(other);
@@ -52,7 +53,7 @@ tl::expected<StructureFit, std::string> recalibrate(const SearchData& data, cons
   return best;
 }
 
-/// Root of the mean loss of each run, or of each half of a single run.
+/// Returns the RMSE of each run, or of each half of a single run.
 std::vector<RunError> run_errors(const std::vector<Record>& records, const Division& by_unit,
                                  const BlockLosses& given, const BlockLosses& recalibrated,
                                  const BlockLosses& extended) {
@@ -133,7 +134,7 @@ class Diagnostician {
         clock.ended("staircase");
       }
     } else {
-      another.drop();  // a second cause explained it after all
+      another.drop();  // a second cause explains the data
     }
     if (another.is_found()) {
       measure_recalibrated(selection);
@@ -162,7 +163,7 @@ class Diagnostician {
     return {};
   }
 
-  /// Removes the causes that the displacement has shown already.
+  /// Removes the causes that the displacement has already shown.
   void take_out_named(ValveFindings& in_valve) {
     std::erase_if(in_valve.named, [&](const NamedCause& one) { return is_among(d_.causes, one.cause); });
   }
@@ -176,7 +177,7 @@ class Diagnostician {
                      " readings in all: too few to tell a cause from noise (" +
                      std::to_string(fewest_samples) + " are needed)");
     }
-    // The zero of the first log may be anywhere; that it moves from log to log is a drift, which is a cause.
+    // The zero of the first log is arbitrary. A zero that changes between logs is a drift, which is a cause.
     const bool zero_free = records.front().offset_free && !records.front().start_unknown;
     for (Record& record : records) record.offset_free = zero_free || record.start_unknown;
     d_.sampling = hide_repeated(records);
@@ -200,8 +201,8 @@ class Diagnostician {
     d_.as_given_rmse_mm = std::sqrt(d_.as_given.mean_square_mm2);
   }
 
-  /// With a recalibrated model outliers stand out in the midst of a motion too; without them it fits better,
-  /// and may show more.
+  /// With a recalibrated model, outliers are also visible during a motion. Without them, the model fits
+  /// better and may show more outliers.
   void hide_more_outliers(StructureFit& base) {
     constexpr int most_rounds = 3;
     for (int round = 0; round < most_rounds; ++round) {
@@ -229,7 +230,7 @@ class Diagnostician {
     if (!is_missed(selection.extended_losses, held_out_losses(open, division, fit),
                    0.01 * square(d_.noise_mm), options_.seed))
       return false;
-    // Creep that never settles follows any difference between logs of two rigs.
+    // Creep that never settles can fit any difference between logs of two rigs.
     if (inconsistent_among(data_.records, selection.base, fit.mean_square_mm2)) return false;
     use(std::move(open));
     d_.recalibrated = std::move(fit);
@@ -239,7 +240,8 @@ class Diagnostician {
     return true;
   }
 
-  /// A shifted drive is a part of the extension: the errors before it are those of the given drive.
+  /// If the drive is shifted, the shift is a part of the extension. The earlier errors are those with the
+  /// given drive.
   void count_shift(const BlockLosses& extended) {
     if (!d_.lead) return;
     d_.as_given_rmse_mm = unshifted_.as_given_rmse_mm;
@@ -366,7 +368,7 @@ class Diagnostician {
     d_.unexplained_error = selection.left;
     d_.extended_rmse_mm = rmse_mm(selection.extended_losses);
     d_.gain = gain_percent(selection.base_losses, selection.extended_losses, options_.seed);
-    // New numbers are compared with the old ones, and both have their starts fitted.
+    // The new parameters are compared with the old ones, both with fitted initial states.
     const StructureFit given = fit_starts(data_.records, {}, data_.given);
     recalibration_gain_ = mean_difference(losses_of(given, division), selection.base_losses, options_.seed);
     d_.unexplained_percent =
@@ -436,7 +438,7 @@ class Diagnostician {
     }
     for (NamedCause& named : chosen) {
       if (d_.stick_slip && named.cause.id == causes::ValveDeadband::id) {
-        // The values of the stick-slip motion; the extended model may have those of its mean.
+        // Use the values of the stick-slip motion, because the extended model may contain those of its mean.
         named.parameters.front() = {"band_kpa", "kPa", d_.stick_slip->band_kpa, d_.stick_slip->band_ci95,
                                     true};
       }
@@ -488,7 +490,7 @@ class Diagnostician {
   const model::Model& given_;
   const DiagnosisOptions& options_;
   SearchData data_;
-  /// Errors with the given drive, and the held-out losses with the shifted one.
+  /// Errors with the given drive, and held-out losses with the shifted drive.
   struct Unshifted {
     double as_given_rmse_mm = 0;
     BlockLosses recalibrated, shifted;

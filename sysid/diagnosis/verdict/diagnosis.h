@@ -57,7 +57,7 @@ struct Diagnosis {
   std::vector<CandidateScore> rejected;
   double noise_mm = 0;
   Spread gain;  ///< held-out error reduction of the extended relative to the refitted model [%]
-  double as_given_rmse_mm = 0;      ///< of all readings; starts by sysid/fitting/start_estimate.h
+  double as_given_rmse_mm = 0;      ///< of all readings; initial states by sysid/fitting/start_estimate.h
   double recalibrated_rmse_mm = 0;  ///< held out
   double extended_rmse_mm = 0;      ///< held out
   /// Held-out RMSE with whole logs held out; empty with a single log.
@@ -68,10 +68,10 @@ struct Diagnosis {
   std::optional<NullCalibration> null_calibration;  ///< if requested and a cause was to be named
   OutlierEvidence outliers;
   SamplingEvidence sampling;
-  std::optional<ReadingLead> lead;              ///< the records have the drive ahead by it
+  std::optional<ReadingLead> lead;              ///< present if the drive of the records was shifted
   std::optional<StickSlipEvidence> stick_slip;  ///< if the named dead band shows stick-slip
-  std::optional<GaugeEvidence> gauge;           ///< where gauge readings were given
-  std::optional<ValveFindings> in_valve;        ///< where the pressure was measured; none of `causes` again
+  std::optional<GaugeEvidence> gauge;           ///< present if gauge readings were given
+  std::optional<ValveFindings> in_valve;  ///< present if the pressure was measured; contains none of `causes`
   /// components of a richer base, if the given base is insufficient; empty: it is sufficient
   std::string base;
   UnexplainedError unexplained_recalibrated;
@@ -86,7 +86,7 @@ struct Diagnosis {
   /// Untested causes by id: the logs never meet their condition. The value names the recording that would
   /// test them.
   std::map<std::string, std::string, std::less<>> not_tested;
-  std::optional<Evidence> evidence;  ///< where the models are wrong; see examine()
+  std::optional<Evidence> evidence;  ///< conditions on which the errors depend; see examine()
   double wall_s = 0;
   std::vector<std::pair<std::string, double>> stages_s;  ///< wall time by stage
 };

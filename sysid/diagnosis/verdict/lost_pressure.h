@@ -14,10 +14,10 @@ namespace softgrip::sysid {
 inline constexpr double scales_agree_within = 0.015;
 
 struct LostPressure {
-  ValveParts parts;  ///< with the leak
-  ValveStage stage;  ///< with it, and a sensor whose gain is one
+  ValveParts parts;  ///< including the leak
+  ValveStage stage;  ///< including the leak, with a sensor gain of one
   BlockLosses losses_kpa2;
-  BlockLosses without_kpa2;  ///< without leak and gain
+  BlockLosses without_kpa2;  ///< losses without leak and gain
   double highest_kpa = 0;    ///< highest measured pressure
   double missing_kpa = 0;    ///< pressure missing at that point
 };

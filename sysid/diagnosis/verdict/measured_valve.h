@@ -13,14 +13,14 @@
 
 namespace softgrip::sysid {
 
-/// Refers to its logs, which must outlive it. Each log has a measured pressure.
+/// Fits valve stages. It refers to its logs, which must outlive it. Each log has a measured pressure.
 class MeasuredValve {
  public:
-  /// @param held  true: the command keeps its value until the next sample.
+  /// @param held  true: the command is constant until the next sample.
   MeasuredValve(const std::vector<Log>& logs, bool held);
 
-  /// Fits some parts and the gauge to all data. @param tolerance  of the fit; a reported fit needs a small
-  /// one.
+  /// Fits some parts and the pressure sensor to all data.
+  /// @param tolerance  of the fit; a reported fit needs a small one.
   [[nodiscard]] ValveStage fit(ValveParts parts, const std::vector<ValveStage>& from, double tolerance = 1e-6,
                                PressureSensorFit sensor = PressureSensorFit::gain_and_zero) const;
 
@@ -28,7 +28,7 @@ class MeasuredValve {
   /// the parts. The second fit runs only if `other` leaves little more than `one`.
   [[nodiscard]] ValveStage better_fit(ValveParts parts, const ValveStage& one, const ValveStage& other) const;
 
-  /// Returns the mean square of every block while it was held out; the blocks take turns [kPa^2].
+  /// Returns the mean square of every block while it was held out [kPa^2].
   [[nodiscard]] BlockLosses held_out_losses(
       ValveParts parts, const ValveStage& whole,
       PressureSensorFit sensor = PressureSensorFit::gain_and_zero) const;
@@ -50,8 +50,8 @@ class MeasuredValve {
 
   const std::vector<Log>& logs_;
   bool held_;
-  std::size_t samples_ = 0;              ///< of all logs
-  std::vector<std::size_t> blocks_end_;  ///< of every log, one behind its last
+  std::size_t samples_ = 0;              ///< in all logs
+  std::vector<std::size_t> blocks_end_;  ///< end index of the blocks of every log
 };
 
 }  // namespace softgrip::sysid

@@ -8,7 +8,7 @@
 namespace softgrip::sysid {
 namespace {
 
-/// A structure that loses less in fewer than this share of the draws is ruled out.
+/// A structure with a lower loss in fewer than this share of the draws is ruled out.
 constexpr double least_weight = 0.05;
 
 /// Returns true if any interval became wider.

@@ -1,6 +1,7 @@
 #pragma once
-// Intervals over the confidence set: what a number is depends on what else is there, and where data do not
-// say whether a confounded cause is there, its interval holds both answers.
+// Intervals over a set of plausible structures. The value of a parameter depends on the other causes in the
+// structure. If the data do not determine whether a confounded cause is present, the interval covers both
+// cases.
 
 #include <cstdint>
 #include <string>
@@ -11,8 +12,8 @@
 
 namespace softgrip::sysid {
 
-/// Widens the intervals of `named` (the chosen of `selection`) by every undecided structure that the held-out
-/// blocks do not rule out. Returns a sentence for each.
+/// Widens the intervals of `named` (the chosen causes of `selection`) to cover every undecided structure that
+/// the held-out blocks do not rule out. Returns a sentence for each widened interval.
 [[nodiscard]] std::vector<std::string> mix_intervals(std::vector<NamedCause>& named,
                                                      const std::vector<Record>& records,
                                                      const Selection& selection, std::uint64_t seed);

@@ -34,7 +34,7 @@ struct NamedCause {
   /// Decrease of the mean square of the measured pressure, if the pressure was used to judge the cause
   /// [kPa^2].
   std::optional<Spread> gain_kpa2;
-  double inclusion = 1;  ///< the weight of the structures in the confidence set that contain it
+  double inclusion = 1;  ///< weight of the structures with this cause in the confidence set
   std::vector<Cause> alternatives;
   std::vector<CandidateScore> candidates;
 };

@@ -42,7 +42,8 @@ std::vector<CauseParameter> block_numbers(const UncertainPoint& at, std::size_t 
       const double deviation = std::sqrt(std::max(0.0, at.uncertainty.covariance(row, row)));
       if (deviation == 0) continue;
       const double half = at.uncertainty.quantile * deviation;
-      // A delay below 0 is none; what is without bound stays so, for then nothing is known.
+      // Limits of an interval stay within the permitted range (a delay is not negative). Infinite limits stay
+      // infinite, because they mean that the value is unknown.
       const auto possible = [&](double value) {
         return std::isfinite(value) ? std::clamp(value, spec.lower, spec.upper) : value;
       };
@@ -78,7 +79,7 @@ std::vector<NamedCause> name_chosen(const std::vector<Record>& records, const St
 
 namespace {
 
-/// @param excess_mm  that the readings of the cause added to the error. @param readings  how many they were.
+/// @param excess_mm  error that the readings of the cause add. @param readings  number of these readings.
 NamedCause cause_in_readings(std::string_view id, std::vector<CauseParameter> parameters, double excess_mm,
                              std::size_t readings, double noise_mm) {
   NamedCause named;

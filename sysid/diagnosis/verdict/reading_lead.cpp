@@ -10,7 +10,8 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Leads that are tried beside the block's, of it: the block is wrong at corners and may be far off.
+/// Further leads to try, relative to that of the block. The block is wrong at corners, so its lead may be
+/// inaccurate.
 constexpr std::array other_leads{0.5, 1.5, 2.0, 3.0};
 constexpr int refinements = 5;
 
@@ -26,7 +27,7 @@ class LeadSearch {
     return shifted;
   }
 
-  /// The best of a grid, then between its neighbours by halves.
+  /// Returns the best lead of a grid, refined by repeated halving of the step.
   [[nodiscard]] LeadFit best(double about_s) const {
     LeadFit best = at(about_s);
     const auto try_at = [&](double lead_s) {
@@ -45,7 +46,7 @@ class LeadSearch {
   }
 
  private:
-  /// The lead at which the mean square has risen by what 95 % allow, on the parabola through 3 leads.
+  /// Returns the 95 % interval of the lead from a parabola through the mean squares at 3 leads.
   [[nodiscard]] Interval interval(const LeadFit& best, double step_s) const {
     const double lead_s = best.lead.lead_s, least_mm2 = best.fit.mean_square_mm2;
     const double beside_mm2 =

@@ -1,5 +1,5 @@
 #pragma once
-// How far the readings are ahead of their command.
+// Estimates the time by which the readings lead their command.
 
 #include <optional>
 #include <vector>
@@ -11,18 +11,19 @@ namespace softgrip::sysid {
 
 struct ReadingLead {
   double lead_s = 0;
-  /// From the profile of the mean square: all parameters of the structure are fitted at each lead.
+  /// 95 % interval from the profile of the mean square: all parameters of the structure are fitted at each
+  /// lead.
   Interval ci95;
 };
 
 struct LeadFit {
   ReadingLead lead;
   StructureFit fit;
-  std::vector<Record> records;  ///< with the drive ahead by the lead
+  std::vector<Record> records;  ///< records whose drive is shifted by the lead
 };
 
-/// Returns the records with a drive that comes `lead_s` earlier. The first sample keeps its drive: it is the
-/// state in which the record begins. Readings that answer a drive behind the end of the record are hidden.
+/// Returns the records with a drive that comes `lead_s` earlier. The first sample keeps its drive, which is
+/// the initial state of the record. Readings that would need a drive after the end of the record become NaN.
 [[nodiscard]] std::vector<Record> with_drive_ahead(std::vector<Record> records, double lead_s);
 
 /// Fits the lead exactly, if a selection contains clock_offset. That block extrapolates the motion and is

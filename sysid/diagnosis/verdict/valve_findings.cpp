@@ -33,9 +33,9 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Least share of the mean square that the others leave which a part must explain: no regulator is a dead
-/// time with a lag, and a part can absorb some of the difference. In 16 simulated textbook cases an absent
-/// part explained at most 0.12, and a present one at least 0.27 at twice the noise.
+/// Smallest share of the remaining mean square that a part must explain. A regulator is not exactly a dead
+/// time and a lag, and a part can absorb some of the difference. In 16 simulated textbook cases, an absent
+/// part explained at most 0.12, and a part at twice the noise at least 0.27.
 constexpr double least_part = 0.2;
 /// Smallest share for a second time constant, which is a detail of a lag and has no name of its own.
 constexpr double least_detail = 0.02;
@@ -50,7 +50,7 @@ struct Number {
   double ValveStage::*value;
 };
 
-/// The name of a part.
+/// Name and parameters of a part.
 struct PartName {
   ValvePart part;
   std::string_view id;
@@ -116,14 +116,14 @@ ValveParts without(ValveParts parts, ValvePart part) {
   return parts;
 }
 
-/// A fitted stage with what it leaves.
+/// A fitted stage and its losses.
 struct Trial {
   ValveParts parts;
   ValveStage stage;
   BlockLosses losses_kpa2;
 };
 
-/// How clearly a part is there.
+/// Evidence for a part.
 struct PartEvidence {
   Spread gain_kpa2;
   Spread gain_percent;
@@ -226,7 +226,7 @@ class Search {
   }
 
   void add_lost_pressure(ValveFindings& found, ValveParts kept) const {
-    // A supply that sags or a ceiling also reduces the pressure, so both are fitted first.
+    // A falling supply or a pressure limit also reduces the pressure, so both are fitted first.
     if (!(whole_.stage.gauge_gain < 1 - scales_agree_within)) return;
     const auto lost = find_lost_pressure(logs_, valve_, kept, found.stage);
     if (!lost) return;
@@ -253,7 +253,7 @@ class Search {
     return gain_mm_per_kpa * std::sqrt(of.gain_kpa2.value) > question_.noise_mm;
   }
 
-  /// The part's numbers; what was fitted beside them makes them less certain.
+  /// Returns the parameters of the part. Other parameters of the same fit increase their uncertainty.
   [[nodiscard]] std::vector<CauseParameter> parameters_of(const PartName& name, const ValveStage& stage,
                                                           ValveParts kept) const {
     std::vector<double ValveStage::*> numbers;

@@ -22,15 +22,15 @@ struct ValveFindings {
   std::string advice;  ///< advice that separates a named leak from a scale error; empty: no leak is named
   ValveStage stage;    ///< dead time, lag and the named causes
   double heldout_rmse_kpa = 0;
-  double noise_kpa = 0;  ///< of the measured pressure, sample to sample
+  double noise_kpa = 0;  ///< sample-to-sample noise of the measured pressure
 };
 
 struct ValveQuestion {
   const model::Model& given;
   bool held = false;
-  double noise_mm = 0;  ///< of the finger's readings: what moves it by less is not named
+  double noise_mm = 0;  ///< noise of the finger's readings; causes with a smaller effect are not named
   std::uint64_t seed = 1;
-  unsigned threads = 0;  ///< 0: the number of cores
+  unsigned threads = 0;  ///< 0: one per core
 };
 
 /// Returns an empty value if a log has no measured pressure.

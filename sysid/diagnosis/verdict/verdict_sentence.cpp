@@ -9,7 +9,7 @@
 namespace softgrip::sysid {
 namespace {
 
-/// "0.31 mm", in the unit of the readings.
+/// Returns a value with the unit of the readings: "0.31 mm".
 std::string reading(const Diagnosis& d, double value) {
   return significant(value, 2) + " " + std::string(model::name_of(d.extended_model.output_unit));
 }
@@ -23,7 +23,7 @@ std::string listed(const std::vector<NamedCause>& causes) {
   });
 }
 
-/// Returns the sentence if only the readings are wrong, and not the model.
+/// Returns the sentence for wrong readings and a correct model.
 std::string readings_sentence(const Diagnosis& d) {
   std::string wrong;
   if (d.outliers.present)
@@ -59,8 +59,8 @@ std::string stick_slip_sentence(const Diagnosis& d, const std::string& before, c
          reading(d, d.stick_slip->heldout_rmse_mm) + ".";
 }
 
-/// ": with them the held-out error falls from 2 mm to 1 mm". Where it does not fall, a model that moves as no
-/// finger does had followed the logs as well.
+/// Returns ": with them the held-out error falls from 2 mm to 1 mm". If the error does not fall, the model
+/// without the causes fits equally well only with an inverse response.
 std::string with_them(const Diagnosis& d, const std::string& before, const std::string& after) {
   const std::string them = d.causes.size() > 1 ? "them" : "it";
   constexpr double next_to_nothing = 0.02;
@@ -90,7 +90,7 @@ bool valve_lacks(const Diagnosis& d) {
   return d.in_valve && !d.in_valve->named.empty();
 }
 
-/// " Between the command and the measured pressure it lacks valve dead band (band_kpa 1.34)."
+/// Returns " Between the command and the measured pressure it lacks valve dead band (band_kpa 1.34)."
 std::string sentence_of_valve(const Diagnosis& d) {
   std::string numbers;
   for (const NamedCause& named : d.in_valve->named) {
