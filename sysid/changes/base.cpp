@@ -25,19 +25,19 @@ namespace {
 /// A valve responds faster than a finger. With the command as input the bins are therefore shorter, which
 /// also separates the delay of a finger from its lag.
 constexpr double shortest_finger_bin_s = 0.05, shortest_commanded_bin_s = 0.02;
-/// Order of the autoregression of the residual [bins]. For a finger, whose memory is longer, it covers at
+/// Order of the autoregression of the residual [bins]. A finger has a longer memory, so its order covers at
 /// least finger_memory_s.
 constexpr std::size_t whitening_order = 8;
 constexpr double finger_memory_s = 0.4;
-/// From day to day no gain and no zero stays nearer than this.
+/// Lower limits of the spread of gain and zero: from day to day, no finger repeats more exactly.
 constexpr double least_gain_spread = 0.002;
 constexpr double least_zero_share = 0.0005;
 
-/// A model that may be the base.
+/// A model that may become the base.
 struct Candidate {
   std::string description;
   std::optional<Regulator> regulator;
-  /// Fits it to records behind the regulator; a model without blocks predicts what drives it.
+  /// Fits it to records behind the regulator. A model without blocks predicts its input.
   std::function<FitPoint(const std::vector<Record>&)> fit;
 };
 
@@ -60,12 +60,14 @@ double mean_temperature(const std::vector<Record>& records) {
   return count > 0 ? sum / count : 20;
 }
 
-/// Prediction of a pressure: the output of the regulator, which drives the record; without a regulator 0.
+/// Returns the prediction of a pressure without a model: the output of the regulator, or 0 without a
+/// regulator.
 std::vector<double> without_model(const std::optional<Regulator>& regulator, const Record& driven) {
   return regulator ? driven.drive_kpa : std::vector<double>(driven.size(), 0.0);
 }
 
-/// Estimated start of a run that was not fitted. The comparison of runs estimates its zero.
+/// Returns the estimated initial state of a run that was not fitted. Its zero is estimated by the comparison
+/// of runs.
 StartState start_of(const model::Model& model, const Record& record) {
   if (model.blocks.empty()) return {};
   StartState start = estimated_start(model, record);
@@ -80,7 +82,7 @@ std::vector<double> plain_prediction(const model::Model& model, const std::optio
   own.peak_before_kpa = start.peak_before_kpa;
   own.valley_before_kpa = start.valley_before_kpa;
   own.arrival_kpa_per_s = start.arrival_kpa_per_s;
-  // A block that extends the model may have a branch of its own, which begins settled.
+  // An additional block may have a creep branch, which is settled at the start.
   std::copy_n(start.unsettled_mm.begin(), std::min(start.unsettled_mm.size(), own.unsettled_mm.size()),
               own.unsettled_mm.begin());
   return predict(model, record, own);
@@ -110,7 +112,7 @@ Binned left_by(const Candidate& candidate, const std::vector<Record>& records, c
   return left;
 }
 
-/// Play operators and creep, driven as the records are.
+/// Returns play operators and creep with the same drive as the records.
 Candidate play_candidate(Drive drive) {
   const BaseStructure play{
       .hysteresis = HysteresisForm::play, .delay = drive == Drive::command, .hinged_creep = true};
@@ -146,17 +148,17 @@ std::vector<Candidate> candidates(const std::vector<Record>& records, const Base
   return all;
 }
 
-/// Behind a valve whose pressure is not recorded, a finger shows what either of them does.
+/// If the pressure is not recorded, the filter bank must represent both valve and finger.
 std::vector<FilterKind> kinds_for(Judged judged, Drive drive) {
   if (judged == Judged::pressure) return {FilterKind::valve};
   if (drive == Drive::measured) return {FilterKind::finger};
   return {FilterKind::finger, FilterKind::valve_and_finger};
 }
 
-/// A candidate with what it leaves, fitted without each unit and to all.
+/// A candidate with its residuals, fitted without each unit and to all units.
 struct Fitted {
   std::vector<Record> driven;
-  model::Model model;  ///< of all records
+  model::Model model;  ///< fitted to all records
   LeftByUnit left;
 };
 std::vector<Fitted> fit_all(const std::vector<Candidate>& all, const std::vector<Record>& records,
@@ -176,14 +178,14 @@ std::vector<Fitted> fit_all(const std::vector<Candidate>& all, const std::vector
   return fitted;
 }
 
-/// The first candidate is the base. A later one replaces it only if it predicts left-out units better. A
-/// regulator is fitted to all units: of its model only what is behind it is fitted without a unit.
+/// Selects the base. The first candidate is the default. A later one replaces it only if it predicts left-out
+/// units better. A regulator is fitted to all units; only the rest of its model is fitted without a unit.
 void choose(Base& base, const std::vector<Candidate>& all, const std::vector<Record>& records,
             const BaseOptions& options) {
   const std::vector<FilterKind> kinds = kinds_for(base.judged, base.drive);
   const std::vector<Fitted> fitted = fit_all(all, records, base, options.threads);
   std::vector<FittedFilters> fits(all.size() * kinds.size());
-  // Candidates without a regulator follow the same drives and share their columns.
+  // Candidates without a regulator have the same drive, so they share the columns of the filter bank.
   std::vector<std::vector<std::size_t>> groups(1);
   for (std::size_t c = 0; c < all.size(); ++c) {
     if (all[c].regulator)
@@ -226,7 +228,7 @@ std::size_t order_for(const Base& base) {
   return std::max(whitening_order, static_cast<std::size_t>(std::lround(finger_memory_s / base.bin_s)));
 }
 
-/// How far gain and zero differ from unit to unit.
+/// Computes the spread of gain and zero between units.
 void spread(Base& base) {
   std::vector<PairSums> sums(base.units.count() * base.records.size());
   for (std::size_t r = 0; r < base.records.size(); ++r) {
@@ -259,9 +261,9 @@ std::vector<double> walked_with(const Driven& driven, const std::vector<model::B
   return plain_prediction(model, {}, driven.walked, driven.start);
 }
 
-/// Model and filter bank with the blocks of an extension. Blocks behind the model act on the
-/// filter bank, too. The model is simulated again only if a block changes it or depends on the motion between
-/// samples.
+/// Returns the prediction of model and filter bank with the blocks of an extension. Blocks after the model
+/// also act on the filter bank. The model is simulated again only if a block changes it or depends on the
+/// motion between samples.
 std::vector<double> extended_prediction(const Driven& driven, const std::vector<model::BlockSpec>& blocks) {
   std::vector<model::BlockSpec> within, behind;
   for (const model::BlockSpec& block : blocks) {
@@ -276,7 +278,7 @@ std::vector<double> extended_prediction(const Driven& driven, const std::vector<
   if (behind.empty()) return with_filters;
   with_filters = downstream(behind, driven.walked, std::move(with_filters));
   if (is_downstream(behind, driven.model, driven.walked)) return with_filters;
-  // Between samples only the model's own way is known: the filter bank's goes straight.
+  // Between samples, only the motion of the model is known. That of the filter bank is linear.
   const std::vector<double> without_filters_mm = downstream(behind, driven.walked, plain);
   std::vector<double> exact = walked_with(driven, blocks);
   for (std::size_t i = 0; i < exact.size(); ++i) exact[i] += with_filters[i] - without_filters_mm[i];
@@ -304,8 +306,8 @@ std::vector<double> driven_prediction(const Base& base, const Driven& driven, co
   return y;
 }
 
-/// Output of the base's regulator, if it has one, for a command behind these blocks. A command that bends
-/// between the samples is simulated with finer steps.
+/// Returns the output of the base's regulator, if it has one, for a command that has passed the valve blocks.
+/// A command that is not linear between the samples is simulated with finer steps.
 std::vector<double> drive_of(const Base& base, const Record& record,
                              const std::vector<model::BlockSpec>& valve, const RegulatorFault& fault) {
   if (!base.regulator) return drive_behind(valve, record);
@@ -323,7 +325,7 @@ std::vector<double> drive_of(const Base& base, const Record& record,
   return drive_kpa;
 }
 
-/// The readings that the model alone has to explain.
+/// Returns the readings without the contribution of the filter bank.
 Record without_filters(const Driven& driven) {
   Record record = driven.walked;
   for (std::size_t i = 0; i < record.size(); ++i)
@@ -385,7 +387,7 @@ std::vector<double> predict_base(const Base& base, const Record& record, const E
 }
 
 Record thinned_for(const Base& base, const Record& record) {
-  // 0.01 s for a finger with either input: a faster oscillation or lag is identified by its form.
+  // Steps of 0.01 s for a finger with either input. Faster oscillations or lags are identified by their form.
   constexpr double commanded_parts = 2, measured_parts = 5, valve_parts = 4;
   const double finger_parts = base.drive == Drive::measured ? measured_parts : commanded_parts;
   return thinned_to_centres(record,

@@ -12,10 +12,10 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Shares of all bins at which classes of the input rate end.
+/// Upper limits of the classes of the input rate, as shares of all bins.
 constexpr std::array class_ends{0.4, 0.7, 0.9};
 
-/// Of the finite values; the zero of a run is a number of its own.
+/// Subtracts the mean of the finite values, because the zero of a run is a separate parameter.
 void subtract_mean(std::vector<double>& series) {
   double sum = 0, count = 0;
   for (const double v : series) {
@@ -26,7 +26,7 @@ void subtract_mean(std::vector<double>& series) {
   for (double& v : series) v -= sum / std::max(count, 1.0);
 }
 
-/// The spread of the residual, by class of the input rate.
+/// Computes the standard deviation of the residual for each class of the input rate.
 void add_classes(const Binned& residual, const Binned& peak_rate, Whitener& whitener) {
   const WhiteRows rows(residual, peak_rate, whitener);
   const Eigen::VectorXd white = rows(residual);

@@ -1,6 +1,6 @@
 #pragma once
-// Series averaged over short bins, and the filter that makes what a healthy base leaves white: what is slow
-// and often wrong counts less than what is neither.
+// Averages series over short bins and whitens the residuals of a healthy base. Slow and frequent errors then
+// have a lower weight.
 
 #include <cstddef>
 #include <vector>
@@ -11,28 +11,29 @@
 
 namespace softgrip::sysid {
 
-/// Means of each record over intervals of equal duration; NaN: no reading in the interval.
+/// Means of each record over intervals of equal duration. NaN: the interval contains no reading.
 using Binned = std::vector<std::vector<double>>;
 
-/// The bin of records: `least_s`, or two samples where they are farther apart [s].
+/// Returns the bin length of records [s]: `least_s`, or two samples if that is longer.
 [[nodiscard]] double bin_s(const std::vector<Record>& records, double least_s);
 
-/// The mean of the finite values in every bin.
+/// Returns the mean of the finite values in every bin.
 [[nodiscard]] std::vector<double> binned(const Record& record, const std::vector<double>& series,
                                          double bin_s);
 
-/// The series with as many bins as another one: a thinned record may end a bin sooner. Its last value goes
-/// on.
+/// Returns the series with the given number of bins. A thinned record may be one bin shorter; its last value
+/// is then repeated.
 [[nodiscard]] std::vector<double> with_bins(std::vector<double> series, std::size_t bins);
 
-/// How fast the drive moves or has moved half a second before, in bins [kPa/s].
+/// Returns the rate |dp/dt| of the drive in bins [kPa/s], after a peak detector that decays with a time
+/// constant of 0.5 s.
 [[nodiscard]] std::vector<double> peak_rate_of(const Record& record, double bin_s);
 
-/// Prediction error of an autoregression, in units of its own spread at this rate of the input.
+/// Prediction error of an autoregression, in units of its standard deviation at this rate of the input.
 struct Whitener {
-  std::vector<double> before;               ///< weights of the bins before, the nearest first
-  std::vector<double> peak_rate_kpa_per_s;  ///< from where the next class of peak_rate begins, ascending
-  std::vector<double> spread;               ///< by class, one more
+  std::vector<double> before;               ///< weights of the previous bins, the nearest first
+  std::vector<double> peak_rate_kpa_per_s;  ///< lower limits of the classes of peak_rate except the first
+  std::vector<double> spread;               ///< of each class; one more than the limits
 
   [[nodiscard]] std::size_t class_of(double peak_rate) const;
   [[nodiscard]] double spread_at(double peak_rate) const {
@@ -40,11 +41,12 @@ struct Whitener {
   }
 };
 
-/// By Yule's and Walker's equations from a residual; every record's mean is taken away first.
+/// Fits the whitener to a residual by the Yule-Walker equations. The mean of every record is subtracted
+/// first.
 /// @param peak_rate  of the same bins.
 [[nodiscard]] Whitener whitener_of(Binned residual, const Binned& peak_rate, std::size_t order);
 
-/// The rows of a residual that can be whitened: those with enough finite bins before them.
+/// The rows of a residual that can be whitened, because enough finite bins precede them.
 class WhiteRows {
  public:
   struct Row {
@@ -54,7 +56,7 @@ class WhiteRows {
 
   WhiteRows(const Binned& residual, const Binned& peak_rate, Whitener whitener);
   [[nodiscard]] const std::vector<Row>& rows() const { return rows_; }
-  /// A series whitened; what is missing in it counts as 0.
+  /// Returns the whitened series. Missing values count as 0.
   [[nodiscard]] Eigen::VectorXd operator()(const Binned& series) const;
 
  private:

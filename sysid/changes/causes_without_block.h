@@ -1,5 +1,5 @@
 #pragma once
-// Causes of a change that no block of a model describes: the air supply, and the load.
+// Causes of a change without a block of a model: the air supply and the load.
 
 #include <array>
 #include <string_view>
@@ -37,8 +37,8 @@ inline constexpr CauseWithoutBlock leak{
      {SizedBy::Of::number, "pressure lost in a second with the line shut", "kPa", "loss_kpa_per_s"}},
     Appears::held};
 
-/// A weight or a preload changes gain and zero at once. The readings do not separate it from a change of the
-/// finger itself beside another zero.
+/// A weight or a preload changes gain and zero together. The readings do not separate it from a change of the
+/// finger together with a change of the zero.
 inline constexpr CauseWithoutBlock payload{
     "payload",
     "Payload",

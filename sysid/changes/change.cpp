@@ -28,7 +28,7 @@
 namespace softgrip::sysid {
 namespace {
 
-/// From here on the temperature is the finger's own.
+/// Smallest improvement by which a temperature coefficient is a property of the finger.
 constexpr double own_temperature_gain = 0.05;
 constexpr std::size_t most_causes = 3;
 /// A cause in one reading with less than this share of the improvement of a cause in the other reading may
@@ -113,7 +113,8 @@ Tolerance tolerance_of(const std::vector<HealthyFits>& healthy, std::size_t runs
   return {gains, runs};
 }
 
-/// How far healthy units differ from what the others predict of them, and what another run may show.
+/// Spread of the errors of healthy units when the others predict them, and the permitted error of another
+/// run.
 class RunSpread {
  public:
   RunSpread() = default;
@@ -128,8 +129,8 @@ class RunSpread {
   }
   [[nodiscard]] double usual_rms() const { return std::sqrt(mean_square_); }
   [[nodiscard]] double allowed_rms() const { return std::sqrt(factor_ * mean_square_); }
-  /// @param rms  of the readings as they are. @param loss  mean square of the whitened ones: 1 for healthy
-  /// units.
+  /// @param rms  of the readings without whitening. @param loss  mean square of the whitened readings; 1 for
+  /// healthy units.
   [[nodiscard]] bool is_exceeded(double rms, double loss) const {
     return rms > allowed_rms() || loss > factor_;
   }
@@ -151,7 +152,7 @@ std::string other_start(const std::string& record) {
          "begins in the same way";
 }
 
-/// One reading from its healthy records to what it shows of the later ones.
+/// Evaluates one reading, from its healthy records to the causes in the later records.
 class Judge {
  public:
   Judge(Base base, const ChangeOptions& options, bool pressure_is_judged)
@@ -192,7 +193,7 @@ class Judge {
                                   each.tolerance,
                                   {}});
       }
-      // A further cause is sought only in an error that another run would not show.
+      // A further cause is searched only if the error exceeds that of another healthy run.
       const double rms = readings.plain_rms(found);
       const bool is_comparable = step == 0 && other_starts.empty();
       if (is_comparable ? !spread_.admits_a_change(rms, judged.loss_left)
@@ -214,7 +215,8 @@ class Judge {
     if (options_.progress) options_.progress(text);
   }
 
-  /// A gain that follows the temperature on the healthy logs already is the finger's own, on any day.
+  /// If the gain depends on the temperature in the healthy logs, this is a property of the finger and not a
+  /// change.
   void learn_temperature() {
     std::vector<Effect> effects = effects_for(base_, base_.records, {}, pressure_is_judged_);
     std::erase_if(effects, [](const Effect& e) { return e.id != causes::ThermalGain::id; });
@@ -223,7 +225,7 @@ class Judge {
     const std::vector<ScoredEffect> ranked = ranked_effects(healthy, effects, {}, {}, options_.threads);
     if (!(ranked.front().gain > own_temperature_gain)) return;
     FittedEffect own = ranked.front().fit.fitted;
-    own.numbers.back() = 0;  // the gain at the mean temperature is the base's already
+    own.numbers.back() = 0;  // the gain at the mean temperature is a part of the base
     base_.left = minus(std::move(base_.left), healthy.added({own}));
     base_.gain_per_c = own.numbers.front();
   }
@@ -233,7 +235,7 @@ class Judge {
     return found;
   }
 
-  /// The rows whose operating point meets the condition.
+  /// Returns true for each row whose operating point meets the condition.
   [[nodiscard]] std::vector<bool> required_rows(const LaterReadings& readings, Appears appears) const {
     Binned drive, rate;
     for (std::size_t r = 0; r < readings.records().size(); ++r) {
@@ -248,8 +250,8 @@ class Judge {
     return required_at(appears, conditions);
   }
 
-  /// Returns true if the effect makes the prediction of later units worse to which it was not fitted. Units
-  /// in which it does not act are no evidence: half of a run need not reach the end of a sensor.
+  /// Returns true if the effect makes the prediction of later units worse that were not used for its fit.
+  /// Units without the effect give no evidence: half of a run need not reach the limit of a sensor.
   [[nodiscard]] bool predicts_worse(const LaterReadings& readings, const Effect& effect,
                                     const std::vector<FittedEffect>& found) const {
     PairedLosses losses;
@@ -266,7 +268,7 @@ class Judge {
     return is_better(compare(losses, 0, options_.seed));
   }
 
-  /// The largest possible size in this unit: the range of the signal that the cause acts on.
+  /// Returns the largest possible size in this unit: the range of the signal that the cause acts on.
   [[nodiscard]] double largest_size(const LaterReadings& readings, const std::string& unit) const {
     double length_s = 0;
     for (const Record& record : readings.records()) length_s = std::max(length_s, record.length_s());
@@ -296,8 +298,8 @@ class Judge {
     return veto_of(claim);
   }
 
-  /// The best effect that improves more than the tolerance and meets all conditions; nothing: there is none.
-  /// Notes why the others were rejected.
+  /// Returns the best effect that improves more than the tolerance and meets all conditions, or nullopt.
+  /// Stores the reasons why the others were rejected.
   [[nodiscard]] std::optional<ChangeCause> first_change(const LaterReadings& readings,
                                                         std::vector<ScoredEffect> ranked,
                                                         const Eigen::VectorXd& without,
@@ -439,7 +441,7 @@ std::string unused_pressure(const DriveChoice& choice) {
          " mm RMS): pressure_kpa is not used";
 }
 
-/// Causes that are found in the readings, without a fit: isolated wrong samples, and readings that repeat.
+/// Adds causes that are found in the readings without a fit: isolated wrong samples and repeated readings.
 void judge_readings(const Prepared& healthy, const Prepared& later, ChangeDiagnosis& diagnosis) {
   const auto add = [&](std::string_view id, ChangeSize size, std::optional<Interval> interval,
                        double excess_mm) {
@@ -469,7 +471,7 @@ void judge_readings(const Prepared& healthy, const Prepared& later, ChangeDiagno
         sampling.excess_mm);
 }
 
-/// Each reading knows the intervals of the causes that were found in it, in their order.
+/// Copies the intervals of its causes to each reading, in the order of the causes.
 void add_intervals(ChangeDiagnosis& diagnosis) {
   for (const JudgedChange& judged : diagnosis.readings) {
     auto next = judged.intervals.begin();

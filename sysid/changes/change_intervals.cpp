@@ -15,7 +15,7 @@ namespace {
 
 constexpr double quantile = 1.959963984540054;
 
-/// One number of one effect, and how far it is moved for a slope.
+/// A parameter of an effect, and its step for a numerical derivative.
 struct Place {
   std::size_t effect = 0, number = 0;
   double by = 0;
@@ -35,7 +35,8 @@ std::vector<FittedEffect> moved(std::vector<FittedEffect> found, const Place& pl
   return found;
 }
 
-/// Slopes of white_and_gain() by the numbers moved as `places` say: a move counts as 1.
+/// Returns the derivatives of white_and_gain() with respect to the parameters. The steps in `places` are the
+/// units.
 Eigen::MatrixXd slopes_of(const LaterReadings& readings, const std::vector<FittedEffect>& found,
                           const std::vector<Place>& places, const Eigen::VectorXd& white) {
   Eigen::MatrixXd slopes(white.size(), static_cast<Eigen::Index>(places.size()));
@@ -44,8 +45,8 @@ Eigen::MatrixXd slopes_of(const LaterReadings& readings, const std::vector<Fitte
   return slopes;
 }
 
-/// Sum of the squared gradients of the blocks of rows. Each row behind the readings is a block whose spread
-/// is known.
+/// Returns the sum of the squared gradients of the blocks of rows. Each row after those of the readings is a
+/// block with known variance.
 Eigen::MatrixXd spread_of_gradient(const LaterReadings& readings, const Eigen::MatrixXd& slopes,
                                    const Eigen::VectorXd& white) {
   const std::vector<std::size_t> blocks = blocks_of(readings);
@@ -63,8 +64,8 @@ Eigen::MatrixXd spread_of_gradient(const LaterReadings& readings, const Eigen::M
   return few * gradients * gradients.transpose();
 }
 
-/// Covariance of the numbers in units of their moves. Those that are not felt have a slope of nothing and are
-/// given no say.
+/// Returns the covariance of the parameters in units of their steps. Parameters without an effect on the
+/// readings have zero derivatives and do not contribute.
 Eigen::MatrixXd covariance_of(const LaterReadings& readings, const Eigen::MatrixXd& slopes,
                               const Eigen::VectorXd& white) {
   Eigen::MatrixXd curvature = slopes.transpose() * slopes;
@@ -87,7 +88,7 @@ std::optional<Interval> within(const EffectNumber& number, std::optional<Interva
   return interval;
 }
 
-/// The healthy fit of the same form in a unit; nullptr: it improves nothing there.
+/// Returns the fit of the same form in a healthy unit, or nullptr if it improves nothing there.
 const FittedEffect* same_form(const HealthyFits& unit, const FittedEffect& effect) {
   for (const ScoredEffect& each : unit.ranked) {
     const FittedEffect& fitted = each.fit.fitted;
@@ -97,8 +98,8 @@ const FittedEffect* same_form(const HealthyFits& unit, const FittedEffect& effec
   return nullptr;
 }
 
-/// By how much runs differ in what `value_of` a fitted form: the mean square over healthy units, for another
-/// run beside the mean of theirs.
+/// Returns the variance of `value_of` a fitted form between runs: its mean square over healthy units, for the
+/// difference of another run from their mean.
 template <class ValueOf>
 double between_runs(const std::vector<HealthyFits>& healthy, const FittedEffect& effect, ValueOf value_of) {
   const auto units = static_cast<double>(healthy.size());
@@ -118,7 +119,7 @@ double healthy_variance(const std::vector<HealthyFits>& healthy, const FittedEff
   });
 }
 
-/// Size of the effect with these numbers.
+/// Returns the size of the effect with its parameters.
 double size_with(const LaterReadings& readings, const FittedEffect& effect) {
   return size_of(readings, effect, at_full_pressure(readings, readings.added({effect}))).value;
 }

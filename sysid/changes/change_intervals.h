@@ -1,5 +1,5 @@
 #pragma once
-// How sure the sizes of changes are.
+// Uncertainty of the sizes of changes.
 
 #include <optional>
 #include <vector>
@@ -10,22 +10,23 @@
 
 namespace softgrip::sysid {
 
-/// 95 % intervals of one effect; none where the readings do not feel a number.
+/// 95 % intervals of one effect; nullopt if a parameter has no effect on the readings.
 struct EffectIntervals {
-  std::vector<std::optional<Interval>> numbers;  ///< within the numbers' bounds
-  std::optional<Interval> size;                  ///< of what size_of() says
+  std::vector<std::optional<Interval>> numbers;  ///< within the bounds of the parameters
+  std::optional<Interval> size;                  ///< of size_of()
 };
 
-/// A healthy unit that was left out, and what the search finds in it, where nothing has changed.
+/// A healthy unit that was left out, and the effects that the search finds in it without a change.
 struct HealthyFits {
   LaterReadings readings;
   std::vector<ScoredEffect> ranked;
 };
 
-/// All effects together, the base frozen, by the sandwich estimator over blocks of some seconds (Liang and
-/// Zeger, Biometrika 73, 1986). To its variance comes that of the same number between healthy units. A size
-/// follows by the slopes of its numbers.
-/// @param found  what explains the readings. @param healthy  one for each unit. @return one for each effect.
+/// Computes the intervals of all effects together, with a constant base, by the sandwich estimator over
+/// blocks of some seconds (Liang and Zeger, Biometrika 73, 1986). The variance of the same parameter between
+/// healthy units is added. The interval of a size follows from the derivatives with respect to the
+/// parameters.
+/// @param found  effects in the readings. @param healthy  one for each unit. @return one for each effect.
 [[nodiscard]] std::vector<EffectIntervals> intervals_of(const LaterReadings& readings,
                                                         const std::vector<FittedEffect>& found,
                                                         const std::vector<HealthyFits>& healthy);

@@ -1,5 +1,5 @@
 #pragma once
-// A change as diagnosis.json: the keys that every diagnosis has, and what a change adds.
+// Writes a change as diagnosis.json: the keys of every diagnosis and those of a change.
 
 #include <nlohmann/json_fwd.hpp>
 

@@ -13,15 +13,15 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Whitened squares that a number must improve to be worth it: -2 log likelihood at a probability of 0.5 %
-/// (one degree of freedom).
+/// Penalty of a parameter in whitened squares: -2 log likelihood at a probability of 0.5 % (one degree of
+/// freedom).
 constexpr double price_of_a_number = 8;
 
 double beyond_usual(const ScoredEffect& scored) {
   return scored.gain - scored.usual;
 }
 
-/// How many numbers shape it, and how many it has.
+/// Returns the number of parameters that determine the shape, and the total number.
 std::pair<std::size_t, std::size_t> numbers_of(const ScoredEffect& scored) {
   const Effect& effect = scored.fit.fitted.effect;
   return {effect.numbers.size() - effect.nuisance_numbers, effect.numbers.size()};

@@ -1,6 +1,6 @@
 #pragma once
-// Which effects one reading shows, one after the other, each against what the same search finds in healthy
-// ones.
+// Finds the effects in one reading, one after the other. Each is compared with the results of the same search
+// in healthy readings.
 
 #include <cstdint>
 #include <functional>
@@ -15,9 +15,9 @@ namespace softgrip::sysid {
 
 struct ScoredEffect {
   EffectFit fit;
-  double gain = 0;       ///< whitened squares per row that it takes, less what its numbers cost
-  double usual = 0;      ///< what its cause improves in healthy units that are left out, on average
-  double tolerance = 0;  ///< what it must improve to be a change
+  double gain = 0;       ///< improvement of the whitened squares per row minus the penalty
+  double usual = 0;      ///< mean improvement by the cause in healthy units that are left out
+  double tolerance = 0;  ///< smallest improvement of a change
 };
 
 /// Penalty for the parameters of an effect, in whitened squares.
@@ -31,23 +31,23 @@ struct ScoredEffect {
 using Ties = std::function<bool(const ScoredEffect& best, const ScoredEffect& other)>;
 [[nodiscard]] Ties ties_in(const LaterReadings& readings, std::uint64_t seed);
 
-/// The effect that improves most beyond the usual first; of every cause one form, among forms that tie the
-/// one with the fewest numbers.
+/// Returns the effects, the one with the largest improvement beyond the usual first. Each cause has one form:
+/// of several forms that tie, the one with the fewest parameters.
 [[nodiscard]] std::vector<ScoredEffect> ranked_effects(const LaterReadings& readings,
                                                        const std::vector<Effect>& effects,
                                                        const std::vector<FittedEffect>& others,
                                                        const Tolerance& tolerance, unsigned threads);
 
-/// Puts the effect with the fewest numbers first, among the first and those that tie with it. Numbers that
-/// shape it are counted before those that only say where it is counted from. Of as many numbers, one that is
-/// no ideal is preferred.
+/// Moves the effect with the fewest parameters to the front, of the first one and those that tie with it.
+/// Parameters of the shape count before those of its reference. With equal numbers, an effect that is not
+/// ideal is preferred.
 void put_fewest_numbers_first(std::vector<ScoredEffect>& ranked, const Ties& ties);
 
-/// Of every row of the readings, which block of some seconds it is in, from 0.
+/// Returns for every row of the readings the index of its block of some seconds.
 [[nodiscard]] std::vector<std::size_t> blocks_of(const LaterReadings& readings);
 
-/// Whitened squares of two residuals over these blocks.
-/// @param rows  of the readings that count, one flag each; nullptr: all.
+/// Returns the whitened squares of two residuals by block.
+/// @param rows  one flag for each row: true if it counts; nullptr: all count.
 [[nodiscard]] PairedLosses paired_losses(const LaterReadings& readings, const Eigen::VectorXd& worse,
                                          const Eigen::VectorXd& better,
                                          const std::vector<bool>* rows = nullptr);

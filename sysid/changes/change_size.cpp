@@ -8,7 +8,7 @@
 namespace softgrip::sysid {
 namespace {
 
-/// The number of an effect by its name; nullptr: it has none of that name.
+/// Returns the parameter of an effect with this name, or nullptr.
 const double* number(const FittedEffect& effect, std::string_view name) {
   for (std::size_t i = 0; i < effect.numbers.size(); ++i) {
     if (effect.effect.numbers[i].name == name) return &effect.numbers[i];
@@ -44,7 +44,7 @@ double at_full_pressure(const LaterReadings& readings, const Binned& added) {
 }
 
 ChangeSize size_of(const LaterReadings& readings, const FittedEffect& effect, double full_pressure_mm) {
-  // Of another gain, what counts as no change is a part.
+  // A change of the gain alone also includes the gain that counts as no change.
   if (const double* gain = number(effect, "gain_change"); gain != nullptr && effect.numbers.size() == 1)
     return {"gain", 100 * (*gain + readings.nuisance({effect}).gain), "%"};
   const SizedBy size = effect.effect.size.value_or(sized_by(effect.effect.id));

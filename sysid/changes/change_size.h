@@ -1,14 +1,15 @@
 #pragma once
-// How large a change is, in what a technician checks.
+// Size of a change as a quantity that a technician can check.
 
 #include "sysid/changes/change.h"
 
 namespace softgrip::sysid {
 
-/// The mean of a series over the bins whose drive is within a tenth of the largest of the records.
+/// Returns the mean of a series over the bins whose drive is above 90 % of the largest drive.
 [[nodiscard]] double at_full_pressure(const LaterReadings& readings, const Binned& added);
 
-/// @param full_pressure_mm  what the effect does at the highest pressures.
+/// Returns the size.
+/// @param full_pressure_mm  change of the displacement at full pressure.
 [[nodiscard]] ChangeSize size_of(const LaterReadings& readings, const FittedEffect& effect,
                                  double full_pressure_mm);
 

@@ -1,6 +1,6 @@
 #pragma once
-// Blocks behind everything that a base does: what they make of its readings follows from these sample by
-// sample, and the base need not be walked again for it.
+// Blocks after all blocks of a base. Their output follows from the output of the base at the samples, so the
+// base is not simulated again.
 
 #include <vector>
 
@@ -14,8 +14,8 @@ namespace softgrip::sysid {
 [[nodiscard]] bool is_downstream(const std::vector<model::BlockSpec>& blocks, const model::Model& base,
                                  const Record& record);
 
-/// Result of predict() for the base with the blocks.
-/// @param blocks  is_downstream(). @param base_mm  the base's own prediction of the record.
+/// Returns the result of predict() for the base with the blocks.
+/// @param blocks  is_downstream() is true. @param base_mm  prediction of the record by the base.
 [[nodiscard]] std::vector<double> downstream(const std::vector<model::BlockSpec>& blocks,
                                              const Record& record, std::vector<double> base_mm);
 

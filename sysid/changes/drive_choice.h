@@ -1,5 +1,5 @@
 #pragma once
-// Which signal drives the finger: its measured pressure, or the command.
+// Selects the input of the finger: its measured pressure or the command.
 
 #include <cstdint>
 #include <vector>
@@ -14,10 +14,10 @@ struct DriveChoice {
   double by_pressure_mm = 0, by_command_mm = 0;
 };
 
-/// Chooses the command if it predicts left-out healthy displacements better than the measured pressure does:
-/// by the rule for any two hypotheses, and by more than two healthy runs may differ (run_to_run_factor()).
-/// Both drive play operators and creep. A measured pressure does not determine the displacement where a flow
-/// moves the actuator, or where the gauge is far from it.
+/// Selects the command if it predicts left-out healthy displacements significantly better than the measured
+/// pressure, and by more than two healthy runs may differ (run_to_run_factor()). Both drive play operators
+/// and creep. A measured pressure does not determine the displacement if a flow moves the actuator, or if the
+/// pressure sensor is far from it.
 /// @param by_pressure, by_command  records of the same healthy logs.
 [[nodiscard]] DriveChoice chosen_drive(const std::vector<Record>& by_pressure,
                                        const std::vector<Record>& by_command, std::uint64_t seed,

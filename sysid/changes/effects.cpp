@@ -25,13 +25,14 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t most_starts = 8;
 const EffectNumber gain_change{"gain_change", "", 0.01, -0.9, 9};
 
-/// The cause of which such a block is a form.
+/// Returns the cause that has a form with this block.
 template <template <class> class Block>
 const Cause& cause_with() {
   return *cause_of(model::block_type<Block>());
 }
 
-/// Thinned evenly, but for one number: where many values are worth a look, each is a valley of its own.
+/// Thins a list of starts evenly. Starts with a single parameter are all kept, because the error has a
+/// separate minimum at each.
 std::vector<std::vector<double>> some(std::vector<std::vector<double>> all) {
   if (all.size() <= most_starts || all.front().size() == 1) return all;
   std::vector<std::vector<double>> kept;
@@ -83,8 +84,8 @@ class Collector {
     std::vector<model::BlockSpec> starts = form.starts(scales_);
     if (starts.empty()) return;
     const model::BlockDescriptor& descriptor = model::catalogue()[form.type];
-    if (form.type == model::block_type<model::SensorWander>()) return;  // knots follow it too
-    // add_softening() and add_crescent() have what acts like these on any base's answer.
+    if (form.type == model::block_type<model::SensorWander>()) return;  // the knots follow this drift too
+    // add_softening() and add_crescent() add similar effects to any base.
     if (form.type == model::block_type<model::PseudoElasticSoftening>()) return;
     if (form.type == model::block_type<model::CrescentHysteresis>()) return;
     if (cause.station != model::Station::valve && !is_carried(base_, starts.front())) return;
@@ -115,7 +116,7 @@ class Collector {
     effects_.push_back(std::move(effect));
   }
 
-  /// A form of a cause without its numbers.
+  /// Returns a form of a cause without its parameters.
   static Effect form_of(const Cause& cause, std::string_view form) {
     Effect effect;
     effect.id = cause.id;
@@ -135,7 +136,7 @@ class Collector {
     effect.appears = cause.appears;
     return effect;
   }
-  /// The first form of a cause, so far; nullptr: the base cannot carry it.
+  /// Returns the first form of a cause so far, or nullptr if it cannot be added to the base.
   Effect* first_of(const Cause& cause) {
     const auto found =
         std::find_if(effects_.begin(), effects_.end(), [&](const Effect& e) { return e.id == cause.id; });
@@ -167,7 +168,7 @@ class Collector {
     since.apply = [](Extension& e, const std::vector<double>& n) { e.softening = {n[0], 0}; };
     effects_.push_back(std::move(since));
   }
-  /// Of a base without Bouc-Wen's loop, a loop that is wider on one side.
+  /// Adds a loop that is wider on one side to a base without a Bouc-Wen loop.
   void add_crescent() {
     Effect effect = form_of(cause_with<model::DuhemHysteresis>(), "crescent");
     effect.numbers = {{"share", "", 0.05, 0, 3}, {"exponent", "", 1, 1.2, 6}};
@@ -195,7 +196,7 @@ class Collector {
     };
     effects_.push_back(std::move(effect));
   }
-  /// A scale that is bent to one side only.
+  /// Adds a sensor scale with a one-sided curvature.
   void add_bow() {
     const Effect* const bent = first_of(cause_with<model::SensorNonlinearity>());
     if (bent == nullptr) return;
@@ -238,7 +239,7 @@ class Collector {
     effects_.push_back(std::move(slow));
   }
 
-  /// Faults of the regulator that the base contains.
+  /// Adds faults of the regulator that the base contains.
   void add_faults() {
     const double p = base_.largest_kpa, per_s = leaking_kpa_per_s(p);
     Effect leaking = form_of(leak);

@@ -13,38 +13,38 @@
 
 namespace softgrip::sysid {
 
-/// One number of an effect.
+/// One parameter of an effect.
 struct EffectNumber {
   std::string name;
   std::string unit;
   double scale = 1, lower = 0, upper = 0;
 };
 
-/// A cause in one form.
+/// One form of a cause.
 struct Effect {
-  std::string id;  ///< of the vocabulary of causes
+  std::string id;  ///< id of the cause
   std::string title;
   model::Station station = model::Station::actuator;
-  std::string form;  ///< of the block, or of what has no block
+  std::string form;  ///< of the block, or of a cause without a block
   bool free_form = false;
   std::vector<EffectNumber> numbers;
   std::vector<std::vector<double>> starts;
-  std::vector<double> nothing;  ///< where it does nothing; NaN: does not matter there
-  /// Adds the effect with these numbers.
+  std::vector<double> nothing;  ///< neutral values; NaN: the value then has no influence
+  /// Adds the effect with these parameters.
   std::function<void(Extension&, const std::vector<double>&)> apply;
-  /// The id of a cause that gives the same readings; or none.
+  /// Id of a cause with equal readings; empty: none.
   std::string twin = {};
-  /// Of its numbers, how many only say where it is counted from.
+  /// Number of parameters that only define the reference of the effect.
   std::size_t nuisance_numbers = 0;
-  /// No mechanism is quite like it.
+  /// No mechanism matches this effect exactly.
   bool is_ideal = false;
   Appears appears = Appears::anywhere;
   /// Size of this form, if it differs from that of its cause.
   std::optional<SizedBy> size = {};
 };
 
-/// All effects that the reading of these later records can show.
-/// @param lines  what stands out of their residual's spectrum.
+/// Returns all effects that the readings of these later records can show.
+/// @param lines  significant lines in the spectrum of their residual.
 [[nodiscard]] std::vector<Effect> effects_for(const Base& base, const std::vector<Record>& later,
                                               const std::vector<Line>& lines, bool pressure_is_judged);
 

@@ -9,7 +9,7 @@
 
 namespace softgrip::sysid {
 
-/// Pressure that is lost while the valve does not move and recovered when it does:
+/// Pressure that is lost while the valve does not move, and recovered when it moves:
 /// d' = rate p/largest - d (1/recovery + |command'|/way).
 struct PressureLoss {
   double rate_kpa_per_s = 0;
@@ -17,64 +17,65 @@ struct PressureLoss {
   double way_kpa = 2;
 };
 
-/// Behind the valve: a line that fills and empties more slowly.
+/// A slow line between valve and finger, with a time constant for filling and one for venting.
 struct SlowLine {
   double filling_s = 0;
   double venting_s = 0;
 };
 
-/// Softer below the largest pressure so far m, as before at it: y times 1 + share m/largest tanh((m -
-/// p)/range) (after Ogden and Roxburgh, Proc. R. Soc. A 455, 1999); without a range, at it as below.
+/// Softening below the largest pressure so far, m; the response at m does not change. Multiplies y by 1 +
+/// share m/largest tanh((m - p)/range) (after Ogden and Roxburgh, Proc. R. Soc. A 455, 1999). With a range of
+/// 0, the factor is equal at all pressures.
 struct Softening {
   double share = 0;
-  double range_kpa = 10;  ///< 0: none
+  double range_kpa = 10;  ///< 0: no range
 };
 
-/// Up along (p/largest)^exponent, down along p/largest, between them only where it must: what a loop of that
-/// shape adds to the mean of the two ways, as a share of the span (a generalised play: Al Janaideh, Rakheja
+/// A loop with the loading curve (p/largest)^exponent and the unloading curve p/largest. It adds the
+/// difference from the mean of both curves, as a share of the span (a generalised play: Al Janaideh, Rakheja
 /// and Su, IEEE/ASME Transactions on Mechatronics 16, 2011).
 struct Crescent {
   double share = 0;
   double exponent = 3;
 };
 
-/// Faults behind a regulator: ports that leak when closed, a tube with less conductance.
+/// Faults of a regulator: ports that leak when closed, a tube with a lower conductance.
 struct RegulatorFault {
   double leak_per_s = 0;  ///< as Regulator::leak_per_s
-  double blocked = 0;     ///< share of the tube's conductance that is gone, below 1
+  double blocked = 0;     ///< lost share of the conductance of the tube, below 1
   [[nodiscard]] bool operator==(const RegulatorFault&) const = default;
 };
 
 struct Extension {
-  std::vector<model::BlockSpec> valve;  ///< what happens to the command, before the base sees it
+  std::vector<model::BlockSpec> valve;  ///< blocks between the command and the base
   RegulatorFault fault;                 ///< of a base with a regulator
-  std::vector<model::BlockSpec> chain;  ///< blocks of the base's model, or behind what it says
-  double gain = 1;                      ///< of the displacement
-  double gain_per_c = 0;                ///< beside the temperature of the healthy logs
+  std::vector<model::BlockSpec> chain;  ///< blocks within the base's model or after it
+  double gain = 1;                      ///< factor of the displacement
+  double gain_per_c = 0;                ///< per degree above the temperature of the healthy logs
   Softening softening;
   Crescent crescent;
   PressureLoss loss;
   SlowLine line;
 };
 
-/// The drive of a record behind blocks of the valve.
+/// Returns the drive of a record after blocks of the valve.
 [[nodiscard]] std::vector<double> drive_behind(const std::vector<model::BlockSpec>& valve,
                                                const Record& record);
 
-/// A model driven by the command with these blocks of the valve in front, walked as exactly as the rest of
-/// it; nothing where it has such a block of its own that both cannot be one.
+/// Returns a model that is driven by the command and contains these blocks of the valve. Returns nullopt if
+/// the model already has such a block and the two cannot be combined.
 [[nodiscard]] std::optional<model::Model> with_valve(model::Model model,
                                                      const std::vector<model::BlockSpec>& valve);
 
-/// By what softening multiplies the displacement, sample by sample.
+/// Returns the factor of the displacement at each sample.
 [[nodiscard]] std::vector<double> softened(const Softening& softening, const Record& record,
                                            double largest_kpa);
 
-/// Contribution of a crescent at each sample, as a share of the span.
+/// Returns the contribution of a crescent at each sample, as a share of the span.
 [[nodiscard]] std::vector<double> added_by(const Crescent& crescent, const Record& record,
                                            double largest_kpa);
 
-/// A pressure behind a line and a leak.
+/// Returns a pressure after a slow line and a pressure loss.
 [[nodiscard]] std::vector<double> pressure_behind(const SlowLine& line, const PressureLoss& loss,
                                                   const Record& record, std::vector<double> pressure_kpa);
 

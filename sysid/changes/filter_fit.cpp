@@ -25,7 +25,7 @@ struct Row {
   std::size_t record = 0, bin = 0, unit = 0;
 };
 
-/// Subtracts the mean of every record's part in a unit: where a run begins is not for a model to know.
+/// Subtracts the mean of each record in each unit, because a model does not predict the zero of a run.
 Eigen::VectorXd centred(Eigen::VectorXd values, const std::vector<Row>& rows) {
   std::map<std::pair<std::size_t, std::size_t>, std::pair<double, double>> sums;
   for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -40,7 +40,7 @@ Eigen::VectorXd centred(Eigen::VectorXd values, const std::vector<Row>& rows) {
   return values;
 }
 
-/// The columns of all records in bins, each row in its unit.
+/// The columns of all records in bins, with the unit of each row.
 class FilterBank {
  public:
   FilterBank(const std::vector<Record>& records, const Units& units, FilterKind kind, double bin_s,
@@ -54,10 +54,10 @@ class FilterBank {
     }
   }
 
-  /// A model's residuals, and what is known of its fit.
+  /// The residuals of a model and data of their fit.
   struct Target {
-    std::vector<Eigen::VectorXd> values;   ///< fitted without a unit, and to all
-    std::vector<Eigen::VectorXd> moments;  ///< of the rows that it was fitted to
+    std::vector<Eigen::VectorXd> values;   ///< fitted without each unit, and to all units
+    std::vector<Eigen::VectorXd> moments;  ///< of the rows of the fit
     Eigen::VectorXd plain_left, left, weights;
     double left_mm = std::numeric_limits<double>::infinity();
   };
@@ -81,7 +81,7 @@ class FilterBank {
     return target;
   }
 
-  /// Every target with the ridge that leaves least of it.
+  /// Fits every target with the ridge that leaves the smallest error.
   void fit(std::vector<Target>& targets) const {
     for (const double ridge : ridges) {
       std::vector<std::vector<Eigen::VectorXd>> weights(targets.size(), std::vector<Eigen::VectorXd>(units_));
@@ -105,7 +105,7 @@ class FilterBank {
     }
   }
 
-  /// A filter bank must be better than none by the rule for any two hypotheses.
+  /// Returns the filter bank only if it is significantly better than no filter bank (is_better()).
   [[nodiscard]] FittedFilters answer(Target target, const LeftByUnit& model, std::uint64_t seed) const {
     if (target.values.empty()) return {{}, model.back(), std::numeric_limits<double>::infinity()};
     const Binned plain = in_bins(target.plain_left, model.back()), left = in_bins(target.left, model.back());
@@ -126,7 +126,7 @@ class FilterBank {
       if (std::isfinite(readings[b]) && middle_s > begin_s(record))
         rows_.push_back({r, b, units.unit_of(r, middle_s)});
     }
-    // Each record has a column for an offset of its own behind those of the filter bank.
+    // Each record has an additional column for its offset.
     const auto count = static_cast<Eigen::Index>(rows_.size());
     columns_.conservativeResize(count, filter_count_ + static_cast<Eigen::Index>(records.size()));
     columns_.bottomRows(count - first).setZero();
@@ -157,7 +157,7 @@ class FilterBank {
     return values(rows_of(unit));
   }
 
-  /// Residual of each unit with the model and the weights that were fitted without it.
+  /// Returns the residual of each unit with the model and the weights that were fitted without it.
   [[nodiscard]] Eigen::VectorXd left_out(const Target& target,
                                          const std::vector<Eigen::VectorXd>& weights) const {
     Eigen::VectorXd left(columns_.rows());
@@ -179,7 +179,7 @@ class FilterBank {
   [[nodiscard]] double rms_of(const Eigen::VectorXd& left) const {
     return std::sqrt(centred(left, rows_).squaredNorm() / static_cast<double>(left.size()));
   }
-  /// Factor of the normal equations of all units without `unit`; units_: of all units.
+  /// Returns the factorised normal equations of all units except `unit`; units_: of all units.
   [[nodiscard]] Factor factor_without(std::size_t unit, double ridge) const {
     Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(columns_.cols(), columns_.cols());
     for (std::size_t u = 0; u < units_; ++u) {

@@ -9,17 +9,17 @@
 
 namespace softgrip::sysid {
 
-/// Empty texts for an id that is no cause.
+/// Returns the steps, or empty texts if the id is not a cause.
 [[nodiscard]] std::array<std::string_view, 2> next_steps(std::string_view cause_id);
 
-/// The cause in the words of an operator: "the gain of the finger has changed".
+/// Returns the cause in words for an operator: "the gain of the finger has changed".
 [[nodiscard]] std::string_view plain_words(std::string_view cause_id);
 
-/// The ids of all causes that a finger can get while it works.
+/// Returns the ids of all causes that can develop in operation.
 [[nodiscard]] std::vector<std::string_view> changes();
-/// How recorded grips show it.
+/// Returns the effects of the cause on indicators of recorded grips.
 [[nodiscard]] HealthSigns signs_of(std::string_view cause_id);
-/// The quantity that an operator checks.
+/// Returns the quantity that an operator checks.
 [[nodiscard]] SizedBy sized_by(std::string_view cause_id);
 
 }  // namespace softgrip::sysid
