@@ -8,11 +8,11 @@ namespace softgrip::sysid::causes {
 
 struct ActuatorThreshold : FormOf<model::ActuatorThreshold> {
   static constexpr WhenChanged when_changed{
-      "nothing moves below a pressure",
-      {"Raise the pressure slowly from zero and watch at which reading the finger begins to move.",
-       "Look whether the bladder sticks together or a fold is creased; inflate it fully once and repeat."},
+      "the finger does not move below a threshold pressure",
+      {"Raise the pressure slowly from zero and note the pressure at which the finger starts to move.",
+       "Check whether the bladder sticks together or a fold is creased. Inflate it fully once and repeat."},
       {},
-      {SizedBy::Of::number, "pressure before anything moves", "kPa", "threshold_kpa"}};
+      {SizedBy::Of::number, "threshold pressure", "kPa", "threshold_kpa"}};
   static Starts starts(const Scales& s) {
     return every({{"threshold_kpa", {0.02 * s.largest_kpa, 0.08 * s.largest_kpa, 0.2 * s.largest_kpa}}});
   }

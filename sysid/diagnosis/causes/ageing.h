@@ -15,9 +15,9 @@ struct Ageing {
   static constexpr std::array advice{Advice::leave_vented, Advice::record_temperature};
   static constexpr Appears appears = Appears::displaced;
   static constexpr WhenChanged when_changed{
-      "the gain of the finger is another",
-      {"Look at the finger for cracks and bulges, and count its cycles since the last one was fitted.",
-       "Fit a new finger and record the same log: if the gain is back, it was the finger."},
+      "the gain has changed",
+      {"Inspect the finger for cracks and bulges, and count the cycles since it was installed.",
+       "Install a new finger and record the same log. If the gain is normal again, the old finger has aged."},
       {{{HealthNumber::gain, Moves::either_way}}},
       {SizedBy::Of::span, "gain at full pressure, on average", "%", {}, 100}};
 

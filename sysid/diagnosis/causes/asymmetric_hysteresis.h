@@ -12,9 +12,9 @@ struct AsymmetricHysteresis {
   static constexpr std::string_view id = "asymmetric_hysteresis";
   static constexpr std::string_view title = "Asymmetric hysteresis";
   static constexpr WhenChanged when_changed{
-      "the way back is another than the way there",
-      {"Look for something that rubs on the finger or its guide in one direction.",
-       "Run up and down slowly three times with the load taken off."},
+      "loading and unloading curves have moved apart",
+      {"Check whether the finger or its guide rubs on something in one direction.",
+       "Remove the load, then run the pressure up and down slowly three times."},
       {{{HealthNumber::loop_width, Moves::either_way}}}};
 
   /// A separate element whose loading and unloading curves differ.

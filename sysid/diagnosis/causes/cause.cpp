@@ -77,7 +77,7 @@ constexpr CauseForm form() {
   form.is_fitted = &is_fitted<F>;
   form.range = &range_of<F>;
   if constexpr (requires { C::found_by_fitting; }) {
-    static_assert(!HasStarts<F>, "a cause that is not found by fitting has no starts");
+    static_assert(!HasStarts<F>, "a cause that is not found by a fit has no start points");
   } else {
     static_assert(HasStarts<F>, "this form of a cause lacks `static Starts starts(const Scales&)`");
     form.starts = &starts_as_blocks<F>;
@@ -108,8 +108,7 @@ constexpr Cause cause() {
   cause.forms = forms<C>;
   static_assert(
       requires { C::when_changed; },
-      "this cause lacks `static constexpr WhenChanged when_changed`: what a person calls it and does about "
-      "it");
+      "this cause lacks `static constexpr WhenChanged when_changed`: words and next steps for the operator");
   cause.when_changed = C::when_changed;
   if constexpr (requires { C::id; }) cause.id = C::id;
   if constexpr (requires { C::title; }) cause.title = C::title;
@@ -156,7 +155,7 @@ template <class Block>
 constexpr bool has_its_place() {
   constexpr std::size_t places = causes_with<Block>(causes::All{}) + count_in<Block>(causes::NoCauses{});
   static_assert(places > 0,
-                "no cause has this block for a form: write sysid/diagnosis/causes/<id>.h and list it in "
+                "no cause has this block as a form: write sysid/diagnosis/causes/<id>.h and list it in "
                 "registry.h (docs/how-to/add-a-cause.md)");
   static_assert(places < 2, "this block is in more than one place of sysid/diagnosis/causes/registry.h");
   return places == 1;
@@ -188,7 +187,7 @@ static_assert(std::all_of(table.begin(), table.end(),
                             return std::all_of(c.counterparts.begin(), c.counterparts.end(), known) &&
                                    std::all_of(c.confounded_with.begin(), c.confounded_with.end(), known);
                           }),
-              "what a cause names beside itself is a cause");
+              "related ids of a cause are ids of causes");
 
 }  // namespace
 
@@ -239,7 +238,7 @@ model::Model without(model::Model model, const Cause& cause) {
 std::string unanswerable(const Cause& cause, const Scales& scales) {
   if (!scales.has(cause.needs)) return "needs a " + std::string(name_of(cause.needs)) + " column that varies";
   if (cause.station == model::Station::valve && !scales.has_valve) {
-    return "the measured pressure drives the model: what the valve does is in it";
+    return "not tested: the measured pressure drives the model and already contains the effects of the valve";
   }
   return {};
 }

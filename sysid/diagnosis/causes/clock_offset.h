@@ -13,7 +13,7 @@ struct ClockOffset : FormOf<model::ClockOffset> {
   static constexpr WhenChanged when_changed{
       "the reading leads its command",
       {"Compare the clocks of the devices that record command and reading.",
-       "Record command and reading with one device, and the same log again."},
+       "Record command and reading with one device, then record the same log again."},
       {},
       {SizedBy::Of::number, "the reading is ahead by", "s", "lead_s"}};
 

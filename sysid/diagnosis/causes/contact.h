@@ -11,9 +11,9 @@ struct Contact : FormOf<model::Contact> {
   static constexpr std::array<std::string_view, 2> counterparts{"sensor_saturation", "sensor_nonlinearity"};
   static constexpr bool is_stop = true;
   static constexpr WhenChanged when_changed{
-      "something holds the finger back from a position on",
-      {"Move the finger by hand through its range and look what it touches.",
-       "Take the object or the stop away and record the same log again."},
+      "something blocks the finger beyond a position",
+      {"Move the finger by hand through its range and check what it touches.",
+       "Remove the object or the stop, then record the same log again."},
       {{{HealthNumber::contact, Moves::either_way}}}};
 
   static Starts starts(const Scales& s) {

@@ -9,9 +9,9 @@ namespace softgrip::sysid::causes {
 struct Inertia : FormOf<model::Inertia> {
   static constexpr bool makes_distinguishable = true;
   static constexpr WhenChanged when_changed{
-      "the finger rings",
-      {"Tap the finger and look whether its mounting or an added mass swings.",
-       "Tighten the mounting, take added masses off, and record a sharp step."}};
+      "the finger oscillates after fast motions",
+      {"Tap the finger and check whether its mounting or an added mass oscillates.",
+       "Tighten the mounting, remove added masses, and record a sharp step."}};
 
   static Starts starts(const Scales&) {
     return every({{"period_s", {0.05, 0.15, 0.4, 1.0}}, {"damping_ratio", {0.15, 0.5}}});

@@ -11,9 +11,9 @@ namespace softgrip::sysid::causes {
 struct Outliers : FormOf<model::Outliers> {
   static constexpr bool found_by_fitting = false;
   static constexpr WhenChanged when_changed{
-      "single readings are wrong",
+      "the readings contain outliers",
       {"Move the sensor's cable and connector while watching the reading.",
-       "Swap the cable, and look in the events for bus errors at the same times."}};
+       "Replace the cable, and check the events for bus errors at the same times."}};
 };
 
 }  // namespace softgrip::sysid::causes

@@ -8,8 +8,8 @@ namespace softgrip::sysid::causes {
 
 struct PeriodicDisturbance : FormOf<model::PeriodicDisturbance> {
   static constexpr WhenChanged when_changed{
-      "an oscillation that the command does not explain",
-      {"Switch neighbouring machines and pumps off one by one and watch the reading.",
+      "the reading oscillates independently of the command",
+      {"Switch off neighbouring machines and pumps one by one and watch the reading.",
        "Check the sensor's shielding and ground; record with the finger vented."},
       {},
       {SizedBy::Of::amplitude, "oscillation of", "mm"}};

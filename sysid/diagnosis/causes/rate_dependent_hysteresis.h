@@ -13,9 +13,9 @@ struct RateDependentHysteresis {
   static constexpr std::string_view title = "Rate-dependent hysteresis";
   static constexpr Appears appears = Appears::moving;
   static constexpr WhenChanged when_changed{
-      "fast motion costs more pressure than slow motion",
+      "fast motions need more pressure than slow ones",
       {"Run the same stroke at three speeds and compare the loops.",
-       "Look for rubbing, dried lubricant or a swollen seal, and record again."},
+       "Check for rubbing, dried lubricant or a swollen seal, then record again."},
       {{{HealthNumber::loop_width, Moves::up}, {HealthNumber::lag, Moves::up}}}};
 
   /// A separate hysteresis element that relaxes.

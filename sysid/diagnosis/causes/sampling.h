@@ -10,8 +10,8 @@ namespace softgrip::sysid::causes {
 struct Sampling : FormOf<model::Sampling> {
   static constexpr bool found_by_fitting = false;
   static constexpr WhenChanged when_changed{
-      "the reading is updated too rarely, or stops",
-      {"Look at the update rate and the averaging of the sensor.",
+      "the reading is updated too rarely or is frozen",
+      {"Check the update rate and the averaging of the sensor.",
        "Read the sensor directly, without gateway or cache, and compare."}};
 };
 

@@ -18,11 +18,11 @@ struct SensorDrift {
   static constexpr std::array advice{Advice::leave_vented, Advice::record_temperature};
   static constexpr Appears appears = Appears::at_rest;
   static constexpr WhenChanged when_changed{
-      "the zero of the sensor wanders",
+      "the zero of the sensor drifts",
       {"Leave the finger vented for an hour and read the zero every ten minutes.",
        "Check the sensor's clamp and cable, and let it warm up before recording."},
       {{{HealthNumber::zero, Moves::either_way}, {HealthNumber::contact, Moves::either_way}}},
-      {SizedBy::Of::largest, "the zero wanders by up to", "mm"}};
+      {SizedBy::Of::largest, "largest drift of the zero", "mm"}};
 
   /// The zero drifts at a constant rate.
   struct Steady : FormOf<model::SensorDrift> {

@@ -11,8 +11,8 @@ struct SensorLag : FormOf<model::SensorLag> {
   static constexpr bool makes_distinguishable = true;
   static constexpr Appears appears = Appears::moving;
   static constexpr WhenChanged when_changed{
-      "the reading follows more slowly",
-      {"Look at the filter setting of the sensor or its amplifier.",
+      "the reading responds more slowly",
+      {"Check the filter setting of the sensor or its amplifier.",
        "Move the target by hand quickly and compare with a second sensor."},
       {{{HealthNumber::lag, Moves::up}}},
       {SizedBy::Of::number, "lag of the sensor", "s", "time_constant_s"}};

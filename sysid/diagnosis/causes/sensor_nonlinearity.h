@@ -10,11 +10,11 @@ struct SensorNonlinearity : FormOf<model::SensorNonlinearity> {
   static constexpr std::array advice{Advice::change_load};
   static constexpr std::string_view indistinguishable = "stiffening";
   static constexpr std::array<std::string_view, 1> counterparts{"stiffening"};
-  static constexpr std::string_view sensor_shape = "a bent scale";
+  static constexpr std::string_view sensor_shape = "a nonlinear scale";
   static constexpr WhenChanged when_changed{
-      "the scale of the sensor is bent",
-      {"Look whether the sensor was knocked out of place or its target is askew.",
-       "Hold a gauge at five positions (`softgrip diagnose --gauge`)."}};
+      "the scale of the sensor is nonlinear",
+      {"Check whether the sensor has been displaced or its target is tilted.",
+       "Measure five positions with a gauge (`softgrip diagnose --gauge`)."}};
   /// The calibrated range is fixed: it is the reference of the nonlinearity.
   static constexpr std::array<Parameter, 2> fitted{"bow_mm", "wave_mm"};
 

@@ -12,11 +12,11 @@ struct SensorSaturation : FormOf<model::SensorSaturation> {
   static constexpr std::array advice{Advice::change_load};
   static constexpr std::array<std::string_view, 1> counterparts{"contact"};
   static constexpr bool is_stop = true;
-  static constexpr std::string_view sensor_shape = "an end of the sensor";
+  static constexpr std::string_view sensor_shape = "a saturated end";
   static constexpr WhenChanged when_changed{
-      "the reading clips",
-      {"Look whether the sensor stands too near or too far: its range must hold the whole stroke.",
-       "Move the target by hand beyond the position where it clips and read."}};
+      "the reading saturates",
+      {"Check whether the sensor is too near or too far: its range must cover the whole stroke.",
+       "Move the target by hand beyond the position of saturation and note the reading."}};
   /// The lower limit is fixed at a value that the data do not reach.
   static constexpr std::array<Parameter, 1> fitted{"upper_mm"};
   static constexpr double no_floor_mm = -1e4;

@@ -12,9 +12,9 @@ namespace softgrip::sysid::causes {
 struct SlowCreep : FormOf<model::SlowCreep> {
   static constexpr std::array advice{Advice::leave_vented};
   static constexpr WhenChanged when_changed{
-      "the finger creeps more over minutes",
+      "the finger creeps more within minutes",
       {"Hold full pressure for ten minutes and watch the reading.",
-       "Look for a slack mounting or a layer that comes off; tighten it and record again."},
+       "Check for a loose mounting or a detached layer. Tighten it and record again."},
       {{{HealthNumber::creep, Moves::up}}}};
 
   static Starts starts(const Scales& s) {

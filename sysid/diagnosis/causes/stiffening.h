@@ -11,9 +11,9 @@ struct Stiffening : FormOf<model::Stiffening> {
   static constexpr std::string_view indistinguishable = "sensor_nonlinearity";
   static constexpr std::array<std::string_view, 1> counterparts{"sensor_nonlinearity"};
   static constexpr WhenChanged when_changed{
-      "the finger gives way less the farther it is bent",
-      {"Bend the vented finger by hand and feel whether something is in its way.",
-       "Hold a gauge beside the sensor at five positions: if they agree, it is the finger."}};
+      "the stiffness increases with displacement",
+      {"Bend the vented finger by hand and check whether something is in its way.",
+       "Compare the sensor with a gauge at five positions. If they agree, the finger has changed."}};
 
   static Starts starts(const Scales& s) {
     return every({{"stiffening_per_mm", {-0.3 / s.span_mm, 0.1 / s.span_mm, 0.5 / s.span_mm}}});

@@ -11,9 +11,9 @@ struct StressSoftening {
   static constexpr std::array advice{Advice::record_temperature};
   static constexpr Appears appears = Appears::displaced;
   static constexpr WhenChanged when_changed{
-      "the finger softened under a large load",
-      {"Look in the events for a load above the usual one.",
-       "Leave it vented overnight and record again: what comes back is not wear."},
+      "the finger has softened after a large load",
+      {"Check the events for a load above the usual one.",
+       "Leave it vented overnight and record again. If the stiffness recovers, it is not wear."},
       {{{HealthNumber::gain, Moves::up}, {HealthNumber::loop_width, Moves::up}}}};
 
   /// The softening is proportional to the largest load.

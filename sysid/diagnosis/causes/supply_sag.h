@@ -9,11 +9,11 @@ namespace softgrip::sysid::causes {
 struct SupplySag : FormOf<model::SupplySag> {
   static constexpr Column needs = Column::supply_kpa;
   static constexpr WhenChanged when_changed{
-      "the pressure follows a falling supply",
+      "the pressure decreases with the supply",
       {"Read the supply gauge while the compressor refills.",
-       "Move other users to another line, or set the supply regulator higher, and record again."},
+       "Connect other consumers to another line, or set the supply regulator higher, and record again."},
       {{{HealthNumber::pressure_loss, Moves::up}}},
-      {SizedBy::Of::number, "of a loss of supply that reaches the finger", "%", "coupling", 100}};
+      {SizedBy::Of::number, "share of a supply loss that reaches the finger", "%", "coupling", 100}};
   /// The nominal supply is fixed: it is the reference of the coupling.
   static constexpr std::array<Parameter, 1> fitted{"coupling"};
 

@@ -9,9 +9,9 @@ namespace softgrip::sysid::causes {
 struct ThermalGain : FormOf<model::ThermalGain> {
   static constexpr Column needs = Column::temperature_c;
   static constexpr std::array advice{Advice::vary_temperature};
-  static constexpr WhenChanged when_changed{"the gain follows the temperature",
-                                            {"Record again at another temperature of the room.",
-                                             "Look for a heat source beside the finger or the sensor."},
+  static constexpr WhenChanged when_changed{"the gain depends on the temperature",
+                                            {"Record again at a different room temperature.",
+                                             "Check for a heat source near the finger or the sensor."},
                                             {{{HealthNumber::gain, Moves::either_way}}},
                                             {SizedBy::Of::number, "gain per degree", "%", "gain_per_c", 100}};
 

@@ -12,9 +12,10 @@ struct TransportDelay : FormOf<model::TransportDelay> {
   static constexpr bool is_ideal = true;
   static constexpr Appears appears = Appears::moving;
   static constexpr WhenChanged when_changed{
-      "the pressure begins later",
-      {"Look whether the tube, a filter or the board's exchange rate was changed.",
-       "Step the command with the finger's tube closed at the valve and time the pressure there."},
+      "the pressure responds later",
+      {"Check whether the tube, a filter or the exchange rate of the board was changed.",
+       "Close the tube of the finger at the valve, step the command and measure the delay of the pressure "
+       "there."},
       {{{HealthNumber::lag, Moves::up}}},
       {SizedBy::Of::number, "more dead time", "s", "delay_s"}};
   static Starts starts(const Scales&) { return every({{"delay_s", {0.02, 0.1, 0.25, 0.5}}}); }

@@ -13,10 +13,10 @@ struct ValveDeadband {
   static constexpr std::string_view id = "valve_deadband";
   static constexpr WhenChanged when_changed{
       "the valve ignores small changes",
-      {"Command steps of 1 kPa up and down and see which of them the pressure answers.",
-       "Cycle the valve fifty times over its range, or clean it, and record the same log again."},
+      {"Command steps of 1 kPa up and down and note which steps the pressure follows.",
+       "Cycle the valve 50 times over its range, or clean it, and record the same log again."},
       {},
-      {SizedBy::Of::number, "band that the valve ignores", "kPa", "band_kpa"}};
+      {SizedBy::Of::number, "dead band of the valve", "kPa", "band_kpa"}};
 
   /// The valve follows with play.
   struct Play : FormOf<model::ValveDeadband> {

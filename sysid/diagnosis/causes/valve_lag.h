@@ -10,9 +10,11 @@ struct ValveLag : FormOf<model::ValveLag> {
   static constexpr std::array<std::string_view, 1> confounded_with{"transport_delay"};
   static constexpr Appears appears = Appears::moving;
   static constexpr WhenChanged when_changed{
-      "the pressure follows more slowly",
-      {"Look for a kinked tube and a clogged filter or silencer; check the supply pressure while it moves.",
-       "Step the command with the finger's tube closed at the valve: still slow there, it is the valve."},
+      "the pressure responds more slowly",
+      {"Check for a kinked tube and a clogged filter or silencer, and check the supply pressure during "
+       "motion.",
+       "Close the tube of the finger at the valve and step the command. If the pressure there is slow, the "
+       "valve is the cause."},
       {{{HealthNumber::lag, Moves::up}}},
       {SizedBy::Of::number, "more lag of the valve", "s", "time_constant_s"}};
   static Starts starts(const Scales&) { return every({{"time_constant_s", {0.02, 0.1, 0.3, 0.6}}}); }

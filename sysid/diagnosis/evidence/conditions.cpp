@@ -179,23 +179,23 @@ std::vector<Condition> conditions_of(const std::vector<Record>& records,
   for (const Record& record : records) h.push_back(history_of(record));
   std::vector<Condition> list;
   list.push_back(
-      condition("branch", "what the pressure does", "whether the pressure rises, stands or falls", samples,
-                [&](std::size_t k, std::size_t i) { return static_cast<double>(h[k].branch[i]); }));
+      condition("branch", "direction of the pressure", "whether the pressure rises, falls or is constant",
+                samples, [&](std::size_t k, std::size_t i) { return static_cast<double>(h[k].branch[i]); }));
   list.back().categories = {"rest", "loading", "hold", "unloading"};
-  list.push_back(condition("cycle", "cycle of the log", "the number of the cycle", samples,
+  list.push_back(condition("cycle", "cycle of the log", "the cycle of the log", samples,
                            [&](std::size_t k, std::size_t i) {
                              return static_cast<double>(std::min(h[k].cycle[i], most_cycles - 1));
                            }));
   for (std::size_t c = 1; c <= most_cycles; ++c)
     list.back().categories.push_back(std::to_string(c) + (c == most_cycles ? "+" : ""));
-  list.push_back(condition("amplitude", "peak of the excursion [kPa]", "how far the pressure goes", samples,
+  list.push_back(condition("amplitude", "peak of the excursion [kPa]", "the peak of the excursion", samples,
                            [&](std::size_t k, std::size_t i) { return h[k].amplitude_kpa[i]; }));
-  list.push_back(condition("rate", "rate of the pressure [kPa/s]", "how fast the pressure changes", samples,
+  list.push_back(condition("rate", "rate of the pressure [kPa/s]", "the rate of the pressure", samples,
                            [&](std::size_t k, std::size_t i) {
                              return h[k].rate_kpa_per_s[i] == 0 ? none : h[k].rate_kpa_per_s[i];
                            }));
   list.push_back(condition(
-      "dwell", "time since the pressure stopped [s]", "how long the pressure has been standing", samples,
+      "dwell", "time since the pressure stopped [s]", "the time since the pressure stopped", samples,
       [&](std::size_t k, std::size_t i) { return h[k].dwell_s[i] > 0 ? h[k].dwell_s[i] : none; }));
   list.back().logarithmic = true;
   group_by(list.back(), samples, {"at rest", "under load"},

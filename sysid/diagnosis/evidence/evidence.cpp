@@ -269,7 +269,7 @@ ConditionEvidence judge(const Condition& condition, const std::vector<double>& r
   if (!condition.why_not.empty()) return e;
   const Binning binning = bin(condition);
   if (binning.bins.size() < 2) {
-    e.condition.why_not = "these logs show one value only";
+    e.condition.why_not = "constant in these logs";
     return e;
   }
   const Sums sums = sums_of(binning, residual, block, blocks);
@@ -388,9 +388,9 @@ std::string dependence_sentence(const ResidualEvidence& evidence) {
             " %)";
     ++named;
   }
-  if (named == 0) return "The error depends clearly on none of the conditions that these logs show.";
+  if (named == 0) return "The error does not significantly depend on any condition in these logs.";
   return "The error depends on " + text +
-         "; in brackets the share of the error's structure that goes with it alone.";
+         "; in brackets: share of the residual variance that the condition alone explains.";
 }
 
 }  // namespace softgrip::sysid

@@ -95,7 +95,7 @@ struct Evidence {
                                     const StructureFit& recalibrated, const StructureFit& extended,
                                     double noise_mm, std::uint64_t seed);
 
-/// "the error depends on how fast the pressure changes (41 %) and ...", or that no condition is clear.
+/// "The error depends on the rate of the pressure (41 %) and ...", or that no condition is clear.
 [[nodiscard]] std::string dependence_sentence(const ResidualEvidence& evidence);
 
 }  // namespace softgrip::sysid

@@ -30,8 +30,8 @@ void add_branches(const model::Model& model, const std::vector<Record>& records,
     const double moved_mm = largest_kpa / block.values[1 + 2 * b];
     if (moved_mm > spans_of_a_branch * span_mm) {
       signs.push_back({"stiffness_near_zero",
-                       k + " is near zero: settled, this branch alone would move " +
-                           significant(moved_mm, 3) + " " + unit + ", and the finger moves " +
+                       k + " is near zero: at rest, this branch alone would move the finger by " +
+                           significant(moved_mm, 3) + " " + unit + ", and the finger moves by " +
                            significant(span_mm, 3) + " " + unit + ".",
                        moved_mm, spans_of_a_branch * span_mm});
     }
@@ -39,7 +39,7 @@ void add_branches(const model::Model& model, const std::vector<Record>& records,
       signs.push_back({"creep_beyond_data",
                        "the time constant " + c + "/" + k + " is " + significant(constants_s[b], 3) +
                            " s, longer than the longest log (" + significant(longest_s, 3) +
-                           " s): the branch stands for something that drifts.",
+                           " s): the branch represents a drift.",
                        constants_s[b], share_of_log * longest_s});
     }
   }
@@ -54,7 +54,7 @@ void add_bounds(const model::Model& model, std::vector<UnphysicalSign>& signs) {
     const bool low = value <= spec.lower + 1e-6 * spec.scale;
     if (!low && value < spec.upper * (1 - 1e-6)) continue;
     signs.push_back({"at_bound",
-                     model::parameter_path(model, i) + " stands at the end of its range, " +
+                     model::parameter_path(model, i) + " is at the limit of its range, " +
                          significant(value, 4) + " " + std::string(spec.unit) + ".",
                      value, low ? spec.lower : spec.upper});
   }

@@ -57,10 +57,10 @@ std::string without_pairs(const Diagnosis& d) {
     open += (open.empty() ? "" : ", ") + std::string(named.cause.id);
     for (const Cause& alternative : named.alternatives) open += " or " + std::string(alternative.id);
   }
-  if (open.empty()) return "there are no two explanations to tell apart";
+  if (open.empty()) return "there are no two explanations to separate";
   return "no experiment is designed for " + open +
-         ": that stands upon another base than the given model's, and experiments are predicted from the "
-         "given one";
+         ": these causes belong to a different base, and experiments are only predicted for the base of the "
+         "given model";
 }
 
 class Designer {

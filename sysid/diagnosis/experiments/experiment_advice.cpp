@@ -15,22 +15,22 @@ bool has(const Cause& cause, Advice advice) {
 }
 
 constexpr const char* vary_temperature =
-    "add a temperature_c column and repeat at another temperature: a gain that follows it is neither wear "
-    "nor "
-    "drift";
+    "add a temperature_c column and repeat the run at a different temperature: a gain that depends on it is "
+    "neither wear nor drift";
 
 /// Returns a way to separate the two causes without a waveform.
 std::string instead_of_waveform(const Cause& one, const Cause& other, const std::string& names,
                                 bool gauge_made) {
   if (has(one, Advice::change_load) && has(other, Advice::change_load)) {
-    return std::string(gauge_made ? "the gauge left it open: read it again, finer and further, or change "
-                                    "the load or move the object"
+    return std::string(gauge_made ? "the gauge did not decide it: repeat the check with more positions over "
+                                    "a wider range, or change the load or move the object"
                                   : "change the load or move the object") +
-           ": what breaks at the same reading again is the sensor, what moves with the load is not";
+           ": a nonlinearity that stays at the same reading belongs to the sensor, one that moves with the "
+           "load does not";
   }
   if (has(one, Advice::leave_vented) && has(other, Advice::leave_vented)) {
-    return "leave the finger vented for an hour and read its zero: no waveform in the menu tells " + names +
-           " apart";
+    return "leave the finger vented for an hour and read its zero: no waveform of the menu separates " +
+           names;
   }
   return {};
 }
@@ -46,8 +46,7 @@ std::vector<std::string> advice_for(std::string_view one, std::string_view other
   const bool one_in_valve =
       known && (first.station == model::Station::valve) != (second.station == model::Station::valve);
   if (one_in_valve && !facts.pressure_recorded) {
-    advice.push_back("record pressure_kpa (the valve's own pressure): it says at once which of " + names +
-                     " it is");
+    advice.push_back("record pressure_kpa, the pressure at the valve: it separates " + names);
   }
   const bool may_be_warmth =
       has(first, Advice::record_temperature) && has(second, Advice::record_temperature);
@@ -58,8 +57,8 @@ std::vector<std::string> advice_for(std::string_view one, std::string_view other
   if (facts.separable) return advice;
   std::string instead = instead_of_waveform(first, second, names, facts.gauge_made);
   if (instead.empty() && advice.empty()) {
-    instead = "no waveform in the menu tells " + names +
-              " apart within the rig's limits: less noise or a larger pressure would be needed";
+    instead = "no waveform of the menu separates " + names +
+              " within the rig's limits: less noise or a larger pressure is required";
   }
   if (!instead.empty()) advice.push_back(std::move(instead));
   return advice;
@@ -71,10 +70,10 @@ std::string gauge_advice(const std::vector<double>& positions_mm, const std::vec
   for (std::size_t i = 0; i < separates.size(); ++i)
     ids += (i == 0 ? "" : i + 1 == separates.size() ? " and " : ", ") + separates[i];
   return "check the sensor against a gauge: " + ids +
-         " give equal readings whatever the pressure. Put the target at " + std::to_string(distinct.size()) +
+         " give equal readings at all pressures. Place the target at " + std::to_string(distinct.size()) +
          " known positions from " + significant(distinct.front(), 3) + " to " +
          significant(distinct.back(), 3) +
-         " mm, up, down and up again, write what the sensor reads beside each of them in " +
+         " mm, up, down and up again, write the reading of the sensor at each position to " +
          gauge_positions_file + ", and diagnose again with --gauge " + gauge_positions_file;
 }
 

@@ -13,10 +13,9 @@ using Json = nlohmann::ordered_json;
 
 std::string sequence_yaml(const NextExperiment& experiment, const std::string& channel) {
   const JudgedWaveform& best = experiment.best.value();
-  return "# Proposed by softgrip diagnose: tells " + enumerated(experiment.separates, " and ") +
-         " apart, by " + significant(experiment.predicted_separation_sigma, 3) +
-         " standard deviations as predicted, in " + significant(best.minutes, 3) + " minutes on the rig.\n" +
-         sequence_yaml(best.waveform, channel);
+  return "# Proposed by softgrip diagnose: separates " + enumerated(experiment.separates, " and ") + " by " +
+         significant(experiment.predicted_separation_sigma, 3) + " standard deviations (predicted), in " +
+         significant(best.minutes, 3) + " minutes on the rig.\n" + sequence_yaml(best.waveform, channel);
 }
 
 std::string sequence_yaml(const Waveform& waveform, const std::string& channel) {

@@ -53,8 +53,7 @@ class Pen {
 };
 
 Waveform rest_and_repeat(const RigLimits& limits) {
-  Pen pen("rest_and_repeat", "the same loads again after rests: creep comes back, softening does not",
-          limits);
+  Pen pen("rest_and_repeat", "equal loads repeated after rests: creep recovers, softening does not", limits);
   pen.triangles(0.55, 2.5, 2).hold(20).triangles(0.55, 2.5, 1);
   pen.triangles(1, 2.5, 2).hold(40).triangles(1, 2.5, 1).triangles(0.55, 2.5, 2);
   return pen.done();
@@ -67,7 +66,7 @@ Waveform three_rates(const RigLimits& limits) {
 }
 
 Waveform staircase(const RigLimits& limits) {
-  Pen pen("staircase_with_holds", "up and down in steps with holds", limits);
+  Pen pen("staircase_with_holds", "steps up and down with holds", limits);
   for (const double level : {0.2, 0.4, 0.6, 0.8, 1.0, 0.8, 0.6, 0.4, 0.2, 0.0}) pen.to(level, 0.3).hold(5);
   return pen.done();
 }
@@ -89,7 +88,7 @@ Waveform amplitude_ladder(const RigLimits& limits) {
 }
 
 Waveform sharp_steps(const RigLimits& limits) {
-  Pen pen("sharp_steps", "steps as sharp as the rig's limits allow, large and small", limits);
+  Pen pen("sharp_steps", "large and small steps at the highest rate that the rig allows", limits);
   pen.jump(0.5).hold(3).jump(1).hold(3).jump(0.4).hold(3).jump(0).hold(4);
   pen.jump(0.1).hold(1.5).jump(0.2).hold(1.5).jump(0.1).hold(1.5).jump(0).hold(3);
   pen.jump(1).hold(3).jump(0).hold(4);

@@ -112,7 +112,7 @@ class GaugeReader {
     }
     if (values[2] < 1) {
       report_.add("samples", {number, cells[static_cast<std::size_t>(index_[2])].column}, line,
-                  "a reading is the mean of at least 1 sample");
+                  "samples must be at least 1");
       return;
     }
     readings_.push_back({reading_->factor * values[0], reading_->factor * values[1], values[2]});
@@ -124,14 +124,14 @@ class GaugeReader {
     const std::string in = " in column '" + std::string(column) + "'";
     if (text.empty()) {
       report_.add("empty cell", {number, cell.column}, line, "no number" + in,
-                  "leave the row out where the sensor gave no reading");
+                  "omit the row if the sensor gave no reading");
       return std::nullopt;
     }
     const auto value = to_number(text);
     if (value && std::isfinite(*value)) return value;
     report_.add("not a number", {number, cell.column}, line,
                 "'" + document::shown(text, 40) + "'" + in + " is not a number",
-                value ? "leave the row out where the sensor gave no reading" : "");
+                value ? "omit the row if the sensor gave no reading" : "");
     return std::nullopt;
   }
 
@@ -141,7 +141,7 @@ class GaugeReader {
     report_.add("positions", {1, 1}, {},
                 std::to_string(distinct) + " different positions: at least " +
                     std::to_string(fewest_gauge_positions) + " are needed",
-                "two positions make a straight line of every sensor");
+                "two positions always fit a straight line");
   }
 
   LogReporter report_;

@@ -35,7 +35,7 @@ std::string in_words(const SensorShape& shape) {
   for (const model::BlockSpec& block : shape.blocks) {
     text += (text.empty() ? "" : " with ") + std::string(cause_of(block.type)->sensor_shape);
   }
-  return text.empty() ? "a straight sensor" : text;
+  return text.empty() ? "a linear sensor" : text;
 }
 
 double mean_offset_mm(const FitPoint& point) {
@@ -193,10 +193,10 @@ class Weighing {
     if (brought_in) {
       alternatives.push_back(chosen.cause);
       warnings_.push_back("the logs name " + std::string(chosen.cause.id) +
-                          " and the gauge contradicts it: by the gauge it is " +
+                          ", but the gauge contradicts it. The gauge indicates " +
                           std::string(standing[left.front()].cause.id) +
-                          ", which explains these logs less well; check that nothing was changed between "
-                          "the logs and the gauge");
+                          ", which explains these logs less well. Check that nothing was changed between the "
+                          "logs and the gauge check");
     }
     chosen.alternatives = std::move(alternatives);
   }
@@ -224,8 +224,10 @@ class Weighing {
     }
     evidence_.replaced = true;
     if (!left_too_much && leaves_too_much(selection_.left, selection_.base_unexplained, question_.noise_mm)) {
-      warnings_.push_back("where the bend is, the gauge has told; the catalogue's form of it leaves " +
-                          with_unit(selection_.left.excess_mm) + " of structure");
+      warnings_.push_back(
+          "the gauge has located the nonlinearity, but its form in the catalogue leaves an unexplained error "
+          "of " +
+          with_unit(selection_.left.excess_mm));
     }
   }
 
@@ -255,9 +257,9 @@ class Weighing {
   /// Describes the deviation of a nonlinear sensor from a straight line.
   [[nodiscard]] std::string bend_in_words() const {
     const GaugeCheck::Departure departure = evidence_.check.departure();
-    if (!departure.clips) return "bent by up to " + with_unit(departure.largest_mm);
+    if (!departure.clips) return "nonlinear by up to " + with_unit(departure.largest_mm);
     const GaugeFit& end = evidence_.check.free_end;
-    return "at its end at " + significant(end.shape.at(1e6), 3) + unit();
+    return "saturated at " + significant(end.shape.at(1e6), 3) + unit();
   }
 
   /// Returns true if the logs alone do not determine the sensor.
@@ -272,11 +274,12 @@ class Weighing {
   [[nodiscard]] std::string sentence_decided() const {
     const GaugeFit& best = evidence_.check.fits[evidence_.check.best];
     if (best.shape.blocks.empty()) {
-      return "The gauge shows a straight sensor " + covered() + ", to " + with_unit(best.rms_mm) +
-             ": what bends these readings is the finger or what it meets, not the sensor.";
+      return "The gauge check shows a linear sensor " + covered() + ", within " + with_unit(best.rms_mm) +
+             ": the finger or a contact causes the nonlinearity of these readings, not the sensor.";
     }
-    return "The gauge shows the sensor " + bend_in_words() + ", as these logs ask for, to " +
-           with_unit(best.rms_mm) + ": the sensor is to blame, not the finger.";
+    return "The gauge check shows that the sensor is " + bend_in_words() +
+           ", as these logs require, within " + with_unit(best.rms_mm) +
+           ": the sensor is the cause, not the finger.";
   }
 
   /// Returns the sentence if more than one shape remains.
@@ -289,21 +292,25 @@ class Weighing {
     }
     const std::string besides = out.empty() ? "" : " It rules out: " + out + ".";
     if (check.outcome != GaugeOutcome::unexplained) {
-      return "The gauge does not tell: its readings fit alike " + left + " (" + with_unit(check.noise_mm) +
-             " of noise). Read up to the largest reading of the logs and beyond it, more often, or with a "
-             "better gauge." +
+      return "The gauge check does not decide. Its readings fit equally well: " + left + " (" +
+             with_unit(check.noise_mm) +
+             " of noise). Take readings up to the largest reading of the logs and beyond it, take more "
+             "readings, or use a better gauge." +
              besides;
     }
-    return "The gauge shows a sensor that is neither straight nor as these logs ask for" +
-           (bent ? ": it is " + bend_in_words() + ". A bend, but not this one." : std::string(".")) + besides;
+    return "The gauge check contradicts all explanations of these logs" +
+           (bent ? ": the sensor is " + bend_in_words() + ", but not as these logs require."
+                 : std::string(".")) +
+           besides;
   }
 
   void speak() {
     const GaugeCheck& check = evidence_.check;
     if (check.outcome == GaugeOutcome::uncovered) {
-      evidence_.sentence = "The gauge says nothing: its readings cover only " +
-                           significant(100 * check.covered_share, 2) +
-                           " % of what these logs have read. Does the sensor follow its target?";
+      evidence_.sentence =
+          "The gauge check is not conclusive: its readings cover only " +
+          significant(100 * check.covered_share, 2) +
+          " % of the range of the readings in these logs. Check that the sensor follows its target.";
       warnings_.push_back(evidence_.sentence);
       return;
     }
@@ -317,15 +324,15 @@ class Weighing {
     } else if (asked_) {
       evidence_.sentence = sentence_open(bent);
     } else {
-      evidence_.sentence = bent ? "The gauge shows the sensor " + bend_in_words() + "."
-                                : "The gauge shows a straight sensor " + covered() + ".";
+      evidence_.sentence = bent ? "The gauge check shows that the sensor is " + bend_in_words() + "."
+                                : "The gauge check shows a linear sensor " + covered() + ".";
     }
     if (!settled && bent) add_sensor_alternatives();
     if (bent && check.fits[check.best].shape.blocks.empty()) tell_of_bend();
     if (asked_ && !settled && check.outcome == GaugeOutcome::unexplained) {
       warnings_.push_back("the gauge readings fit no explanation of these logs (" +
-                          with_unit(check.fits[check.best].rms_mm) + " are left at best, their noise is " +
-                          with_unit(check.noise_mm) + "): the verdict stays open");
+                          with_unit(check.fits[check.best].rms_mm) + " remain at best, their noise is " +
+                          with_unit(check.noise_mm) + "): the verdict remains open");
     }
   }
 
@@ -339,11 +346,11 @@ class Weighing {
   }
 
   void tell_of_bend() {
-    warnings_.push_back(model::in_unit(
-        "by the gauge the displacement sensor is " + bend_in_words() +
-            ", and no cause that is named says so: every displacement in these logs has that in it; "
-            "calibrate the sensor before anything else",
-        question_.file.output_unit));
+    warnings_.push_back(model::in_unit("the gauge check shows that the displacement sensor is " +
+                                           bend_in_words() +
+                                           ", but no named cause explains it. It affects every displacement "
+                                           "in these logs. Calibrate the sensor first",
+                                       question_.file.output_unit));
   }
 
   const GaugeQuestion& question_;

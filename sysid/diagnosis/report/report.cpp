@@ -56,27 +56,28 @@ Terms looked_at(const DiagnosisReport& report) {
 
 void add_next(Page& page, const DiagnosisReport& report) {
   if (report.advice.empty() && !report.next_experiment) return;
-  page.section("What would tell more");
+  page.section("Recommended measurements");
   page.list(report.advice);
   if (!report.next_experiment) return;
   const ProposedExperiment& next = *report.next_experiment;
-  page.paragraph("The next experiment: " + (next.waveform.empty() ? "" : next.waveform + ". ") +
-                 "It separates " + with_commas(next.separates) + ": on it they differ by " +
+  page.paragraph("Next experiment: " + (next.waveform.empty() ? "" : next.waveform + ". ") + "It separates " +
+                 with_commas(next.separates) + ": their responses differ by " +
                  significant(next.predicted_separation_sigma, 3) +
-                 " standard deviations of the noise, each refitted to the other. " +
-                 significant(next.rig_minutes, 2) + " minutes of rig time; run it with " + next.file + ".");
+                 " standard deviations of the noise after each is refitted to the other. " +
+                 significant(next.rig_minutes, 2) + " minutes on the rig; sequence file: " + next.file + ".");
 }
 
 void add_found(Page& page, const DiagnosisReport& report) {
   const Diagnosis& d = report.result;
-  page.section("What was found");
+  page.section("Results");
   page.figure(budget_figure(d));
   if (!shown_causes(d).empty()) {
     page.figure(forest_figure(d));
     page.table(cause_parameter_table(d, parameters_shown));
   }
   if (!d.base.empty())
-    page.paragraph("The given base does not hold; the extended model's is: " + d.base + ".");
+    page.paragraph(
+        "The base of the given model is not sufficient. The extended model has this base: " + d.base + ".");
   page.figure(chain_figure(d.extended_model, report.given));
   page.figure(error_figure(d, logs_by_gain(d).front()));
   if (const auto looped = first_with_loops(d)) page.figure(loops_figure(d, *looped));
@@ -85,7 +86,7 @@ void add_found(Page& page, const DiagnosisReport& report) {
   if (report.closed_loop->schemes.size() > 1) {
     page.figure(closed_loop_figure(*report.closed_loop));
   } else {
-    page.paragraph("No model takes part in the closed loop (" + report.closed_loop->reference + "):");
+    page.paragraph("The closed loop uses no model (" + report.closed_loop->reference + "):");
   }
   page.list(report.closed_loop->notes);
 }

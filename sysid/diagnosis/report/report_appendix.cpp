@@ -29,8 +29,8 @@ void add_other_logs(Page& page, const Diagnosis& d) {
       page.figure(loops_figure(d, order[i]));
   }
   if (order.size() > logs_shown)
-    page.paragraph("Shown are the " + std::to_string(logs_shown) + " logs on which most was gained, of " +
-                   std::to_string(order.size()) + ".");
+    page.paragraph("The figures show the " + std::to_string(logs_shown) +
+                   " logs with the largest error reduction, of " + std::to_string(order.size()) + ".");
 }
 
 void add_conditions(Page& page, const Diagnosis& d) {
@@ -38,14 +38,12 @@ void add_conditions(Page& page, const Diagnosis& d) {
   const ResidualEvidence& e = d.evidence->recalibrated;
   page.subsection("Conditions");
   page.table(condition_table(*d.evidence, is_extended(d)));
-  page.paragraph("The errors resemble each other over " + significant(e.memory_s, 2) +
-                 " s; the tests therefore give random signs to whole blocks of " + significant(e.block_s, 3) +
-                 " s (" + std::to_string(e.blocks) +
-                 " of them) and ask how often means would differ as much. Shares are judged on blocks "
-                 "outside the means and "
-                 "overlap: conditions that go together share what they explain. Clear is what chance would "
-                 "show less than once "
-                 "in fifty and what is worth a twentieth of the structure.");
+  page.paragraph("The correlation time of the residual is " + significant(e.memory_s, 2) +
+                 " s. The tests therefore apply random signs to whole blocks of " +
+                 significant(e.block_s, 3) + " s (" + std::to_string(e.blocks) +
+                 " blocks) and count how often the means differ as much by chance. Shares are evaluated on "
+                 "blocks that are not used for the means. They overlap if conditions are correlated. "
+                 "Significant: p < 0.02 and at least 5 % of the residual variance beyond the noise.");
   if (e.spectrum.why_not.empty() && !is_clear(e.spectrum.p_value, e.spectrum.share_percent))
     page.figure(spectrum_figure(d));
 }

@@ -38,8 +38,7 @@ double given_bar(Canvas& canvas, const Budget& budget, model::OutputUnit unit, d
   const double split = right - kept * (right - left);
   canvas.words({left, top - 6}, Anchor::start,
                "Given model, mean square error " + square_text(budget.as_given, unit) +
-                   ": new numbers for its parameters take " + fixed(100 * (1 - kept), kept < 0.01 ? 1 : 0) +
-                   " %");
+                   ": refitted parameters explain " + fixed(100 * (1 - kept), kept < 0.01 ? 1 : 0) + " %");
   canvas.box(left, top, split - left, bar_px / 2, Colour::grid);
   canvas.box(split, top, right - split, bar_px / 2, Colour::axis);
   const double below = top + bar_px / 2, spread = below + fan_px, bar = spread + line_px + 4;
@@ -93,11 +92,11 @@ std::vector<BudgetPart> budget_parts(const Diagnosis& d) {
   const double together = taken - scale * one_by_one;
   // A part below 0.1 % would not be visible.
   if (together > 1e-3 * budget.recalibrated)
-    parts.push_back({d.causes.empty() ? (d.base.empty() ? "Part of it, not named" : "Another structure")
-                                      : "These together only",
+    parts.push_back({d.causes.empty() ? (d.base.empty() ? "Explained, without a name" : "Another structure")
+                                      : "Explained only by several causes together",
                      together, Colour::muted, ""});
   const double noise = std::min(budget.noise, budget.recalibrated - taken);
-  parts.push_back({"Left unexplained", budget.recalibrated - taken - noise, Colour::error, ""});
+  parts.push_back({"Unexplained", budget.recalibrated - taken - noise, Colour::error, ""});
   parts.push_back({"Noise of the readings", noise, Colour::faint, ""});
   std::erase_if(parts, [](const BudgetPart& part) { return !(part.mm2 > 0); });
   return parts;
@@ -126,10 +125,10 @@ Figure budget_figure(const Diagnosis& d) {
   for (const BudgetPart& part : parts)
     drawing.rows.push_back(
         {part.name, shortest(part.mm2), fixed(100 * part.mm2 / budget.recalibrated, 2), part.interval});
-  return {"budget of the misfit",
-          std::string("Where the misfit goes, in mean squares of readings that were held out.") +
+  return {"error budget",
+          std::string("Error budget: mean squares of held-out readings.") +
               (d.causes.empty() ? ""
-                                : " What a cause takes is measured by leaving it out of the extended model."),
+                                : " The part of a cause is measured by its removal from the extended model."),
           {},
           std::move(drawing)};
 }

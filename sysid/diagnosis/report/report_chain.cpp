@@ -125,9 +125,9 @@ Figure chain_figure(const model::Model& model, const model::Model& given) {
   drawing.markup = canvas.markup();
   drawing.width = width_px;
   drawing.height = static_cast<int>(top) - 14;
-  return {"chain with its numbers",
-          model.name + ": from the commanded pressure (left) to the reading (right), with its numbers." +
-              (any_added ? " Framed in green and named so: what the given model lacks." : ""),
+  return {"block diagram",
+          model.name + ": blocks and parameters from the commanded pressure (left) to the reading (right)." +
+              (any_added ? " Green: block that the given model lacks." : ""),
           {},
           std::move(drawing)};
 }

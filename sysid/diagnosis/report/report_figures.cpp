@@ -252,12 +252,13 @@ Figure error_figure(const Diagnosis& d, std::size_t k) {
   }
   charts.back().x.label = "time [s]";
   charts.back().height = is_extended(d) ? 125 : 170;
-  return {"error over time " + record.name,
-          record.name +
-              ": measured and modelled, and reading minus model on the same axes. RMSE: " + numbers + "." +
-              (given_far_off ? " The given model's error is too large to be drawn beside the others." : "") +
-              (d.outliers.present ? " Isolated wrong readings are left out." : ""),
-          stacked(std::move(charts))};
+  return {
+      "error over time " + record.name,
+      record.name + ": measured and predicted displacement, and reading minus prediction. RMSE: " + numbers +
+          "." +
+          (given_far_off ? " The error of the given model is too large to be drawn with the others." : "") +
+          (d.outliers.present ? " Outliers are omitted." : ""),
+      stacked(std::move(charts))};
 }
 
 Figure runs_figure(const Diagnosis& d) {
@@ -279,7 +280,7 @@ Figure runs_figure(const Diagnosis& d) {
   chart.marks.push_back({Mark::Direction::horizontal, d.noise_mm, "noise of the readings"});
   return {"error by run",
           std::string("RMSE of each ") + (d.records.size() > 1 ? "run" : "half of the run") +
-              ", predicted by the model that was fitted to the others. The given model is not fitted.",
+              ", predicted by a model that was fitted to the others. The given model is not fitted.",
           {{chart}}};
 }
 
@@ -316,14 +317,11 @@ Figure loops_figure(const Diagnosis& d, std::size_t k) {
       curve("", Colour::text, 1,
             {window.lower_kpa, window.upper_kpa, window.upper_kpa, window.lower_kpa, window.lower_kpa},
             {window.lower_mm, window.lower_mm, window.upper_mm, window.upper_mm, window.lower_mm}));
-  return {
-      "loops " + record.name,
-      record.name +
-          model::in_unit(
-              ": displacement over pressure, as a whole and, enlarged, in the frame where the models differ "
-              "most.",
-              record.output_unit),
-      {{whole, zoom}}};
+  return {"loops " + record.name,
+          record.name + model::in_unit(": displacement over pressure, and an enlarged view of the frame in "
+                                       "which the models differ most.",
+                                       record.output_unit),
+          {{whole, zoom}}};
 }
 
 Figure closed_loop_figure(const ClosedLoopCurves& curves) {
@@ -352,20 +350,19 @@ Figure closed_loop_figure(const ClosedLoopCurves& curves) {
     numbers +=
         (numbers.empty() ? "" : ", ") + scheme.name + " " + significant(scheme.rmse_mm, 3) + " " + unit;
   }
-  return {
-      "closed loop",
-      "In closed loop, " + curves.reference + ". RMSE: " + numbers + ". Gains by the same search for each.",
-      stacked({values, errors})};
+  return {"closed loop",
+          "In closed loop, " + curves.reference + ". RMSE: " + numbers +
+              ". The controller gains of each scheme come from the same search.",
+          stacked({values, errors})};
 }
 
 Figure conditions_figure(const Diagnosis& d) {
   constexpr std::size_t most = 4;
-  Figure figure{
-      "error by condition",
-      "Mean error with its 95 % interval by each condition on which it clearly depends. Position is the "
-      "model's, for a reading shares its noise with the error." +
-          std::string(is_extended(d) ? " Dashed: the extended model; what it explains becomes flat." : ""),
-      {}};
+  Figure figure{"error by condition",
+                "Mean error with its 95 % interval for each condition on which it significantly depends. "
+                "Positions are predicted, because a reading and its error share their noise." +
+                    std::string(is_extended(d) ? " Dashed: extended model; a flat curve is explained." : ""),
+                {}};
   std::size_t charts = 0;
   for (const ConditionEvidence& e : d.evidence->recalibrated.conditions) {
     if (!e.condition.why_not.empty() || !e.clear || charts == most) continue;
@@ -403,11 +400,11 @@ Figure spectrum_figure(const Diagnosis& d) {
   }
   return {"spectrum of the error",
           is_clear(s.p_value, s.share_percent)
-              ? "Spectrum of the error. The strongest line that the command does not have: " +
+              ? "Spectrum of the error. Strongest line that is not in the command: " +
                     significant(s.peak_hz, 4) + " Hz, amplitude " + significant(s.peak_amplitude_mm, 2) +
                     " " + std::string(model::name_of(d.extended_model.output_unit)) + " (p " +
                     significant(s.p_value, 2) + ")."
-              : "Spectrum of the error. No line stands out that the command does not have.",
+              : "Spectrum of the error. It has no significant line that is not in the command.",
           {{chart}}};
 }
 

@@ -76,16 +76,18 @@ Figure forest_figure(const Diagnosis& d) {
   Canvas canvas;
   constexpr std::string_view bold = " font-weight=\"600\"";
   canvas.words({label_px, 18}, Anchor::start, "Cause", Colour::text, bold);
-  canvas.words({number_px, 18}, Anchor::start, "gain (95 % interval)", Colour::text, bold);
+  canvas.words({number_px, 18}, Anchor::start, "reduction (95 %)", Colour::text, bold);
   canvas.words({inclusion_px, 18}, Anchor::end, "inclusion", Colour::text, bold);
   for (const Tick& tick : x.ticks(5)) {
     canvas.line({x.px(tick.at), top_px - 6}, {x.px(tick.at), bottom},
                 tick.at == 0 ? Colour::axis : Colour::grid);
     canvas.words({x.px(tick.at), bottom + 14}, Anchor::middle, tick.text);
   }
-  canvas.words({(plot_left + plot_right) / 2, bottom + 31}, Anchor::middle, "held-out gain in per cent");
+  canvas.words({(plot_left + plot_right) / 2, bottom + 31}, Anchor::middle,
+               "reduction of the held-out error in per cent");
   Drawing drawing;
-  drawing.header = {"cause", "rival of it", "gain [%]", "lower 95 % [%]", "upper 95 % [%]", "inclusion"};
+  drawing.header = {"cause",          "alternative",    "error reduction [%]",
+                    "lower 95 % [%]", "upper 95 % [%]", "inclusion"};
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const Row& row = rows[i];
     const double y = top_px + row_px * (static_cast<double>(i) + 0.5);
@@ -96,7 +98,7 @@ Figure forest_figure(const Diagnosis& d) {
       canvas.words({number_px, y + 4}, Anchor::start, percent_range(*row.gain),
                    row.alternative ? Colour::muted : Colour::text);
     } else {
-      canvas.words({number_px, y + 4}, Anchor::start, "the same to every command", Colour::muted);
+      canvas.words({number_px, y + 4}, Anchor::start, "equal for every command", Colour::muted);
     }
     if (!row.alternative) canvas.words({inclusion_px, y + 4}, Anchor::end, fixed(row.inclusion, 2));
     std::vector<std::string> cells{
@@ -113,10 +115,11 @@ Figure forest_figure(const Diagnosis& d) {
   const bool alternatives =
       std::any_of(rows.begin(), rows.end(), [](const Row& row) { return row.alternative; });
   return {
-      "causes and their gains",
-      std::string("How much the held-out error falls with each cause, against the model without it. ") +
-          "Inclusion: how often, over resampled blocks of the logs, the structures that contain it win." +
-          (alternatives ? " Hollow: what these logs cannot tell from the cause above it, in its place." : ""),
+      "error reduction by cause",
+      std::string("Reduction of the held-out error by each cause, with 95 % interval. ") +
+          "Inclusion frequency: share of bootstrap resamples in which the model with the cause is better." +
+          (alternatives ? " Hollow: an alternative that these logs cannot separate from the cause above."
+                        : ""),
       {},
       std::move(drawing)};
 }

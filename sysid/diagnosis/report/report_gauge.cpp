@@ -11,7 +11,7 @@ namespace softgrip::sysid {
 namespace {
 
 std::string title_of(const GaugeFit& fit) {
-  return fit.shape.blocks.empty() ? "straight sensor" : fit.shape.id() + " as the logs ask for";
+  return fit.shape.blocks.empty() ? "linear sensor" : fit.shape.id() + " as fitted to the logs";
 }
 
 Colour colour_of(std::size_t hypothesis) {
@@ -21,7 +21,8 @@ Colour colour_of(std::size_t hypothesis) {
 
 Table hypotheses_table(const GaugeCheck& check, model::OutputUnit unit) {
   Table table;
-  table.header = {"the sensor is", model::in_unit("leaves [mm]", unit), "log likelihood behind the best", ""};
+  table.header = {"hypothesis", model::in_unit("residual [mm]", unit), "log likelihood ratio to the best",
+                  ""};
   table.numeric = {false, true, true, false};
   for (const GaugeFit& fit : check.fits) {
     table.rows.push_back({title_of(fit), significant(fit.rms_mm, 3), significant(fit.behind, 3),
@@ -70,22 +71,21 @@ Chart gauge_chart(const GaugeEvidence& gauge) {
 
 void add_gauge_section(Page& page, const GaugeEvidence& gauge) {
   const GaugeCheck& check = gauge.check;
-  page.section("The sensor on the gauge");
+  page.section("Gauge check of the sensor");
   page.paragraph(gauge.sentence);
-  page.figure({"sensor on the gauge",
-               "What the sensor read at known positions (" + gauge.file.path +
-                   "), beside the straight line that fits best; dashed: ruled out. Readings are "
-                   "cut a little beyond what the logs have read.",
+  page.figure({"gauge check of the sensor",
+               "Readings of the sensor at known positions (" + gauge.file.path +
+                   "), relative to the straight line that fits best. Dashed: ruled out. Readings are limited "
+                   "to slightly more than the range of the logs.",
                {{gauge_chart(gauge)}}});
   page.table(hypotheses_table(check, gauge.file.output_unit));
-  page.paragraph("Zero and scale of every hypothesis are fitted to the readings. Noise of a reading: " +
-                 significant(check.noise_mm, 2) + " " + std::string(name_of(gauge.file.output_unit)) +
-                 " (readings at one position differ by " + significant(check.repeat_noise_mm, 2) +
-                 "); a fifth of what two hypotheses differ by is allowed beside it where they are compared. "
-                 "Ruled out is "
-                 "what is a thousand times less likely than the most likely hypothesis, if that explains the "
-                 "readings (" +
-                 significant(gauge_log_likelihood_needed, 2) + " in log likelihood).");
+  page.paragraph(
+      "Zero and scale of every hypothesis are fitted to the readings. Noise of a reading: " +
+      significant(check.noise_mm, 2) + " " + std::string(name_of(gauge.file.output_unit)) +
+      " (readings at one position differ by " + significant(check.repeat_noise_mm, 2) +
+      "). The comparison of two hypotheses permits 20 % of their difference in addition. A hypothesis is "
+      "ruled out if the most likely one explains the readings and is at least 1000 times as likely (" +
+      significant(gauge_log_likelihood_needed, 2) + " in log likelihood).");
 }
 
 }  // namespace softgrip::sysid

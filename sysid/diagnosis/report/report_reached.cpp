@@ -31,31 +31,31 @@ std::string alternatives_text(const NamedCause& named, const model::Model& exten
   }
   std::string text;
   if (!alike.empty())
-    text = "These logs cannot tell it from " + alike +
-           ": each explains as much in its place, within one standard error. ";
+    text = "These logs cannot separate it from " + alike +
+           ": each of them explains the error equally well within one standard error. ";
   if (!indistinguishable.empty())
-    text +=
-        "No command can tell it from " + indistinguishable +
-        ": both bend the readings over the displacement, the one before the load and the other behind it, "
-        "and how well the form of each meets these logs says nothing about where the bend is.";
+    text += "No command can separate it from " + indistinguishable +
+            ": both make the readings nonlinear in the displacement, one before the load and the other after "
+            "it. The fit of their catalogue forms does not show where the nonlinearity is.";
   return text;
 }
 
 /// Adds the frequency at which the search finds a cause in simulated data without one.
 void add_null_calibration(Page& page, const NullCalibration& nulls) {
-  page.paragraph(
-      "Searched in the same way, " + std::to_string(nulls.campaigns) +
-      " campaigns in which the recalibrated model and correlated noise are all there is gave a name in " +
-      std::to_string(nulls.named) + " cases, with a gain of at most " + fixed(nulls.largest_gain_percent, 1) +
-      " %; p = " + significant(nulls.p_value, 2) + " for the gain on the measured logs.");
+  page.paragraph("The same search was applied to " + std::to_string(nulls.campaigns) +
+                 " simulated campaigns that contain only the recalibrated model and correlated noise. It "
+                 "named a cause in " +
+                 std::to_string(nulls.named) + " of them, with an error reduction of at most " +
+                 fixed(nulls.largest_gain_percent, 1) + " %; p = " + significant(nulls.p_value, 2) +
+                 " for the error reduction on the measured logs.");
 }
 
 void add_errors(Page& page, const Diagnosis& d) {
-  page.section("How it was reached");
+  page.section("Method and evidence");
   page.paragraph(
-      "The model was predicted as given, then recalibrated (the same structure, all parameters fitted), then "
-      "extended cause by cause. Each was refitted without stretches of the logs and judged there, simulated "
-      "from the logs' true starts; intervals by drawing whole stretches anew.");
+      "The given model was evaluated first, then recalibrated (same structure, all parameters fitted), then "
+      "extended cause by cause. Each model was refitted without some blocks and simulated on them from the "
+      "start of the log. Intervals follow from a block bootstrap.");
   page.table(rmse_table(d));
   page.figure(runs_figure(d));
   if (is_extended(d) && d.extended_rmse_mm < d.recalibrated_rmse_mm)
@@ -66,7 +66,7 @@ void add_errors(Page& page, const Diagnosis& d) {
   const double after = *d.extended_other_logs_rmse_mm;
   if (after >= before)
     page.paragraph(
-        "The gain does not carry over to logs that were not fitted: with whole logs held out the error goes "
+        "The error reduction does not hold for other logs: with whole logs held out, the error changes "
         "from " +
         significant(before, 3) + " to " + significant(after, 3) + " " +
         std::string(model::name_of(d.extended_model.output_unit)) + ".");
@@ -84,13 +84,13 @@ void add_evidence(Page& page, const Diagnosis& d) {
   std::vector<std::string> signs;
   for (const UnphysicalSign& sign : d.evidence->unphysical) signs.push_back(sign.sentence);
   if (signs.empty()) return;
-  page.paragraph("New parameters absorbed part of the effect and bent the model in doing so:");
+  page.paragraph("The refit absorbed part of the effect and made the model unphysical:");
   page.list(signs);
 }
 
 void add_named(Page& page, const Diagnosis& d) {
   if (!d.partial.empty())
-    page.paragraph("What explains part of the structure explains too little of it to be named the cause.");
+    page.paragraph("These causes explain part of the error, but too little to be reported as its cause.");
   for (const auto* list : {&d.causes, &d.partial}) {
     for (const NamedCause& named : *list) {
       std::string meaning(model::catalogue()[named.block_type].info.meaning);
@@ -101,12 +101,12 @@ void add_named(Page& page, const Diagnosis& d) {
   }
   if (d.null_calibration) add_null_calibration(page, *d.null_calibration);
   if (d.causes.empty() && d.partial.empty() && d.rejected.empty())
-    page.paragraph("The recalibrated model leaves no structure, so no cause was looked for.");
+    page.paragraph("The recalibrated model leaves no unexplained error, so no cause was searched for.");
   if (d.unexplained_error.present)
-    page.paragraph(
-        "Share of the structure that stays unexplained: " + fixed(d.unexplained_percent, 1) + " %." +
-        (d.evidence && is_extended(d) ? " After the extension: " + dependence_sentence(d.evidence->extended)
-                                      : std::string()));
+    page.paragraph("Unexplained share of the error: " + fixed(d.unexplained_percent, 1) + " %." +
+                   (d.evidence && is_extended(d)
+                        ? " After the extension: " + dependence_sentence(d.evidence->extended)
+                        : std::string()));
 }
 
 }  // namespace
@@ -118,7 +118,7 @@ void add_reached(Page& page, const DiagnosisReport& report) {
   add_named(page, d);
   if (d.gauge) add_gauge_section(page, *d.gauge);
   if (d.warnings.empty()) return;
-  page.section("What these data cannot tell");
+  page.section("Limits of the data");
   page.list(d.warnings);
 }
 

@@ -29,13 +29,13 @@ std::string outcome_of(const CandidateScore& c, const NamedCause* chosen, double
     if (c.cause == chosen->cause) return "named";
     if (std::find(chosen->alternatives.begin(), chosen->alternatives.end(), c.cause) !=
         chosen->alternatives.end())
-      return "explains as much, or is the same to every command";
+      return "equivalent";
   }
   if (!c.why_not.empty()) return c.why_not;
-  if (std::isnan(c.heldout_rmse_mm)) return "behind when fitted";
-  if (c.gain_percent.lower <= 0) return "no gain that excludes chance";
-  if (chosen == nullptr) return "gain too small to be worth a block";
-  return "explains less: " + significant(c.heldout_rmse_mm, 3) + " against " +
+  if (std::isnan(c.heldout_rmse_mm)) return "worse fit";
+  if (c.gain_percent.lower <= 0) return "not significant";
+  if (chosen == nullptr) return "error reduction too small";
+  return "larger error: " + significant(c.heldout_rmse_mm, 3) + " instead of " +
          significant(chosen_rmse_mm, 3) + " " + std::string(model::name_of(unit));
 }
 
@@ -50,7 +50,7 @@ Table candidate_table(const std::vector<CandidateScore>& candidates, const Named
                   "station",
                   model::in_unit("fitted [mm]", unit),
                   model::in_unit("held out [mm]", unit),
-                  "held-out gain [%]",
+                  "held-out error reduction [%]",
                   "outcome"};
   table.numeric = {false, false, true, true, true, false};
   for (const CandidateScore& c : candidates) {
@@ -76,10 +76,10 @@ std::string percent_range(const Spread& share) {
 
 Table rmse_table(const Diagnosis& d) {
   Table table;
-  table.caption = "Error of the models (noise of the readings " + significant(d.noise_mm, 3) + " " +
+  table.caption = "RMSE of the models (measurement noise " + significant(d.noise_mm, 3) + " " +
                   std::string(model::name_of(d.extended_model.output_unit)) + ")";
-  table.header = {"model", "fitted, RMSE [mm]", "stretches held out [mm]", "whole logs held out [mm]",
-                  "structure left [mm]"};
+  table.header = {"model", "fitted, RMSE [mm]", "held-out blocks [mm]", "held-out logs [mm]",
+                  "unexplained [mm]"};
   for (std::string& title : table.header) title = model::in_unit(title, d.extended_model.output_unit);
   table.numeric = {false, true, true, true, true};
   const auto fitted = [](const StructureFit& fit) { return or_dash(std::sqrt(fit.mean_square_mm2), 3); };
@@ -102,9 +102,7 @@ Table rmse_table(const Diagnosis& d) {
 
 Table condition_table(const Evidence& evidence, bool extended) {
   Table table;
-  table.caption =
-      "Share of the error's structure that goes with a condition, and the probability of such "
-      "differences by chance (adjusted for looking at all)";
+  table.caption = "Share of the residual variance explained by each condition, with adjusted p-value";
   table.header = {"condition", "given [%]", "recalibrated [%]", "p", "extended [%]", "p", "note"};
   table.numeric = {false, true, true, true, true, true, false};
   for (const ConditionEvidence& e : evidence.recalibrated.conditions) {
@@ -136,13 +134,14 @@ std::vector<Table> candidate_tables(const Diagnosis& d) {
       if (!named.candidates.empty())
         tables.push_back(candidate_table(named.candidates, &named, d.extended_rmse_mm,
                                          d.extended_model.output_unit,
-                                         "Tried in the place of " + std::string(named.cause.id)));
+                                         "Alternatives tested for " + std::string(named.cause.id)));
     }
   }
   if (!d.rejected.empty())
-    tables.push_back(candidate_table(
-        d.rejected, nullptr, d.extended_rmse_mm, d.extended_model.output_unit,
-        d.causes.empty() && d.partial.empty() ? "No cause was kept" : "No further cause was kept"));
+    tables.push_back(candidate_table(d.rejected, nullptr, d.extended_rmse_mm, d.extended_model.output_unit,
+                                     d.causes.empty() && d.partial.empty()
+                                         ? "Tested causes: none reduced the held-out error sufficiently"
+                                         : "Further causes: none reduced the held-out error sufficiently"));
   return tables;
 }
 
@@ -170,7 +169,7 @@ std::vector<const NamedCause*> shown_causes(const Diagnosis& d) {
 
 Table cause_parameter_table(const Diagnosis& d, std::size_t most) {
   Table table;
-  table.caption = "What the causes are worth in numbers";
+  table.caption = "Parameters of the causes";
   table.header = {"cause", "parameter", "value", "95 % interval", "unit"};
   table.numeric = {false, false, true, true, false};
   const auto row = [](const NamedCause& named, const CauseParameter& p) -> std::vector<std::string> {
@@ -201,10 +200,10 @@ Table moved_table(const Diagnosis& d, const model::Model& given) {
   table.header = {"parameter", "unit", "given", "recalibrated"};
   table.numeric = {false, false, true, true};
   if (extended) {
-    table.header.insert(table.header.end(), {"extended", "moved against given"});
+    table.header.insert(table.header.end(), {"extended", "change from given"});
     table.numeric.insert(table.numeric.end(), {true, true});
   } else {
-    table.header.emplace_back("moved");
+    table.header.emplace_back("change");
     table.numeric.push_back(true);
   }
   const std::vector<double> values = model::flat_values(d.extended_model);

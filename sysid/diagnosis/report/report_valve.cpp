@@ -11,9 +11,9 @@ namespace {
 
 Table parts_table(const ValveFindings& in_valve) {
   Table table;
-  table.caption = "What the model lacks in the valve";
+  table.caption = "Causes between command and measured pressure";
   table.header = {"cause",         "parameter", "value",
-                  "95 % interval", "unit",      "lowers the pressure's held-out error by [%]"};
+                  "95 % interval", "unit",      "reduction of the held-out pressure error [%]"};
   table.numeric = {false, false, true, true, false, true};
   for (const NamedCause& named : in_valve.named) {
     const Spread& gain = named.heldout_gain_percent;
@@ -34,18 +34,17 @@ Table parts_table(const ValveFindings& in_valve) {
 
 void add_valve_section(Page& page, const ValveFindings& in_valve) {
   const ValveStage& stage = in_valve.stage;
-  page.section("The valve, by the measured pressure");
-  page.paragraph(
-      "Command and measured pressure were compared beside the displacement. A dead time of " +
-      significant(stage.delay_s, 2) + " s and a lag of " + significant(stage.filling_s, 2) +
-      " s while filling and " + significant(stage.venting_s, 2) + " s while venting" +
-      (in_valve.named.empty() ? "" : ", with what the table names,") + " leave " +
-      significant(in_valve.heldout_rmse_kpa, 2) + " kPa on held-out blocks; the pressure's noise is " +
-      significant(in_valve.noise_kpa, 2) + " kPa." +
-      (stage.is_far_off()
-           ? " That is more than a twentieth of its range: this valve is another thing, and nothing is "
-             "named in it."
-           : ""));
+  page.section("Valve");
+  page.paragraph("The valve was identified from the command and the measured pressure. A dead time of " +
+                 significant(stage.delay_s, 2) + " s and a lag of " + significant(stage.filling_s, 2) +
+                 " s (filling) and " + significant(stage.venting_s, 2) + " s (venting)" +
+                 (in_valve.named.empty() ? "" : ", with the causes of the table,") + " leave an error of " +
+                 significant(in_valve.heldout_rmse_kpa, 2) +
+                 " kPa on held-out blocks. The noise of the pressure is " +
+                 significant(in_valve.noise_kpa, 2) + " kPa." +
+                 (stage.is_far_off() ? " The error exceeds 5 % of the pressure range. The valve does not "
+                                       "match this structure, so no cause is named in it."
+                                     : ""));
   if (!in_valve.named.empty()) page.table(parts_table(in_valve));
 }
 

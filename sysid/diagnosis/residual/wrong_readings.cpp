@@ -46,7 +46,7 @@ std::string sentence_of(const Log& log, const std::vector<std::size_t>& wrong) {
   const auto readings = std::count_if(log.displacement_mm.begin(), log.displacement_mm.end(),
                                       [](double value) { return std::isfinite(value); });
   return log.name + ": " + std::to_string(wrong.size()) + " of " + std::to_string(readings) +
-         (wrong.size() == 1 ? " readings is an outlier" : " readings are outliers") + ", left out: " + first;
+         (wrong.size() == 1 ? " readings is an outlier" : " readings are outliers") + ", removed: " + first;
 }
 
 }  // namespace

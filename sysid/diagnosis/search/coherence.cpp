@@ -89,9 +89,9 @@ std::optional<std::string> inconsistent_among(const std::vector<Record>& records
   const double apart_mm = rmse_apart_mm(records, recalibrated);
   if (!(apart_mm * apart_mm < apart_share * together_mm2)) return std::nullopt;
   const std::string unit(model::name_of(records.front().output_unit));
-  return "recalibrated on each log alone the model's error is " + significant(apart_mm, 2) + " " + unit +
-         ", on all together " + significant(std::sqrt(together_mm2), 2) + " " + unit +
-         ": are these logs of one rig, and was nothing changed between them?";
+  return "recalibrated on each log separately, the error of the model is " + significant(apart_mm, 2) + " " +
+         unit + ", and on all logs together " + significant(std::sqrt(together_mm2), 2) + " " + unit +
+         ". Check that all logs come from one rig and that nothing was changed between them";
 }
 
 std::optional<std::string> why_not_about(const std::vector<Record>& records,
@@ -100,8 +100,9 @@ std::optional<std::string> why_not_about(const std::vector<Record>& records,
   if (share >= least_explained_share) return std::nullopt;
   if (auto inconsistent = inconsistent_among(records, recalibrated, recalibrated.mean_square_mm2))
     return inconsistent;
-  return "the readings do not follow the command: fitted to them, the model explains " +
-         fixed(100 * std::max(0.0, share), 0) + " % of their variance (sensor, its sign, channel, units?)";
+  return "the readings do not follow the command: the fitted model explains only " +
+         fixed(100 * std::max(0.0, share), 0) +
+         " % of their variance. Check the sensor, its sign, the channel and the units";
 }
 
 }  // namespace softgrip::sysid

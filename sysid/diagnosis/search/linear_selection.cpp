@@ -157,7 +157,7 @@ class SelectorUpon {
         if (look.mean_square_mm2 < of_its_kind.mean_square_mm2) of_its_kind = std::move(look);
       }
       if (options_.progress)
-        options_.progress("upon another base: tried " + std::to_string(++tried) + " of " +
+        options_.progress("another base: tested " + std::to_string(++tried) + " of " +
                           std::to_string(causes.size()));
     });
     std::vector<std::pair<Cause, Look>> list;

@@ -110,7 +110,7 @@ class CandidateFitter {
     look_at_the_best();
     if (is_hopeless()) {
       for (Candidate& candidate : candidates_) {
-        if (candidate.why_not.empty()) candidate.why_not = "far behind another explanation";
+        if (candidate.why_not.empty()) candidate.why_not = "much larger error than another explanation";
       }
       return std::move(candidates_);
     }
@@ -137,7 +137,7 @@ class CandidateFitter {
       Candidate& candidate = candidates_[i];
       if (candidate.why_not.empty()) {
         fits_[i] = coarse_fits(data_, current_, scans, candidate.cause);
-        if (fits_[i].empty()) candidate.why_not = "no start led to a fit";
+        if (fits_[i].empty()) candidate.why_not = "no start point led to a fit";
       }
       if (search_.progress) search_.progress(++tried, candidates_.size());
     });

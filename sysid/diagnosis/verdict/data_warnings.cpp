@@ -21,7 +21,7 @@ void warn_of_columns(const Scales& scales, std::vector<std::string>& warnings) {
     }
     if (!scales.has(column) && !ids.empty()) {
       warnings.push_back("no " + std::string(name_of(column)) + " column that varies: " + ids +
-                         " cannot be judged");
+                         " cannot be tested");
     }
   }
 }
@@ -30,7 +30,7 @@ void warn_of_columns(const Scales& scales, std::vector<std::string>& warnings) {
 
 void warn_unphysical(const model::Model& model, std::vector<std::string>& warnings) {
   if (const double ratio = beta_over_gain(model); ratio > 1)
-    warnings.push_back("recalibrated, the model is unphysical: " + wrong_way_sentence(ratio));
+    warnings.push_back("the recalibrated model is unphysical: " + wrong_way_sentence(ratio));
 }
 
 void warn_of_data(const std::vector<Log>& logs, const Scales& scales, std::vector<std::string>& warnings) {
@@ -41,8 +41,8 @@ void warn_of_data(const std::vector<Log>& logs, const Scales& scales, std::vecto
       std::any_of(logs.begin(), logs.end(), [](const Log& log) { return !log.pressure_kpa.empty(); });
   if (!measured) {
     warnings.emplace_back(
-        "commanded pressure only: what the valve does and what the actuator does are told apart by "
-        "their nonlinearity alone");
+        "the logs contain only the commanded pressure: only their nonlinearity separates the effects of the "
+        "valve from those of the actuator");
   }
   for (const Excitation missing : missing_excitation(logs)) warnings.push_back(without(missing));
 }

@@ -49,7 +49,8 @@ tl::expected<StructureFit, std::string> recalibrate(const SearchData& data, cons
     StructureFit other = fit_structure(data.records, {}, point);
     if (other.mean_square_mm2 < best.mean_square_mm2 * (1 - 1e-4)) best = std::move(other);
   }
-  if (!std::isfinite(best.mean_square_mm2)) return Failure("the model's answer to these logs is not finite");
+  if (!std::isfinite(best.mean_square_mm2))
+    return Failure("the prediction of these logs by the model is not finite");
   return best;
 }
 
@@ -96,7 +97,7 @@ class Diagnostician {
  private:
   tl::expected<void, std::string> judge_displacement() {
     StageClock clock(d_);
-    if (options_.progress) options_.progress("recalibrates");
+    if (options_.progress) options_.progress("recalibration");
     if (auto ready = prepare(); !ready) return Failure(ready.error());
     auto base = recalibrate(data_, options_);
     if (!base) return Failure(base.error());
@@ -105,7 +106,7 @@ class Diagnostician {
     d_.recalibrated = std::move(*base);
     if (const auto wrong = why_not_about(data_.records, d_.recalibrated)) return Failure(*wrong);
     clock.ended("recalibration");
-    if (options_.progress) options_.progress("looks at the measured pressure");
+    if (options_.progress) options_.progress("identification of the valve");
     d_.in_valve =
         find_in_valve(logs_, {given_, options_.record.held, d_.noise_mm, options_.seed, options_.threads});
     if (d_.in_valve) {
@@ -174,7 +175,7 @@ class Diagnostician {
     for (const Record& record : records) readings += record.readings;
     if (readings < fewest_samples) {
       return Failure("only " + std::to_string(readings) +
-                     " readings in all: too few to tell a cause from noise (" +
+                     " readings in total: too few to separate a cause from noise (" +
                      std::to_string(fewest_samples) + " are needed)");
     }
     // The zero of the first log is arbitrary. A zero that changes between logs is a drift, which is a cause.
@@ -182,7 +183,7 @@ class Diagnostician {
     for (Record& record : records) record.offset_free = zero_free || record.start_unknown;
     d_.sampling = hide_repeated(records);
     d_.noise_mm = measured_noise_mm(records);
-    if (d_.noise_mm <= 0) return Failure("the readings have no noise at all: this is not measured data");
+    if (d_.noise_mm <= 0) return Failure("the readings have no noise: they are not measured data");
     d_.outliers = hide_outliers(records, d_.noise_mm);
     if (average_dense(records, d_.warnings)) d_.noise_mm = measured_noise_mm(records);
     use(std::move(records));
@@ -235,8 +236,8 @@ class Diagnostician {
     use(std::move(open));
     d_.recalibrated = std::move(fit);
     d_.warnings.emplace_back(
-        "The logs begin without pressure but not as a settled finger does: the state at their start is "
-        "estimated. A slow change at their beginning may be hidden in it");
+        "The logs begin without pressure, but the finger is not settled. The state at their start is "
+        "therefore estimated. The estimate may hide a slow change at the beginning");
     return true;
   }
 
@@ -276,7 +277,7 @@ class Diagnostician {
   /// if stick-slip was the missing effect. The selection is then the one behind the valve.
   bool look_for_stick_slip(Selection& selection, const Division& division) {
     if (options_.record.drive != Drive::command) return false;
-    if (options_.progress) options_.progress("looks for a staircase");
+    if (options_.progress) options_.progress("search for stick-slip");
     SelectionOptions one_more;
     one_more.most_causes = 1;
     one_more.seed = options_.seed;

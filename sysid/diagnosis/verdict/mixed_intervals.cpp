@@ -41,8 +41,8 @@ std::vector<std::string> mix_intervals(std::vector<NamedCause>& named, const std
       beside += (beside.empty() ? "" : " and ") + std::string(cause.cause.id);
     }
     if (!beside.empty()) {
-      sentences.push_back("these logs do not say whether " + std::string(other.cause.id) +
-                          " is there beside " + beside + ": the intervals hold both answers");
+      sentences.push_back("these logs do not determine whether " + std::string(other.cause.id) +
+                          " is present in addition to " + beside + ": the intervals cover both cases");
     }
   }
   return sentences;

@@ -26,8 +26,7 @@ void reject_drift(Diagnosis& d) {
   d.verdict = d.causes.empty() ? Verdict::unexplained : Verdict::partly_explained;
   d.warnings.emplace_back(
       "A slow change of unknown origin: no log contains a rest without pressure, so a drift of the sensor "
-      "cannot be "
-      "told from a change of the finger");
+      "cannot be separated from a change of the finger");
 }
 
 NamedCause sticking_valve() {
@@ -52,11 +51,10 @@ void correct_by_logs(Diagnosis& d, const std::vector<Log>& logs) {
   };
   if (!std::all_of(logs.begin(), logs.end(), is_closed)) return;
   d.warnings.emplace_back(
-      "The command follows the readings (closed loop): it contains their noise, and a simulation from it is "
-      "uncertain");
+      "The command depends on the readings (closed loop). It contains their noise, so a simulation with it "
+      "is uncertain");
   if (!std::all_of(logs.begin(), logs.end(), sticks)) return;
-  d.warnings.emplace_back(
-      "The phase between command and reading is that of a valve that sticks (Horch 1999)");
+  d.warnings.emplace_back("The phase between command and reading indicates a sticking valve (Horch 1999)");
   std::erase_if(d.causes,
                 [](const NamedCause& named) { return named.cause.id == causes::ValveDeadband::id; });
   std::move(d.causes.begin(), d.causes.end(), std::back_inserter(d.partial));

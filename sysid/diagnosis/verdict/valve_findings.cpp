@@ -241,9 +241,9 @@ class Search {
     named.alternatives = {*find_cause(causes::PressureScale::id)};
     found.named.push_back(std::move(named));
     found.advice = "at " + significant(lost->highest_kpa, 3) + " kPa " + significant(lost->missing_kpa, 2) +
-                   " kPa of the command are missing, whether it rises or falls: hold full pressure and close "
-                   "the line behind the valve; if the finger's pressure falls, it leaks, and if it stays, "
-                   "the valve's or the pressure sensor's scale is not what was entered";
+                   " kPa of the command are missing, for rising and falling commands: hold full pressure and "
+                   "close the line after the valve. If the pressure of the finger falls, the finger leaks. "
+                   "If it does not, the scale of the valve or of the pressure sensor is wrong";
   }
 
   [[nodiscard]] bool moves_the_finger(const PartEvidence& of) const {

@@ -27,7 +27,7 @@ std::string listed(const std::vector<NamedCause>& causes) {
 std::string readings_sentence(const Diagnosis& d) {
   std::string wrong;
   if (d.outliers.present)
-    wrong = "Isolated wrong samples stand among the readings (" + significant(100 * d.outliers.share, 2) +
+    wrong = "The readings contain isolated wrong samples (" + significant(100 * d.outliers.share, 2) +
             " %, about " + reading(d, d.outliers.size_mm) + " off)";
   if (d.sampling.present) {
     if (!wrong.empty())
@@ -35,7 +35,7 @@ std::string readings_sentence(const Diagnosis& d) {
     else
       wrong = "Readings repeat";
     if (d.sampling.interval_s > 0)
-      wrong += ": a new one comes every " + significant(d.sampling.interval_s, 2) + " s";
+      wrong += ": a new reading arrives every " + significant(d.sampling.interval_s, 2) + " s";
     if (d.sampling.frozen_s > 0)
       wrong +=
           ": the sensor is frozen for " + significant(d.sampling.frozen_s, 2) + " s while the command moves";
@@ -44,7 +44,7 @@ std::string readings_sentence(const Diagnosis& d) {
     wrong += (wrong.empty() ? "" : ". ") + std::string("The readings are ") + significant(d.lead->lead_s, 3) +
              " s ahead of their command: the clocks differ";
   const std::string those =
-      d.outliers.present || d.sampling.present ? "on the others " : "without that offset ";
+      d.outliers.present || d.sampling.present ? "without these readings " : "without that offset ";
   return wrong + "; " + those + "the recalibrated model's error is " + reading(d, d.extended_rmse_mm) + ".";
 }
 
@@ -52,10 +52,9 @@ std::string readings_sentence(const Diagnosis& d) {
 /// not.
 std::string stick_slip_sentence(const Diagnosis& d, const std::string& before, const std::string& after) {
   return "The model lacks " + listed(d.causes) +
-         ": the valve sticks and jumps. When it jumps the command alone does not tell, and with it the "
-         "held-out error "
-         "falls from " +
-         before + " to " + after + " only; with the moment of every jump taken from the readings, to " +
+         ": the valve sticks and jumps. The command alone does not determine the times of the jumps, so the "
+         "held-out error only falls from " +
+         before + " to " + after + ". With the jump times from the readings, it falls to " +
          reading(d, d.stick_slip->heldout_rmse_mm) + ".";
 }
 
@@ -67,22 +66,22 @@ std::string with_them(const Diagnosis& d, const std::string& before, const std::
   if (d.extended_rmse_mm < (1 - next_to_nothing) * d.recalibrated_rmse_mm)
     return ": with " + them + " the held-out error falls from " + before + " to " + after;
   return ": without " + them +
-         " the model follows these logs only by moving the wrong way first, as no finger does; the held-out "
-         "error is " +
+         " the model fits these logs only with an inverse response, which no finger has; the held-out error "
+         "is " +
          before + " without and " + after + " with " + them;
 }
 
 std::string unexplained_sentence(const Diagnosis& d, const std::string& before, const std::string& after) {
-  if (d.partial.empty()) return "Something is wrong that no known cause explains.";
+  if (d.partial.empty()) return "The model has an error that no known cause explains.";
   if (d.null_calibration && d.null_calibration->reach_the_gain()) {
-    return "Something is wrong, and it cannot be named: " + listed(d.partial) +
+    return "The model has an error whose cause cannot be named: " + listed(d.partial) +
            " would lower the held-out error from " + before + " to " + after +
-           ", but the search gains as much where nothing is (p = " +
+           ", but the search reaches this reduction in simulated data without a cause, too (p = " +
            significant(d.null_calibration->p_value, 2) + ").";
   }
-  return "Something is wrong that no known cause explains in full: with " + listed(d.partial) +
+  return "The model has an error that no known cause explains completely: with " + listed(d.partial) +
          " the held-out error falls from " + before + " to " + after + ", and " +
-         reading(d, d.unexplained_error.excess_mm) + " of structure stays, " +
+         reading(d, d.unexplained_error.excess_mm) + " remains unexplained, " +
          significant(d.unexplained_error.excess_mm / d.noise_mm, 2) + " times the noise.";
 }
 
@@ -112,18 +111,19 @@ std::string sentence_of_logs(const Diagnosis& d) {
              " to the noise (" + reading(d, d.noise_mm) + ")" +
              (valve_lacks(d) ? "." : ": nothing to change.");
     case Verdict::recalibrate:
-      return "The structure is right and its numbers are not: recalibrated, the error falls from " +
+      return "The structure of the model is right, but its parameters are not: after recalibration, the "
+             "error falls from " +
              significant(d.as_given_rmse_mm, 2) + " to " + before + ".";
     case Verdict::cause_found:
       if (!is_extended(d)) return readings_sentence(d);
       if (d.stick_slip) return stick_slip_sentence(d, before, after);
       return "The model lacks " + listed(d.causes) + with_them(d, before, after) + ".";
     case Verdict::ambiguous:
-      return "The model lacks something that these logs cannot tell apart (" + listed(d.causes) + ")" +
-             with_them(d, before, after) + ".";
+      return "The model lacks one of several causes that these logs cannot separate (" + listed(d.causes) +
+             ")" + with_them(d, before, after) + ".";
     case Verdict::partly_explained:
       return "The model lacks " + listed(d.causes) + with_them(d, before, after) + "; " +
-             reading(d, d.unexplained_error.excess_mm) + " of structure stays, " +
+             reading(d, d.unexplained_error.excess_mm) + " remains unexplained, " +
              significant(d.unexplained_error.excess_mm / d.noise_mm, 2) + " times the noise.";
     case Verdict::unexplained:
       return unexplained_sentence(d, before, after);

@@ -95,7 +95,7 @@ TEST(Evidence, AnErrorThatFollowsTheRateIsFoundThere) {
   EXPECT_EQ(evidence.conditions.front().condition.id, "rate");
   EXPECT_TRUE(evidence.conditions.front().clear);
   EXPECT_GT(evidence.conditions.front().share_percent, 90);
-  EXPECT_NE(dependence_sentence(evidence).find("how fast the pressure changes"), std::string::npos);
+  EXPECT_NE(dependence_sentence(evidence).find("the rate of the pressure"), std::string::npos);
   for (const ConditionBin& bin : evidence.conditions.front().bins)
     EXPECT_NEAR(bin.mean_mm, 0.01 * bin.value, 0.02) << bin.value;
   EXPECT_FALSE(of(evidence, "campaign_time").clear);

@@ -36,13 +36,13 @@ TEST(Advice, IsNotNeededWhereAWaveformTells) {
 
 TEST(Advice, IsOfWhatTheTwoHaveInCommon) {
   EXPECT_TRUE(says(advice_for("stiffening", "contact", {}), "change the load"));
-  EXPECT_TRUE(says(advice_for("stiffening", "contact", {.gauge_made = true}), "the gauge left it open"));
+  EXPECT_TRUE(says(advice_for("stiffening", "contact", {.gauge_made = true}), "the gauge did not decide it"));
   EXPECT_TRUE(says(advice_for("slow_creep", "ageing", {}), "vented for an hour"));
-  EXPECT_TRUE(says(advice_for("stress_softening", "ageing", {}), "another temperature"));
-  EXPECT_FALSE(
-      says(advice_for("stress_softening", "ageing", {.temperature_varies = true}), "another temperature"));
+  EXPECT_TRUE(says(advice_for("stress_softening", "ageing", {}), "a different temperature"));
+  EXPECT_FALSE(says(advice_for("stress_softening", "ageing", {.temperature_varies = true}),
+                    "a different temperature"));
   EXPECT_TRUE(
-      says(advice_for("thermal_gain", "contact", {.temperature_varies = true}), "another temperature"));
+      says(advice_for("thermal_gain", "contact", {.temperature_varies = true}), "a different temperature"));
   EXPECT_TRUE(says(advice_for("inertia", "contact", {}), "no waveform"));
 }
 

@@ -124,9 +124,9 @@ TEST_F(DiagnoseCommand, FilledInPositionsTellTheFingerFromTheSensor) {
   EXPECT_EQ(json["gauge"]["outcome"], "decided");
   EXPECT_EQ(json["gauge"]["ruled_out"], Json({"sensor_nonlinearity"}));
   EXPECT_TRUE(json["gauge_check"].is_null());
-  EXPECT_EQ(read("result/gauge_positions.csv"), filled) << "the entered readings are kept";
-  EXPECT_NE(read("out.txt").find("The gauge shows a straight sensor"), std::string::npos);
-  EXPECT_NE(read("result/report.html").find("The sensor on the gauge"), std::string::npos);
+  EXPECT_EQ(read("result/gauge_positions.csv"), filled) << "what was filled in stays";
+  EXPECT_NE(read("out.txt").find("The gauge check shows a linear sensor"), std::string::npos);
+  EXPECT_NE(read("result/report.html").find("Gauge check of the sensor"), std::string::npos);
 }
 
 TEST_F(DiagnoseCommand, AConstantInputIsRefused) {
@@ -196,7 +196,7 @@ TEST_F(DiagnoseCommand, LogsOfTwoRigsAreNotExplainedByOneCause) {
   const Json json = diagnosis();
   EXPECT_EQ(json["verdict"], "unexplained");
   EXPECT_TRUE(json["causes"].empty());
-  EXPECT_TRUE(warned_of(json, "are these logs of one rig")) << json["warnings"];
+  EXPECT_TRUE(warned_of(json, "all logs come from one rig")) << json["warnings"];
 }
 
 }  // namespace

@@ -56,8 +56,8 @@ TEST(Diagnosis, LittleLeftByTheFirstCauseIsNoQuestionForAnotherBase) {
   ASSERT_EQ(diagnosis->causes.size(), 1U);
   EXPECT_EQ(diagnosis->causes.front().cause.id, "transport_delay");
   for (const std::string& text : said) {
-    EXPECT_NE(text, "looks for another base");
-    EXPECT_NE(text, "looks for a staircase");
+    EXPECT_NE(text, "search for another base");
+    EXPECT_NE(text, "search for stick-slip");
   }
 }
 

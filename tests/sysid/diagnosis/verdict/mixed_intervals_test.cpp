@@ -50,10 +50,10 @@ TEST(MixedIntervals, HoldTheDelayWhereALagIsInQuestion) {
   EXPECT_LT(mixed.lower, true_delay_s);
   EXPECT_GT(mixed.upper, true_delay_s);
   ASSERT_EQ(named.sentences.size(), 1U);
-  EXPECT_EQ(
-      named.sentences.front(),
-      "these logs do not say whether valve_lag is there beside transport_delay: the intervals hold both "
-      "answers");
+  EXPECT_EQ(named.sentences.front(),
+            "these logs do not determine whether valve_lag is present in addition to transport_delay: the "
+            "intervals cover both "
+            "cases");
 }
 
 }  // namespace

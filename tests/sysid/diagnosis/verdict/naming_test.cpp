@@ -76,9 +76,8 @@ TEST(VerdictSentence, SaysThatAnErrorFallsWhereItFallsAlone) {
             "The model lacks valve lag: with it the held-out error falls from 2.3 mm to 0.4 mm.");
   d.extended_rmse_mm = 2.5;
   EXPECT_EQ(verdict_sentence(d),
-            "The model lacks valve lag: without it the model follows these logs only by moving the wrong way "
-            "first, as "
-            "no finger does; the held-out error is 2.3 mm without and 2.5 mm with it.");
+            "The model lacks valve lag: without it the model fits these logs only with an inverse response, "
+            "which no finger has; the held-out error is 2.3 mm without and 2.5 mm with it.");
 }
 
 TEST(DataWarnings, SayWhatALogWithoutUnloadingCannotShow) {
