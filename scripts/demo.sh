@@ -65,7 +65,7 @@ say "5. The published structure, fitted to them: it looks good"
 say "6. What is wrong with it, and why"
 "$softgrip" diagnose --model config/models/zhang2025.yaml --data "$out/tp1.csv" "$out/steps.csv" "$out/sp2.csv" --out "$out/diagnosis"
 
-say "7. What became of the finger: a baseline, and a later day on which its gain drifts"
+say "7. Change since the baseline: a baseline, and a later day on which the gain of the finger drifts"
 twin=config/models/bench_twin.yaml
 { cat "$twin"; printf '  - ageing:\n      gain_per_h: 1.0\n'; } >"$work/aged.yaml"
 simulate() { "$softgrip" simulate --model "$1" --input "$2" --out "$3" --noise-mm 0.05 --seed "$4" --rate-hz 100 >/dev/null; }

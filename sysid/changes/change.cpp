@@ -147,9 +147,8 @@ class RunSpread {
 
 std::string other_start(const std::string& record) {
   return "No healthy log begins like " + record +
-         " (under pressure, or without): a slow change after its start is not judged. Record a healthy log "
-         "that "
-         "begins in the same way";
+         " (with or without pressure): a slow change after its start is not evaluated. Record a healthy log "
+         "that begins in the same way";
 }
 
 /// Evaluates one reading, from its healthy records to the causes in the later records.
@@ -160,7 +159,7 @@ class Judge {
 
   void judge(const std::vector<Record>& later, ChangeDiagnosis& diagnosis) {
     learn_temperature();
-    say("what the search finds in healthy runs that are left out");
+    say("search in left-out healthy runs");
     healthy_ = healthy_fits(base_, pressure_is_judged_, options_.threads);
     spread_ = RunSpread(healthy_, base_.units.runs());
     const Tolerance tolerance = tolerance_of(healthy_, base_.units.runs());
@@ -181,7 +180,7 @@ class Judge {
     Eigen::VectorXd white = readings.white(found);
     judged.loss_before = judged.loss_left = per_bin(readings, white);
     for (std::size_t step = 0; step < most_causes; ++step) {
-      say("which changes the later logs show");
+      say("search for changes in the later logs");
       std::vector<ScoredEffect> ranked =
           ranked_effects(readings, effects, found, tolerance, options_.threads);
       if (step == 0) {
@@ -315,7 +314,7 @@ class Judge {
           compare(paired_losses(readings, without, each.fit.white),
                   each.tolerance + price_per_row(readings, each.fit.fitted.effect), options_.seed);
       if (is_better(against_none)) return false;
-      reject(each, "the improvement is within what the search finds in healthy runs");
+      reject(each, "the improvement does not exceed that in healthy runs");
       return true;
     });
     const Ties ties = ties_in(readings, options_.seed);
@@ -408,7 +407,8 @@ bool has_pressure(const std::vector<Log>& logs) {
 }
 
 std::string objection_to(const std::vector<Log>& healthy, const std::vector<Log>& later) {
-  if (healthy.empty() || later.empty()) return "A change needs healthy logs and later ones";
+  if (healthy.empty() || later.empty())
+    return "The diagnosis of a change requires healthy logs and later logs";
   const auto samples = [](const std::vector<Log>& logs) {
     std::size_t sum = 0;
     for (const Log& log : logs) sum += log.size();
@@ -416,7 +416,8 @@ std::string objection_to(const std::vector<Log>& healthy, const std::vector<Log>
   };
   constexpr std::size_t fewest = 400;
   if (samples(healthy) < fewest || samples(later) < fewest)
-    return "A change needs " + std::to_string(fewest) + " samples of healthy logs and as many of later ones";
+    return "The diagnosis of a change requires " + std::to_string(fewest) +
+           " samples of healthy logs and as many of later logs";
   return {};
 }
 
@@ -424,19 +425,20 @@ void warn(const std::vector<Log>& healthy, const std::vector<Log>& later,
           std::vector<std::string>& warnings) {
   const double now_kpa = largest_command_kpa(later), then_kpa = largest_command_kpa(healthy);
   if (now_kpa > 1.05 * then_kpa)
-    warnings.push_back("The later logs go to " + significant(now_kpa, 3) + " kPa, the healthy ones to " +
-                       significant(then_kpa, 3) + " kPa: beyond it the base only guesses");
+    warnings.push_back("The later logs reach " + significant(now_kpa, 3) + " kPa, the healthy logs only " +
+                       significant(then_kpa, 3) + " kPa: at higher pressures the base extrapolates");
   if (healthy.size() == 1)
     warnings.emplace_back(
         "One healthy log does not show how runs differ. A change is reported only if its error exceeds three "
         "times the error between the halves of that log. Record three healthy logs or more");
   if (has_pressure(healthy) != has_pressure(later))
     warnings.emplace_back(
-        "pressure_kpa is recorded in one of the two only: the valve and the finger are judged as one");
+        "pressure_kpa is recorded only in the healthy or only in the later logs: the valve and the finger "
+        "are evaluated together");
 }
 
 std::string unused_pressure(const DriveChoice& choice) {
-  return "The command predicts healthy runs that were left out better than the measured pressure does (" +
+  return "The command predicts left-out healthy runs better than the measured pressure (" +
          significant(choice.by_command_mm, 2) + " and " + significant(choice.by_pressure_mm, 2) +
          " mm RMS): pressure_kpa is not used";
 }
@@ -467,7 +469,7 @@ void judge_readings(const Prepared& healthy, const Prepared& later, ChangeDiagno
   if (sampling.frozen_s > slower * healthy.sampling.frozen_s)
     add(causes::Sampling::id, {"the reading is frozen for", sampling.frozen_s, "s"}, {}, sampling.excess_mm);
   else if (sampling.interval_s > slower * healthy.sampling.interval_s)
-    add(causes::Sampling::id, {"from one new reading to the next", sampling.interval_s, "s"}, {},
+    add(causes::Sampling::id, {"time between new readings", sampling.interval_s, "s"}, {},
         sampling.excess_mm);
 }
 

@@ -21,8 +21,8 @@ Tone tone_of(ChangeVerdict verdict) {
 void add_causes(Page& page, const ChangeDiagnosis& d) {
   page.section("What changed");
   Table table{
-      "The causes, the largest change first",
-      {"cause", "how much", "95 % interval", "at full pressure", "share of what its reading shows [%]", "or"},
+      "Causes, largest first",
+      {"cause", "size", "95 % interval", "at full pressure", "share of the error [%]", "alternatives"},
       {false, false, false, false, true, false},
       {}};
   for (const ChangeCause& cause : d.causes) {
@@ -33,7 +33,7 @@ void add_causes(Page& page, const ChangeDiagnosis& d) {
   }
   page.table(table);
   for (const ChangeCause& cause : d.causes) {
-    page.subsection("What to do about " + cause.id);
+    page.subsection("Next steps for " + cause.id);
     const auto steps = next_steps(cause.id);
     page.list({std::string(steps[0]), std::string(steps[1])});
   }
@@ -46,10 +46,10 @@ Figure residual_figure(const JudgedChange& judged, bool explained) {
     Chart chart;
     chart.title = judged.logs[r];
     chart.x.label = "time [s]";
-    chart.y.label = std::string("left [") + unit_of(judged.judged, judged.output_unit) + "]";
+    chart.y.label = std::string("residual [") + unit_of(judged.judged, judged.output_unit) + "]";
     chart.height = 180;
     Series before;
-    before.label = "base of the healthy finger";
+    before.label = "baseline model";
     before.colour = Colour::error;
     for (std::size_t b = 0; b < judged.left[r].size(); ++b) {
       before.x.push_back((static_cast<double>(b) + 0.5) * judged.bin_s);
@@ -64,22 +64,20 @@ Figure residual_figure(const JudgedChange& judged, bool explained) {
     if (explained) chart.series.push_back(after);
     charts.push_back(std::move(chart));
   }
-  return {
-      std::string("misfit ") + name_of(judged.judged),
-      "What the base of the healthy finger leaves of the later logs. Healthy logs that it was not fitted to "
-      "leave " +
-          significant(judged.healthy_mm, 2) + " " + unit_of(judged.judged, judged.output_unit) + " (RMS).",
-      stacked(std::move(charts))};
+  return {std::string("residual ") + name_of(judged.judged),
+          "Residual of the baseline model on the later logs. RMS on left-out healthy logs: " +
+              significant(judged.healthy_mm, 2) + " " + unit_of(judged.judged, judged.output_unit) + ".",
+          stacked(std::move(charts))};
 }
 
 Figure tried_figure(const JudgedChange& judged) {
   Chart chart;
   chart.title = name_of(judged.judged);
-  chart.y.label = "gain";
+  chart.y.label = "improvement";
   Series later, healthy, tolerance;
   later.label = "later logs";
   tolerance.label = "tolerance";
-  healthy.label = "healthy runs, left out";
+  healthy.label = "left-out healthy runs";
   later.style = Series::Style::bars;
   healthy.style = Series::Style::points;
   healthy.width = 4;
@@ -96,11 +94,10 @@ Figure tried_figure(const JudgedChange& judged) {
     tolerance.y.push_back(judged.tried[i].tolerance);
   }
   chart.series = {later, healthy, tolerance};
-  return {
-      std::string("causes tried ") + name_of(judged.judged),
-      "Improvement by each cause alone, in whitened squares per bin: of the later logs, and of healthy runs "
-      "that were left out. The improvement by a change must exceed its tolerance.",
-      stacked({chart})};
+  return {std::string("tested causes ") + name_of(judged.judged),
+          "Improvement by each cause alone, in whitened squares per bin, for the later logs and for left-out "
+          "healthy runs. The improvement by a change must exceed its tolerance.",
+          stacked({chart})};
 }
 
 std::string name_with_state(const RunLeft& run) {
@@ -118,7 +115,7 @@ Figure runs_figure(const JudgedChange& judged, bool explained) {
   }
   Chart chart = chart_over(std::move(names));
   chart.y.label = std::string("error [") + unit_of(judged.judged, judged.output_unit) + "]";
-  chart.series = {points_over_names("base of the healthy finger", Colour::error, std::move(before))};
+  chart.series = {points_over_names("baseline model", Colour::error, std::move(before))};
   if (explained)
     chart.series.push_back(points_over_names("with the causes", Colour::model, std::move(after)));
   return {std::string("error by run ") + name_of(judged.judged),
@@ -129,7 +126,7 @@ Figure runs_figure(const JudgedChange& judged, bool explained) {
 
 /// Returns the causes that the data cannot show, each with the recording that would.
 Table not_tested_table(const JudgedChange& judged) {
-  Table table{"Not tested", {"cause", "to test it"}, {false, false}, {}};
+  Table table{"Not tested", {"cause", "recording that would test it"}, {false, false}, {}};
   for (const auto& [id, recording] : judged.not_tested) table.rows.push_back({id, recording});
   return table;
 }
@@ -140,11 +137,11 @@ void add_reading(Page& page, const JudgedChange& judged, const ChangeDiagnosis& 
   page.terms({{"base", judged.base},
               {"noise of the readings", significant(judged.noise_mm, 2) + unit},
               {"healthy logs", std::to_string(judged.healthy_runs)},
-              {"error of healthy runs that were left out", significant(judged.healthy_mm, 3) + unit},
-              {"error that another healthy run may have", significant(judged.allowed_mm, 3) + unit},
+              {"error of left-out healthy runs", significant(judged.healthy_mm, 3) + unit},
+              {"largest expected error of another healthy run", significant(judged.allowed_mm, 3) + unit},
               {"error of the later logs", significant(judged.later_mm, 3) + unit},
               {"with the causes", significant(judged.explained_mm, 3) + unit},
-              {"another zero", significant(judged.zero_mm, 2) + unit},
+              {"offset change", significant(judged.zero_mm, 2) + unit},
               {"gain within the healthy spread", significant(judged.gain_percent, 2) + " %"}});
   bool explained = false;
   for (const ChangeCause& cause : d.causes) explained |= cause.judged == judged.judged;
@@ -159,7 +156,7 @@ void add_reading(Page& page, const JudgedChange& judged, const ChangeDiagnosis& 
 
 Page change_page(const ChangeDiagnosis& diagnosis, const std::vector<Log>& healthy,
                  const std::vector<Log>& later, const model::Model& given) {
-  Page page("What became of the finger", change_sentence(diagnosis), tone_of(diagnosis.verdict));
+  Page page("Change since the baseline", change_sentence(diagnosis), tone_of(diagnosis.verdict));
   std::vector<Log> all = healthy;
   for (Log& log : all) log.name += " (healthy)";
   all.insert(all.end(), later.begin(), later.end());
@@ -174,8 +171,8 @@ Page change_page(const ChangeDiagnosis& diagnosis, const std::vector<Log>& healt
 }
 
 Table tried_table(const JudgedChange& judged) {
-  Table table{"Causes that were tried, each alone; improvement in whitened squares per bin",
-              {"cause", "improvement", "in healthy runs", "tolerance", "rejected because"},
+  Table table{"Tested causes, each alone; improvement in whitened squares per bin",
+              {"cause", "improvement", "in healthy runs", "tolerance", "reason of rejection"},
               {false, true, true, true, false},
               {}};
   for (const TriedCause& tried : judged.tried)

@@ -27,14 +27,14 @@ std::string interval_text(const ChangeCause& cause) {
 
 std::string change_sentence(const ChangeDiagnosis& diagnosis) {
   if (diagnosis.verdict == ChangeVerdict::unchanged)
-    return "Unchanged: the later logs differ from the healthy ones by no more than those differ among "
-           "themselves.";
+    return "Unchanged: the later logs differ from the healthy logs by no more than the healthy logs differ "
+           "from each other.";
   if (diagnosis.verdict == ChangeVerdict::unexplained)
-    return "Something changed since the healthy logs, and no cause in the library explains it.";
-  std::string text = "Since the healthy logs ";
+    return "The finger has changed since the healthy logs, but no cause of the library explains the change.";
+  std::string text = "Change since the healthy logs: ";
   for (std::size_t i = 0; i < diagnosis.causes.size(); ++i)
     text += (i == 0 ? "" : "; and ") + named(diagnosis.causes[i]);
-  if (diagnosis.verdict == ChangeVerdict::partly_explained) text += "; that is not all that changed";
+  if (diagnosis.verdict == ChangeVerdict::partly_explained) text += "; a part of the change is unexplained";
   return text + ".";
 }
 

@@ -253,7 +253,7 @@ class Collector {
     effects_.push_back(std::move(leaking));
     Effect narrow = form_of(blocked_line);
     narrow.form = "narrower_tube";
-    narrow.size = SizedBy{SizedBy::Of::number, "less air through the line", "%", "blocked", 100};
+    narrow.size = SizedBy{SizedBy::Of::number, "reduction of the air flow", "%", "blocked", 100};
     narrow.numbers = {{"blocked", "", 0.1, 0, 0.99}};
     narrow.starts = {{0.05}, {0.3}};
     narrow.nothing = {0};

@@ -13,7 +13,7 @@ namespace softgrip::tools::health {
 
 struct Suspect {
   std::string id;                       ///< of the vocabulary of causes
-  std::string words;                    ///< "pressure is lost while it should hold"
+  std::string words;                    ///< "the pressure falls while it should be constant"
   std::vector<std::string> next_steps;  ///< what a person can do, the quicker first
 };
 

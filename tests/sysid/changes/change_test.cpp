@@ -371,7 +371,7 @@ TEST(Change, ThePageSaysWhatToDoAndShowsTheMisfit) {
   const ChangeDiagnosis d = changed({.gain = 0.19});
   const Page page = change_page(d, logs_of({}, 1), logs_of({}, 5), {});
   const std::string html = page.to_html();
-  EXPECT_NE(html.find("What to do about ageing"), std::string::npos);
+  EXPECT_NE(html.find("Next steps for ageing"), std::string::npos);
   EXPECT_NE(html.find(interval_text(d.causes[0])), std::string::npos) << interval_text(d.causes[0]);
   EXPECT_NE(html.find(std::string(next_steps("ageing")[1]).substr(0, 30)), std::string::npos);
   ASSERT_EQ(page.figures().size(), 3U);
