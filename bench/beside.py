@@ -146,9 +146,9 @@ class Study:
             ("uncertainty of beta (95 %)",
              f"± {self.scipy['beta_ci95']:.2g} mm/kPa from the Jacobian, as if every sample were independent",
              f"± {half:.2g} mm/kPa: the residuals resemble each other (lag-1 correlation "
-             f"{residuals['lag1_correlation']:.2f}), {residuals['effective_samples']:.0f} independent samples' worth"),
+             f"{residuals['lag1_correlation']:.2f}), equivalent to {residuals['effective_samples']:.0f} independent samples"),
             ("the model has no inverse", f"nothing: beta {self.scipy['beta']:.3f}, alpha {self.scipy['alpha']:.3f} mm/kPa "
-             "are printed side by side", next((w for w in self.identified["warnings"] if "wrong way" in w), "-")),
+             "are printed side by side", next((w for w in self.identified["warnings"] if "inverse response" in w), "-")),
             ("why", "nothing: the error is small", f"{self.diagnosis['verdict']}: {causes or '-'}"),
             ("improvement by the named causes", "-", f"held out, steps {mm(self.identified['validation']['rmse_mm']['steps'])} → "
              f"{mm(self.extended['steps'])} mm, sp2 {mm(self.identified['validation']['rmse_mm']['sp2'])} → "

@@ -85,10 +85,10 @@ std::string wrong_way_sentence(double beta_over_gain) {
   constexpr double largest_told = 1000;
   const std::string ratio = beta_over_gain < largest_told
                                 ? "= " + significant(beta_over_gain, 3) + " is above 1"
-                                : "is above 1, by far";
+                                : "is far above 1";
   return "beta / (alpha + 1/k0) " + ratio +
-         ": the model moves the wrong way first and cannot be inverted; a latency in the data is the usual "
-         "cause";
+         ": the model has an inverse response (it first moves opposite to the command), so it has no usable "
+         "inverse. The usual cause is a latency in the data";
 }
 
 }  // namespace softgrip::sysid

@@ -58,7 +58,7 @@ std::vector<Estimate> parameter_estimates(const FittedPoint& fit) {
     kept.name = model::parameter_path(model, flat);
     kept.unit = model::in_unit(model::parameter_spec(model, flat).unit, model.output_unit);
     kept.value = values[flat];
-    kept.note = "kept at the start's value";
+    kept.note = "fixed at the start value";
     estimates.push_back(std::move(kept));
   }
   return estimates;
@@ -71,8 +71,8 @@ void name_the_sum(std::vector<Estimate>& parameters) {
     e.ci95.reset();
     e.profile95.reset();
     e.identifiable = false;
-    e.note = alpha ? "only alpha + 1/k0 is identifiable; holds for the k0 that was kept"
-                   : "kept at the start's value: only alpha + 1/k0 is identifiable";
+    e.note = alpha ? "only alpha + 1/k0 is identifiable; valid for the fixed k0"
+                   : "fixed at the start value: only alpha + 1/k0 is identifiable";
   }
 }
 
@@ -123,7 +123,7 @@ std::vector<Estimate> combination_estimates(const FittedPoint& fit) {
       e.identifiable = (e.ci95->upper - e.ci95->lower) / 2 <=
                        narrow_share * std::max(std::abs(e.value), combination.scale);
     } else {
-      e.note = "follows from parameters that were kept or stand at a bound";
+      e.note = "depends only on parameters that are fixed or at a bound";
     }
     estimates.push_back(std::move(e));
   }

@@ -92,7 +92,8 @@ class Run {
     const auto best =
         std::min_element(found.begin(), found.end(),
                          [](const SearchResult& a, const SearchResult& b) { return a.rmse_mm < b.rmse_mm; });
-    if (!std::isfinite(best->rmse_mm)) return Failure("the model's answer is not finite from any start");
+    if (!std::isfinite(best->rmse_mm))
+      return Failure("the prediction of the model is not finite from any start point");
     for (const SearchResult& each : found) result_.multistart.rmse_mm.push_back(each.rmse_mm);
     order_branches(branch_time_constants_s(start_), best->point);
     polish(best->point, *free);
@@ -175,7 +176,7 @@ model::Model put_back(const model::Model& start, const model::Model& fitted) {
 void add_warnings(Identification& result) {
   if (!result.converged) result.warnings.emplace_back("the last minimisation stopped before it converged");
   if (const double ratio = beta_over_gain(result.fitted); ratio > 1)
-    result.warnings.push_back(wrong_way_sentence(ratio) + ", run softgrip diagnose");
+    result.warnings.push_back(wrong_way_sentence(ratio) + ". Run softgrip diagnose");
   for (const Record& record : result.records) {
     if (record.start_unknown) {
       result.warnings.push_back(record.name + " does not start from rest: its start state was estimated");
@@ -187,13 +188,13 @@ void add_warnings(Identification& result) {
   if (result.noise.lag1_correlation > 0.5) {
     result.warnings.push_back("the residuals are correlated (" +
                               significant(result.noise.lag1_correlation, 3) +
-                              " from sample to sample): " + fixed(result.noise.effective_samples, 0) +
-                              " independent samples' worth of data");
+                              " from sample to sample): equivalent to " +
+                              fixed(result.noise.effective_samples, 0) + " independent samples");
   }
   if (result.multistart.starts >= 5 && result.multistart.share_at_best < 0.2) {
     result.warnings.push_back(
         "only " + fixed(100 * result.multistart.share_at_best, 0) +
-        " % of the starts reached the best fit: there may be a better one, try --starts");
+        " % of the starts reached the best fit: a better fit may exist, increase --starts");
   }
 }
 

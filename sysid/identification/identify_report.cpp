@@ -53,7 +53,7 @@ Table estimate_table(const std::vector<Estimate>& list, std::string caption) {
     table.header.emplace_back("95 % by profile");
     table.numeric.push_back(true);
   }
-  table.header.insert(table.header.end(), {"unit", "identified", formulas ? "what it is" : "note"});
+  table.header.insert(table.header.end(), {"unit", "identified", formulas ? "formula" : "note"});
   for (const Estimate& e : list) {
     std::vector<std::string> row{e.name, significant(e.value, 5), range(e.ci95, e.value)};
     if (profiled) row.push_back(range(e.profile95, e.value));
@@ -99,7 +99,7 @@ Chart multistart_chart(const Identification& r) {
   Chart chart;
   chart.width = 380;
   chart.height = 240;
-  chart.title = "where the starts ended";
+  chart.title = "results of the starts";
   chart.x.label = "start, best first";
   chart.y.label = model::in_unit("RMSE [mm]", r.model.output_unit);
   std::vector<double> sorted = r.multistart.rmse_mm;
@@ -118,7 +118,7 @@ Chart multistart_chart(const Identification& r) {
 }
 
 void add_limits(Page& page, const Identification& r) {
-  page.section("What these data cannot tell");
+  page.section("Limits of the data");
   std::vector<std::string> items;
   for (const Estimate& e : r.parameters) {
     const bool kept = !e.free && e.note.find("alpha") == std::string::npos;
@@ -130,9 +130,8 @@ void add_limits(Page& page, const Identification& r) {
     for (std::size_t i = 0; i < loose.names.size(); ++i) {
       text += (i == 0 ? "" : ", ") + loose.names[i] + " (" + significant(loose.weights[i], 2) + ")";
     }
-    items.push_back(
-        text + " may move by " + significant(loose.deviation, 2) +
-        " in the fit's scale (logarithms of stiffnesses and dampings) without the fit getting worse.");
+    items.push_back(text + " may move by " + significant(loose.deviation, 2) +
+                    " in the fit's scale (logarithms of stiffnesses and dampings) without a larger error.");
   }
   if (items.empty()) {
     page.paragraph("Every free parameter is identified by these logs.");
@@ -144,24 +143,23 @@ void add_limits(Page& page, const Identification& r) {
 void add_residuals(Page& page, const Identification& r) {
   page.section("Errors and search");
   const std::string unit(model::name_of(r.model.output_unit));
-  page.paragraph("Sample-to-sample noise of the readings " + significant(r.fast_noise_mm, 3) + " " + unit +
-                 "; RMSE " + significant(r.rmse_mm, 3) + " " + unit +
-                 "; correlation of the errors from one sample to the next " +
-                 significant(r.noise.lag1_correlation, 3) + ". For the intervals the samples count as " +
-                 fixed(r.noise.effective_samples, 0) + " independent ones (autoregressive model of order " +
-                 std::to_string(r.noise.coefficients.size()) + ").");
+  page.paragraph(
+      "Sample-to-sample noise of the readings " + significant(r.fast_noise_mm, 3) + " " + unit + "; RMSE " +
+      significant(r.rmse_mm, 3) + " " + unit + "; correlation of the errors from one sample to the next " +
+      significant(r.noise.lag1_correlation, 3) + ". For the intervals, the samples are equivalent to " +
+      fixed(r.noise.effective_samples, 0) + " independent samples (autoregressive model of order " +
+      std::to_string(r.noise.coefficients.size()) + ").");
   if (r.huber_mm > 0) {
     page.paragraph("Robust fit: errors beyond " + significant(r.huber_mm, 3) + " " + unit +
                    " count linearly.");
   }
   page.figure({"errors and search",
-               "Correlation of the errors over the time between them, and where the search ended: " +
+               "Autocorrelation of the errors, and the error at the end of each search: " +
                    fixed(100 * r.multistart.share_at_best, 0) + " % of " +
                    std::to_string(r.multistart.starts) + " starts reached the best fit.",
                {{correlation_chart(r), multistart_chart(r)}}});
   if (r.exponent_rmse_mm.size() > 1) {
-    Table table{
-        "Exponents of the hysteresis that were tried", {"exponent", "RMSE [" + unit + "]"}, {true, true}, {}};
+    Table table{"Tested exponents of the hysteresis", {"exponent", "RMSE [" + unit + "]"}, {true, true}, {}};
     for (const auto& [exponent, rmse_mm] : r.exponent_rmse_mm) {
       table.rows.push_back({std::to_string(exponent), significant(rmse_mm, 4)});
     }
@@ -174,11 +172,10 @@ void add_structure(Page& page, const StructureEvidence& s, model::OutputUnit uni
   const std::string fitted = model::in_unit("RMSE fitted [mm]", unit);
   const std::string held_out = model::in_unit("RMSE held-out blocks [mm]", unit);
   page.section("Structure");
-  page.paragraph(
-      "Every structure was fitted to all readings, and again without each fifth of " +
-      std::to_string(s.blocks) +
-      " interleaved blocks, on which it was then judged. Chosen is the simplest within one standard "
-      "error of the best.");
+  page.paragraph("Every structure was fitted to all readings, and again without each fifth of " +
+                 std::to_string(s.blocks) +
+                 " interleaved blocks. Its errors on the omitted blocks were compared. The simplest "
+                 "structure within one standard error of the best was chosen.");
   Table tried{
       "Structures, the simplest first", {"structure", "", fitted, held_out}, {false, false, true, true}, {}};
   for (const StructureEvidence::Candidate& c : s.candidates) {
@@ -187,21 +184,19 @@ void add_structure(Page& page, const StructureEvidence& s, model::OutputUnit uni
   }
   page.table(tried);
   if (!s.ablation.empty()) {
-    Table without{"The chosen structure without one ingredient",
-                  {"without", fitted, held_out},
-                  {false, true, true},
-                  {}};
+    Table without{
+        "The chosen structure without one component", {"without", fitted, held_out}, {false, true, true}, {}};
     for (const StructureEvidence::Ablation& a : s.ablation)
       without.rows.push_back({a.without, significant(a.rmse_mm, 4), significant(a.heldout_rmse_mm, 4)});
     page.table(without);
   }
   if (!s.valve) return;
   page.paragraph(
-      "The pressure was measured, so command to pressure and pressure to displacement are two models "
-      "joined at it. Valve: dead time " +
+      "The pressure was measured, so the model has two parts: command to pressure, and pressure to "
+      "displacement. Valve: dead time " +
       significant(s.valve->delay_s, 3) + " s, time constant " +
-      significant(s.valve->filling_time_constant_s, 3) + " s filling and " +
-      significant(s.valve->venting_time_constant_s, 3) + " s venting; RMSE " +
+      significant(s.valve->filling_time_constant_s, 3) + " s (filling) and " +
+      significant(s.valve->venting_time_constant_s, 3) + " s (venting); RMSE " +
       significant(s.valve->rmse_kpa, 3) + " kPa, " + significant(s.valve->rmse_percent_of_range, 2) +
       " % of the measured range (noise " + significant(s.valve->noise_kpa, 2) + " kPa).");
 }
@@ -231,9 +226,10 @@ std::string verdict_of(const Identification& r) {
     return "The model does not explain " + logs + ": " + size + ".";
   }
   std::string text =
-      is_noise(r) ? "The model explains " + logs + " to the noise: " + size + "."
-                  : "The model follows " + logs + " with an " + size +
-                        ", but structure is left that is not noise; softgrip diagnose looks for its cause.";
+      is_noise(r)
+          ? "The model explains " + logs + " to the noise: " + size + "."
+          : "The model reproduces " + logs + " with an " + size +
+                ", but the remaining error is more than noise. Search for its cause with softgrip diagnose.";
   if (const double ratio = beta_over_gain(r.fitted); ratio > 1) text += " " + wrong_way_sentence(ratio) + ".";
   if (!r.converged) text += " The search stopped before it converged.";
   return text;
@@ -253,7 +249,7 @@ Page identify_page(const IdentifyReport& report) {
   page.table(score_table(r.records, r.scores));
   if (!r.held_out.empty()) {
     Table table = score_table(r.records, r.held_out);
-    table.caption = "Held out, continuation: the rest of each log, predicted from its start";
+    table.caption = "Held-out rest of each log, predicted from its start";
     page.table(table);
   }
   if (r.structure) add_structure(page, *r.structure, r.model.output_unit);
@@ -268,9 +264,9 @@ Page identify_page(const IdentifyReport& report) {
   }
   page.section("Parameters");
   page.table(estimate_table(r.parameters, ""));
-  if (!r.starts.empty()) page.table(estimate_table(r.starts, "How the logs begin"));
-  page.section("What the finger shows");
-  page.paragraph("Sums and ratios of parameters: gains, time constants and limits that the data speak of.");
+  if (!r.starts.empty()) page.table(estimate_table(r.starts, "Initial states of the logs"));
+  page.section("Combinations of parameters");
+  page.paragraph("Sums and ratios of parameters: gains, time constants and limits that the data determine.");
   page.table(estimate_table(r.combinations, ""));
   add_limits(page, r);
   add_residuals(page, r);

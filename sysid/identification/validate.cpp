@@ -29,21 +29,20 @@ bool is_above_bound(const Validation& v, const Score& s) {
   return v.at_most_percent && !(s.rmse_percent_of_span <= *v.at_most_percent);
 }
 
-/// Returns ": 2 of them more than the 1 % that were allowed", or "" if there is no bound or no log exceeds
-/// it.
+/// Returns ": 2 of them above the permitted 1 %", or "" if there is no bound or no log exceeds it.
 std::string bound_text(const Validation& v) {
   const auto above =
       std::count_if(v.scores.begin(), v.scores.end(), [&](const Score& s) { return is_above_bound(v, s); });
   if (above == 0) return {};
   const std::string which = v.scores.size() == 1 ? std::string() : std::to_string(above) + " of them ";
-  return ": " + which + "more than the " + significant(*v.at_most_percent) + " % that were allowed";
+  return ": " + which + "above the permitted " + significant(*v.at_most_percent) + " %";
 }
 
 std::string start_text(const Record& record, const StartState& start) {
   const std::string offset =
       "offset " + significant(start.offset_mm, 3) + " " + std::string(model::name_of(record.output_unit));
   return is_at_rest(start, record) ? "at rest, " + offset + " estimated"
-                                   : "state and " + offset + " estimated (it does not begin at rest)";
+                                   : "state and " + offset + " estimated (the log does not begin at rest)";
 }
 
 }  // namespace
@@ -100,7 +99,7 @@ Page validate_page(const Validation& v, const std::vector<Log>& logs) {
                                      : Tone::bad);
   page.provenance(provenance_of(logs, {{"model", &v.model}}));
   if (!v.warnings.empty()) {
-    page.section("Doubts about the data");
+    page.section("Plausibility warnings");
     page.list(v.warnings);
   }
   page.section("Prediction");

@@ -31,8 +31,8 @@ struct Validation {
 /// log whose readings have no span exceeds every bound.
 [[nodiscard]] bool is_acceptable(const Validation& validation, const Score& score);
 
-/// "3 logs predicted with an RMSE of 0.26 to 0.54 mm, at most 1.9 % of a log's span: 1 of them more than
-/// the 1.5 % that were allowed."
+/// "3 logs predicted with an RMSE of 0.26 to 0.54 mm, at most 1.9 % of a log's span: 1 of them above
+/// the permitted 1.5 %."
 [[nodiscard]] std::string verdict_of(const Validation& validation);
 /// report.html
 [[nodiscard]] Page validate_page(const Validation& validation, const std::vector<Log>& logs);

@@ -122,7 +122,7 @@ void join_valve(const std::vector<Log>& logs, const IdentifyOptions& options, Id
 void add_warnings(Identification& result) {
   if (!result.converged) result.warnings.emplace_back("the search stopped before it converged");
   if (const double ratio = beta_over_gain(result.fitted); ratio > 1)
-    result.warnings.push_back(wrong_way_sentence(ratio) + ", run softgrip diagnose");
+    result.warnings.push_back(wrong_way_sentence(ratio) + ". Run softgrip diagnose");
   for (const Record& record : result.records) {
     if (record.start_unknown)
       result.warnings.push_back(record.name + " does not start from rest: its start state was estimated");
@@ -169,7 +169,7 @@ tl::expected<Identification, std::string> identify_structure(const std::vector<L
   const StructureChoice choice = choose_structure(fewer, choice_options);
   StructureTrial chosen = choice.trials[choice.chosen];
   if (!std::isfinite(chosen.rmse_mm))
-    return Failure("the response of the model is not finite from any starting point");
+    return Failure("the prediction of the model is not finite from any start point");
   result.structure = evidence_of(choice, ablation_of(fewer, choice, choice_options));
   if (readings > enough_readings) {
     chosen = fitted_to(std::move(chosen), result.records, record.drive);

@@ -92,7 +92,7 @@ class FirstRun(bench.BenchTest):
         print(f"identified and diagnosed in {time.monotonic() - began:.0f} s")
         identified = json.loads((self.folder / "identified/identify.json").read_text())
         self.assertLess(identified["rmse_percent_of_span"]["tp1"], 1, "it fits well")
-        self.assertTrue(any("wrong way" in warning for warning in identified["warnings"]), identified["warnings"])
+        self.assertTrue(any("inverse response" in warning for warning in identified["warnings"]), identified["warnings"])
         diagnosis = json.loads((self.folder / "diagnosis/diagnosis.json").read_text())
         self.assertEqual({cause["id"] for cause in diagnosis["causes"]}, {"transport_delay", "valve_lag"})
         rig = self.folder / "config/rig_tcp.yaml"
