@@ -48,13 +48,13 @@ void check_order(const Model& model, std::vector<std::string>& wrong) {
     const BlockInfo& info = info_of(model.blocks[i]);
     has_element = has_element || info.kind == Kind::element;
     if (i > 0 && rank(info) < rank(info_of(model.blocks[i - 1]))) {
-      wrong.push_back(std::string(info.id) + " must stand before " +
+      wrong.push_back(std::string(info.id) + " must be listed before " +
                       std::string(info_of(model.blocks[i - 1]).id));
     }
     const bool again =
         std::any_of(model.blocks.begin(), model.blocks.begin() + static_cast<std::ptrdiff_t>(i),
                     [&](const BlockSpec& b) { return b.type == model.blocks[i].type; });
-    if (again && !info.repeatable) wrong.push_back(std::string(info.id) + " stands in the chain twice");
+    if (again && !info.repeatable) wrong.push_back(std::string(info.id) + " occurs twice in the chain");
   }
   if (!has_element) wrong.emplace_back("the actuator has no element that turns pressure into displacement");
 }

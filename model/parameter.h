@@ -77,7 +77,7 @@ consteval ParameterSpec parameter(std::string_view name, std::string_view unit, 
   };
   if (!allowed(spec.default_value) || !allowed(spec.neutral) || !allowed(spec.if_left_out) ||
       !(spec.scale > 0)) {
-    throw "a parameter's numbers must lie within its bounds, its scale above 0";
+    throw "values of a parameter must be within its bounds, and its scale above 0";
   }
   return spec;
 }

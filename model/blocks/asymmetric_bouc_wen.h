@@ -13,18 +13,16 @@ class AsymmetricBoucWen : public BoucWenPart<T> {
  public:
   static constexpr BlockInfo info = block_info(
       "asymmetric_bouc_wen", Station::actuator, Kind::element, Inverse::implicit, "Asymmetric Bouc-Wen",
-      "Loading and unloading loops differ in shape: bouc_wen has numbers of its own for either way.",
+      "bouc_wen has separate parameters for loading and unloading, so that the loops differ in shape.",
       "bouc_wen: h' += beta_share beta |p'| - delta |h| |p'| - epsilon h p'");
   static constexpr std::array parameters{
-      parameter(
-          "delta_per_kpa", "1/kPa",
-          "added to how fast the state of bouc_wen levels off on loading, taken from it on unloading; at "
-          "most its eta",
-          Typical{0.01}, Within{-10.0, 10.0}, Scale{0.02}, Neutral{0.0}, IfLeftOut{0.0}),
-      parameter("epsilon_per_kpa", "1/kPa", "added to eta of bouc_wen on loading, taken from it on unloading",
+      parameter("delta_per_kpa", "1/kPa",
+                "added to gamma of bouc_wen for loading, subtracted for unloading; at most its eta",
+                Typical{0.01}, Within{-10.0, 10.0}, Scale{0.02}, Neutral{0.0}, IfLeftOut{0.0}),
+      parameter("epsilon_per_kpa", "1/kPa", "added to eta of bouc_wen for loading, subtracted for unloading",
                 Typical{0.01}, Within{-10.0, 10.0}, Scale{0.02}, Neutral{0.0}, IfLeftOut{0.0}),
       parameter("beta_share", "",
-                "share of beta of bouc_wen that is added on loading, taken from it on unloading",
+                "share of beta of bouc_wen that is added for loading and subtracted for unloading",
                 Typical{0.1}, Within{-0.9, 0.9}, Scale{0.1}, Neutral{0.0}, IfLeftOut{0.0})};
 
   AsymmetricBoucWen(std::span<const T> values, const Preparation&) : skew_{values[0], values[1], values[2]} {}

@@ -12,12 +12,12 @@ class AsymmetricValveLag {
  public:
   static constexpr BlockInfo info = block_info(
       "asymmetric_valve_lag", Station::valve, Kind::pressure, Inverse::lead, "Asymmetric valve lag",
-      "First-order lag of the regulator and the tube, another one for filling than for venting.",
+      "First-order lag of the regulator and the tube, different for filling and venting.",
       "tau p' = u - p, tau = filling where u > p, venting where u < p");
   static constexpr std::array parameters{
       parameter("filling_time_constant_s", "s", "time constant while the pressure rises", Typical{0.05},
                 Within{0.0, 10.0}, Scale{0.05}, Neutral{0.0}),
-      parameter("venting_time_constant_s", "s", "time constant while it falls", Typical{0.1},
+      parameter("venting_time_constant_s", "s", "time constant while the pressure falls", Typical{0.1},
                 Within{0.0, 10.0}, Scale{0.05}, Neutral{0.0})};
 
   AsymmetricValveLag(std::span<const T> values, const Preparation& preparation)

@@ -91,8 +91,8 @@ class BoucWen {
       parameter("alpha_mm_per_kpa", "mm/kPa", "elastic gain", Typical{0.35}, Within{0.0, 10.0}, Scale{0.1},
                 Neutral{0.0}),
       parameter("beta_mm_per_kpa", "mm/kPa",
-                "gain of the hysteresis state at its zero; below the instantaneous gain of the whole "
-                "actuator where the model can be inverted",
+                "initial gain of the hysteretic state; the model can be inverted if it is below the "
+                "instantaneous gain of the actuator",
                 Typical{0.2}, Within{0.0, 10.0}, Scale{0.1}, Neutral{0.0}),
       parameter(
           "gamma_per_kpa", "1/kPa",
@@ -112,10 +112,9 @@ class BoucWen {
         exponent_(static_cast<int>(std::lround(value_of(values[4])))) {}
 
   static std::string_view objection(std::span<const double> values) {
-    return values[2] + values[3] < 0
-               ? "gamma_per_kpa + eta_per_kpa must not be negative: the hysteresis state"
-                 " would grow without bound"
-               : std::string_view{};
+    return values[2] + values[3] < 0 ? "gamma_per_kpa + eta_per_kpa must not be negative, because the "
+                                       "hysteretic state would grow without bound"
+                                     : std::string_view{};
   }
 
   /// Makes loading and unloading differ. `skew` is added for loading and subtracted for unloading.

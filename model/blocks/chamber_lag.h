@@ -12,12 +12,12 @@ class ChamberLag {
  public:
   static constexpr BlockInfo info =
       block_info("chamber_lag", Station::valve, Kind::pressure, Inverse::lead, "Chamber lag",
-                 "First-order lag of the chamber behind the point at which the pressure is measured.",
+                 "First-order lag between the pressure sensor and the chamber of the finger.",
                  "tau p' = q - p, tau = filling where q > p, venting where q < p");
   static constexpr std::array parameters{
       parameter("filling_time_constant_s", "s", "time constant while the pressure rises", Typical{0.1},
                 Within{0.0, 10.0}, Scale{0.05}, Neutral{0.0}),
-      parameter("venting_time_constant_s", "s", "time constant while it falls", Typical{0.2},
+      parameter("venting_time_constant_s", "s", "time constant while the pressure falls", Typical{0.2},
                 Within{0.0, 10.0}, Scale{0.05}, Neutral{0.0})};
 
   ChamberLag(std::span<const T> values, const Preparation& preparation)

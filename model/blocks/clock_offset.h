@@ -13,7 +13,7 @@ class ClockOffset {
   static constexpr BlockInfo info =
       block_info("clock_offset", Station::sensor, Kind::reading, Inverse::ignored, "Clock offset",
                  "The clock of the reading is ahead: the reading leads its command.", "z = y + lead dy/dt");
-  static constexpr std::array parameters{parameter("lead_s", "s", "how far the reading is ahead",
+  static constexpr std::array parameters{parameter("lead_s", "s", "time by which the reading leads",
                                                    Typical{0.05}, Within{0.0, 10.0}, Scale{0.02},
                                                    Neutral{0.0})};
 

@@ -13,7 +13,7 @@ class Contact {
   static constexpr bool at_samples = true;
   static constexpr BlockInfo info = block_info(
       "contact", Station::load, Kind::displacement, Inverse::implicit, "Contact",
-      "Stiffer beyond a position: an object or a stop.",
+      "The stiffness increases beyond a position: an object or a stop.",
       "z = y up to the position, beyond it position + (y - position)/(1 + stiffening)", Repeatable{});
   static constexpr std::array parameters{
       parameter("position_mm", "mm", "displacement at which contact begins", Typical{15.0},

@@ -13,13 +13,14 @@ namespace softgrip::model {
 template <class T>
 class Inertia {
  public:
-  static constexpr BlockInfo info = block_info("inertia", Station::load, Kind::displacement, Inverse::ignored,
-                                               "Inertia", "Ringing: a second-order mode of mass and spring.",
-                                               "z'' + 2 d w z' + w^2 z = w^2 y, w = 2 pi/period");
+  static constexpr BlockInfo info =
+      block_info("inertia", Station::load, Kind::displacement, Inverse::ignored, "Inertia",
+                 "Oscillation: a second-order mode of mass and spring.",
+                 "z'' + 2 d w z' + w^2 z = w^2 y, w = 2 pi/period");
   static constexpr std::array parameters{
       parameter("period_s", "s", "period of the undamped mode", Typical{0.1}, Within{0.0, 10.0}, Scale{0.05},
                 Neutral{0.0}),
-      parameter("damping_ratio", "", "d; 1 would not ring any more", Typical{0.2}, Within{0.005, 0.95},
+      parameter("damping_ratio", "", "d; no oscillation from 1 on", Typical{0.2}, Within{0.005, 0.95},
                 Scale{0.1})};
 
   Inertia(std::span<const T> values, const Preparation&)

@@ -15,7 +15,7 @@ class PeriodicDisturbance {
  public:
   static constexpr BlockInfo info =
       block_info("periodic_disturbance", Station::sensor, Kind::reading, Inverse::ignored,
-                 "Periodic disturbance", "A steady oscillation that the command does not explain.",
+                 "Periodic disturbance", "A steady oscillation that does not depend on the command.",
                  "z = y + sine sin(2 pi f t) + cosine cos(2 pi f t)", Repeatable{});
   static constexpr std::array parameters{
       parameter("sine_mm", "mm", "amplitude of the sine", Typical{0.1}, Within{-100.0, 100.0}, Scale{0.1},

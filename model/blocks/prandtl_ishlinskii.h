@@ -35,10 +35,10 @@ class PrandtlIshlinskii {
       parameter("envelope_skew", "", "above 0 the envelopes are less steep in the middle", Typical{0.0},
                 Within{-EnvelopeMap<double>::most_skew, EnvelopeMap<double>::most_skew}, Scale{0.1},
                 IfLeftOut{0.0}),
-      parameter("envelope_kpa", "kPa", "where the bend of the envelopes ends; 0: they are straight",
+      parameter("envelope_kpa", "kPa", "end of the nonlinear range of the envelopes; 0: straight envelopes",
                 Typical{0.0}, Within{0.0, 1e4}, Scale{10.0}, Placed{}, IfLeftOut{0.0})};
   static constexpr std::array repeated{
-      parameter("r#_kpa", "kPa", "threshold of operator #, above that of the one before; 0: elastic",
+      parameter("r#_kpa", "kPa", "threshold of operator #, above that of the previous one; 0: elastic",
                 Typical{2.0}, Within{0.0, 1e4}, Scale{2.0}, Placed{}),
       parameter("w#_mm_per_kpa", "mm/kPa", "weight of operator #", Typical{0.1}, Within{0.0, 1e4}, Scale{0.1},
                 Neutral{0.0})};
@@ -52,7 +52,7 @@ class PrandtlIshlinskii {
 
   static std::string_view objection(std::span<const double> values) {
     if ((values[1] != 0 || values[2] != 0) && !(values[3] > 0))
-      return "bent envelopes need envelope_kpa above 0, where the bend ends";
+      return "nonlinear envelopes require envelope_kpa above 0";
     for (std::size_t i = parameters.size() + 2; i < values.size(); i += 2) {
       if (values[i] <= values[i - 2]) return "the thresholds must rise from operator to operator";
     }

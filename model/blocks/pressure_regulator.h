@@ -14,18 +14,18 @@ class PressureRegulator {
  public:
   static constexpr BlockInfo info = block_info(
       "pressure_regulator", Station::valve, Kind::pressure, Inverse::lead, "Pressure regulator",
-      "A regulator whose spool opens no port within its overlap, and whose error is integrated.",
+      "A regulator with spool overlap and integral control.",
       "tau p' = v -+ overlap beyond the overlap, else 0; v = u - p + integral of (u - p) / Ti, |v| <= full");
   static constexpr std::array parameters{
       parameter("filling_time_constant_s", "s", "time constant while the pressure rises", Typical{0.03},
                 Within{0.0, 10.0}, Scale{0.05}, Neutral{0.0}),
-      parameter("venting_time_constant_s", "s", "time constant while it falls, at 50 kPa", Typical{0.05},
-                Within{0.0, 10.0}, Scale{0.05}, Neutral{0.0}),
-      parameter("overlap_kpa", "kPa", "error within which no port opens", Typical{0.5}, Within{0.0, 100.0},
+      parameter("venting_time_constant_s", "s", "time constant while the pressure falls, at 50 kPa",
+                Typical{0.05}, Within{0.0, 10.0}, Scale{0.05}, Neutral{0.0}),
+      parameter("overlap_kpa", "kPa", "largest error at which no port opens", Typical{0.5},
+                Within{0.0, 100.0}, Scale{0.5}, Placed{}, Neutral{0.0}),
+      parameter("integral_time_s", "s", "integral time; 0: no integral", Typical{0.4}, Within{0.0, 1000.0},
                 Scale{0.5}, Placed{}, Neutral{0.0}),
-      parameter("integral_time_s", "s", "in which a steady error opens as much again; 0: no integral",
-                Typical{0.4}, Within{0.0, 1000.0}, Scale{0.5}, Placed{}, Neutral{0.0}),
-      parameter("full_open_kpa", "kPa", "error beyond which no port opens further; 0: none", Typical{12.0},
+      parameter("full_open_kpa", "kPa", "error at which a port is fully open; 0: no limit", Typical{12.0},
                 Within{0.0, 1000.0}, Scale{10.0}, Placed{}, Neutral{0.0})};
 
   static std::string_view objection(std::span<const double> values) {

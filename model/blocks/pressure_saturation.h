@@ -12,7 +12,7 @@ class PressureSaturation {
  public:
   static constexpr BlockInfo info =
       block_info("pressure_saturation", Station::valve, Kind::pressure, Inverse::bound, "Pressure saturation",
-                 "The pressure stops below the command.", "p = min(u, limit)");
+                 "The pressure does not reach the command.", "p = min(u, limit)");
   static constexpr std::array parameters{parameter("limit_kpa", "kPa", "highest pressure the valve reaches",
                                                    Typical{100.0}, Within{0.0, 10000.0}, Scale{5.0},
                                                    Neutral{10000.0})};

@@ -11,10 +11,9 @@ class PressureScale {
  public:
   static constexpr BlockInfo info =
       block_info("pressure_scale", Station::valve, Kind::pressure, Inverse::implicit, "Pressure scale",
-                 "The pressure is a fixed share of what is asked.", "p = scale u");
-  static constexpr std::array parameters{parameter("scale", "", "pressure for each kPa that is asked",
-                                                   Typical{0.97}, Within{0.05, 20.0}, Scale{0.02},
-                                                   Neutral{1.0})};
+                 "The pressure is a fixed multiple of the command.", "p = scale u");
+  static constexpr std::array parameters{parameter("scale", "", "pressure per commanded kPa", Typical{0.97},
+                                                   Within{0.05, 20.0}, Scale{0.02}, Neutral{1.0})};
 
   PressureScale(std::span<const T> values, const Preparation&) : scale_(values[0]) {}
 

@@ -14,7 +14,7 @@ class Quantisation {
  public:
   static constexpr BlockInfo info =
       block_info("quantisation", Station::sensor, Kind::reading, Inverse::ignored, "Quantisation",
-                 "The reading comes in steps: the converter's resolution.", "z = step round(y/step)");
+                 "The reading has the finite resolution of the converter.", "z = step round(y/step)");
   static constexpr std::array parameters{parameter("step_mm", "mm", "size of one step", Typical{0.01},
                                                    Within{0.0, 10.0}, Scale{0.01}, Neutral{0.0})};
 

@@ -17,8 +17,8 @@ class RelaxingFriction {
       "Loop width grows with rate beyond the viscous part: a friction that relaxes.",
       "y -= gain z, z' = p' - z (|p'|/width + 1/tau)");
   static constexpr std::array parameters{
-      parameter("gain_mm_per_kpa", "mm/kPa", "held back per pressure after a turn", Typical{0.03},
-                Within{-10.0, 10.0}, Scale{0.02}, Neutral{0.0}),
+      parameter("gain_mm_per_kpa", "mm/kPa", "displacement held back per pressure after a reversal",
+                Typical{0.03}, Within{-10.0, 10.0}, Scale{0.02}, Neutral{0.0}),
       parameter("width_kpa", "kPa", "largest z, reached at high rates", Typical{10.0}, Within{0.01, 10000.0},
                 Scale{5.0}),
       parameter("time_constant_s", "s", "time over which z relaxes", Typical{1.0}, Within{1e-3, 1e4},

@@ -15,7 +15,7 @@ class Sampling {
   static constexpr BlockInfo info =
       block_info("sampling", Station::sensor, Kind::reading, Inverse::ignored, "Sampling",
                  "The reading is sampled more slowly than the log.", "z(t) = y(interval floor(t/interval))");
-  static constexpr std::array parameters{parameter("interval_s", "s", "from one new reading to the next",
+  static constexpr std::array parameters{parameter("interval_s", "s", "time between new readings",
                                                    Typical{0.1}, Within{0.0, 100.0}, Scale{0.05},
                                                    Neutral{0.0})};
 

@@ -13,7 +13,7 @@ class SensorNonlinearity {
  public:
   static constexpr BlockInfo info =
       block_info("sensor_nonlinearity", Station::sensor, Kind::reading, Inverse::ignored,
-                 "Sensor nonlinearity", "The scale is bent between its calibration points.",
+                 "Sensor nonlinearity", "The scale is nonlinear between its calibration points.",
                  "z = y + 4 bow x (1 - x) + 6 sqrt(3) wave x (1 - x) (1 - 2 x), x = y/range");
   static constexpr std::array parameters{
       parameter("bow_mm", "mm", "error in the middle of the range", Typical{0.2}, Within{-100.0, 100.0},

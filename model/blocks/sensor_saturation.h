@@ -10,9 +10,9 @@ namespace softgrip::model {
 template <class T>
 class SensorSaturation {
  public:
-  static constexpr BlockInfo info =
-      block_info("sensor_saturation", Station::sensor, Kind::reading, Inverse::ignored, "Sensor saturation",
-                 "The reading clips at the ends of the sensor's range.", "z = min(max(y, lower), upper)");
+  static constexpr BlockInfo info = block_info(
+      "sensor_saturation", Station::sensor, Kind::reading, Inverse::ignored, "Sensor saturation",
+      "The reading saturates at the ends of the measuring range.", "z = min(max(y, lower), upper)");
   static constexpr std::array parameters{parameter("lower_mm", "mm", "smallest reading", Typical{-10.0},
                                                    Within{-10000.0, 10000.0}, Scale{2.0}, Neutral{-10000.0}),
                                          parameter("upper_mm", "mm", "largest reading", Typical{20.0},
@@ -22,7 +22,7 @@ class SensorSaturation {
       : lower_mm_(values[0]), upper_mm_(values[1]) {}
 
   static std::string_view objection(std::span<const double> values) {
-    return values[0] < values[1] ? std::string_view{} : "lower_mm must lie below upper_mm";
+    return values[0] < values[1] ? std::string_view{} : "lower_mm must be below upper_mm";
   }
 
   void reset(const T& input) { output_ = clipped(input); }

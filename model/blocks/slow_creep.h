@@ -16,9 +16,9 @@ class SlowCreep {
       block_info("slow_creep", Station::actuator, Kind::element, Inverse::implicit, "Slow creep",
                  "Creep slower than the model's slowest branch.", "tau x' = gain p - x");
   static constexpr std::array parameters{
-      parameter("gain_mm_per_kpa", "mm/kPa", "what it adds in the end", Typical{0.05}, Within{-10.0, 10.0},
-                Scale{0.02}, Neutral{0.0}),
-      parameter("time_constant_s", "s", "how long it takes", Typical{60.0}, Within{0.1, 1e6}, Scale{30.0})};
+      parameter("gain_mm_per_kpa", "mm/kPa", "final gain", Typical{0.05}, Within{-10.0, 10.0}, Scale{0.02},
+                Neutral{0.0}),
+      parameter("time_constant_s", "s", "time constant", Typical{60.0}, Within{0.1, 1e6}, Scale{30.0})};
 
   SlowCreep(std::span<const T> values, const Preparation& preparation)
       : gain_(values[0]), rate_(1.0 / values[1]), weights_(1) {

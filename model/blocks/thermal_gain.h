@@ -13,10 +13,10 @@ class ThermalGain : public SurroundingsGain<ThermalGain<T>, T> {
  public:
   static constexpr BlockInfo info = block_info(
       "thermal_gain", Station::actuator, Kind::displacement, Inverse::implicit, "Thermal gain",
-      "The gain follows the temperature.", "z = y (1 + gain (temperature - 20 degC)), kept positive");
-  static constexpr std::array parameters{parameter("gain_per_c", "1/degC",
-                                                   "relative gain won per degree above 20", Typical{0.005},
-                                                   Within{-0.2, 0.2}, Scale{0.002}, Neutral{0.0})};
+      "The gain depends on the temperature.", "z = y (1 + gain (temperature - 20 degC)), kept positive");
+  static constexpr std::array parameters{
+      parameter("gain_per_c", "1/degC", "relative change of the gain per degree above 20", Typical{0.005},
+                Within{-0.2, 0.2}, Scale{0.002}, Neutral{0.0})};
 
   ThermalGain(std::span<const T> values, const Preparation&) : gain_per_c_(values[0]) {}
 

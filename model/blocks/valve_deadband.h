@@ -14,9 +14,9 @@ class ValveDeadband {
       block_info("valve_deadband", Station::valve, Kind::pressure, Inverse::play, "Valve dead band",
                  "The valve ignores changes of the command smaller than a band.",
                  "|u - p| <= band/2, p moves only when it must");
-  static constexpr std::array parameters{parameter("band_kpa", "kPa",
-                                                   "change after a reversal that is ignored", Typical{1.0},
-                                                   Within{0.0, 1000.0}, Scale{0.5}, Neutral{0.0})};
+  static constexpr std::array parameters{
+      parameter("band_kpa", "kPa", "change of the command that is ignored after a reversal", Typical{1.0},
+                Within{0.0, 1000.0}, Scale{0.5}, Neutral{0.0})};
 
   ValveDeadband(std::span<const T> values, const Preparation&) : play_(T(values[0] * 0.5)) {}
 

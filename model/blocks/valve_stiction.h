@@ -20,9 +20,9 @@ class ValveStiction {
       block_info("valve_stiction", Station::valve, Kind::pressure, Inverse::ignored, "Valve stiction",
                  "The valve sticks until the command differs by a band, then jumps to it.",
                  "p stays until |u - p| > band, then p = u");
-  static constexpr std::array parameters{parameter("band_kpa", "kPa",
-                                                   "change of the command at which it jumps", Typical{1.0},
-                                                   Within{0.0, 1000.0}, Scale{0.5}, Neutral{0.0})};
+  static constexpr std::array parameters{
+      parameter("band_kpa", "kPa", "change of the command at which the valve jumps", Typical{1.0},
+                Within{0.0, 1000.0}, Scale{0.5}, Neutral{0.0})};
   /// Shortest time in which a spool can move and come to rest again [s].
   static constexpr double rest_s = 2e-3;
 

@@ -163,7 +163,7 @@ class ModelReader {
   }
 
   void report_several(const Node::Entry& entry, const std::vector<BlockSpec>& blocks) {
-    std::string hint = "together they are no longer what they were in one; fit them anew as";
+    std::string hint = "together they do not have the effect of the earlier block; fit them again as";
     for (const BlockSpec& block : blocks) {
       hint += " `- " + std::string(catalogue()[block.type].info.id) + ": {";
       for (std::size_t i = 0; i < block.values.size(); ++i)
@@ -171,7 +171,7 @@ class ModelReader {
       hint += "}`";
     }
     problems_.add(document_.problem(
-        entry.key_at, entry.key + " holds several mechanisms, which are blocks of their own now", hint));
+        entry.key_at, entry.key + " contains several mechanisms, which are separate blocks now", hint));
   }
 
   void report_unknown(const Node::Entry& entry, std::optional<std::size_t> type, Station station) {
@@ -196,12 +196,12 @@ class ModelReader {
     for (const BlockSpec& block : model.blocks) {
       const BlockInfo& other = catalogue()[block.type].info;
       if (other.id == info.id && !info.repeatable) {
-        problems_.add(document_.problem(entry.key_at, std::string(info.id) + " stands in the chain twice"));
+        problems_.add(document_.problem(entry.key_at, std::string(info.id) + " occurs twice in the chain"));
       }
       if (other.station == info.station && other.kind > info.kind) {
         problems_.add(document_.problem(
-            entry.key_at, entry.key + " must stand before " + std::string(other.id),
-            "inside a station: pressure blocks, elements, displacement blocks, reading blocks"));
+            entry.key_at, entry.key + " must be listed before " + std::string(other.id),
+            "order within a station: pressure blocks, elements, displacement blocks, reading blocks"));
         return;
       }
     }
@@ -266,8 +266,9 @@ std::optional<Model> read_rig_model(const Document& document, Problems& problems
   const auto key = std::find_if(document.root.entries.begin(), document.root.entries.end(),
                                 [](const Node::Entry& entry) { return entry.key == output_unit_key; });
   problems.add(document.problem(key->key_at,
-                                "the model answers in " + std::string(name_of(model->output_unit)) +
-                                    ", and a rig measures and controls in mm",
+                                "the output unit of the model is " +
+                                    std::string(name_of(model->output_unit)) +
+                                    ", but a rig measures and controls in mm",
                                 "simulate, identify, validate and diagnose use this model; a rig needs one "
                                 "that was identified from logs in mm"));
   return std::nullopt;

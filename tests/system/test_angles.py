@@ -203,7 +203,7 @@ class Angles(bench.BenchTest):
         self.assertFalse((self.folder / "out").exists())
 
     def test_no_rig_takes_a_model_in_degrees(self):
-        why = "the model answers in deg, and a rig measures and controls in mm"
+        why = "the output unit of the model is deg, but a rig measures and controls in mm"
         self.assertIn(f":1:1: {why}", self.softgrip("check", self.in_degrees(TWIN), expect=3).stderr)
         self.write(TWIN, "output_unit: deg\n" + self.read(TWIN))
         self.assertIn(f"{TWIN}:1:1: {why}", self.softgrip("check", "config/rig.yaml", expect=3).stderr)
