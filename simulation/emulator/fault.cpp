@@ -105,8 +105,7 @@ std::vector<FaultSpec> read_faults(const document::Document& document,
     FaultSpec fault = read_fault(document, *node, channels, problems);
     const bool taken = std::any_of(faults.begin(), faults.end(),
                                    [&](const FaultSpec& other) { return other.name == fault.name; });
-    if (taken)
-      problems.add(document.problem(node->at, "fault '" + fault.name + "' stands here for the second time"));
+    if (taken) problems.add(document.problem(node->at, "fault '" + fault.name + "' is defined twice"));
     faults.push_back(std::move(fault));
   }
   return faults;
