@@ -122,7 +122,7 @@ consteval BlockInfo block_info(std::string_view id, Station station, Kind kind, 
 /// Inputs for the preparation of a block in addition to its parameters.
 struct Preparation {
   double sample_time_s = 0;  ///< nominal; 0 when samples are irregular
-  std::uint64_t seed = 0;    ///< of this block's random numbers, distinct per block and channel
+  std::uint64_t seed = 0;    ///< seed of this block's random numbers, distinct per block and channel
 };
 
 /// Requires a description and a list of parameters.

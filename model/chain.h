@@ -101,7 +101,7 @@ class Chain {
   }
 
   std::vector<AnyBlock<T>> blocks_;
-  std::array<Index, 4> end_{};  // of each station: the index after its last block
+  std::array<Index, 4> end_{};  // for each station: index after its last block
   Index first_element_ = 0, first_displacement_ = 0, first_reading_ = 0;
   bool leaps_in_parts_ = false;  // see walk_elements()
   double sample_time_s_;

@@ -29,7 +29,7 @@ struct Model {
   std::string name;
   std::string source;  ///< source of its values, one line
   std::vector<BlockSpec> blocks;
-  OutputUnit output_unit = OutputUnit::mm;  ///< of the output, and of every parameter whose name contains mm
+  OutputUnit output_unit = OutputUnit::mm;  ///< of the output and of all parameters whose name contains mm
 
   bool operator==(const Model&) const = default;
 };
@@ -60,8 +60,8 @@ struct Model {
 
 /// Position of one value in a model.
 struct ParameterPlace {
-  std::size_t block = 0;  ///< in Model::blocks
-  std::size_t value = 0;  ///< in BlockSpec::values
+  std::size_t block = 0;  ///< index in Model::blocks
+  std::size_t value = 0;  ///< index in BlockSpec::values
 };
 
 /// Returns the number of values of all blocks of a model.

@@ -65,7 +65,7 @@ struct Surroundings {
   /// time since the start of the campaign at the end of the sample; NaN: the clock of the chain since reset()
   double time_s = std::numeric_limits<double>::quiet_NaN();
   double supply_kpa = 1e9;    ///< supply pressure; the default has no effect
-  double temperature_c = 20;  ///< of the actuator
+  double temperature_c = 20;  ///< temperature of the actuator
 };
 
 }  // namespace softgrip::model

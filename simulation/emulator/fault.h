@@ -68,7 +68,7 @@ struct FaultSpec {
   std::optional<double> at_s;
   std::optional<double> for_s;
   std::optional<std::uint32_t> replies;
-  std::optional<std::size_t> channel;  ///< of a channel fault; nullopt: all channels
+  std::optional<std::size_t> channel;  ///< affected channel of a channel fault; nullopt: all channels
 
   double delay_s = 0;
   double interval_s = 0;

@@ -30,7 +30,7 @@ struct SimulatedEvent {
   /// Applies an event to all channels.
   static constexpr std::size_t every_channel = static_cast<std::size_t>(-1);
 
-  double at_s = 0;  ///< since the first exchange
+  double at_s = 0;  ///< time since the first exchange
   Kind kind = Kind::object;
   std::size_t channel = every_channel;
   std::optional<PlantObject> object = std::nullopt;
@@ -55,7 +55,7 @@ struct SimulatedChannel {
 
 struct SimulatedBoardSettings {
   std::vector<SimulatedChannel> channels;
-  std::vector<SimulatedEvent> events;  ///< in any order
+  std::vector<SimulatedEvent> events;  ///< events in any order
   /// Time without an exchange after which the outputs change to `vented_kpa` [s], until connect(). 0: no
   /// watchdog.
   double watchdog_timeout_s = 0;

@@ -35,7 +35,7 @@ enum class Judged { displacement, pressure };
 struct Base {
   Judged judged = Judged::displacement;
   Drive drive = Drive::command;
-  std::string description;  ///< of the selected model
+  std::string description;  ///< description of the selected model
   model::Model model;       ///< without blocks: only the regulator, or only the filter bank
   FilterKind kind = FilterKind::finger;
   std::optional<Regulator> regulator;  ///< between the command and the model
@@ -44,7 +44,7 @@ struct Base {
   double temperature_c = 20;  ///< mean of the healthy logs
   double gain_per_c = 0;      ///< temperature coefficient of the gain in the healthy logs
   double noise_mm = 0;        ///< sample-to-sample noise of the readings
-  Units units;                ///< of the healthy records
+  Units units;                ///< units of the healthy records
   double left_mm = 0;         ///< RMS residual of left-out units about their means
   double span_mm = 0;
   double gain_spread = 0;  ///< spread between units of the healthy logs, relative

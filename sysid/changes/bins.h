@@ -33,7 +33,7 @@ using Binned = std::vector<std::vector<double>>;
 struct Whitener {
   std::vector<double> before;               ///< weights of the previous bins, the nearest first
   std::vector<double> peak_rate_kpa_per_s;  ///< lower limits of the classes of peak_rate except the first
-  std::vector<double> spread;               ///< of each class; one more than the limits
+  std::vector<double> spread;               ///< standard deviation of each class; one more than the limits
 
   [[nodiscard]] std::size_t class_of(double peak_rate) const;
   [[nodiscard]] double spread_at(double peak_rate) const {

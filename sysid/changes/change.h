@@ -74,7 +74,7 @@ struct JudgedChange {
   Judged judged = Judged::displacement;
   model::OutputUnit output_unit = model::OutputUnit::mm;
   std::string base;     ///< description
-  double noise_mm = 0;  ///< in kPa for the pressure
+  double noise_mm = 0;  ///< sample-to-sample noise; in kPa for the pressure
   std::size_t healthy_runs = 0;
   double healthy_mm = 0;    ///< error of the base in left-out healthy units
   double allowed_mm = 0;    ///< largest expected error in another healthy run
@@ -85,7 +85,7 @@ struct JudgedChange {
   double gain_percent = 0;                ///< change of the gain within the healthy spread
   bool left_over = false;
   std::vector<TriedCause> tried;
-  std::vector<EffectIntervals> intervals;         ///< of its causes, in the order in which they were found
+  std::vector<EffectIntervals> intervals;  ///< intervals of its causes, in the order in which they were found
   std::map<std::string, std::string> not_tested;  ///< causes, each with the recording that would test it
   double bin_s = 0.05;
   std::vector<RunLeft> runs;      ///< healthy runs first

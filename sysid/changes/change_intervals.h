@@ -13,7 +13,7 @@ namespace softgrip::sysid {
 /// 95 % intervals of one effect; nullopt if a parameter has no effect on the readings.
 struct EffectIntervals {
   std::vector<std::optional<Interval>> numbers;  ///< within the bounds of the parameters
-  std::optional<Interval> size;                  ///< of size_of()
+  std::optional<Interval> size;                  ///< interval of the value of size_of()
 };
 
 /// A healthy unit that was left out, and the effects that the search finds in it without a change.

@@ -25,7 +25,7 @@ struct Effect {
   std::string id;  ///< id of the cause
   std::string title;
   model::Station station = model::Station::actuator;
-  std::string form;  ///< of the block, or of a cause without a block
+  std::string form;  ///< id of the block, or name of a form without a block
   bool free_form = false;
   std::vector<EffectNumber> numbers;
   std::vector<std::vector<double>> starts;

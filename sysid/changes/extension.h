@@ -41,17 +41,17 @@ struct Crescent {
 
 /// Faults of a regulator: ports that leak when closed, a tube with a lower conductance.
 struct RegulatorFault {
-  double leak_per_s = 0;  ///< as Regulator::leak_per_s
+  double leak_per_s = 0;  ///< defined like Regulator::leak_per_s
   double blocked = 0;     ///< lost share of the conductance of the tube, below 1
   [[nodiscard]] bool operator==(const RegulatorFault&) const = default;
 };
 
 struct Extension {
   std::vector<model::BlockSpec> valve;  ///< blocks between the command and the base
-  RegulatorFault fault;                 ///< of a base with a regulator
+  RegulatorFault fault;                 ///< faults of a base with a regulator
   std::vector<model::BlockSpec> chain;  ///< blocks within the base's model or after it
   double gain = 1;                      ///< factor of the displacement
-  double gain_per_c = 0;                ///< per degree above the temperature of the healthy logs
+  double gain_per_c = 0;  ///< relative gain per degree above the temperature of the healthy logs
   Softening softening;
   Crescent crescent;
   PressureLoss loss;

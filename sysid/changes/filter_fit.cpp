@@ -57,7 +57,7 @@ class FilterBank {
   /// The residuals of a model and data of their fit.
   struct Target {
     std::vector<Eigen::VectorXd> values;   ///< fitted without each unit, and to all units
-    std::vector<Eigen::VectorXd> moments;  ///< of the rows of the fit
+    std::vector<Eigen::VectorXd> moments;  ///< columns times values, over the rows of the fit
     Eigen::VectorXd plain_left, left, weights;
     double left_mm = std::numeric_limits<double>::infinity();
   };
@@ -193,7 +193,7 @@ class FilterBank {
   std::size_t units_;
   double bin_s_, largest_kpa_;
   Eigen::MatrixXd columns_;
-  std::vector<Eigen::MatrixXd> gram_;  ///< by unit
+  std::vector<Eigen::MatrixXd> gram_;  ///< normal matrix of each unit
   std::vector<Row> rows_;
   Eigen::Index filter_count_ = 0;
 };

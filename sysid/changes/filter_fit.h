@@ -16,7 +16,7 @@ namespace softgrip::sysid {
 
 /// A filter bank with the weights of the best ridge.
 struct FittedFilters {
-  Eigen::VectorXd weights;  ///< by the columns of filter_columns(); empty if the model alone predicts as well
+  Eigen::VectorXd weights;  ///< one per column of filter_columns(); empty if the model alone predicts as well
   Binned left;              ///< residual of each left-out unit; NaN: no reading
   double left_mm = 0;       ///< root of its mean square about the mean of each unit
 };

@@ -36,7 +36,7 @@ struct Estimate {
 struct MultiStart {
   std::size_t starts = 0;
   double share_at_best = 0;     ///< share of the starts that end within 0.1 % of the best RMSE
-  std::vector<double> rmse_mm;  ///< of each start
+  std::vector<double> rmse_mm;  ///< RMSE of each start
 };
 
 struct IdentifyOptions {
@@ -61,8 +61,8 @@ struct StructureEvidence {
   struct Candidate {
     std::string structure;  ///< "bouc_wen", "prandtl_ishlinskii"
     std::string description;
-    double rmse_mm = 0;          ///< of the fitted readings
-    double heldout_rmse_mm = 0;  ///< of interleaved blocks, each predicted by a fit without it
+    double rmse_mm = 0;          ///< RMSE of the fitted readings
+    double heldout_rmse_mm = 0;  ///< RMSE of interleaved blocks, each predicted by a fit without it
     bool chosen = false;
   };
   /// The chosen structure without one component, fitted and compared in the same way.
@@ -86,11 +86,11 @@ struct StructureEvidence {
 
 /// Result of an identification.
 struct Identification {
-  model::Model model;           ///< identified model, including the start's blocks that were not fitted
-  model::Model fitted;          ///< fitted part of the model, without noise and quantisation
-  std::vector<Record> records;  ///< fitted records; held-out readings are NaN
-  std::vector<Score> scores;    ///< of the fitted samples of each log
-  std::vector<Score> held_out;  ///< of the held-out samples of each log; empty if all samples were fitted
+  model::Model model;                ///< identified model, including the start's blocks that were not fitted
+  model::Model fitted;               ///< fitted part of the model, without noise and quantisation
+  std::vector<Record> records;       ///< fitted records; held-out readings are NaN
+  std::vector<Score> scores;         ///< scores of the fitted samples of each log
+  std::vector<Score> held_out;       ///< scores of the held-out samples of each log; empty if all were fitted
   std::vector<Estimate> parameters;  ///< all parameters of the model
   std::vector<Estimate> combinations;
   std::vector<Estimate> starts;  ///< estimated offsets and start states
@@ -98,10 +98,10 @@ struct Identification {
   NoiseModel noise;          ///< noise model of the residuals
   double fast_noise_mm = 0;  ///< sample-to-sample noise of the readings
   MultiStart multistart;
-  double rmse_mm = 0;                                    ///< of all fitted samples
+  double rmse_mm = 0;                                    ///< RMSE of all fitted samples
   double huber_mm = 0;                                   ///< 0: Huber's loss was not used
   std::vector<std::pair<int, double>> exponent_rmse_mm;  ///< present if several exponents were fitted
-  int iterations = 0;                                    ///< of the last minimisation
+  int iterations = 0;                                    ///< iterations of the last minimisation
   bool converged = false;
   std::vector<std::string> warnings;
   double wall_s = 0;

@@ -18,18 +18,18 @@ namespace softgrip::sysid {
 /// A combination of parameters that can change together with little effect on the error.
 struct LooseDirection {
   std::vector<std::string> names;  ///< parameters that contribute, the largest weight first
-  std::vector<double> weights;     ///< of these parameters, in the scale of the fit
+  std::vector<double> weights;     ///< weights of these parameters, in the scale of the fit
   double deviation = 0;            ///< standard deviation in the scale of the fit
 };
 
 /// Covariance of the estimates in the coordinates of the fit.
 struct Uncertainty {
-  Eigen::MatrixXd covariance;  ///< of z; the rows of a parameter that is at a bound or has no effect are zero
-  Eigen::MatrixXd naive;       ///< the same for white noise
+  Eigen::MatrixXd covariance;  ///< covariance of z; rows of parameters at a bound or without effect are zero
+  Eigen::MatrixXd naive;       ///< the same covariance for white noise
   std::vector<bool> at_bound;
   std::vector<bool> without_effect;
   NoiseModel noise;
-  double quantile = 1.96;  ///< of Student's t for 95 %, from the effective number of samples
+  double quantile = 1.96;  ///< quantile of Student's t for 95 %, from the effective number of samples
   std::vector<LooseDirection> loose;
 };
 

@@ -16,7 +16,7 @@ namespace softgrip::sysid {
 struct Validation {
   model::Model model;
   std::vector<Record> records;
-  std::vector<Score> scores;  ///< of each log
+  std::vector<Score> scores;  ///< scores of each log
   std::vector<std::string> warnings;
   std::optional<double> at_most_percent;  ///< largest permitted RMSE of a log, in % of its span
   std::vector<std::string> call;  ///< command line; empty if the validation was not started by a command

@@ -18,12 +18,12 @@ enum class HealthNumber : std::uint8_t {
   pressure_loss,  ///< command minus measured pressure while it holds
   leak,           ///< decrease of the measured pressure per second at constant command
   contact,        ///< reading at contact
-  time_to_grip,   ///< from the first step to HOLDING
+  time_to_grip,   ///< time from the first step to HOLDING
 };
 inline constexpr std::size_t health_numbers = 9;
 
 struct HealthNumberInfo {
-  std::string_view id;     ///< as in JSON, with its unit
+  std::string_view id;     ///< key in JSON, with its unit
   std::string_view title;  ///< "gain", for display
   std::string_view unit;
 };

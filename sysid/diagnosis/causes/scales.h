@@ -21,13 +21,13 @@ enum class Column : std::uint8_t { none, temperature_c, supply_kpa };
 
 /// Sizes of a campaign.
 struct Scales {
-  double span_mm = 0;             ///< of the displacement
-  double largest_kpa = 0;         ///< of the drive
+  double span_mm = 0;             ///< span of the displacement
+  double largest_kpa = 0;         ///< largest pressure of the drive
   double campaign_s = 0;          ///< all records together
   double sample_s = 0;            ///< shortest usual interval between distinct readings
   double largest_supply_kpa = 0;  ///< 0: no such column
-  bool has_temperature = false;   ///< and it varies
-  bool has_supply = false;        ///< and it varies
+  bool has_temperature = false;   ///< the column exists and varies
+  bool has_supply = false;        ///< the column exists and varies
   bool has_valve = true;          ///< false: the measured pressure drives the model
   /// The significant lines in the spectrum of the residual, most significant first.
   std::vector<Line> residual_lines;

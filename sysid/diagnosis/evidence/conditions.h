@@ -19,11 +19,11 @@ struct DriveHistory {
   std::vector<double> rate_kpa_per_s;  ///< slope over 0.1 s, 0 at constant pressure
   std::vector<Branch> branch;
   std::vector<bool> falling;          ///< the last motion was downwards
-  std::vector<double> dwell_s;        ///< since the pressure stopped; NaN while it moves
-  std::vector<double> since_turn_s;   ///< since it last turned, started or stopped
+  std::vector<double> dwell_s;        ///< time since the pressure stopped; NaN while it moves
+  std::vector<double> since_turn_s;   ///< time since the pressure last turned, started or stopped
   std::vector<double> turn_kpa;       ///< pressure at that moment
   std::vector<double> amplitude_kpa;  ///< peak of the present excursion from rest, at rest of the last one
-  std::vector<double> largest_kpa;    ///< so far, in the whole campaign
+  std::vector<double> largest_kpa;    ///< largest pressure so far, in the whole campaign
   std::vector<std::size_t> cycle;     ///< 0, 1, ...; see cycle_starts()
 };
 [[nodiscard]] DriveHistory history_of(const Record& record);
@@ -31,7 +31,7 @@ struct DriveHistory {
 /// Samples of all records that have a reading, thinned evenly and concatenated.
 struct Samples {
   std::vector<std::size_t> record;
-  std::vector<std::size_t> index;  ///< in its record
+  std::vector<std::size_t> index;  ///< index in its record
   std::vector<double> campaign_s;
 
   [[nodiscard]] std::size_t size() const noexcept { return record.size(); }
@@ -48,7 +48,7 @@ struct Condition {
   std::string id;             ///< "rate"
   std::string axis;           ///< "rate of the pressure [kPa/s]"
   std::string phrase;         ///< completes "the error depends on ..."
-  std::vector<double> value;  ///< by sample; NaN: does not apply
+  std::vector<double> value;  ///< value at each sample; NaN: does not apply
   bool logarithmic = false;
   std::vector<std::string> categories;  ///< names of the values 0, 1, ...; empty: a number
   /// The element of `groups` to which a sample belongs. The curves of the groups are kept separate (loading,

@@ -36,9 +36,9 @@ struct ConditionBin {
 
 /// Dependence of a residual on one condition.
 struct ConditionEvidence {
-  Condition condition;  ///< without its samples
+  Condition condition;  ///< the condition without its samples
   std::vector<ConditionBin> bins;
-  double share_percent = 0;  ///< of the structural variance, on blocks outside the means; 0 if negative
+  double share_percent = 0;  ///< explained share of the structural variance, on other blocks; 0 if negative
   double p_value = 1;        ///< probability of such a difference between means by chance
   double p_adjusted = 1;     ///< adjusted for testing all conditions (Holm 1979)
   bool clear = false;        ///< is_clear(p_adjusted, share_percent)
@@ -50,7 +50,7 @@ struct SpectrumEvidence {
   std::vector<double> density_mm2_per_hz;
   double peak_hz = 0;  ///< frequency of the most significant line
   double peak_amplitude_mm = 0;
-  double share_percent = 0;  ///< of the structural variance in that line
+  double share_percent = 0;  ///< share of the structural variance in that line
   double p_value = 1;  ///< probability of such a line in a smooth spectrum, at any frequency (Bonferroni)
   std::string why_not;
 };
@@ -89,7 +89,7 @@ struct Evidence {
   ResidualEvidence as_given;
   ResidualEvidence recalibrated;
   ResidualEvidence extended;               ///< equal to recalibrated when nothing was added
-  std::vector<UnphysicalSign> unphysical;  ///< of the recalibrated model
+  std::vector<UnphysicalSign> unphysical;  ///< signs in the recalibrated model
 };
 [[nodiscard]] Evidence examine_fits(const std::vector<Record>& records, const StructureFit& as_given,
                                     const StructureFit& recalibrated, const StructureFit& extended,

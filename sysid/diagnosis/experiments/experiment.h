@@ -39,7 +39,7 @@ struct Separation {
 /// One evaluated entry of the menu.
 struct JudgedWaveform {
   Waveform waveform;
-  double minutes = 0;  ///< with the rest before it
+  double minutes = 0;  ///< duration including the rest before it
   std::vector<Separation> separations;
   double merit = 0;  ///< information per minute
 };
@@ -47,8 +47,8 @@ struct JudgedWaveform {
 /// A check of the sensor at known positions. It separates alternatives with different sensor shapes if no
 /// waveform can.
 struct ProposedGaugeCheck {
-  std::vector<double> positions_mm;                       ///< in the order in which they are read
-  model::OutputUnit output_unit = model::OutputUnit::mm;  ///< of the positions
+  std::vector<double> positions_mm;                       ///< positions in the order of reading
+  model::OutputUnit output_unit = model::OutputUnit::mm;  ///< unit of the positions
   std::vector<std::string> separates;                     ///< ids of causes
   double minutes = 0;
 };

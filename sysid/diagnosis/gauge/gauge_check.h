@@ -27,7 +27,7 @@ namespace softgrip::sysid {
 /// A hypothesis about the static shape of the sensor.
 struct SensorShape {
   std::vector<model::BlockSpec> blocks;  ///< static_sensor_blocks(); none: straight
-  double offset_mm = 0;                  ///< of its zero, as fitted to the logs
+  double offset_mm = 0;                  ///< offset of its zero, as fitted to the logs
 
   /// Returns the reading at a displacement [mm].
   [[nodiscard]] double at(double displacement_mm) const;
@@ -37,7 +37,7 @@ struct SensorShape {
 
 /// Information of the logs about the sensor.
 struct GaugeScales {
-  double noise_mm = 0;  ///< of one sample in the logs
+  double noise_mm = 0;  ///< noise of one sample in the logs
   double lowest_mm = 0;
   double highest_mm = 0;  ///< readings of the logs
 };
@@ -49,7 +49,7 @@ struct GaugeFit {
   double scale = 1;
   std::size_t free = 2;
   std::vector<double> predicted_mm;  ///< for each reading, limited like the readings
-  double rms_mm = 0;                 ///< of reading minus prediction, both limited
+  double rms_mm = 0;                 ///< RMS of reading minus prediction, both limited
   /// allowed in addition to the noise in the comparison with the most likely hypothesis
   double tolerance_mm = 0;
   bool explains = false;  ///< the hypothesis explains the readings
@@ -71,10 +71,10 @@ struct GaugeCheck {
   double lower_mm = 0;  ///< limits of the readings
   double upper_mm = 0;
   std::vector<double> cut_mm;  ///< the readings within the limits
-  double covered_share = 0;    ///< of the logs' readings
+  double covered_share = 0;    ///< covered share of the range of the logs' readings
   double repeat_noise_mm = 0;  ///< scatter of repeated readings; 0: no position was repeated
   double noise_mm = 0;         ///< noise that the test used
-  std::vector<GaugeFit> fits;  ///< in the order of the hypotheses
+  std::vector<GaugeFit> fits;  ///< fits in the order of the hypotheses
   std::size_t best = 0;        ///< the most likely one
   /// Log likelihood ratio of the best hypothesis over the next one; 0 with a single hypothesis.
   double log_likelihood_ratio = 0;

@@ -29,10 +29,10 @@ struct GaugeReading {
 };
 
 struct GaugeFile {
-  std::string path;    ///< as the user named it
-  std::string sha256;  ///< of the file's bytes, lower-case hexadecimal
+  std::string path;    ///< path as the user named it
+  std::string sha256;  ///< SHA-256 of the file, lower-case hexadecimal
   std::vector<GaugeReading> readings;
-  model::OutputUnit output_unit = model::OutputUnit::mm;  ///< of positions and readings
+  model::OutputUnit output_unit = model::OutputUnit::mm;  ///< unit of positions and readings
 };
 
 /// At least three positions are needed, because two fit a straight line exactly.

@@ -26,7 +26,7 @@ struct Standing {
 
 /// One explanation of the logs: one cause for each position.
 struct Explanation {
-  std::vector<std::size_t> standing;  ///< by position, index among the possible causes there
+  std::vector<std::size_t> standing;  ///< for each position: index of one of its possible causes
   std::size_t shape = 0;
 };
 

@@ -21,7 +21,7 @@ struct GaugeEvidence {
 
 struct GaugeQuestion {
   const GaugeFile& file;
-  double noise_mm = 0;  ///< of the logs
+  double noise_mm = 0;  ///< noise of the logs
   std::uint64_t seed = 1;
   /// False: the alternatives were fitted to other records. Named causes and their alternatives then do not
   /// change.

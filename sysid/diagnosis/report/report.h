@@ -15,7 +15,7 @@ namespace softgrip::sysid {
 
 /// An experiment that separates causes which the logs do not separate.
 struct ProposedExperiment {
-  std::string file;                    ///< in the folder of the report
+  std::string file;                    ///< file name in the folder of the report
   std::vector<std::string> separates;  ///< ids of causes
   double predicted_separation_sigma = 0;
   double rig_minutes = 0;

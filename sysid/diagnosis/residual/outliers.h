@@ -12,7 +12,7 @@ namespace softgrip::sysid {
 /// Detected outliers. `share` of the readings differ by `size_mm` (root mean square) from their neighbours.
 struct OutlierEvidence {
   std::size_t count = 0;
-  std::size_t readings = 0;  ///< with those that were hidden
+  std::size_t readings = 0;  ///< number of readings, including hidden ones
   double share = 0;
   double size_mm = 0;
   double excess_mm = 0;  ///< their contribution to the root mean square error of all readings

@@ -199,7 +199,7 @@ class CandidateFitter {
   const StructureFit& current_;
   const CandidateSearch& search_;
   std::vector<Candidate> candidates_;
-  std::vector<std::vector<StructureFit>> fits_;  ///< of every candidate to thinned records, best first
+  std::vector<std::vector<StructureFit>> fits_;  ///< fits of every candidate to thinned records, best first
   std::optional<std::size_t> leader_;            ///< received its full fit before the others
 };
 

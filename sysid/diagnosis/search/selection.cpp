@@ -248,7 +248,7 @@ class Selector {
     std::optional<BlockLosses> losses;
   };
   std::map<std::size_t, std::vector<Scored>> fresh_;  ///< results that are still valid, by position
-  std::map<std::size_t, Without> without_;            ///< by position
+  std::map<std::size_t, Without> without_;            ///< structures by the position of the removed cause
 };
 
 }  // namespace

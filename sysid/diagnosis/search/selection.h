@@ -41,11 +41,11 @@ struct Selection {
   StructureFit base;
   StructureFit extended;  ///< equal to base if no cause was selected
   std::vector<ChosenCause> chosen;
-  std::vector<CandidateScore> last_candidates;  ///< of the last search, which found no further cause
+  std::vector<CandidateScore> last_candidates;  ///< candidates of the last, unsuccessful search
   BlockLosses base_losses;
   BlockLosses extended_losses;
   UnexplainedError base_unexplained;
-  UnexplainedError left;  ///< of the extended structure
+  UnexplainedError left;  ///< unexplained error of the extended structure
   /// fitted next to the extended structure, without a significant reduction
   std::vector<Confounded> undecided;
 };
@@ -57,8 +57,8 @@ struct Selection {
 /// the hysteresis loop of a finger exactly. A cause can absorb part of this remaining error even if it is
 /// absent.
 struct LeastTaken {
-  double anyhow;          ///< for any distribution over the blocks
-  double in_most_blocks;  ///< if the losses of most blocks fall by at least 10 %
+  double anyhow;          ///< limit for any distribution over the blocks
+  double in_most_blocks;  ///< limit if the losses of most blocks fall by at least 10 %
 };
 /// Limits for a model that is driven by the command. The remaining error then includes the valve. Absent
 /// causes absorb 0.1 to 1.4 of it. Hidden causes at twice the noise absorb 1.9 to 12. The values come from
@@ -84,7 +84,7 @@ struct SelectionOptions {
   /// Fits the base to other readings of the same records. Empty: the base stays fixed except for its linear
   /// response.
   std::function<FitPoint(const std::vector<Record>&)> base_again;
-  LeastTaken least_taken = from_the_command;  ///< by each cause on another base
+  LeastTaken least_taken = from_the_command;  ///< least reduction by each cause on another base
 };
 
 /// @param base  the base structure fitted to data.records.

@@ -22,7 +22,7 @@ struct StickSlip {
   double band_kpa = 0;
   Interval band_ci95;
   std::size_t jumps = 0;        ///< whose distance the readings resolve
-  double scatter = 0;           ///< of the distances, standard deviation over mean
+  double scatter = 0;           ///< standard deviation of the distances over their mean
   std::vector<Record> records;  ///< driven by the valve position
   StructureFit fit;             ///< the chain behind the valve, fitted to these records
 };

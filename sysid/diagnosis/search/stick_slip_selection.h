@@ -15,8 +15,8 @@ struct StickSlipEvidence {
   double band_kpa = 0;
   Interval band_ci95;
   std::size_t jumps = 0;       ///< number of jumps from which the band was estimated
-  double scatter = 0;          ///< of the distances of these jumps, standard deviation over mean
-  double heldout_rmse_mm = 0;  ///< with the jump times from the readings
+  double scatter = 0;          ///< standard deviation of these distances over their mean
+  double heldout_rmse_mm = 0;  ///< held-out RMSE with the jump times from the readings
   Spread gain_percent;         ///< held-out error reduction relative to the refitted model
 };
 

@@ -51,13 +51,13 @@ struct RunError {
 };
 
 struct Diagnosis {
-  Verdict verdict = Verdict::unexplained;  ///< of the displacement; see whole_verdict()
-  std::vector<NamedCause> causes;          ///< of cause_found, ambiguous and partly_explained
-  std::vector<NamedCause> partial;         ///< of unexplained: partial explanations
+  Verdict verdict = Verdict::unexplained;  ///< verdict on the displacement; see whole_verdict()
+  std::vector<NamedCause> causes;          ///< causes of cause_found, ambiguous and partly_explained
+  std::vector<NamedCause> partial;         ///< partial explanations of an unexplained error
   std::vector<CandidateScore> rejected;
   double noise_mm = 0;
   Spread gain;  ///< held-out error reduction of the extended relative to the refitted model [%]
-  double as_given_rmse_mm = 0;      ///< of all readings; initial states by sysid/fitting/start_estimate.h
+  double as_given_rmse_mm = 0;  ///< RMSE of all readings; initial states by sysid/fitting/start_estimate.h
   double recalibrated_rmse_mm = 0;  ///< held out
   double extended_rmse_mm = 0;      ///< held out
   /// Held-out RMSE with whole logs held out; empty with a single log.

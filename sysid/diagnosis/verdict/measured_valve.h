@@ -50,7 +50,7 @@ class MeasuredValve {
 
   const std::vector<Log>& logs_;
   bool held_;
-  std::size_t samples_ = 0;              ///< in all logs
+  std::size_t samples_ = 0;              ///< number of samples in all logs
   std::vector<std::size_t> blocks_end_;  ///< end index of the blocks of every log
 };
 

@@ -27,7 +27,7 @@ inline constexpr double full_inclusion = 0.95;
 
 struct NamedCause {
   Cause cause;
-  std::size_t block_type = 0;  ///< of the form in which it was found
+  std::size_t block_type = 0;  ///< block type of the form in which it was found
   std::vector<CauseParameter> parameters;
   Spread heldout_gain_percent;
   Spread gain_mm2;  ///< decrease of the held-out mean square with the cause
