@@ -176,7 +176,7 @@ TEST(RigHealth, WhatAllFingersShareIsToldOfTheRigAndIsNoAlarm) {
   EXPECT_TRUE(told->stands);
   EXPECT_EQ(told->fingers, (std::vector<std::string>{"left", "right"}));
   EXPECT_EQ(alarms_of(judged), 0U);
-  EXPECT_NE(shared_sentence(*told).find("pressure lost while holding +"), std::string::npos);
+  EXPECT_NE(shared_sentence(*told).find("pressure loss while holding +"), std::string::npos);
   EXPECT_NE(shared_sentence(*told).find("not recorded"), std::string::npos);
   EXPECT_EQ(json_of(*told)["number"], "pressure_loss_kpa");
   // It ends with what was mended.
