@@ -1,11 +1,11 @@
 #pragma once
-// The next step for a board that is not reached.
+// Returns the next step for the user if the board cannot be reached.
 
 #include <string_view>
 
 namespace softgrip::tools::doctor {
 
-/// `failure_kind`: the name of a drivers::BusStatus, as a running daemon states it, too.
+/// `failure_kind` is the name of a drivers::BusStatus. A running daemon reports the same names.
 [[nodiscard]] std::string_view bus_advice(std::string_view failure_kind) noexcept;
 
 }  // namespace softgrip::tools::doctor

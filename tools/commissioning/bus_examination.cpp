@@ -43,7 +43,7 @@ constexpr unsigned unit_of_many_gateways = 255;
 constexpr std::array orders{WordOrder::high_first, WordOrder::low_first, WordOrder::high_first_bytes_swapped,
                             WordOrder::low_first_bytes_swapped};
 
-/// A read, and its result.
+/// A read request and its result.
 struct RegisterRead {
   unsigned unit = 1;
   std::uint8_t function = 0;
@@ -57,7 +57,7 @@ struct Heard {
   std::string detail;
 };
 
-/// A wired input that the asked read holds.
+/// A wired input that the given read request covers.
 struct WiredInput {
   std::string channel;
   drivers::InputWiring wiring;
@@ -95,7 +95,8 @@ class BusInquiry {
   }
 
  private:
-  /// On a session that is opened if there is none: after silence or a wrong answer it was closed.
+  /// Sends the request. Opens a session first if none is open: time-outs and wrong responses close the
+  /// session.
   Heard ask(const RegisterRead& question) {
     const double patience_s = std::max(rig_.loop.exchange_deadline_s, shortest_patience_s);
     Heard heard{BusStatus::timed_out, 0, {}, {}};
@@ -154,7 +155,7 @@ class BusInquiry {
                   "compare function, address and count in the board map with its manual");
   }
 
-  /// A board has its inputs in holding registers (function 3) or in input registers (4).
+  /// A board offers its inputs either as holding registers (function 3) or as input registers (function 4).
   bool try_other_function(const Heard& heard, Findings& findings) {
     const drivers::RegisterBlock& inputs = map_.inputs.registers;
     const int left = inputs.address + static_cast<int>(inputs.registers()) - asked_.address;
@@ -224,7 +225,7 @@ class BusInquiry {
     return false;
   }
 
-  /// Silence, or an answer that is none: another framing, another unit.
+  /// Judges a time-out or a malformed response: tries another framing, then another unit id.
   void judge_silence(const Heard& heard, Findings& findings) {
     if (const auto* tcp = std::get_if<drivers::TcpAddress>(&address_)) {
       drivers::TcpAddress other = *tcp;
@@ -261,7 +262,7 @@ class BusInquiry {
     return status == BusStatus::ok || status == BusStatus::exception;
   }
 
-  /// Returns the readings of the wired inputs; nothing if one of them is not valid.
+  /// Returns the readings of the wired inputs, or nullopt if one of them is not valid.
   [[nodiscard]] std::optional<std::string> read_as(const std::vector<std::uint16_t>& words,
                                                    WordOrder order) const {
     const drivers::RegisterKind kind = map_.inputs.registers.kind;
@@ -295,7 +296,7 @@ class BusInquiry {
         if (auto shown = read_as(there, order)) fits.push_back({order, by, std::move(*shown)});
       }
     }
-    // Two that fit: the cause is not certain.
+    // If two interpretations fit, the cause is not certain.
     if (fits.size() != 1) return;
     const Fit& fit = fits.front();
     const std::string name(drivers::name_of(fit.order));

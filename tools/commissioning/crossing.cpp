@@ -14,7 +14,7 @@ namespace {
 
 using CrossingKind = Crossing::Kind;
 
-/// A monitor has followed a valve when it went at least this share of the step.
+/// A pressure monitor has followed a valve if it changed by at least this share of the commanded step.
 constexpr double share_of_step = 0.5;
 
 bool sensor_followed(const rig::RigFile& rig, const ChannelSample& rest, const Motion& motion,
@@ -32,7 +32,8 @@ bool monitor_followed(const rig::RigFile& rig, const ChannelSample& rest, const 
   return (seen.mean - rest.pressure_kpa.mean) / step_kpa >= share_of_step;
 }
 
-/// Of each channel that was moved the one that showed it, if it was one alone.
+/// Element i: the only channel that responded when channel i was moved. Empty if none or more than one
+/// responded.
 using Shown = std::vector<std::optional<std::size_t>>;
 
 template <class Followed>
@@ -52,7 +53,8 @@ Shown who_showed(std::span<const Motion> motions, const Followed& followed) {
   return shown;
 }
 
-/// Follows the arrows from `first`; empty where they do not come back to it through other channels.
+/// Follows `shown` from `first`. Returns an empty vector if the path does not return to `first` through other
+/// channels.
 std::vector<std::size_t> circle_from(const Shown& shown, std::size_t first) {
   std::vector<std::size_t> circle{first};
   for (auto next = shown[first]; next && *next != first; next = shown[*next]) {
@@ -67,7 +69,7 @@ std::vector<std::vector<std::size_t>> circles_of(const Shown& shown) {
   std::vector<std::vector<std::size_t>> circles;
   for (std::size_t i = 0; i < shown.size(); ++i) {
     const std::vector<std::size_t> circle = circle_from(shown, i);
-    // Each once: from its lowest channel.
+    // Report each cycle once: from its lowest channel.
     if (!circle.empty() && *std::min_element(circle.begin(), circle.end()) == i) circles.push_back(circle);
   }
   return circles;

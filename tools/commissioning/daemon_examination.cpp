@@ -47,7 +47,7 @@ void judge_state(const Json& status, const std::string& rig, Findings& findings)
   }
 }
 
-/// The finding that says what is behind the latched fault, if its cause is still there and judged by itself.
+/// Returns the name of the finding that explains the latched fault if its cause is still present, else "".
 std::string judged_elsewhere(const Json& status, const Json& fault) {
   const Json present = part(fault, "present");
   const std::string code = text_in(present, "code");

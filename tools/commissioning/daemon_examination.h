@@ -1,12 +1,13 @@
 #pragma once
-// What a running daemon says of itself: then the board is its own, and nobody else touches it.
+// Examines a rig through its running daemon. The daemon owns the board, so this module does not access the
+// board.
 
 #include "tools/commissioning/finding.h"
 
 namespace softgrip::tools::doctor {
 
-/// `status` and `statistics` as its socket answers them; `rig` is the name in the rig file that was given,
-/// empty if none was.
+/// `status` and `statistics` are the responses of the daemon's socket. `rig` is the name in the given rig
+/// file, or empty if no rig file was given.
 void examine_daemon(const nlohmann::ordered_json& status, const nlohmann::ordered_json& statistics,
                     const std::string& rig, Findings& findings);
 

@@ -1,5 +1,5 @@
 #pragma once
-// A calibration that is possible, and yet so far off what was believed that a gauge may have been misread.
+// Warns if a valid calibration deviates so far from the previous one that a gauge may have been misread.
 
 #include <string>
 #include <vector>
@@ -8,11 +8,12 @@
 
 namespace softgrip::tools::calibrate {
 
-/// Of the range that the limits allow, or of the model's motion.
+/// As a share of the range that the limits allow, or of the model's motion.
 inline constexpr double most_share_off = 0.2;
 
-/// One sentence for every line that is farther than that off the old one of the rig file, and for a finger
-/// that moved so much more or less between the two pressures than its model says; empty: nothing is odd.
+/// Returns one warning per line that deviates from the line of the rig file by more than `most_share_off`.
+/// Also warns if the motion of the finger between the two pressures deviates that far from its model. Empty:
+/// no warning.
 [[nodiscard]] std::vector<std::string> doubts(const rig::RigFile& rig, const Results& results);
 
 }  // namespace softgrip::tools::calibrate

@@ -37,7 +37,7 @@ std::string unit_name(drivers::ElectricalUnit unit) {
   return std::string(drivers::name_of(unit));
 }
 
-/// The names of the files in a folder of the configuration, without their endings.
+/// Returns the names of the files in a configuration folder, without their extensions.
 std::vector<std::string> names_in(const std::string& folder) {
   std::vector<std::string> names;
   std::error_code error;
@@ -48,12 +48,12 @@ std::vector<std::string> names_in(const std::string& folder) {
   return names;
 }
 
-/// What there is to choose from; nothing where nothing is there.
+/// Returns the available names in brackets, or "" if there are none.
 std::string in_brackets(const std::vector<std::string>& names) {
   return names.empty() ? "" : " (" + with_commas(names) + ")";
 }
 
-/// A path, or a name in a folder of the configuration; empty if it is neither.
+/// Resolves a path or a name in a configuration folder. Returns "" if it is neither.
 std::string path_of(const std::string& word, const std::string& folder) {
   std::error_code error;
   if (std::filesystem::is_regular_file(word, error)) return word;
@@ -87,7 +87,7 @@ std::optional<std::pair<double, double>> two_numbers(const std::string& text) {
   return std::pair{*first, *second};
 }
 
-// --- the facts
+// --- The facts
 
 std::optional<Question> ask_board(const RigDraft&) {
   return Question{"the board's map, as a file or a name, or several" + in_brackets(names_in("boards")) +

@@ -1,5 +1,6 @@
 #pragma once
-// The facts of a rig draft one by one, as words: given as options or typed in answer to a question.
+// Lists the facts of a rig-file template. Each fact is given as an option or typed as the response to a
+// question.
 
 #include <optional>
 #include <string>
@@ -9,22 +10,23 @@
 
 namespace softgrip::tools {
 
-/// One fact.
+/// One fact of the rig.
 struct Fact {
   std::string key;    ///< the option's name: "board"
   std::string about;  ///< the option's help
-  int words = 1;      ///< that belong together; a fact of one word may be given several times
-  /// The question, by what is known already, with what Enter means; nothing: it need not be asked.
+  int words = 1;      ///< number of values; a fact with one value may be given several times
+  /// The question, which depends on the facts known so far, and the default value. Nullopt: no question is
+  /// needed.
   struct Question {
     std::string text;
-    std::string otherwise;  ///< empty: there is no usual answer
+    std::string otherwise;  ///< default value; empty: there is none
   };
   std::optional<Question> (*question)(const RigDraft& draft);
-  /// Takes an answer; what is wrong with it, or empty.
+  /// Stores the value in `draft`. Returns an error message, or "" if the value is valid.
   std::string (*take)(const std::string& words, RigDraft& draft);
 };
 
-/// All of them, in the order in which they build on each other.
+/// Returns all facts, ordered so that each depends only on earlier ones.
 [[nodiscard]] const std::vector<Fact>& draft_facts();
 
 }  // namespace softgrip::tools

@@ -1,5 +1,5 @@
 #pragma once
-// What `softgrip doctor` finds: one line each, and what to do about it.
+// The findings of `softgrip doctor`: one line each, with advice.
 
 #include <string>
 #include <string_view>
@@ -9,16 +9,16 @@
 
 namespace softgrip::tools::doctor {
 
-/// `not_judged`: it follows from something else that is wrong, and says nothing of its own.
+/// `not_judged`: depends on another finding that failed, so it was not checked.
 enum class Verdict { ok, not_judged, warn, fail };
 /// "ok", "not_judged", "warn", "fail"
 [[nodiscard]] std::string_view name_of(Verdict verdict) noexcept;
 
 struct Finding {
-  std::string name;  ///< "board", "sensor left"; a contract
+  std::string name;  ///< "board", "sensor left"; part of the public format
   Verdict verdict = Verdict::ok;
-  std::string text;    ///< what was found
-  std::string advice;  ///< what to do; empty where nothing is to be done
+  std::string text;    ///< the observation
+  std::string advice;  ///< the next step; empty if none is needed
 };
 
 class Findings {
@@ -30,7 +30,7 @@ class Findings {
   void fail(std::string name, std::string text, std::string advice) {
     add({std::move(name), Verdict::fail, std::move(text), std::move(advice)});
   }
-  /// `because`: what has to be mended first.
+  /// `because` names the problem to correct first.
   void not_judged(std::string name, const std::string& because) {
     add({std::move(name), Verdict::not_judged, "not judged: " + because, ""});
   }
@@ -44,16 +44,17 @@ class Findings {
   std::vector<Finding> list_;
 };
 
-/// What is printed above and below the findings.
+/// The data of the lines above and below the findings.
 struct Examination {
-  std::string rig;       ///< its name
-  std::string rig_file;  ///< its path
+  std::string rig;       ///< name of the rig
+  std::string rig_file;  ///< path of the rig file
   bool daemon_runs = false;
-  bool moved = false;      ///< the fingers were moved for it
-  bool simulated = false;  ///< there is no board: nothing real was examined
+  bool moved = false;      ///< the fingers were moved for the examination
+  bool simulated = false;  ///< the board is simulated: no hardware was examined
 };
 
-/// Findings in columns of a terminal that is `columns` wide, with colours if `colour`; ends with the verdict.
+/// Formats the findings in columns for a terminal of `columns` characters, with optional colours. The verdict
+/// is last.
 [[nodiscard]] std::string text_of(const Examination& examination, const Findings& findings,
                                   std::size_t columns, bool colour);
 [[nodiscard]] nlohmann::ordered_json json_of(const Examination& examination, const Findings& findings);

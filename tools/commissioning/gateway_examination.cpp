@@ -34,7 +34,7 @@ bool somebody_listens(const Place& place) {
     return false;
   const std::unique_ptr<addrinfo, decltype(&::freeaddrinfo)> list(found, &::freeaddrinfo);
   const Descriptor socket{::socket(list->ai_family, SOCK_STREAM | SOCK_CLOEXEC, 0)};
-  // It is an address of this computer: who listens there is reached at once.
+  // The address belongs to this computer, so a listening program accepts the connection at once.
   const timeval patience{1, 0};
   return socket && ::setsockopt(socket.get(), SOL_SOCKET, SO_SNDTIMEO, &patience, sizeof patience) == 0 &&
          ::connect(socket.get(), list->ai_addr, list->ai_addrlen) == 0;

@@ -1,5 +1,5 @@
 #pragma once
-// The programs in front of a running daemon: softgrip-plc and softgrip-web.
+// Examines the programs that connect clients to a running daemon: softgrip-plc and softgrip-web.
 
 #include <string>
 
@@ -7,8 +7,8 @@
 
 namespace softgrip::tools::doctor {
 
-/// Looks at those that are enabled: whether `units` (the folder of what the system starts) names them, their
-/// files in `configuration` can be used, and somebody listens where those say.
+/// Examines each enabled program: `units` (the folder of enabled systemd units) contains its unit. Checks
+/// that its file in `configuration` is valid and that a program listens on the address in that file.
 void examine_gateways(const std::string& units, const std::string& configuration, Findings& findings);
 
 }  // namespace softgrip::tools::doctor

@@ -8,12 +8,12 @@
 namespace softgrip::tools::calibrate {
 namespace {
 
-/// How many times the bend must improve the straight line's sum of squares to be believed: with hundreds of
-/// readings a ratio of 1.5 is far beyond chance (F test with two extra parameters).
+/// A bend is significant if it divides the straight line's sum of squared residuals by at least this factor.
+/// With hundreds of readings, a ratio of 1.5 is far beyond chance (F test with two extra parameters).
 constexpr double improvement = 1.5;
-/// Bends that are tried over the ramp.
+/// Number of candidate bends along the ramp.
 constexpr int bends = 200;
-/// A rise must be so many times the scatter.
+/// The response must rise by at least this multiple of its scatter.
 constexpr double least_rise = 5;
 
 struct Means {
@@ -66,7 +66,7 @@ double largest(const std::vector<Visit>& visits, double Visit::*of) {
   return value;
 }
 
-/// Standard uncertainty of one point: noise of a mean, drift while it was taken, repetition.
+/// Returns the standard uncertainty of one point, from the noise of a mean, the drift and the repeatability.
 double uncertainty(const std::vector<Visit>& visits, const Line& line) {
   double of_means = 0;
   for (const Visit& visit : visits) {
@@ -77,7 +77,8 @@ double uncertainty(const std::vector<Visit>& visits, const Line& line) {
   return std::hypot(of_means, drift, line.repeat_spread.value_or(0) / 2);
 }
 
-/// Least squares of a constant and a ramp behind the bend; the sum of squares that is left.
+/// Fits a constant up to the bend and a ramp behind it by least squares. Returns the sum of squared
+/// residuals.
 double fit_bend(const std::vector<double>& command, const std::vector<double>& response, double bend,
                 double& gain) {
   const auto count = static_cast<double>(command.size());

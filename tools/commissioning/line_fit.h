@@ -1,5 +1,5 @@
 #pragma once
-// From what was measured at two places to a straight line, or to the reason why there is none.
+// Fits a straight line to measurements at two positions, or reports why no line can be fitted.
 
 #include <cstddef>
 #include <optional>
@@ -12,50 +12,51 @@
 
 namespace softgrip::tools::calibrate {
 
-/// One visit to one of the two places.
+/// One visit to one of the two positions.
 struct Visit {
-  bool upper = false;     ///< of the two places, the one with the larger command or the second by hand
+  bool upper = false;     ///< the position with the larger command; by hand, the second position
   double electrical = 0;  ///< mean [V or mA]
   double noise = 0;       ///< standard deviation of one electrical reading
-  double drift = 0;       ///< how much the mean moved from the first to the second half of the visit
+  double drift = 0;       ///< difference of the means of the second and the first half of the visit
   std::size_t count = 0;  ///< readings in the mean
-  double reference = 0;   ///< what gauge or manometer showed [mm or kPa]
+  double reference = 0;   ///< reading of the gauge or manometer [mm or kPa]
 };
 
-/// Below these a calibration is refused.
+/// A calibration that does not meet these demands is refused.
 struct Demands {
-  double least_span = 0;             ///< of the references [mm or kPa]
-  double least_electrical_span = 0;  ///< [V or mA]
-  double most_noise_share = 0.02;    ///< of the electrical span
+  double least_span = 0;             ///< smallest difference of the references [mm or kPa]
+  double least_electrical_span = 0;  ///< smallest difference of the electrical values [V or mA]
+  double most_noise_share = 0.02;    ///< largest noise, as a share of the electrical span
 };
 
-/// A line through the visits, by least squares.
+/// A straight line through the visits, fitted by least squares.
 struct Line {
-  drivers::TwoPoints points;      ///< on the line, at the mean electrical value of each place
-  double slope = 0;               ///< mm or kPa per V or mA; its sign is the sensor's
+  drivers::TwoPoints points;      ///< on the line, at the mean electrical value of each position
+  double slope = 0;               ///< mm or kPa per V or mA; the sign is that of the sensor
   std::vector<double> residuals;  ///< reference minus line, per visit [mm or kPa]
   std::optional<double>
-      repeat_spread;  ///< largest difference of two visits to one place; nothing: one visit each
-  double noise = 0;   ///< standard deviation of one reading, through the slope [mm or kPa]
-  /// Of the line between its two places: twice the standard uncertainty of a point, from noise, drift and
-  /// repetition. The gauge's own error is not in it: nobody here knows it.
+      repeat_spread;  ///< largest difference of two visits to one position; nullopt: one visit each
+  double noise = 0;   ///< standard deviation of one reading, converted by the slope [mm or kPa]
+  /// Error of the line between its two positions: twice the standard uncertainty of a point, from noise,
+  /// drift and repeatability. The error of the gauge itself is unknown and not included.
   double error = 0;
 };
 
-/// The line, or one sentence why it would be nonsense. `unit` names the reference ("mm"), `electrical` the
-/// other.
+/// Returns the line, or one sentence that says why the measurements are implausible. `unit` names the unit of
+/// the reference ("mm"), `electrical` that of the electrical value.
 [[nodiscard]] tl::expected<Line, std::string> fit_line(const std::vector<Visit>& visits,
                                                        const Demands& demands, const std::string& unit,
                                                        const std::string& electrical);
 
-/// Where a response that is flat at first begins to rise.
+/// The point where an initially constant response begins to rise.
 struct DeadZone {
-  double end = 0;            ///< the command up to which nothing follows
-  double gain = 0;           ///< slope beyond it
+  double end = 0;            ///< the largest command without a response
+  double gain = 0;           ///< slope beyond the dead zone
   double scatter = 0;        ///< standard deviation of the response about the fit
-  bool significant = false;  ///< the bend explains the response better than a straight line, beyond doubt
+  bool significant = false;  ///< the bend explains the response significantly better than a straight line
 };
-/// A horizontal and a rising piece, by least squares, over a ramp. Nothing if the response does not rise.
+/// Fits a horizontal and a rising segment to a ramp by least squares. Returns nullopt if the response does
+/// not rise.
 [[nodiscard]] std::optional<DeadZone> find_dead_zone(const std::vector<double>& command,
                                                      const std::vector<double>& response);
 

@@ -29,7 +29,7 @@ using daemon::RealTimeStep;
 
 constexpr double us_per_ns = 1e-3;
 constexpr double probe_s = 1;
-/// Bytes of a row of run.csv and its line break, as the shipped rigs write them.
+/// Bytes of one row of run.csv with its line break, for the rig files in config/rigs.
 constexpr double bytes_per_row = 125;
 constexpr double s_per_hour = 3600;
 constexpr double h_per_day = 24;
@@ -41,7 +41,8 @@ std::string user() {
   return entry == nullptr ? std::to_string(::geteuid()) : entry->pw_name;
 }
 
-/// A step of the daemon's own preparation as a finding: what it needs to refuse to start is a failure.
+/// Reports one real-time preparation step of the daemon. A missing step is a failure if the daemon requires
+/// it to start.
 void take(const RealTimeStep& step, bool required, Findings& findings) {
   switch (step.outcome) {
     case RealTimeStep::Outcome::verified:
@@ -60,7 +61,7 @@ void take(const RealTimeStep& step, bool required, Findings& findings) {
   }
 }
 
-/// Wake-ups on a grid of the rig's period, as the loop would have them.
+/// Wakes up at the rig's period, as the control loop does, and records the latencies.
 void probe_timer(const rig::RigFile& rig, daemon::Histogram& wake_up) {
   const MonotonicClock clock;
   const Nanoseconds period = nanoseconds(1 / rig.settings.rate_hz);
@@ -88,7 +89,7 @@ void judge_timer(const rig::RigFile& rig, const daemon::Histogram& wake_up, Find
   if (resolution.tv_sec > 0 || resolution.tv_nsec > 1000) {
     findings.fail("timer", text, "this kernel has no high-resolution timers (CONFIG_HIGH_RES_TIMERS)");
   } else if (static_cast<double>(wake_up.quantile_ns(0.95)) * us_per_ns > period_us / 2) {
-    // One late wake-up in a second is the machine's; one in twenty is the set-up's.
+    // One late wake-up per second is tolerable. One late wake-up in 20 is a fault of the set-up.
     findings.fail("timer", text, "cycles will be lost: get SCHED_FIFO, lower rate_hz, or free the processor");
   } else if (p99_us > period_us / 10 || max_us > period_us / 2) {
     findings.warn(
@@ -100,7 +101,7 @@ void judge_timer(const rig::RigFile& rig, const daemon::Histogram& wake_up, Find
   }
 }
 
-/// The nearest folder above that exists: where a new one would come to be.
+/// Returns the nearest existing parent folder, in which a new folder would be created.
 std::filesystem::path existing(std::filesystem::path path) {
   std::error_code error;
   path = std::filesystem::absolute(path, error);
@@ -108,7 +109,7 @@ std::filesystem::path existing(std::filesystem::path path) {
   return path;
 }
 
-/// A file of 4 KiB that really reaches the disk.
+/// Writes a file of 4 KiB and synchronises it to the disk. Returns 0 or errno.
 int try_writing(const std::filesystem::path& folder) {
   std::string path = (folder / ".softgrip-doctor-XXXXXX").string();
   const int file = ::mkstemp(path.data());

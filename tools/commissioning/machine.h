@@ -1,5 +1,5 @@
 #pragma once
-// What the computer itself must have for a punctual loop and a kept recording.
+// Checks that the computer can run the loop on time and store recordings.
 
 #include "tools/commissioning/finding.h"
 
@@ -9,12 +9,12 @@ struct RigFile;
 
 namespace softgrip::tools::doctor {
 
-/// Kernel, rights for scheduling and memory, timer; asks for them as the daemon would, for this process and
-/// this user. Takes about a second.
+/// Checks the kernel, the rights for scheduling and locked memory, and the timer. Requests these rights for
+/// this process and user, as the daemon would. Takes about 1 s.
 void examine_machine(const rig::RigFile& rig, Findings& findings);
-/// Whether the clock is set by anything.
+/// Checks that the clock is plausible and synchronised.
 void examine_clock(Findings& findings);
-/// Whether recordings find room.
+/// Checks that the disk has space for recordings.
 void examine_disk(const rig::RigFile& rig, Findings& findings);
 
 }  // namespace softgrip::tools::doctor

@@ -13,16 +13,17 @@
 namespace softgrip::tools::doctor {
 namespace {
 
-/// A finger has moved when it went at least so many times the noise of a reading ...
+/// A finger has moved if its displacement is at least this multiple of the noise of a reading ...
 constexpr double noises = 6;
-/// ... and at least this share of what its model moved.
+/// ... and at least this share of the model's displacement.
 constexpr double share_of_model = 0.2;
-/// A monitor may differ from the command by this share of the step: linearity of ordinary valves and boards.
+/// Allowed deviation of a monitor from the command, as a share of the step: linearity of ordinary valves and
+/// boards.
 constexpr double allowed_share_of_step = 0.1;
-/// The step must be so large that the valve's uncontrollable bottom is left behind.
+/// Smallest allowed deviation: valves cannot control the lowest pressures accurately.
 constexpr double pressure_floor_kpa = 1;
 
-/// The model beside the finger, from rest.
+/// Simulates the model in parallel with the finger, from rest.
 class Beside {
  public:
   Beside(const control::ChannelSettings& channel, double tick_s, double rest_mm)
@@ -34,7 +35,7 @@ class Beside {
     origin_mm_ = model_.reading_mm(0);
   }
 
-  /// After an exchange: the reading was taken before the command was written.
+  /// Takes the result of one exchange. The reading was taken before the command was written.
   void take(const model::Reading& reading, double command_kpa) {
     pass_time(reading.sampled_at);
     const double moved_mm = model_.reading_mm(0) - origin_mm_;
@@ -47,19 +48,19 @@ class Beside {
     }
     held_kpa_ = command_kpa;
   }
-  /// From here on mean_mm() averages.
+  /// Starts the average that mean_mm() returns.
   void begin_mean() {
     sum_mm_ = 0;
     taken_ = 0;
   }
-  /// How far the model stood from its rest, as an average.
+  /// Returns the mean displacement of the model from its rest position [mm].
   [[nodiscard]] double mean_mm() const { return taken_ > 0 ? sum_mm_ / static_cast<double>(taken_) : 0; }
   [[nodiscard]] double rms_mm() const {
     return count_ > 0 ? std::sqrt(squares_ / static_cast<double>(count_)) : 0;
   }
 
  private:
-  /// The command was held for as long as it really was: a busy computer stretches a step.
+  /// Advances the model by the measured time: on a busy computer a cycle can take longer.
   void pass_time(Nanoseconds now) {
     if (first_ == 0) first_ = now;
     const auto due = std::llround(seconds(now - first_) / tick_s_);
@@ -136,7 +137,7 @@ bool has_moved(const Sample& rest, const Sample& seen, double model_mm) {
 
 namespace {
 
-/// False if the pressure does not come: then nothing that hangs on it is judged.
+/// Returns false if the pressure does not follow the command. Then no finding that depends on it is judged.
 bool judge_valve(const control::ChannelSettings& of, const Sample& monitor, double command_kpa,
                  Findings& findings) {
   const double step_kpa = std::abs(command_kpa - control::resting_kpa(of.limits));

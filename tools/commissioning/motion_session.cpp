@@ -19,10 +19,10 @@ namespace {
 
 using FailureKind = MotionFailure::Kind;
 
-/// How long the board may take to confirm that everything is at rest, beyond the way there.
+/// Time that the board may take to confirm the rest pressures, in addition to the ramp [s].
 constexpr double confirmation_s = 1;
 
-/// Mean and spread while it goes (Welford, Technometrics 4, 1962).
+/// Running mean and standard deviation (Welford, Technometrics 4, 1962).
 class Gathering {
  public:
   void add(double value) {
@@ -68,7 +68,7 @@ Nanoseconds period_of(const rig::RigFile& rig, const drivers::Board& board) {
   return std::max(nanoseconds(1 / rig.settings.rate_hz), nanoseconds(board.budget().exchange_s));
 }
 
-/// A person waits for the end: attempts do not become rarer.
+/// Keeps the pause between connection attempts constant, because a person waits for the result.
 rig::ReconnectSettings steady(rig::ReconnectSettings reconnect) {
   reconnect.longest_pause = reconnect.first_pause;
   return reconnect;
@@ -84,7 +84,7 @@ struct MotionSession::Line {
   rig::ReconnectSettings reconnect;
   daemon::SharedState shared{1, 1};
   daemon::BusStatistics statistics;
-  daemon::BusEvent failed;  ///< the newest failure that the bus has reported
+  daemon::BusEvent failed;  ///< the latest failure that the bus has reported
   daemon::Bus bus;
 
   [[nodiscard]] const daemon::BusReport& report() const noexcept { return shared.bus.value(); }
@@ -128,7 +128,7 @@ MotionSession::Expected<void> MotionSession::connect() {
       MotionFailure{FailureKind::bus, board_.describe() + ": " + complaint(), line_->failed.status});
 }
 
-/// Publishes the commands as the loop does, and steps the bus once, at the next point of the grid.
+/// Publishes the commands as the loop does, and runs the bus for one step at the next scheduled time.
 void MotionSession::exchange(bool may_rise, bool last) noexcept {
   clock_.sleep_until(schedule_.due());
   daemon::Commands& commands = line_->shared.commands.write_slot();
@@ -144,7 +144,7 @@ void MotionSession::exchange(bool may_rise, bool last) noexcept {
   take_report(schedule_.advance(clock_.now()));
 }
 
-/// Cycles that an exchange has overrun count as silent, as in the loop (daemon/loop/loop.cpp).
+/// Cycles missed because an exchange took too long count as cycles without data, as in daemon/loop/loop.cpp.
 void MotionSession::take_report(std::uint64_t skipped_cycles) noexcept {
   line_->shared.bus.fetch();
   line_->take_events();
@@ -156,7 +156,8 @@ void MotionSession::take_report(std::uint64_t skipped_cycles) noexcept {
   }
 }
 
-/// The bus alone knows a gap; the board has the newest detail of all other failures.
+/// Returns the failure text. Only the bus knows about gaps; the board has the latest detail of all other
+/// failures.
 std::string MotionSession::complaint() const {
   const bool gap = line_->failed.status == drivers::BusStatus::watchdog_tripped;
   const std::string text = gap ? line_->failed.detail.data() : board_.detail();
@@ -269,7 +270,8 @@ MotionSession::Expected<void> MotionSession::ramp(std::size_t channel, double to
   }
   moved_ = true;
   while (commands_[channel] != targets_[channel] || silent_cycles_ > 0) {
-    // Without a confirmation the same commands are written again: no jump when the board is back.
+    // Without a confirmation, write the same commands again, so that the pressure does not jump after a
+    // reconnection.
     if (silent_cycles_ == 0) follow_targets(speed_kpa_per_s);
     if (auto done = step(true, watch); !done) return done;
     if (auto failure = beyond()) return end(std::move(*failure));
@@ -292,7 +294,7 @@ bool MotionSession::leave() noexcept {
     fastest = std::max({fastest, channel.limits.slew_down_kpa_per_s, channel.limits.slew_up_kpa_per_s});
   }
   Nanoseconds give_up = 0;
-  // To rest in any case: a board that comes back late gets the end of the way, which is what is wanted of it.
+  // Go to rest in any case: a board that reconnects late receives the final rest pressures.
   while (!line_->shared.safe_state_confirmed.load(std::memory_order_relaxed)) {
     follow_targets(fastest);
     const bool rested = commands_ == targets_;

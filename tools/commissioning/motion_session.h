@@ -1,6 +1,6 @@
 #pragma once
-// Manual motion of a rig by one command: no loop, no controller, one thread. `softgrip doctor` and `softgrip
-// calibrate` move and read with it.
+// Manual motion of a rig by one command, without control loop or controller, in one thread. `softgrip doctor`
+// and `softgrip calibrate` use it to move fingers and read sensors.
 
 #include <cstddef>
 #include <cstdint>
@@ -23,70 +23,70 @@ struct RigFile;
 
 namespace softgrip::tools {
 
-/// True once the user has asked the command to end.
+/// Returns true after the user has requested the end of the command.
 using StopRequest = std::function<bool()>;
 
-/// Mean and spread of what was read in a while.
+/// Mean and standard deviation of the readings during an interval.
 struct Sample {
-  std::size_t count = 0;                         ///< of valid readings
-  std::size_t invalid = 0;                       ///< of the others ...
-  model::Validity why = model::Validity::valid;  ///< ... and what the last of them said
+  std::size_t count = 0;                         ///< number of valid readings
+  std::size_t invalid = 0;                       ///< number of invalid readings
+  model::Validity why = model::Validity::valid;  ///< validity of the last invalid reading
   double mean = 0;
   double deviation = 0;  ///< standard deviation of one reading
   double lowest = 0;
   double highest = 0;
 };
 
-/// What a channel said in a while.
+/// The readings of one channel during an interval.
 struct ChannelSample {
   Sample displacement_mm;
   Sample pressure_kpa;  ///< count 0 without a pressure monitor
   Sample readback_kpa;  ///< count 0 if the board does not read its outputs back
 };
 
-/// Why a motion has ended.
+/// The reason why a motion has ended.
 struct MotionFailure {
   enum class Kind : std::uint8_t {
-    stopped,  ///< by the user
-    bus,      ///< the board did not answer, or its outputs are not those of the session
+    stopped,  ///< stopped by the user
+    bus,      ///< the board did not respond, or its outputs are not those of the session
     beyond,   ///< the finger left its displacement limits
     blind,    ///< a sensor that the motion needs gives no valid readings
   };
   Kind kind = Kind::bus;
   std::string text;
-  drivers::BusStatus status = drivers::BusStatus::ok;  ///< `bus`: of what it failed
+  drivers::BusStatus status = drivers::BusStatus::ok;  ///< for `bus`: the status that failed
 };
 
-/// The sensors of a channel that must give valid readings while it moves.
+/// The sensors of a channel that must give valid readings while the channel moves.
 struct Sight {
   std::size_t channel = 0;
   bool displacement = false;
-  bool pressure = false;  ///< by the pressure monitor
+  bool pressure = false;  ///< the pressure monitor
 };
 
-/// Drives a board by the daemon's own bus (daemon/loop/bus.h), in the place of the loop, with the same rule
-/// for gaps. After a gap as long as the board's watchdog time the board has vented. Then the bus writes the
-/// rest pressures.
+/// Drives a board with the daemon's own bus (daemon/loop/bus.h) instead of the control loop. The daemon's
+/// rule for gaps applies: after a gap as long as the board's watchdog time, the board has vented, and the bus
+/// writes the rest pressures.
 ///
-/// - Outputs move away from rest only in ramp(), from what the board has confirmed, within the slew limits.
-///   A gap does not make the next step larger.
+/// - Outputs move away from rest only in ramp(), from the last confirmed values and within the slew limits. A
+///   gap does not make the next step larger.
 /// - The session ends if a gap reaches the watchdog time.
-/// - It ends if the board reports a trip, refuses a write or is written by another client.
-/// - It ends if the board does not answer for `bus_down_cycles`.
-/// - A session that has ended moves nothing. Every later call returns the same failure. Only leave() writes,
-///   and nothing further from rest than the present outputs.
-/// - It writes the rest pressures from the first exchange on. On destruction everything is at rest again, or
-///   leave() returned false.
+/// - The session ends if the board reports a trip, rejects a write or was written by another client.
+/// - The session ends if the board does not respond for `bus_down_cycles`.
+/// - After its end, the session moves nothing. Every later call returns the same failure. Only leave() still
+///   writes, and it writes no value further from rest than the present outputs.
+/// - The session writes the rest pressures from the first exchange on. After destruction all channels are at
+///   rest, or leave() returned false.
 class MotionSession {
  public:
   template <class T>
   using Expected = tl::expected<T, MotionFailure>;
-  /// Called after every good exchange with the commands that were written and what was read.
+  /// Called after every successful exchange with the written commands and the readings.
   using Watch = std::function<void(const std::vector<double>& commands_kpa,
                                    const std::vector<model::Reading>& readings)>;
 
-  /// `board` is not connected yet. It sleeps and measures gaps by `clock` alone. All references outlive the
-  /// session.
+  /// `board` is not connected yet. The session sleeps and measures gaps only with `clock`. All references
+  /// must outlive the session.
   MotionSession(const rig::RigFile& rig, drivers::Board& board, const Clock& clock, StopRequest stop);
   MotionSession(const MotionSession&) = delete;
   MotionSession& operator=(const MotionSession&) = delete;
@@ -95,29 +95,29 @@ class MotionSession {
   ~MotionSession();
 
   [[nodiscard]] Expected<void> connect();
-  /// From now on nothing moves away from rest before these sensors have given a valid reading. After
-  /// `invalid_reading_cycles` readings in a row that are not valid the session ends.
+  /// From now on, no channel moves away from rest before these sensors have given a valid reading. The
+  /// session ends after `invalid_reading_cycles` consecutive invalid readings.
   void require(Sight sight);
-  /// Keeps the commands for so long; what was read of every channel meanwhile.
+  /// Holds the commands for `duration_s` and returns the readings of every channel.
   [[nodiscard]] Expected<std::vector<ChannelSample>> sample(double duration_s, const Watch& watch = {});
-  /// Moves one channel to a command, no faster than `speed_kpa_per_s` and the limits. A finger beyond its
-  /// limits ends the session, too.
+  /// Ramps one channel to a command, limited by `speed_kpa_per_s` and the slew limits. The session also ends
+  /// if a finger leaves its displacement limits.
   [[nodiscard]] Expected<void> ramp(std::size_t channel, double to_kpa, double speed_kpa_per_s,
                                     const Watch& watch = {});
-  /// Keeps everything as it is and talks to the board until `done` says so: while a person is asked
-  /// something.
+  /// Holds all commands and exchanges data with the board until `done` returns true, for example while a
+  /// person answers a question.
   [[nodiscard]] Expected<void> wait(const std::function<bool()>& done);
-  /// Everything to its rest pressure, at the limits' slew, and the end of the session. True if the
-  /// board confirmed it.
+  /// Ramps all channels to their rest pressures within the slew limits and ends the session. Returns true if
+  /// the board confirmed the rest pressures.
   bool leave() noexcept;
 
   [[nodiscard]] double command_kpa(std::size_t channel) const { return commands_[channel]; }
   [[nodiscard]] Nanoseconds period() const noexcept { return schedule_.period(); }
-  /// Durations of the good exchanges so far.
+  /// Durations of the successful exchanges so far.
   [[nodiscard]] const daemon::Histogram& exchange_times() const noexcept;
 
  private:
-  struct Line;  // the bus, and the shared on which the session speaks to it as the loop does
+  struct Line;  // the bus, and the state that the session shares with it as the loop does
 
   [[nodiscard]] Expected<void> step(bool may_rise, const Watch& watch);
   void exchange(bool may_rise, bool last) noexcept;
@@ -138,14 +138,14 @@ class MotionSession {
   PeriodicSchedule schedule_;
   bool moved_ = false;
   std::optional<MotionFailure> ended_;
-  std::vector<double> commands_;  // the present outputs, then the next write
+  std::vector<double> commands_;  // the present outputs, then the values of the next write
   std::vector<double> targets_;
   std::vector<double> rest_;
   std::vector<model::Reading> readings_;
-  std::uint64_t silent_cycles_ = 0;  // since the last good exchange
+  std::uint64_t silent_cycles_ = 0;  // since the last successful exchange
   std::optional<Sight> required_;
-  std::uint32_t blind_cycles_ = 0;  // since the required sensors were all seen
-  bool may_rise_ = true;            // they were seen since they are required
+  std::uint32_t blind_cycles_ = 0;  // since all required sensors were last valid
+  bool may_rise_ = true;            // all required sensors have been valid since require()
 };
 
 }  // namespace softgrip::tools

@@ -13,16 +13,19 @@
 namespace softgrip::tools::calibrate {
 namespace {
 
-/// Of the span that the limits allow: closer points make a line that says little about the rest.
+/// Smallest distance of the two positions, as a share of the span that the limits allow. Closer points
+/// extrapolate badly.
 constexpr double least_share_of_span = 0.1;
 constexpr double least_share_of_signal = 0.02;
-/// Of a script, which may go on with the next answer and one that is missing at the end.
+/// Largest number of repetitions of a question to a script. It may continue with the next answer or have none
+/// left.
 constexpr int questions_at_most = 5;
-/// From one end of the valid electrical range: a signal that stands there has hit its end.
+/// A signal is saturated within this distance of an end of its valid electrical range, as a share of that
+/// range.
 constexpr double share_of_end = 0.002;
-/// Of the pressure range, per second: slow enough that the line follows.
+/// Speed of a motion as a share of the pressure range per second: slow enough that the line pressure follows.
 constexpr double share_per_s = 0.2;
-/// Of the pressure range: how far the ramp of the dead zone goes.
+/// End of the ramp for the dead zone, as a share of the pressure range.
 constexpr double ramp_share = 0.3;
 
 Refusal nonsense(std::string text) {
@@ -42,7 +45,7 @@ Refusal refusal_of(const MotionFailure& failure) {
   return {};
 }
 
-/// Asks; meanwhile the board is talked to, or its watchdog would trip.
+/// Asks a question. Exchanges data with the board meanwhile, so that its watchdog does not trip.
 Expected<std::string> ask(MotionSession& session, Operator& person, const std::string& question) {
   person.ask(question);
   std::optional<std::string> answer;
@@ -52,7 +55,7 @@ Expected<std::string> ask(MotionSession& session, Operator& person, const std::s
   return *answer;
 }
 
-/// Asks until a number comes.
+/// Repeats the question until the answer is a number.
 Expected<double> ask_number(MotionSession& session, Operator& person, const std::string& question) {
   for (int i = 0; person.patient() || i < questions_at_most; ++i) {
     const auto answer = ask(session, person, question);
@@ -63,7 +66,7 @@ Expected<double> ask_number(MotionSession& session, Operator& person, const std:
   return tl::unexpected(Refusal{ExitCode::input_refused, "no number was given: " + question});
 }
 
-/// Enter says that the target is where it was asked for, a number where it is instead, `-` leaves it out.
+/// Enter confirms the requested position, a number gives the actual position, and `-` skips the position.
 Expected<std::optional<double>> ask_position(MotionSession& session, Operator& person,
                                              const std::string& question, double asked_mm) {
   for (int i = 0; person.patient() || i < questions_at_most; ++i) {
@@ -82,7 +85,7 @@ Expected<std::optional<double>> ask_position(MotionSession& session, Operator& p
 
 Expected<void> move_to(const rig::RigFile& rig, MotionSession& session, Operator& person,
                        const Settings& settings, double kpa) {
-  if (session.command_kpa(settings.channel) == kpa) return {};  // and it rests there
+  if (session.command_kpa(settings.channel) == kpa) return {};  // it already rests there
   const double speed = ramp_speed_kpa_per_s(rig, settings.channel);
   person.tell(fmt::format("moving `{}` to {:.4g} kPa", rig.settings.channels[settings.channel].name, kpa));
   if (const auto moved = session.ramp(settings.channel, kpa, speed); !moved) {
@@ -94,7 +97,7 @@ Expected<void> move_to(const rig::RigFile& rig, MotionSession& session, Operator
   return {};
 }
 
-/// Both halves of an average: their difference is the drift.
+/// The two halves of an average. Their difference is the drift.
 struct Halves {
   ChannelSample first;
   ChannelSample second;
@@ -108,7 +111,8 @@ Expected<Halves> average(MotionSession& session, const Settings& settings) {
   return Halves{(*first)[settings.channel], (*second)[settings.channel]};
 }
 
-/// Two halves of one input as a visit, in electrical units: what the board reads is scaled back.
+/// Converts the two halves of one input to a visit in electrical units, by inverting the scaling of the
+/// board.
 Visit visit_of(const Sample& first, const Sample& second, const drivers::TwoPoints& scaling, bool upper) {
   Visit visit;
   visit.upper = upper;
@@ -140,7 +144,8 @@ Expected<Visit> visit_sensor(const rig::RigFile& rig, MotionSession& session, Op
                              const Settings& settings, bool upper) {
   const drivers::InputWiring& wiring = rig.wiring[settings.channel].displacement;
   if (settings.may_move) {
-    // Always from rest: the hysteresis of the finger must not become one of the sensor.
+    // Always start from rest, so that the hysteresis of the finger does not appear as hysteresis of the
+    // sensor.
     for (const double kpa : {control::resting_kpa(rig.settings.channels[settings.channel].limits),
                              upper ? settings.high_kpa : settings.low_kpa}) {
       if (const auto moved = move_to(rig, session, person, settings, kpa); !moved)
@@ -175,7 +180,7 @@ Demands demands_of(const rig::RigFile& rig, std::size_t channel, const drivers::
   return {least_share_of_span * span, least_share_of_signal * (wiring.valid_max - wiring.valid_min)};
 }
 
-/// What was seen of the valve at one command.
+/// The measurements of the valve at one command.
 struct ValveVisit {
   Visit valve;
   std::optional<Visit> monitor;
@@ -210,7 +215,7 @@ Expected<ValveVisit> visit_valve(const rig::RigFile& rig, MotionSession& session
   visit.valve.reference = by_monitor ? (first.mean + second.mean) / 2 : reference;
   visit.valve.count = 1;
   if (by_monitor) {
-    // The noise of the reference, as if it were one of the output.
+    // Converts the noise of the reference to units of the output.
     const double per_unit = std::abs(wiring.valve.scaling.x_at(1) - wiring.valve.scaling.x_at(0));
     visit.valve.noise = std::hypot(first.deviation, second.deviation) / std::sqrt(2.0) * per_unit;
     visit.valve.drift = std::abs(second.mean - first.mean) * per_unit;
@@ -245,7 +250,7 @@ std::optional<double> typed_number(std::string text) {
 
 Expected<Line> calibrate_sensor(const rig::RigFile& rig, MotionSession& session, Operator& person,
                                 const Settings& settings) {
-  // By hand the target may leave the sensor's range on its way.
+  // While a person moves the target by hand, it may leave the sensor's range.
   if (settings.may_move) session.require({settings.channel, true, false});
   std::vector<Visit> visits;
   for (std::size_t i = 0; i < settings.repeats; ++i) {
@@ -350,7 +355,7 @@ Expected<DeadZoneResult> search_dead_zone(const rig::RigFile& rig, MotionSession
     return tl::unexpected(refusal_of(up.error()));
   }
   result.zone = find_dead_zone(command, response);
-  // A falling sensor falls.
+  // The signal of a sensor with a negative slope falls when the displacement rises.
   if (!result.zone && !result.by_pressure) {
     for (double& value : response) value = -value;
     result.zone = find_dead_zone(command, response);

@@ -26,7 +26,7 @@ using drivers::ElectricalUnit;
 constexpr std::array<double, 8> usual_rates_hz{200, 100, 50, 40, 20, 10, 5, 2};
 constexpr double bus_lag = 0.25;  // LoopSettings::bus_offset_fraction
 constexpr double simulated_watchdog_s = 0.5;
-/// What a signal may be beyond its two ends and still be a reading, of their distance.
+/// Allowed excess of a valid signal beyond its two end points, as a share of their distance.
 constexpr double beyond_ends = 0.01;
 
 ElectricalRange usual_range(ElectricalUnit unit) noexcept {
@@ -49,10 +49,10 @@ std::string pair_text(double first, double second) {
   return "[" + rounded(first, 4) + ", " + rounded(second, 4) + "]";
 }
 
-/// Of one rig file.
+/// Largest number of fingers in one rig file.
 constexpr std::size_t max_fingers = 16;
 
-/// As the rig file should name it.
+/// Returns the path as it is written in the rig file: relative if it is below the file's folder.
 std::string named(const std::string& path, const std::filesystem::path& folder) {
   const auto relative = std::filesystem::proximate(path, folder);
   if (relative.empty() || relative.begin()->string() == "..")
@@ -87,7 +87,7 @@ control::LimitSettings limits_of(const RigDraft& draft) {
   return limits;
 }
 
-/// The best feedforward that exists for the model.
+/// Returns the best feedforward that the model allows.
 control::FeedforwardKind feedforward_of(const RigDraft& draft, const control::LimitSettings& limits,
                                         double period_s) {
   for (const auto kind : {control::FeedforwardKind::full_model, control::FeedforwardKind::planned}) {
@@ -152,7 +152,7 @@ std::string board_text(const RigDraft& draft, double rate_hz, const std::filesys
   return text;
 }
 
-/// "module: module_2, " where it must be said.
+/// Returns "module: module_2, " if the board has more than one candidate module, else "".
 std::string module_key(const RigDraft& draft, bool output) {
   std::size_t candidates = 0;
   std::size_t first = 0;
@@ -206,7 +206,7 @@ std::string pressure_fault_text(const RigDraft& draft, double rate_hz) {
       std::max(3.0, std::round(0.1 * rate_hz)), two(0.05 * range_kpa));
 }
 
-/// Cycles without an exchange before the board's watchdog vents.
+/// Returns the number of cycles without an exchange after which the board's watchdog vents.
 int bus_patience(const RigDraft& draft, double rate_hz) {
   const double watchdog = watchdog_s(draft);
   if (watchdog <= 0) return 5;
@@ -217,7 +217,7 @@ int bus_patience(const RigDraft& draft, double rate_hz) {
 
 using Values = std::vector<std::pair<std::string_view, std::string>>;
 
-/// Every `$key$` by its value.
+/// Replaces every `$key$` by its value.
 std::string filled(std::string text, const Values& values) {
   for (const auto& [key, value] : values) {
     const std::string mark = "$" + std::string(key) + "$";

@@ -1,5 +1,5 @@
 #pragma once
-// A first rig file from a few facts: what `softgrip init` writes.
+// Creates the rig-file template of `softgrip init` from a few facts.
 
 #include <cstddef>
 #include <optional>
@@ -15,23 +15,23 @@
 
 namespace softgrip::tools {
 
-/// A module of the board: its map, and where that is.
+/// A module of the board: its board map and its position.
 struct DraftModule {
   std::string path;
   drivers::BoardMap map;
 };
 
-/// The facts. Terminals are counted through: valve i on output i, sensor i on input i, the monitors on the
-/// last inputs.
+/// The facts of the rig. Terminals are numbered in order: valve i on output i, sensor i on input i, the
+/// monitors on the last inputs.
 struct RigDraft {
   std::string name = "my_rig";
-  std::optional<double> rate_hz;     ///< nothing: the highest usual one that is accepted
-  std::vector<DraftModule> modules;  ///< empty: simulated in process
-  std::string host;                  ///< of a board in the network, numeric; empty: on a serial line
+  std::optional<double> rate_hz;     ///< nullopt: the highest usual rate that the rig-file reader accepts
+  std::vector<DraftModule> modules;  ///< empty: a board simulated in the process
+  std::string host;                  ///< numeric address of a network board; empty: on a serial line
   int port = 502;
-  std::string device;  ///< of the serial line
+  std::string device;  ///< path of the serial device
   int baud = 9600;
-  int unit = 1;  ///< of the first module; the others' count on
+  int unit = 1;  ///< unit id of the first module; the others follow in order
   std::vector<std::string> fingers{"left", "right"};
   std::string model_path;
   model::Model model;
@@ -41,16 +41,16 @@ struct RigDraft {
   bool monitor = true;  ///< each finger has a pressure monitor, with the valve's points
   bool accepts_no_watchdog = false;
   std::string sequences_path;
-  bool service = false;  ///< runs as the system service: its folders
+  bool service = false;  ///< use the folders of the system service
 };
 
-/// The module whose outputs (inputs) are used; nothing if the board has none or is simulated.
+/// Returns the module whose outputs (inputs) are used, or null if the board has none or is simulated.
 [[nodiscard]] const DraftModule* output_module(const RigDraft& draft) noexcept;
 [[nodiscard]] const DraftModule* input_module(const RigDraft& draft) noexcept;
-/// How many fingers the terminals suffice for, with or without monitors.
+/// Returns the largest number of fingers for which the terminals suffice, with or without monitors.
 [[nodiscard]] std::size_t most_fingers(const RigDraft& draft, bool monitor) noexcept;
-/// The signal of an ordinary valve or sensor at such a terminal: 0 to 10 V, 4 to 20 mA; of a terminal that is
-/// told kilopascals what it can deliver.
+/// The usual signal of a valve or sensor at a terminal: 0 to 10 V or 4 to 20 mA. For a terminal in
+/// kilopascals, the range that the terminal can deliver.
 struct ElectricalRange {
   double lowest = 0;
   double highest = 10;
@@ -59,11 +59,11 @@ struct ElectricalRange {
 [[nodiscard]] ElectricalRange input_range(const RigDraft& draft);
 [[nodiscard]] drivers::ElectricalUnit output_unit(const RigDraft& draft) noexcept;
 [[nodiscard]] drivers::ElectricalUnit input_unit(const RigDraft& draft) noexcept;
-/// All modules vent by themselves when nobody talks to them. A simulated board does.
+/// Returns true if every module vents without communication. A simulated board does.
 [[nodiscard]] bool has_watchdog(const RigDraft& draft) noexcept;
 
-/// The text of a rig file at `path`, with comments, that the rig file's reader accepts; or what it says
-/// against it. Paths in it are relative to the file's folder where they lie below it.
+/// Returns the text of a commented rig file for `path` that the rig-file reader accepts, or the problems that
+/// the reader reports. Paths below the file's folder are written relative to it.
 [[nodiscard]] tl::expected<std::string, document::Problems> draft_text(const RigDraft& draft,
                                                                        const std::string& path);
 

@@ -27,7 +27,7 @@ std::string advice_for_silence(const rig::RigFile& rig, drivers::BusStatus statu
   return std::string(bus_advice(drivers::name_of(status)));
 }
 
-/// True if a look at the sensors, which writes the rest pressures, could drop a part that is still held.
+/// Returns true if reading the sensors could drop a part: the examination writes the rest pressures.
 bool may_hold_a_part(const rig::RigFile& rig) {
   const auto& safety = rig.settings.safety;
   const bool holds =
@@ -159,7 +159,7 @@ void leave_channels(const rig::RigFile& rig, const std::string& because, Finding
   }
 }
 
-/// What is known of a channel before its motion is judged.
+/// Returns the known problems of a channel before its motion is judged.
 NotJudged known_of(const rig::RigFile& rig, std::span<const Crossing> crossings, const ChannelSample& rest,
                    std::size_t channel) {
   using Kind = Crossing::Kind;
@@ -176,13 +176,14 @@ NotJudged known_of(const rig::RigFile& rig, std::span<const Crossing> crossings,
   return known;
 }
 
-/// The sensor that shows a motion of this channel: the displacement sensor, else the pressure monitor.
+/// Returns the sensor that shows a motion of this channel: the displacement sensor, otherwise the pressure
+/// monitor.
 Sight sight_of(const rig::RigFile& rig, std::size_t channel) {
   const bool displacement = rig.settings.channels[channel].displacement_used;
   return {channel, displacement, !displacement && rig.wiring[channel].pressure.has_value()};
 }
 
-/// Returns the finding that says why a channel must not be moved: its sensor read nothing valid. Else empty.
+/// Returns the finding that forbids a motion of the channel because its sensor has no valid reading, or "".
 std::string blind_at(const rig::RigFile& rig, const ChannelSample& rest, std::size_t channel) {
   const Sight sight = sight_of(rig, channel);
   const std::string& name = rig.settings.channels[channel].name;
@@ -191,7 +192,7 @@ std::string blind_at(const rig::RigFile& rig, const ChannelSample& rest, std::si
   return {};
 }
 
-/// Every finger by itself, all sensors watched: only together do they show which wires are swapped.
+/// Moves each finger alone and watches all sensors. All responses are needed to find swapped wires.
 void move_all(const rig::RigFile& rig, MotionSession& session, const std::vector<ChannelSample>& rest,
               const MoveSettings& settings, Findings& findings) {
   std::vector<Motion> motions(rest.size());

@@ -1,5 +1,5 @@
 #pragma once
-// The rig file that `softgrip init` writes; $NAME$ stands for what is filled in.
+// The rig file that `softgrip init` writes. `$NAME$` marks a value to fill in.
 
 #include <string_view>
 

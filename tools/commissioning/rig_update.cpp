@@ -20,7 +20,7 @@ using document::Node;
 constexpr std::size_t most_bytes = 256 * 1024;
 constexpr std::string_view mark = "# softgrip calibrate";
 
-/// One map of the channel and what its points become.
+/// One map of the channel and its new points.
 struct Target {
   std::string map;  ///< "sensor"
   std::string is;   ///< "is_mm"
@@ -39,7 +39,7 @@ std::vector<Target> targets_of(const rig::RigFile& rig, const Results& results) 
   return targets;
 }
 
-/// The map of the channel, or, of a rig with one channel, that of the defaults.
+/// Returns the map of the channel. For a rig with one channel, this can be the map of the defaults.
 const Node::Entry* map_of(const document::Document& document, std::size_t channel, const std::string& map) {
   const Node* const channels = document::below(&document.root, {"channels"});
   if (channels == nullptr || channel >= channels->items.size()) return nullptr;
@@ -73,7 +73,7 @@ const drivers::TwoPoints* points_of(const drivers::ChannelWiring& wiring, const 
   return wiring.pressure ? &wiring.pressure->scaling : nullptr;
 }
 
-/// What was written is what is read, and nothing else has changed of how the rig is wired.
+/// Returns true if the file contains the new points and the rest of the wiring is unchanged.
 bool says(const rig::RigFile& now, const rig::RigFile& before, const std::vector<Target>& targets,
           std::size_t channel) {
   if (now.wiring.size() != before.wiring.size()) return false;

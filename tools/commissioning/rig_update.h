@@ -1,5 +1,5 @@
 #pragma once
-// A calibration's results written into the rig file itself.
+// Writes the results of a calibration into the rig file.
 
 #include <string>
 
@@ -9,18 +9,17 @@
 
 namespace softgrip::tools::calibrate {
 
-/// The text of the rig file with the two points of what was calibrated in the place of the old ones; its
-/// other lines stay as they are, comments included, and a comment above each map says when and how well it
-/// was calibrated. What all channels share (`channel_defaults`) is not changed: the channel gets its own
-/// points. The text was read back and says what it should; the error is one sentence: why the lines must be
-/// put there by hand.
+/// Returns the text of the rig file with the new points of the calibrated maps. All other lines stay
+/// unchanged, including comments. A comment above each map states the date and the error of the calibration.
+/// `channel_defaults` is not changed: the channel gets its own points. The new text was parsed and checked.
+/// The error is a sentence that says why the lines must be inserted by hand.
 [[nodiscard]] tl::expected<std::string, std::string> updated_rig(const std::string& text,
                                                                  const rig::RigFile& rig,
                                                                  const Results& results);
 
-/// Writes `text` in the place of the rig file that `rig` was read from, and the old one beside it; returns
-/// the path of the old one. A file that has changed since it was read is left alone, and so is it whatever
-/// fails.
+/// Replaces the rig file that `rig` was read from by `text`, and keeps the old file beside it. Returns the
+/// path of the old file. If the file has changed since it was read, or if a step fails, the rig file stays
+/// unchanged.
 [[nodiscard]] tl::expected<std::string, std::string> write_rig(const rig::RigFile& rig,
                                                                const std::string& text);
 

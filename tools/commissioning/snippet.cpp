@@ -34,7 +34,7 @@ std::string error_codes(const drivers::InputWiring& wiring) {
   return ", error_codes: [" + with_commas(wiring.error_codes, text_of) + "]";
 }
 
-/// Which module of a board that has several.
+/// Returns the `module` key if the board has several modules, else "".
 std::string module_of(const rig::RigFile& rig, std::size_t module) {
   const auto* const board = std::get_if<drivers::ModbusSettings>(&rig.board);
   if (board == nullptr || board->modules.size() < 2 || module >= board->modules.size()) return {};

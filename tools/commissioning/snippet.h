@@ -1,5 +1,5 @@
 #pragma once
-// What a calibration leaves behind: lines for the rig file.
+// Formats the results of a calibration as lines for the rig file.
 
 #include <optional>
 #include <string>
@@ -9,12 +9,12 @@
 
 namespace softgrip::tools::calibrate {
 
-/// How the finger was moved to its two places.
+/// The motion of the finger to its two positions.
 struct Motion {
   double low_kpa = 0;
   double high_kpa = 0;
-  double wait_s = 0;           ///< at each, until the middle of the average
-  double speed_kpa_per_s = 1;  ///< of the ramps to them, each from the rest pressure
+  double wait_s = 0;           ///< wait at each position, until the middle of the average
+  double speed_kpa_per_s = 1;  ///< speed of the ramps, each from the rest pressure
 };
 
 struct Results {
@@ -23,19 +23,19 @@ struct Results {
   std::optional<Line> sensor;
   std::optional<ValveResult> valve;
   std::optional<DeadZoneResult> dead_zone;
-  std::optional<Motion> motion;  ///< of the sensor's calibration, unless it was by hand
+  std::optional<Motion> motion;  ///< for a calibration of the sensor; nullopt: moved by hand
 };
 
-/// YAML: the maps `sensor`, `valve`, `pressure_monitor` of the channel as they should stand in the rig file,
-/// with what was found as comments. Everything that was not calibrated keeps its values.
+/// Returns YAML with the maps `sensor`, `valve` and `pressure_monitor` of the channel for the rig file, and
+/// the findings as comments. Values that were not calibrated stay unchanged.
 [[nodiscard]] std::string snippet(const rig::RigFile& rig, const Results& results);
 
-/// A number as it stands in a rig file: to so many decimals, without zeros that say nothing.
+/// Formats a number for a rig file: rounded to `decimals`, without trailing zeros.
 [[nodiscard]] std::string rounded(double value, int decimals);
 /// "v", "ma" or "kpa": the end of an electrical key.
 [[nodiscard]] std::string suffix_of(drivers::ElectricalUnit unit);
 
-/// Two points as they stand in a rig file.
+/// The texts of two points for a rig file.
 struct PairText {
   std::string first;
   std::string second;

@@ -1,5 +1,5 @@
 #pragma once
-// A person at the terminal, or a script behind the standard input.
+// Asks a person at the terminal, or a script on the standard input.
 
 #include <deque>
 #include <optional>
@@ -10,8 +10,8 @@
 
 namespace softgrip::tools::calibrate {
 
-/// Questions go to the standard error. Answers come from what was prepared first, then line by line from the
-/// standard input.
+/// Writes questions to the standard error. Uses the prepared answers first, then reads answers line by line
+/// from the standard input.
 class TerminalOperator final : public Operator {
  public:
   TerminalOperator();
