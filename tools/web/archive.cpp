@@ -44,7 +44,7 @@ void DiskTask::answer_file(std::shared_ptr<const RegularFile> file) {
   done_ = true;
 }
 
-/// The thread keeps it alive: it may outlive the archive in a call that does not return.
+/// The thread shares the ownership, because a blocked disk call can outlive the archive.
 struct Archive::Shared {
   using DiskTasks = std::deque<std::shared_ptr<DiskTask>>;
 
@@ -58,11 +58,11 @@ struct Archive::Shared {
   [[nodiscard]] DiskTasks take_quick_ones();
 
   Descriptor told{::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)};
-  Recordings recordings;  // of the thread alone
+  Recordings recordings;  // used by the thread only
   std::mutex mutex;
   std::condition_variable changed;
-  DiskTasks quick;     // everything but lists
-  DiskTasks listings;  // that have not begun
+  DiskTasks quick;     // all tasks except lists
+  DiskTasks listings;  // lists that have not begun
   bool ends = false;
   bool ended = false;
 };
@@ -130,7 +130,7 @@ void Archive::Shared::list(const DiskTasks& tasks) {
 }
 
 void Archive::Shared::tell() const noexcept {
-  // It fails only where it is readable anyway.
+  // The write fails only if the counter is full, and then the descriptor is readable anyway.
   [[maybe_unused]] const int result = ::eventfd_write(told.get(), 1);
 }
 

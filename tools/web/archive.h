@@ -1,5 +1,6 @@
 #pragma once
-// The recordings' disk, in a thread of its own: a slow or dead disk delays neither a stop nor a vent.
+// Reads the recordings from the disk in a separate thread, so that a slow disk delays no stop or vent
+// command.
 
 #include <atomic>
 #include <chrono>
@@ -36,18 +37,19 @@ class DiskTask {
   [[nodiscard]] const DiskRequest& request() const noexcept { return request_; }
   /// Returns true if the answer is complete. It does not change any more.
   [[nodiscard]] bool done() const noexcept { return done_; }
-  /// health: null where there is none.
+  /// For a health request: the result, or null if there is none.
   [[nodiscard]] const nlohmann::ordered_json& health() const noexcept { return *health_; }
-  /// listing: `{"recordings": [...]}`; piece: the bytes, empty if there are none or they cannot be read.
+  /// For a listing: `{"recordings": [...]}`. For a piece: the bytes, or "" at the end of the file or after a
+  /// read error.
   [[nodiscard]] const std::string& text() const noexcept { return *text_; }
-  /// file: null where there is none that may be shown.
+  /// For a file request: the open file, or null if no such file may be shown.
   [[nodiscard]] const std::shared_ptr<const RegularFile>& file() const noexcept { return file_; }
 
-  // For the thread of the disk.
+  // Called by the disk thread.
   void answer_health(const nlohmann::ordered_json& health);
   void answer_text(std::shared_ptr<const std::string> text);
   void answer_file(std::shared_ptr<const RegularFile> file);
-  /// The answer is that there is none.
+  /// Completes the task without a result.
   void fail() noexcept { done_ = true; }
 
  private:
@@ -60,15 +62,15 @@ class DiskTask {
 
 class Archive {
  public:
-  /// Bytes of one download that are in memory.
+  /// Bytes of one download that are kept in memory.
   static constexpr std::size_t piece = std::size_t{16} << 10U;
-  /// From the begin of a list to the begin of the next one, and at least as long as the list took: however
-  /// many viewers ask, half of the thread's time is left to others.
+  /// Smallest time between the beginnings of two lists. The pause is at least as long as the last list took,
+  /// so that lists use at most half of the thread's time.
   static constexpr std::chrono::milliseconds listing_pause{200};
-  /// The longest time that the destructor waits for a disk that does not answer.
+  /// The longest time that the destructor waits for a disk that does not respond.
   static constexpr std::chrono::milliseconds farewell{1000};
 
-  /// `folder` may be empty: then there are no recordings.
+  /// An empty `folder` means that there are no recordings.
   explicit Archive(std::string folder);
   Archive(const Archive&) = delete;
   Archive& operator=(const Archive&) = delete;
@@ -76,12 +78,12 @@ class Archive {
   Archive& operator=(Archive&&) = delete;
   ~Archive();
 
-  /// Never waits. A list begins after its request, and serves all requests of the meantime. All other
-  /// requests come before it.
+  /// Adds a request without waiting. One list serves all list requests that arrive before it begins. All
+  /// other requests have priority over lists.
   [[nodiscard]] std::shared_ptr<const DiskTask> ask(DiskRequest disk_request);
   /// For poll(): readable when a task is done.
   [[nodiscard]] int descriptor() const noexcept;
-  /// To be called when it is readable.
+  /// Resets the descriptor. Call it when the descriptor is readable.
   void hear() const noexcept;
 
  private:

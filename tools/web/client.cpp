@@ -13,19 +13,20 @@ namespace softgrip::web {
 
 bool Client::receive() {
   std::array<char, 4096> bytes;
-  // More than a request, and no endless turn for one who never stops sending.
+  // Enough for a complete request, and a limit for a client that never stops sending.
   constexpr std::size_t most_reads = 2 * (longest_head + longest_body) / bytes.size();
   for (std::size_t reads = 0; reads < most_reads;) {
     const ssize_t count = ::recv(socket_.get(), bytes.data(), bytes.size(), 0);
     if (count < 0 && errno == EINTR) continue;
     if (count < 0) return errno == EAGAIN || errno == EWOULDBLOCK;
     if (count == 0) {
-      // Some say no more and wait for their answer. With a stream it means that the page was closed.
+      // Some clients close their sending side and wait for the response. With a stream, this means that the
+      // page was closed.
       const bool known = said_all_;
       said_all_ = true;
       return !known && phase_ != Phase::following;
     }
-    // Whatever comes behind the request is nobody's.
+    // Bytes after the request are discarded.
     if (phase_ == Phase::asking && in_.size() < longest_head + longest_body)
       in_.append(bytes.data(), static_cast<std::size_t>(count));
     if (static_cast<std::size_t>(count) < bytes.size()) return true;
@@ -44,10 +45,11 @@ bool Client::send_on(Nanoseconds now) {
     moved_at_ = now;
   }
   if (sent_ < out_.size()) return true;
-  std::string().swap(out_);  // and its memory: a greeting is large
+  std::string().swap(out_);  // also frees the memory: a greeting is large
   sent_ = 0;
   if (phase_ != Phase::answering) return true;
-  // He is told that this is all; what he still says would make the system throw away what he has not read.
+  // Announce the end of the response. If the socket were closed at once, unread input would make the system
+  // discard the response.
   ::shutdown(socket_.get(), SHUT_WR);
   return false;
 }

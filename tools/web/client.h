@@ -1,5 +1,5 @@
 #pragma once
-// One connection of a browser or a collector. Never blocks.
+// One connection of a browser or a collector. No call blocks.
 
 #include <cstddef>
 #include <cstdint>
@@ -11,45 +11,45 @@
 
 namespace softgrip::web {
 
-/// Sends one request and gets one answer, a file in pieces, or a stream of messages. Who is slow is
-/// disconnected; what he does not take is kept up to a bound and costs nobody else anything.
+/// Receives one request and sends one response, a file in pieces, or a stream of messages. A slow client is
+/// disconnected. Its unsent bytes are limited and do not delay other clients.
 class Client {
  public:
   enum class Phase : unsigned char {
     asking,     ///< the request is not complete
     waiting,    ///< for the daemon or the disk
-    answering,  ///< the connection ends when all is sent
+    answering,  ///< the connection ends when all bytes are sent
     loading,    ///< pieces of a file follow until finish()
     following   ///< messages follow
   };
 
   static constexpr Nanoseconds longest_question = 5 * ns_per_s;
-  static constexpr Nanoseconds longest_pause = 10 * ns_per_s;      ///< in which he takes nothing of an answer
-  static constexpr Nanoseconds longest_answer = 60 * ns_per_s;     ///< until he has taken all of it
+  static constexpr Nanoseconds longest_pause = 10 * ns_per_s;      ///< without progress of the response
+  static constexpr Nanoseconds longest_answer = 60 * ns_per_s;     ///< until the response is complete
   static constexpr std::size_t most_kept = std::size_t{1} << 20U;  ///< of messages
-  /// Limit of one call: the others have their turn, however fast he reads.
+  /// Limit of one call, so that a fast reader does not delay the other clients.
   static constexpr std::size_t most_at_once = std::size_t{256} << 10U;
 
   Client(Descriptor socket, Nanoseconds now) : socket_(std::move(socket)), came_at_(now), moved_at_(now) {}
 
-  /// Takes what came in. False: he has gone.
+  /// Receives available bytes. Returns false if the client has disconnected.
   [[nodiscard]] bool receive();
-  /// Sends what can be sent. False: he has gone, or has got everything.
+  /// Sends as much as possible. Returns false if the client has disconnected or the response is complete.
   [[nodiscard]] bool send_on(Nanoseconds now);
-  /// He takes too long.
+  /// Returns true if the client has exceeded a time limit.
   [[nodiscard]] bool late(Nanoseconds now) const noexcept;
 
-  /// The answer comes later; the request is kept.
+  /// The response comes later. The request is kept.
   void wait() noexcept { phase_ = Phase::waiting; }
-  /// `next`: answering, loading or following. The request is forgotten.
+  /// Begins the response and discards the request. `next` is answering, loading or following.
   void answer(std::string bytes, Phase next, Nanoseconds now);
-  /// Adds messages to his stream, or a piece to his file. One that already has more than a greeting to take
-  /// misses them: false, if that is more than he may miss.
+  /// Adds messages to the stream or a piece to the file. Returns false if the unsent bytes would exceed
+  /// `most_kept`.
   [[nodiscard]] bool add(std::string_view bytes);
-  /// Ends his stream or file once he has taken what there is.
+  /// Ends the stream or file after all unsent bytes have been sent.
   void finish() noexcept { phase_ = Phase::answering; }
 
-  /// Frees the bytes that are kept for him.
+  /// Frees the unsent bytes.
   void drop_unsent() noexcept {
     std::string().swap(out_);
     sent_ = 0;
@@ -58,12 +58,12 @@ class Client {
   [[nodiscard]] Phase phase() const noexcept { return phase_; }
   [[nodiscard]] const std::string& request() const noexcept { return in_; }
   [[nodiscard]] Nanoseconds came_at() const noexcept { return came_at_; }
-  /// When he last took something, or when his answer began.
+  /// The time of the last progress of the response, or of its beginning.
   [[nodiscard]] Nanoseconds moved_at() const noexcept { return moved_at_; }
   [[nodiscard]] bool has_to_send() const noexcept { return !out_.empty(); }
-  /// Bytes that are kept for him.
+  /// Number of bytes that are not sent yet.
   [[nodiscard]] std::size_t unsent() const noexcept { return out_.size() - sent_; }
-  /// He sends no more: poll() need not wait for input.
+  /// Returns true if the client sends no more, so that poll() need not wait for input.
   [[nodiscard]] bool said_all() const noexcept { return said_all_; }
   [[nodiscard]] int descriptor() const noexcept { return socket_.get(); }
 
@@ -76,7 +76,7 @@ class Client {
   bool said_all_ = false;
   std::string in_;
   std::string out_;
-  std::size_t sent_ = 0;  // of out_
+  std::size_t sent_ = 0;  // bytes of out_ that are sent
 };
 
 }  // namespace softgrip::web

@@ -13,9 +13,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// A start may take a second to be planned, and as long as the disk takes.
+/// A start may need one second for planning, and additional time for the disk.
 constexpr Nanoseconds longest_wait = 8 * ns_per_s;
-/// Between two attempts to stop a start that was given up.
+/// Time between two attempts to stop a start that was given up.
 constexpr Nanoseconds pause_between_stops = ns_per_s / 4;
 constexpr std::size_t longest_sequence_name = 128;
 constexpr std::size_t most_parameters = 32;
@@ -29,7 +29,7 @@ bool are_parameters(const Json& value) {
          std::all_of(value.begin(), value.end(), [](const Json& number) { return number.is_number(); });
 }
 
-/// Empty, or what is wrong with it.
+/// Returns "" if the body is valid, else an error message.
 std::string check_start(const Json& body) {
   const auto sequence = body.find("sequence");
   if (sequence == body.end() || !sequence->is_string() || sequence->get<std::string>().empty() ||
@@ -81,7 +81,7 @@ tl::expected<std::uint64_t, Json> Commander::send(Json request, Nanoseconds now)
   return number;
 }
 
-/// Returns what the daemon would say if there is no connection and none can be made.
+/// Connects if there is no connection. Returns the error response that replaces the daemon's if this fails.
 std::optional<Json> Commander::connect() {
   if (daemon_) return std::nullopt;
   if (socket_.empty()) return failure("not_allowed", "this page is for looking only");
@@ -154,7 +154,7 @@ void Commander::take(Json line) {
   });
   if (stopped == given_up_.end()) return;
   stopped->stop = 0;
-  // A daemon that is too old to know the id has refused the start, too.
+  // An older daemon that does not know the id has refused the start as well.
   const bool is_older = line.value("error", Json::object()).value("code", "") == "bad_request";
   if (is_older || tools::confirms_stop(line)) given_up_.erase(stopped);
 }
@@ -175,7 +175,7 @@ void Commander::stop(GivenUp& start) {
   start.stop = send_numbered(tools::stop_of(start.start_id));
 }
 
-/// Stops what was given up without a connection, and what a daemon did not confirm.
+/// Stops the starts that were given up without a connection or whose stop the daemon did not confirm.
 void Commander::stop_again(Nanoseconds now) {
   const auto is_due = [](const GivenUp& start) { return start.stop == 0; };
   if (std::none_of(given_up_.begin(), given_up_.end(), is_due)) return;

@@ -1,5 +1,5 @@
 #pragma once
-// The connection over which browsers command the daemon.
+// Sends the commands of browsers to the daemon over one connection.
 
 #include <cstdint>
 #include <map>
@@ -15,34 +15,37 @@
 
 namespace softgrip::web {
 
-/// The request that a browser's body stands for: one of start, stop, vent, release, acknowledge, with what a
-/// start has and nothing else. The error is a sentence.
+/// Converts the body of a browser's request to a daemon request: start, stop, vent, release or acknowledge.
+/// Only a start has a sequence and parameters. The error is a sentence.
 [[nodiscard]] tl::expected<nlohmann::ordered_json, std::string> command_in(std::string_view body);
 
-/// Gives every start an id of its own. A start whose outcome nobody hears must not move the gripper: it is
-/// stopped by this id, over the next connection too, until a daemon has confirmed that it does not run. Such
-/// a start had no answer in time, lost its connection or its browser, or was answered by a loop that is
-/// silent.
+/// Gives every start its own id. A start without a receiver for its outcome must not move the gripper. It is
+/// stopped by its id until a daemon confirms that it does not run, also over a later connection. This applies
+/// to a start that had no response in time, lost its connection or its browser, or was answered while the
+/// control loop was silent.
 class Commander {
  public:
-  /// Commands that wait for their answers. As many stops and vents may wait beside them.
+  /// Largest number of commands that wait for their responses. As many stops and vents may wait in addition.
+  /// addition.
   static constexpr std::size_t most_waiting = 32;
 
-  /// `socket` is the daemon's for operating, and outlives this.
+  /// `socket` is the path of the daemon's operating socket and must outlive this object.
   explicit Commander(const std::string& socket) : socket_(socket) {}
 
-  /// Sends it and returns the number under which its answer comes; or what the daemon would say: why not.
+  /// Sends the request and returns the number of its response. The error is the response that the daemon
+  /// would give.
   [[nodiscard]] tl::expected<std::uint64_t, nlohmann::ordered_json> send(nlohmann::ordered_json request,
                                                                          Nanoseconds now);
-  /// The daemon's whole answer, once; nothing while it is waited for. Without the daemon the answer says so.
+  /// Returns the daemon's complete response once, or nullopt while it is pending. If the daemon cannot be
+  /// reached, the response says so.
   [[nodiscard]] std::optional<nlohmann::ordered_json> take_answer(std::uint64_t number, Nanoseconds now);
-  /// True of a start that is not refused and whose outcome take_answer() has not returned.
+  /// Returns true for a start that was not refused and whose outcome take_answer() has not returned.
   [[nodiscard]] bool is_open_start(std::uint64_t number) const;
-  /// Nobody waits for it any more.
+  /// The receiver of this response has gone.
   void forget(std::uint64_t number);
-  /// To be called when the descriptor can be read, and several times a second.
+  /// Processes the connection. Call it when the descriptor is readable, and several times per second.
   void look_after(Nanoseconds now);
-  /// Nobody waits for anything any more: the program ends.
+  /// Gives up all commands, because the program ends.
   void leave();
   /// -1 if there is no connection.
   [[nodiscard]] int descriptor() const noexcept { return daemon_ ? daemon_->descriptor() : -1; }
@@ -53,10 +56,10 @@ class Commander {
     std::string start_id;  ///< of a start that may run
     std::optional<nlohmann::ordered_json> answer;
   };
-  /// A start whose outcome nobody hears.
+  /// A start whose outcome has no receiver.
   struct GivenUp {
     std::string start_id;
-    std::uint64_t stop = 0;  ///< the number of its stop; 0: none is under way
+    std::uint64_t stop = 0;  ///< number of its stop request; 0: none is pending
   };
   [[nodiscard]] std::optional<nlohmann::ordered_json> connect();
   std::uint64_t send_numbered(nlohmann::ordered_json request);
@@ -72,7 +75,7 @@ class Commander {
   std::uint64_t last_ = 0;
   std::map<std::uint64_t, Waiting> waiting_;
   std::vector<GivenUp> given_up_;
-  Nanoseconds stopped_at_ = 0;  // by stop_again()
+  Nanoseconds stopped_at_ = 0;  // time of the last stop_again()
 };
 
 }  // namespace softgrip::web

@@ -13,12 +13,12 @@ using Json = nlohmann::ordered_json;
 
 constexpr double watch_rate_hz = 5;
 constexpr Nanoseconds retry_pause = ns_per_s / 4;
-/// A daemon that says nothing for so long is none.
+/// A daemon without a message for this time counts as disconnected.
 constexpr Nanoseconds longest_silence = 3 * ns_per_s / 2;
 constexpr Nanoseconds statistics_period = 2 * ns_per_s;
 constexpr Nanoseconds sequences_period = 10 * ns_per_s;
 
-/// Ids of requests, by what they ask for.
+/// Ids of the requests, by their subject.
 enum Asked : std::uint64_t { hello = 1, watch, subscribe, statistics, sequences };
 
 }  // namespace

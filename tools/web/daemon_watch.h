@@ -1,5 +1,5 @@
 #pragma once
-// The one connection over which everything that is shown comes from the daemon, however many browsers look.
+// The single connection that provides all displayed data of the daemon, for any number of browsers.
 
 #include <optional>
 
@@ -11,13 +11,13 @@ namespace softgrip::web {
 
 class DaemonWatch {
  public:
-  /// `socket` is the daemon's for looking. References outlive it.
+  /// `socket` is the path of the daemon's read-only socket. All references must outlive this object.
   DaemonWatch(const std::string& socket, LiveState& state) : socket_(socket), state_(state) {}
 
-  /// To be called when the descriptor can be read, and several times a second: lines of the daemon, requests
-  /// that are due, connecting anew.
+  /// Reads the daemon's lines, sends requests that are due, and reconnects. Call it when the descriptor is
+  /// readable, and several times per second.
   void look_after(Nanoseconds now);
-  /// -1 if there is no connection.
+  /// The descriptor of the connection, or -1.
   [[nodiscard]] int descriptor() const noexcept { return daemon_ ? daemon_->descriptor() : -1; }
 
  private:
@@ -29,11 +29,11 @@ class DaemonWatch {
   const std::string& socket_;
   LiveState& state_;
   std::optional<tools::DaemonClient> daemon_;
-  Nanoseconds tried_at_ = 0;  // to connect
-  Nanoseconds heard_at_ = 0;  // a state
+  Nanoseconds tried_at_ = 0;  // last attempt to connect
+  Nanoseconds heard_at_ = 0;  // last state received
   Nanoseconds statistics_due_ = 0;
   Nanoseconds sequences_due_ = 0;
-  std::string started_at_;  // of the daemon whose events were heard last
+  std::string started_at_;  // start time of the daemon whose events were received last
   std::uint64_t last_event_ = 0;
 };
 

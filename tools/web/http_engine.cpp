@@ -7,7 +7,7 @@ namespace softgrip::web {
 
 namespace {
 
-/// A connection whose client has said all and hears the rest later.
+/// A connection whose client has sent its whole request and receives the response later.
 class MemoryStream final : public httplib::Stream {
  public:
   explicit MemoryStream(std::string_view request) : unread_(request) {}
@@ -35,7 +35,7 @@ class MemoryStream final : public httplib::Stream {
   std::string written_;
 };
 
-/// Parts of an answer are not offered: overlapping ones would make a large answer of a small file.
+/// Range requests are not supported: overlapping ranges would turn a small file into a large response.
 void forget_ranges(httplib::Request& request) {
   request.ranges.clear();
 }

@@ -1,6 +1,6 @@
 #pragma once
-// cpp-httplib as a function from the bytes of a request to those of its answer: its sockets and threads, one
-// per client, are left alone, so that a client that is slow costs no thread and nobody else's time.
+// Uses cpp-httplib as a function from the bytes of a request to the bytes of its response. Its sockets and
+// its thread per client are not used, so that a slow client occupies no thread and delays no other client.
 
 #include <string>
 #include <string_view>
@@ -11,7 +11,7 @@ namespace softgrip::web {
 
 class HttpEngine : public httplib::Server {
  public:
-  /// What goes back to the client of a complete request. Never throws for what a client can send.
+  /// Returns the response to a complete request. No input of a client makes it throw.
   [[nodiscard]] std::string answer(std::string_view request);
 };
 

@@ -10,7 +10,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Nobody needs more of what was not taken for so long than the newest.
+/// Limit of the news that were not collected. Beyond it, new messages are dropped.
 constexpr std::size_t longest_news = std::size_t{1} << 20U;
 
 Json list_of(const std::deque<Json>& items) {
@@ -22,13 +22,13 @@ Json list_of(const std::deque<Json>& items) {
 }  // namespace
 
 std::string message_of(std::string_view kind, const Json& data) {
-  // JSON has no line breaks of its own, so that one line of data holds it.
+  // The serialised JSON contains no line breaks, so it fits on one data line.
   return "event: " + std::string(kind) +
          "\ndata: " + data.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n\n";
 }
 
 void LiveState::take_status(Json status) {
-  // Another daemon counts its time anew.
+  // A restarted daemon begins its time at zero.
   if (number(status, "time_s") < number(status_, "time_s")) trend_.clear();
   status_ = std::move(status);
   note_trend();

@@ -1,5 +1,5 @@
 #pragma once
-// What the daemon said lately: all that browsers and collectors see comes from here. No sockets.
+// The latest data of the daemon. All responses to browsers and collectors come from here. No sockets.
 
 #include <cstdint>
 #include <deque>
@@ -17,26 +17,26 @@ class LiveState {
   static constexpr double trend_s = 60;
   static constexpr std::size_t events_kept = 200;
 
-  /// Takes a state, an event, counts, the list of sequences; each becomes news.
+  /// Each of these functions stores new data of the daemon and adds a message for the open pages.
   void take_status(nlohmann::ordered_json status);
   void take_event(nlohmann::ordered_json event);
   void take_statistics(nlohmann::ordered_json statistics);
   void take_sequences(nlohmann::ordered_json sequences);
-  /// Takes the last result of `softgrip health`, which the daemon does not know.
+  /// Stores the last result of `softgrip health`. The daemon does not know it.
   void take_health(nlohmann::ordered_json health) { health_ = std::move(health); }
-  /// The daemon does not answer any more: nothing of it is known but what happened.
+  /// Call it when the connection to the daemon is lost: only its past events remain known.
   void lose();
 
-  /// Null where no daemon answers.
+  /// The last status, or null if the daemon does not respond.
   [[nodiscard]] const nlohmann::ordered_json& status() const noexcept { return status_; }
   [[nodiscard]] const nlohmann::ordered_json& statistics() const noexcept { return statistics_; }
   [[nodiscard]] const nlohmann::ordered_json& sequences() const noexcept { return sequences_; }
-  /// Null where there is none.
+  /// The last health result, or null if there is none.
   [[nodiscard]] const nlohmann::ordered_json& health() const noexcept { return health_; }
 
-  /// All that there is, as the first message of a stream of server-sent events.
+  /// Returns the complete state as the first message of a stream of server-sent events.
   [[nodiscard]] std::string greeting() const;
-  /// What is new since the last call, as further messages; empty if nothing is.
+  /// Returns the changes since the last call as further messages, or "" if nothing has changed.
   [[nodiscard]] std::string take_news();
 
  private:
@@ -51,7 +51,7 @@ class LiveState {
   std::string news_;
 };
 
-/// A message of a stream of server-sent events.
+/// Formats one message of a stream of server-sent events.
 [[nodiscard]] std::string message_of(std::string_view kind, const nlohmann::ordered_json& data);
 
 }  // namespace softgrip::web

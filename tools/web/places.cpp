@@ -8,12 +8,13 @@ namespace softgrip::web {
 
 namespace {
 
-/// The standard streams, listener, signals, two connections to the daemon, the disk's thread, and room for
-/// what is open for a moment.
+/// Descriptors of the program itself: standard streams, listener, signals, two connections to the daemon, the
+/// disk thread, and a reserve for short use.
 constexpr std::size_t own_descriptors = 24;
 constexpr std::size_t fewest_places = 4;
 
-/// Of those that may go: the lowest role, and of that the one that moved longest ago.
+/// Returns the guest with the lowest role among those that may be removed. Among equal roles, it is the one
+/// whose last progress is oldest.
 template <class MayGo>
 Victim first_to_go(const std::vector<Guest>& guests, const MayGo& may_go) {
   const auto rank = [](const Guest& guest) { return std::tuple(guest.role, guest.moved_at); };

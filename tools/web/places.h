@@ -1,5 +1,5 @@
 #pragma once
-// Chooses the connection that gives way when places or memory run out. No sockets.
+// Chooses the connection to close when places or memory run out. No sockets.
 
 #include <cstddef>
 #include <optional>
@@ -10,29 +10,29 @@
 
 namespace softgrip::web {
 
-/// A connection, as far as it matters here.
+/// The properties of a connection that matter for the choice.
 struct Guest {
   enum class Stay : unsigned char {
     asking,    ///< its request is not complete
-    brief,     ///< its answer comes from memory or from the daemon, and goes out at once
-    lingering  ///< an open page, a download, a wait for the disk, an answer that is not taken
+    brief,     ///< the response comes from memory or from the daemon and is sent at once
+    lingering  ///< an open page, a download, a wait for the disk, or a response that the client does not read
   };
   Stay stay = Stay::asking;
   Role role = Role::none;
-  Nanoseconds moved_at = 0;  ///< when it came, or when bytes last moved
-  std::size_t unsent = 0;    ///< bytes that the program keeps for it
+  Nanoseconds moved_at = 0;  ///< time of arrival or of the last progress
+  std::size_t unsent = 0;    ///< bytes that are not sent yet
 };
 
 /// A connection without progress for this time may lose its place to another.
 inline constexpr Nanoseconds long_pause = ns_per_s / 2;
 
-/// All bytes that the program keeps for all connections together. With the requests and the system's buffers
-/// of 512 connections this stays below the memory that the unit allows (server.cpp).
+/// Limit of the unsent bytes of all connections together. With the requests and the system's buffers of 512
+/// connections, it stays below the memory limit of the unit (server.cpp).
 inline constexpr std::size_t most_unsent = std::size_t{16} << 20U;
 
-/// The number of connections for which there are descriptors: one for each, and one for the file that it may
-/// be sent. At least 4, at most `wanted`.
-/// @param descriptors  that the process may have.
+/// Returns the number of connections for which the process has enough descriptors: one per connection, and
+/// one for a file to send. The result is at least 4 and at most `wanted`.
+/// @param descriptors  the descriptors that the process may have.
 [[nodiscard]] std::size_t places_for(std::size_t wanted, std::size_t descriptors) noexcept;
 /// Returns the number of places that lingering connections may take. The others remain for requests that are
 /// answered at once, such as stop and vent.
@@ -42,14 +42,14 @@ inline constexpr std::size_t most_unsent = std::size_t{16} << 20U;
 
 using Victim = std::optional<std::size_t>;  ///< index of a guest
 
-/// All places are taken and a client comes. Returns the connection with the lowest role, then the oldest,
-/// whose request is still incomplete after its time.
+/// Called if all places are taken and a client connects. Returns the connection with the lowest role, then
+/// the oldest, whose request is still incomplete after its time limit.
 [[nodiscard]] Victim gives_way_to_newcomer(const std::vector<Guest>& guests, Nanoseconds now);
-/// All lingering places are taken and a client with this role wants one. Returns one that takes nothing and
-/// has no higher role, or one with a lower role. Nothing: the client is refused.
+/// Called if all lingering places are taken and a client with `role` needs one. Returns a stalled connection
+/// with the same or a lower role, or any connection with a lower role. Nullopt: refuse the client.
 [[nodiscard]] Victim gives_way_to_lingering(const std::vector<Guest>& guests, Role role, Nanoseconds now);
-/// More bytes wait than may, and a client with this role needs room. Returns the one with the lowest role
-/// that has taken nothing for longest. Nothing: the client is refused.
+/// Called if too many bytes are unsent and a client with `role` needs memory. Returns the connection with the
+/// lowest role that has made no progress for the longest time. Nullopt: refuse the client.
 [[nodiscard]] Victim gives_way_for_bytes(const std::vector<Guest>& guests, Role role);
 
 [[nodiscard]] std::size_t unsent_of(const std::vector<Guest>& guests);

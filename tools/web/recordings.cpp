@@ -20,9 +20,9 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::size_t longest_file_name = 128;
 constexpr std::size_t most_files = 50;
-/// File systems stamp a change with a time that may be several milliseconds old (FAT: two seconds).
+/// Resolution of a file system's time stamps: several milliseconds, on FAT two seconds.
 constexpr Nanoseconds stamp_resolution = 2 * ns_per_s;
-/// Entries of a folder between two pauses.
+/// Number of directory entries that are read between two pauses.
 constexpr std::size_t entries_at_once = 256;
 
 struct Kind {
@@ -40,7 +40,7 @@ bool is_shown(std::string_view name) {
   return is_plain_name(name) && !content_type_of(name).empty();
 }
 
-/// Leaves the `most` names that come first.
+/// Keeps only the first `most` names in the chosen order.
 void keep_first(std::vector<std::string>& names, bool last_first, std::size_t most) {
   const auto before = [last_first](const std::string& one, const std::string& other) {
     return last_first ? one > other : one < other;
@@ -86,7 +86,7 @@ Json Recordings::list(Nanoseconds wall_now, const std::function<void()>& between
     files_.clear();
     return list;
   }
-  // Their names begin with the time.
+  // The names of recordings begin with their time.
   bring_up_to_date(newest_, top, ".", {is_plain_name, true, most_considered});
   std::map<std::string, Names> files;
   for (const std::string& name : newest_.names) {
@@ -119,7 +119,7 @@ void Recordings::bring_up_to_date(Names& known, const Descriptor& parent, const 
   known.settled = complete && wall_now_ - known.stamp.changed_at > stamp_resolution;
 }
 
-/// True: all of them were read.
+/// Returns true if all names were read.
 bool Recordings::read_names(Descriptor folder, const Choice& choice, std::vector<std::string>& names) {
   ++folders_read_;
   const std::unique_ptr<DIR, int (*)(DIR*)> entries(::fdopendir(folder.get()), &::closedir);

@@ -1,5 +1,5 @@
 #pragma once
-// The daemon's recordings, as far as browsers may see them. Names come from browsers and are trusted nowhere.
+// The daemon's recordings that browsers may see. Names that browsers send are always validated.
 
 #include <cstddef>
 #include <cstdint>
@@ -18,40 +18,41 @@
 
 namespace softgrip::web {
 
-/// Whether it is the name of a recording or of a file in one: letters, digits, ".", "-" and "_", the first of
-/// them no dot, 128 at most.
+/// Returns true if `name` can be the name of a recording or of a file in one: at most 128 letters, digits,
+/// ".", "-" and "_", and the first character is not a dot.
 [[nodiscard]] bool is_plain_name(std::string_view name);
 
-/// "image/svg+xml" of a file that is shown; empty of one that is not.
+/// Returns the content type of a file that may be shown, for example "image/svg+xml", or "" for any other
+/// file.
 [[nodiscard]] std::string_view content_type_of(std::string_view name);
 
-/// All calls come from one thread.
+/// All calls must come from one thread.
 class Recordings {
  public:
   static constexpr std::size_t most_listed = 200;
-  /// A list reads this number of the newest folders at most. It is shorter than `most_listed` if fewer of
-  /// them hold a file that is shown. This bounds the memory and the time of a list, however many folders
-  /// there are.
+  /// Largest number of folders that a list reads, newest first. The list is shorter than `most_listed` if too
+  /// few of them contain a file that may be shown. This bounds the memory and the time of a list for any
+  /// number of folders.
   static constexpr std::size_t most_considered = 2000;
   static constexpr std::size_t largest_file = std::size_t{16} << 20U;
 
-  /// `folder` may be empty: then there are none.
+  /// An empty `folder` means that there are no recordings.
   explicit Recordings(std::string folder) : folder_(std::move(folder)) {}
 
   [[nodiscard]] const std::string& folder() const noexcept { return folder_; }
   /// Returns the newest recordings first: `name`, `files` that can be shown. Reads only the folders that have
   /// changed since the last call.
   /// @param wall_now  wall_time_now(): a folder that has just changed is read again by the next call, because
-  ///                  its time stamp cannot tell a second change.
+  ///                  its time stamp may not show a second change.
   /// @param between   is called between the folders; may be empty.
   [[nodiscard]] nlohmann::ordered_json list(Nanoseconds wall_now, const std::function<void()>& between = {});
-  /// Opens a file; nothing where there is none, or none that is shown. Follows no links.
+  /// Opens a file. Returns nullopt if it does not exist or may not be shown. Follows no links.
   [[nodiscard]] std::optional<RegularFile> open(std::string_view recording, std::string_view file) const;
   /// Number of folders that were read from the disk since the start.
   [[nodiscard]] std::size_t folders_read() const noexcept { return folders_read_; }
 
  private:
-  /// Which folder it was and in which state, as stat() says.
+  /// The identity and the state of a folder, from stat().
   struct Stamp {
     std::uint64_t device = 0;
     std::uint64_t number = 0;
@@ -60,10 +61,10 @@ class Recordings {
   };
   struct Names {
     Stamp stamp;
-    bool settled = false;  // a later change would show another stamp
+    bool settled = false;  // any later change would alter the stamp
     std::vector<std::string> names;
   };
-  /// Which names of a folder are kept, and in which order.
+  /// Selects the names of a folder that are kept, and their order.
   struct Choice {
     bool (*is_wanted)(std::string_view name) = nullptr;
     bool last_first = false;
@@ -79,8 +80,8 @@ class Recordings {
 
   std::string folder_;
   Names newest_;                        // recordings, newest first
-  std::map<std::string, Names> files_;  // that are shown, by the recording
-  Nanoseconds wall_now_ = 0;            // of the list that is being made
+  std::map<std::string, Names> files_;  // files that may be shown, by recording
+  Nanoseconds wall_now_ = 0;            // time of the list in progress
   std::function<void()> between_;
   std::size_t folders_read_ = 0;
 };

@@ -30,7 +30,7 @@ bool equal_but_for_case(std::string_view name, std::string_view lower) {
   return std::equal(name.begin(), name.end(), lower.begin(), lower.end(), same);
 }
 
-/// The next line, which is taken off the text.
+/// Removes the next line from the text and returns it.
 std::string_view take_line(std::string_view& text) {
   const std::size_t end = std::min(text.find(line_end), text.size());
   const std::string_view line = text.substr(0, end);
@@ -38,7 +38,7 @@ std::string_view take_line(std::string_view& text) {
   return line;
 }
 
-/// 0, or the status of its refusal.
+/// Returns 0, or the status of the refusal.
 int check_request_line(std::string_view line) {
   const std::size_t first = line.find(' ');
   const std::size_t last = line.rfind(' ');

@@ -1,5 +1,5 @@
 #pragma once
-// Where a request of HTTP ends, and whether it is one that is answered here. No sockets.
+// Finds the end of an HTTP request and checks that the server supports it. No sockets.
 
 #include <cstddef>
 #include <string_view>
@@ -14,13 +14,13 @@ inline constexpr std::size_t longest_body = 16384;
 struct Frame {
   enum class State : unsigned char { incomplete, complete, refused };
   State state = State::incomplete;
-  std::size_t size = 0;  ///< of the complete request, body included
-  int status = 0;        ///< of a refusal
+  std::size_t size = 0;  ///< size of the complete request with its body
+  int status = 0;        ///< status of a refusal
 };
 
-/// Looks at what a client has sent so far. Stricter than the library that reads it afterwards: lines end with
-/// CR LF, no control characters, no folded lines, one length at most, and nothing that has a client send its
-/// body in pieces or wait for leave to send it.
+/// Checks the bytes that a client has sent so far. It is stricter than the library that parses them later:
+/// lines end with CR LF, and control characters, folded lines, a second Content-Length, chunked bodies and
+/// Expect headers are refused.
 [[nodiscard]] Frame frame_of(std::string_view bytes);
 
 }  // namespace softgrip::web

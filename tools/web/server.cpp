@@ -15,20 +15,20 @@ namespace softgrip::web {
 
 namespace {
 
-/// The daemon, deadlines and sessions are looked after at least so often.
+/// Largest time between two checks of the daemon, the deadlines and the sessions.
 constexpr Nanoseconds longest_pause = ns_per_s / 20;
 constexpr Nanoseconds check_period = ns_per_s;
-/// Taken from the queue of those who wait, in one turn: the others have theirs.
+/// Largest number of connections accepted in one cycle, so that existing clients are not delayed.
 constexpr int most_accepted = 32;
 constexpr int no_place = 503;
-/// After this time a collector gets the metrics with the health that was read last.
+/// After this time, a collector gets the metrics with the health result that was read last.
 constexpr Nanoseconds patience_for_health = ns_per_s;
 constexpr Nanoseconds patience_for_disk = 8 * ns_per_s;
 
-/// The system would keep megabytes for who does not read. It doubles the number, and the unit's memory counts
-/// these buffers too.
+/// Size of the send buffer of a socket. By default, the system would keep megabytes for a client that does
+/// not read. The system doubles the number, and the unit's memory limit includes these buffers.
 constexpr int kept_by_system = 65536;
-constexpr std::size_t most_connections = 512;  // of the file
+constexpr std::size_t most_connections = 512;  // upper limit in the configuration file
 constexpr std::size_t own_memory = std::size_t{20} << 20U;
 constexpr std::size_t memory_of_unit = std::size_t{128} << 20U;  // systemd/softgrip-web.service.in
 static_assert(own_memory + most_unsent +
@@ -99,7 +99,8 @@ void Server::serve_until_signal() {
   }
 }
 
-/// poll() watches no more descriptors than the process may have. False: that was not the reason.
+/// Reduces the number of places if the process may have fewer descriptors than poll() would watch. Returns
+/// false if this was not the cause of the failure.
 bool Server::give_up_places() {
   const std::size_t before = visitors_.size();
   places_ = places_for(settings_.max_connections, descriptor_limit());
@@ -122,7 +123,7 @@ void Server::count() {
 void Server::accept(Nanoseconds now) {
   for (int i = 0; i < most_accepted; ++i) {
     Descriptor socket = entrance_.accept(now);
-    // Its own descriptor is the one that the next client gets.
+    // The next client needs a free descriptor, so close another connection if necessary.
     if (entrance_.short_of_descriptors()) static_cast<void>(make_place(now));
     if (!socket) return;
     ::setsockopt(socket.get(), SOL_SOCKET, SO_SNDBUF, &kept_by_system, sizeof kept_by_system);
@@ -132,7 +133,7 @@ void Server::accept(Nanoseconds now) {
     }
     ++counts_.turned_away;
     const std::string refusal = Site::refusal(no_place);
-    // Whatever the socket takes at once: nobody waits for him.
+    // Send what the socket accepts at once, and do not wait for this client.
     [[maybe_unused]] const ssize_t sent =
         ::send(socket.get(), refusal.data(), refusal.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
   }
@@ -144,11 +145,11 @@ void Server::look_after(Visitor& visitor, short events, Nanoseconds now) {
     visitor.leaves = !client.receive();
     if (!visitor.leaves && client.phase() == Phase::asking) {
       serve(visitor, now);
-      // Nothing completes a request whose sender says no more.
+      // An incomplete request cannot be completed after its sender has closed the sending side.
       if (client.phase() == Phase::asking && client.said_all()) visitor.leaves = true;
     }
   }
-  // Who has closed his side does not hear the outcome: the start is given up.
+  // A client that has closed its side does not receive the outcome, so give the start up.
   if (client.said_all() && commander_.is_open_start(visitor.command)) visitor.leaves = true;
   if (client.phase() == Phase::waiting && !visitor.leaves) take_reply(visitor, now);
   if (client.phase() == Phase::loading && !visitor.leaves) take_piece(visitor);
@@ -191,7 +192,7 @@ void Server::answer(Visitor& visitor, Outcome outcome, Nanoseconds now) {
   client.answer(std::move(outcome.bytes), next, now);
   visitor.leaves = !client.send_on(now);
   if (visitor.leaves || client.unsent() == 0) return;
-  // The socket did not take all: the rest must have a place.
+  // The socket did not accept all bytes: the rest needs a lingering place.
   visitor.leaves = !make_lingering_place(visitor, now) || !make_room(&visitor, visitor.role);
   if (visitor.leaves) client.drop_unsent();
 }
@@ -223,13 +224,13 @@ void Server::take_piece(Visitor& visitor) {
   const auto piece = std::exchange(download.piece, nullptr);
   const auto bytes = std::string_view(piece->text()).substr(0, download.file->size - download.read);
   download.read += bytes.size();
-  // Of a file that has become shorter, the promised length cannot be sent.
+  // If the file has become shorter, the announced length cannot be sent.
   visitor.leaves = bytes.empty() || !visitor.client.add(bytes);
   if (download.read == download.file->size) visitor.client.finish();
 }
 
-/// One at a time, when the one before it is sent, and only while there is room: a download waits, others do
-/// not have to go for it.
+/// Requests the next piece after the previous one was sent and only while memory is available. A download
+/// waits, so that no other client must be disconnected for it.
 void Server::ask_for_piece(Visitor& visitor) {
   Download& download = visitor.download;
   if (download.piece || visitor.client.has_to_send() || counts_.unsent + Archive::piece > most_unsent) return;
@@ -237,7 +238,7 @@ void Server::ask_for_piece(Visitor& visitor) {
   download.piece = archive_.ask({.kind = DiskRequest::Kind::piece, .from = download.file});
 }
 
-/// Whether somebody who reads along may still do what he might when he began.
+/// Returns true if the reader of a stream still has the role that it had at the beginning.
 bool Server::still_may(const Follower& follower, Nanoseconds now) {
   const auto role = gate_.admit(follower.credentials, false, now);
   return role && *role == follower.role;
@@ -294,7 +295,7 @@ Server::Crowd Server::crowd_beside(const Visitor* visitor) {
   return crowd;
 }
 
-/// Its bytes are freed now: many answers may be made before the visitors that leave are removed.
+/// Frees the bytes now: many responses may be created before the leaving visitors are removed.
 void Server::turn_away(Visitor& visitor) {
   visitor.leaves = true;
   visitor.client.drop_unsent();

@@ -1,5 +1,5 @@
 #pragma once
-// Browsers on the network, in one thread that never waits for any of them, nor for the disk.
+// Serves browsers on the network in one thread that never waits for a client or for the disk.
 
 #include <cstdint>
 #include <list>
@@ -21,37 +21,37 @@ namespace softgrip::web {
 
 class Server {
  public:
-  /// `listener`: of modbus::listen_tcp(). `signals`: a signalfd; any signal ends run(). `settings` outlives
-  /// it.
+  /// `listener` comes from modbus::listen_tcp(). `signals` is a signalfd, and any signal ends run().
+  /// `settings` must outlive the server.
   Server(const Settings& settings, Tokens tokens, std::string chart_js, Descriptor listener,
          Descriptor signals);
   void run();
 
  private:
-  /// A file on its way to a client.
+  /// A file that is being sent to a client.
   struct Download {
     std::shared_ptr<const RegularFile> file;
-    std::size_t read = 0;                   // of its bytes
-    std::shared_ptr<const DiskTask> piece;  // the next one, while it is read
+    std::size_t read = 0;                   // bytes read so far
+    std::shared_ptr<const DiskTask> piece;  // the next piece, while it is read
   };
   struct Visitor {
     Client client;
-    Role role = Role::none;                // of its request
-    Follower follower;                     // while it follows
-    Download download;                     // while it loads
-    std::uint64_t command = 0;             // its number at the daemon; 0: none
-    std::shared_ptr<const DiskTask> task;  // of the disk, while it waits
-    Nanoseconds gives_up_at = 0;           // waiting for the disk
-    bool leaves = false;                   // at the end of this turn
+    Role role = Role::none;                // role of its request
+    Follower follower;                     // for phase following
+    Download download;                     // for phase loading
+    std::uint64_t command = 0;             // number of its command at the daemon; 0: none
+    std::shared_ptr<const DiskTask> task;  // pending request to the disk
+    Nanoseconds gives_up_at = 0;           // deadline of the wait for the disk
+    bool leaves = false;                   // removed at the end of this cycle
   };
-  /// Visitors that stay, with what decides who gives way.
+  /// The visitors that stay, with the properties that decide which one is closed.
   struct Crowd {
     std::vector<Guest> guests;
     std::vector<Visitor*> visitors;
   };
 
   void serve_until_signal();
-  /// The limit of descriptors was lowered: the last visitors go.
+  /// Closes the last visitors if the limit of descriptors was lowered.
   [[nodiscard]] bool give_up_places();
   void accept(Nanoseconds now);
   void look_after(Visitor& visitor, short events, Nanoseconds now);
@@ -63,7 +63,7 @@ class Server {
   static void take_piece(Visitor& visitor);
   void ask_for_piece(Visitor& visitor);
   [[nodiscard]] bool still_may(const Follower& follower, Nanoseconds now);
-  /// Who follows hears what is new, as long as he may.
+  /// Sends the latest messages to every open stream whose reader is still authorised.
   void tell_news(Nanoseconds now);
   void remove_leaving();
   void turn_away(Visitor& visitor);
@@ -71,10 +71,10 @@ class Server {
 
   [[nodiscard]] static Guest guest_of(const Visitor& visitor);
   [[nodiscard]] Crowd crowd_beside(const Visitor* visitor);
-  /// True: a place is free. Another may have to go for it.
+  /// Returns true if a place is free. May close another connection for it.
   [[nodiscard]] bool make_place(Nanoseconds now);
   [[nodiscard]] bool make_lingering_place(const Visitor& visitor, Nanoseconds now);
-  /// True: all unsent bytes are within the limit. Others may have to go for it.
+  /// Returns true if all unsent bytes are within the limit. May close other connections for it.
   [[nodiscard]] bool make_room(const Visitor* visitor, Role role);
 
   const Settings& settings_;
@@ -90,10 +90,10 @@ class Server {
   Descriptor signals_;
   MonotonicClock clock_;
   std::list<Visitor> visitors_;
-  Nanoseconds checked_at_ = 0;  // whether followers still may
+  Nanoseconds checked_at_ = 0;  // last check of the readers' roles
 };
 
-/// Number of descriptors that the process may have.
+/// Returns the number of descriptors that the process may have.
 [[nodiscard]] std::size_t descriptor_limit() noexcept;
 
 }  // namespace softgrip::web

@@ -22,15 +22,15 @@ using httplib::Response;
 
 constexpr const char* json_type = "application/json";
 constexpr const char* disk_is_silent = "the disk of the recordings does not answer";
-/// Nothing but the page's own files, no frames, no forms that leave.
+/// Allows only the page's own files. Forbids frames and forms that submit to other sites.
 constexpr const char* page_policy =
     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self'; connect-src 'self'; "
     "base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
-/// What a recording holds may be of others: it runs nothing and reaches nothing.
+/// A recording may contain files of other people, so they may run no script and load nothing.
 constexpr const char* recording_policy =
     "default-src 'none'; style-src 'unsafe-inline'; img-src 'self' data:; sandbox; frame-ancestors 'none'";
 
-/// Two fingers.
+/// An icon of two fingers.
 constexpr std::string_view icon =
     R"(<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 16 16"><path fill="none" stroke="#0b57a4" stroke-width="3")"
     R"( stroke-linecap="round" d="M5 2C1 6 2 11 6 14M11 2c4 4 3 9-1 12"/></svg>)";
@@ -44,13 +44,13 @@ void put_error(Response& response, int status, std::string_view message) {
   put_json(response, {{"error", message}}, status);
 }
 
-/// Headers of the library are a multimap: a second value would stand beside the first.
+/// The library stores headers in a multimap, so a second value would be added to the first.
 void replace_header(Response& response, const char* name, const char* value) {
   response.headers.erase(name);
   response.set_header(name, value);
 }
 
-/// Of "HTTP/1.1 200 OK..."; 0 where nothing was answered.
+/// Returns the status in a line such as "HTTP/1.1 200 OK...", or 0 if the response is empty.
 int status_in(std::string_view answer) {
   constexpr std::size_t at = 9;
   int status = 0;
@@ -199,8 +199,7 @@ void Site::add_data() {
   engine_.Get("/api/stream", [this](const Request&, Response& response) { greet(response); });
 }
 
-/// The library writes the head and has no length to tell; all messages are written by whoever has the
-/// connection.
+/// The library writes only the head, without a length. The owner of the connection writes all messages.
 void Site::greet(Response& response) {
   if (!need(Role::look, response)) return;
   outcome_.follower = Follower{credentials_, role_};
@@ -243,7 +242,7 @@ void Site::list(Response& response) {
   }
 }
 
-/// The library writes the head alone: the file follows it in pieces, and is never in memory as a whole.
+/// The library writes only the head. The file follows in pieces and is never completely in memory.
 void Site::show(const Request& request, Response& response) {
   if (!need(Role::look, response)) return;
   const std::string name = request.matches[2];

@@ -1,5 +1,5 @@
 #pragma once
-// What there is to be asked for, and what is answered. No sockets of browsers.
+// Maps requests to responses. No sockets of browsers.
 
 #include <cstdint>
 #include <map>
@@ -19,51 +19,52 @@
 
 namespace softgrip::web {
 
-/// What the program counts of itself.
+/// Counters of the program itself.
 struct OwnCounts {
   std::size_t connections = 0;
-  std::size_t followers = 0;             ///< of them, open pages
-  std::size_t unsent = 0;                ///< bytes that wait for their readers
-  std::uint64_t turned_away = 0;         ///< connections for which there was no place
-  std::map<int, std::uint64_t> answers;  ///< by status
+  std::size_t followers = 0;             ///< open pages among them
+  std::size_t unsent = 0;                ///< bytes that are not sent yet
+  std::uint64_t turned_away = 0;         ///< connections that were closed or refused for lack of a place
+  std::map<int, std::uint64_t> answers;  ///< responses by status
 };
 
-/// Who reads a stream of messages.
+/// The reader of a stream of messages.
 struct Follower {
   Credentials credentials;
   Role role = Role::none;
 };
 
-/// What becomes of a request.
+/// The result of serving a request.
 struct Outcome {
   std::string bytes;  ///< for the client
   int status = 0;
-  Role role = Role::none;  ///< what the client may do
-  /// The bytes begin a stream of messages that goes on, as long as its reader may do what he might at first.
+  Role role = Role::none;  ///< role of the client
+  /// Set if the bytes begin a stream of messages. It continues while its reader keeps the initial role.
   std::optional<Follower> follower;
-  /// The bytes are followed by this file.
+  /// Set if this file follows the bytes.
   std::shared_ptr<const RegularFile> file;
-  /// This is to be asked of the daemon, and the request is to be served again with its answer.
+  /// Set if this command must be sent to the daemon first. Then serve() is called again with its response.
   std::optional<nlohmann::ordered_json> command;
-  /// This is to be asked of the disk, and the request is to be served again with its answer.
+  /// Set if this request must be sent to the disk first. Then serve() is called again with its result.
   std::optional<DiskRequest> disk_request;
 };
 
-/// The answer to what an earlier outcome asked for: one of both.
+/// The response to the command or the disk request of an earlier outcome.
 struct Reply {
   const nlohmann::ordered_json* daemon = nullptr;
-  const DiskTask* disk = nullptr;  ///< not done: it was given up
+  const DiskTask* disk = nullptr;  ///< not done: the wait was given up
 };
 
 class Site {
  public:
-  /// References outlive it. `chart_js`: the library that draws curves; empty where it is not installed.
+  /// All references must outlive the site. `chart_js` is the library that draws curves, or empty if it is not
+  /// installed.
   Site(const Settings& settings, Gate& gate, const LiveState& state, const OwnCounts& counts,
        std::string chart_js);
 
-  /// `request`: a complete one, as frame_of() says.
+  /// `request` must be complete according to frame_of().
   [[nodiscard]] Outcome serve(std::string_view request, Nanoseconds now, const Reply& reply = {});
-  /// The answer to what frame_of() refused, and to whom there is no place.
+  /// Returns the response to a request that frame_of() refused, or to a client without a place.
   [[nodiscard]] static std::string refusal(int status);
 
  private:
@@ -72,9 +73,9 @@ class Site {
   void add_data();
   void add_recordings();
   void add_commands();
-  /// Runs for everything that is asked for; true: it is answered already.
+  /// Runs before every handler. Returns true if it has already written the response.
   bool turn_away(const httplib::Request& request, httplib::Response& response);
-  /// True: the sender may do that; otherwise that is answered.
+  /// Returns true if the sender has the role. Otherwise it writes the refusal.
   bool need(Role role, httplib::Response& response) const;
   void greet(httplib::Response& response);
   void command(const httplib::Request& request, httplib::Response& response);
@@ -88,7 +89,7 @@ class Site {
   const OwnCounts& counts_;
   std::string chart_js_;
   HttpEngine engine_;
-  // Of the request that is served.
+  // The time of the request that is served.
   Nanoseconds now_ = 0;
   Reply reply_;
   Credentials credentials_;

@@ -1,5 +1,5 @@
 #pragma once
-// Who may do what.
+// Decides which requests are allowed and which role their sender has.
 
 #include <string>
 #include <string_view>
@@ -15,16 +15,17 @@ namespace softgrip::web {
 
 inline constexpr std::string_view session_cookie = "softgrip";
 
-/// What of a request decides over it.
+/// The parts of a request that decide about its admission.
 struct Credentials {
   std::string host;
-  std::string origin;      ///< empty where the client sent none
-  std::string fetch_site;  ///< what a browser says of where the request comes from; may be empty
-  std::string cookie;      ///< the header
+  std::string origin;  ///< empty if the client sent none
+  std::string
+      fetch_site;      ///< Sec-Fetch-Site: the origin of the request according to the browser; may be empty
+  std::string cookie;  ///< the Cookie header
   std::string authorization;
 };
 
-/// Why a request is turned away: a status of HTTP and a sentence.
+/// The reason why a request is refused: an HTTP status and a sentence.
 struct Refusal {
   int status = 403;
   std::string message;
@@ -32,14 +33,15 @@ struct Refusal {
 
 class Gate {
  public:
-  /// `settings` outlives it.
+  /// `settings` must outlive the gate.
   Gate(const Settings& settings, Tokens tokens);
 
-  /// Whether the request comes from the page itself, and what its sender may do. Whatever `changes` anything
-  /// must come from the page, or bring a token in its header, which no other page can make a browser do.
+  /// Returns the role of the sender, or a refusal if the request comes from another page. A request that
+  /// changes something (`changes`) must come from the page itself or carry a token in its Authorization
+  /// header. No other page can make a browser send that header.
   [[nodiscard]] tl::expected<Role, Refusal> admit(const Credentials& credentials, bool changes,
                                                   Nanoseconds now);
-  /// A session for a token; a refusal for one that nobody gave out.
+  /// Opens a session for a token and returns its id. Refuses a token that the token file does not list.
   [[nodiscard]] tl::expected<std::string, Refusal> open(std::string_view token, Nanoseconds now);
   void close(std::string_view cookie_header);
   [[nodiscard]] bool has_tokens() const noexcept { return !tokens_.empty(); }

@@ -1,5 +1,5 @@
 #pragma once
-// Browsers that have shown a token.
+// Sessions of browsers that have sent a valid token.
 
 #include <cstddef>
 #include <map>
@@ -12,9 +12,9 @@
 
 namespace softgrip::web {
 
-/// A session ends when it was idle for long, when it is old, and when its browser says so. It also ends when
-/// its own token opens more than `most_per_token` later ones. The bearer of another token cannot end it.
-/// Nothing of it outlives the process.
+/// A session ends if it was idle for too long, if it is too old, or if its browser closes it. It also ends if
+/// its own token opens more than `most_per_token` later sessions. The bearer of another token cannot end it.
+/// Sessions are kept in memory only.
 class Sessions {
  public:
   /// A token is shared by the browsers of one team. The file's size bounds the number of tokens.
@@ -25,7 +25,7 @@ class Sessions {
   /// Returns the id of a new session: 256 random bits as text. If the token has too many sessions, the one
   /// that was idle for the longest time ends.
   [[nodiscard]] std::string open(Grant grant, Nanoseconds now);
-  /// What it may do, none if there is no such session (any more). Counts as a sign of life.
+  /// Returns the role of the session, or none if the session does not exist. The call counts as activity.
   [[nodiscard]] Role role_of(std::string_view id, Nanoseconds now);
   void close(std::string_view id);
   [[nodiscard]] std::size_t size() const noexcept { return sessions_.size(); }

@@ -22,7 +22,7 @@ bool is_token_character(char character) {
   return within('a', 'z') || within('A', 'Z') || within('0', '9') || character == '-' || character == '_';
 }
 
-/// The next word, which is taken off the line.
+/// Removes the next word from the line and returns it.
 std::string_view word_of(std::string_view& line) {
   const auto blank = [](char character) {
     return character == ' ' || character == '\t' || character == '\r';
@@ -37,7 +37,7 @@ std::string_view word_of(std::string_view& line) {
 }  // namespace
 
 bool equal_in_constant_time(std::string_view one, std::string_view other) noexcept {
-  // Only whether the lengths are equal may show.
+  // The duration may reveal only that the lengths differ.
   if (one.size() != other.size()) return false;
   unsigned difference = 0;
   for (std::size_t i = 0; i < one.size(); ++i)

@@ -1,5 +1,5 @@
 #pragma once
-// Secrets by which a browser or a collector shows what it may do.
+// Secret tokens that give a browser or a collector a role.
 
 #include <cstddef>
 #include <string>
@@ -12,10 +12,10 @@
 
 namespace softgrip::web {
 
-/// Whether two texts are equal, in a time that tells nothing of where they differ.
+/// Compares two texts. The duration does not depend on the position of the first difference.
 [[nodiscard]] bool equal_in_constant_time(std::string_view one, std::string_view other) noexcept;
 
-/// What a token allows, and which of the file's tokens it is.
+/// The role of a token, and its position in the file.
 struct Grant {
   Role role = Role::none;  ///< none: the file does not list the token
   std::size_t token = 0;   ///< its number in the file, from 0
@@ -26,13 +26,13 @@ class Tokens {
   static constexpr std::size_t shortest = 20;
   static constexpr std::size_t longest = 128;
 
-  /// Lines `look TOKEN` and `operate TOKEN`; empty ones and those that begin with # are skipped. The error is
-  /// a sentence that names the line and never the token.
+  /// Parses lines `look TOKEN` and `operate TOKEN`. Empty lines and lines that begin with # are skipped. The
+  /// error is a sentence that names the line and never contains the token.
   [[nodiscard]] static tl::expected<Tokens, std::string> parse(std::string_view text);
-  /// Of a file that only its owner and group may read; the error is a sentence.
+  /// Loads a file that only its owner and its group may read. The error is a sentence.
   [[nodiscard]] static tl::expected<Tokens, std::string> load(const std::string& path);
 
-  /// Returns what the bearer of a token may do.
+  /// Returns the role and the number of a token.
   [[nodiscard]] Grant grant_of(std::string_view token) const noexcept;
   /// The role of grant_of().
   [[nodiscard]] Role role_of(std::string_view token) const noexcept { return grant_of(token).role; }

@@ -14,11 +14,11 @@ using enum MetricText::Type;
 constexpr double kpa_per_pa = 1e-3;
 constexpr double mm_per_m = 1e3;
 
-/// A number of the status, in base units.
+/// A number of the status and its conversion to base units.
 struct Quantity {
   const char* name;
   const char* key;
-  double units_per_base_unit;  // of the status
+  double units_per_base_unit;  // units of the status per base unit
   const char* help;
 };
 constexpr Quantity quantities[] = {
@@ -40,7 +40,7 @@ void tell_each(const Json& channels, MetricText& metrics, const auto& value_of) 
     metrics.sample({{"channel", text(channel, "name")}}, value_of(channel));
 }
 
-/// The share of the way from rest to the limit on that side.
+/// Returns the commanded pressure as a share of the range from rest to the limit on that side.
 double pressure_use(const Json& channel) {
   const Json& limits = member(channel, "limits");
   const double rest_kpa = number(limits, "rest_kpa");

@@ -1,5 +1,5 @@
 #pragma once
-// What Prometheus is told of each finger.
+// Prometheus metrics of each finger.
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -7,7 +7,7 @@
 
 namespace softgrip::web {
 
-/// `channels`: of a status of the socket API.
+/// `channels` is the list in a status of the socket API.
 void tell_channels(const nlohmann::ordered_json& channels, MetricText& metrics);
 
 }  // namespace softgrip::web

@@ -57,7 +57,7 @@ void tell_lines(const Json& status, MetricText& metrics) {
            "1 where the digital lines cannot be read any more.", flag(lines, "lost"));
 }
 
-/// Durations since the daemon's start.
+/// Writes a summary of the durations since the daemon's start.
 void tell_durations(MetricText& metrics, const std::string& name, std::string_view help,
                     const Json& histogram) {
   if (!histogram.is_object()) return;

@@ -1,5 +1,6 @@
 #pragma once
-// What Prometheus is told of the daemon. docs/reference/metrics.md lists it; names and units are a contract.
+// Prometheus metrics of the daemon. docs/reference/metrics.md lists them. Names and units are part of the
+// public format.
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -7,8 +8,8 @@
 
 namespace softgrip::web {
 
-/// `status`: of the socket API, null where no daemon answers; then only `softgrip_up` is told, as 0.
-/// `statistics`: of the socket API, null where they are not known yet.
+/// `status` is a status of the socket API, or null if the daemon does not respond. Then only `softgrip_up` is
+/// written, as 0. `statistics` are those of the socket API, or null if they are not known yet.
 void tell_daemon(const nlohmann::ordered_json& status, const nlohmann::ordered_json& statistics,
                  MetricText& metrics);
 

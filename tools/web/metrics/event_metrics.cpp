@@ -16,7 +16,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 using enum MetricText::Type;
 
-/// "PART LOST" as labels have it: "part_lost".
+/// Converts a title to a label: "PART LOST" becomes "part_lost".
 std::string label_of(std::string_view title) {
   std::string label;
   for (const char character : title) {
@@ -29,7 +29,7 @@ std::string label_of(std::string_view title) {
 
 constexpr const char* results[] = {"HOLDING", "NO PART", "PART LOST", "RELEASED", "ERROR"};
 
-/// Counts by code and channel of one kind of event.
+/// Counts of one kind of event, by code and channel.
 class Counts {
  public:
   Counts(const Json& events, std::string_view kind) : events_(events), kind_(kind) {}
@@ -42,7 +42,7 @@ class Counts {
     }
     return count;
   }
-  /// By code, of all channels.
+  /// Sums over the channels, by code.
   [[nodiscard]] std::map<std::string, double> by_code() const {
     std::map<std::string, double> counts;
     for (const Json& event : events_) {

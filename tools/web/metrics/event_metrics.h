@@ -1,5 +1,5 @@
 #pragma once
-// What Prometheus is told of what has happened.
+// Prometheus metrics of events.
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -7,8 +7,8 @@
 
 namespace softgrip::web {
 
-/// `events`: of the statistics of the socket API; `channels`: of its status. Every result of every finger has
-/// a sample from the first moment on: an increase from nothing to one would not be seen otherwise.
+/// `events` belongs to the statistics of the socket API, `channels` to its status. Each result of each finger
+/// has a sample from the start, because Prometheus sees no increase when a sample first appears.
 void tell_events(const nlohmann::ordered_json& events, const nlohmann::ordered_json& channels,
                  MetricText& metrics);
 

@@ -1,5 +1,5 @@
 #pragma once
-// What Prometheus is told of the fingers' health: the last result of `softgrip health`.
+// Prometheus metrics of the fingers' health, from the last result of `softgrip health`.
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -7,7 +7,7 @@
 
 namespace softgrip::web {
 
-/// `health`: of health.json; null where there is none, then nothing is told.
+/// `health` is the content of health.json. If it is null, no metric is written.
 void tell_health(const nlohmann::ordered_json& health, MetricText& metrics);
 
 }  // namespace softgrip::web

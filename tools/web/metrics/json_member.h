@@ -1,5 +1,5 @@
 #pragma once
-// Members of JSON that may be missing.
+// Reads JSON members that may be missing.
 
 #include <limits>
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace softgrip::web {
 
-/// A member of an object; null where there is none.
+/// Returns a member of an object, or null if it is missing.
 [[nodiscard]] inline const nlohmann::ordered_json& member(const nlohmann::ordered_json& object,
                                                           const char* key) {
   static const nlohmann::ordered_json none;
@@ -17,20 +17,20 @@ namespace softgrip::web {
   return found == object.end() ? none : *found;
 }
 
-/// NaN where there is no number.
+/// Returns the number, or NaN if it is missing.
 [[nodiscard]] inline double number(const nlohmann::ordered_json& object, const char* key) {
   const nlohmann::ordered_json& value = member(object, key);
   return value.is_number() ? value.get<double>() : std::numeric_limits<double>::quiet_NaN();
 }
 
-/// 1 or 0; NaN where there is neither true nor false.
+/// Returns 1 for true, 0 for false, and NaN if the member is no Boolean.
 [[nodiscard]] inline double flag(const nlohmann::ordered_json& object, const char* key) {
   const nlohmann::ordered_json& value = member(object, key);
   if (!value.is_boolean()) return std::numeric_limits<double>::quiet_NaN();
   return value.get<bool>() ? 1 : 0;
 }
 
-/// Empty where there is no text.
+/// Returns the text, or "" if it is missing.
 [[nodiscard]] inline std::string text(const nlohmann::ordered_json& object, const char* key) {
   const nlohmann::ordered_json& value = member(object, key);
   return value.is_string() ? value.get<std::string>() : std::string();

@@ -9,7 +9,7 @@ namespace softgrip::web {
 
 namespace {
 
-/// Backslash, quote and line break as the format wants them in a label.
+/// Escapes backslash, quote and line break for a label.
 std::string escaped(std::string_view value) {
   std::string text;
   for (const char character : value) {

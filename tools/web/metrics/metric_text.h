@@ -1,5 +1,5 @@
 #pragma once
-// Prometheus' text format, version 0.0.4.
+// Writes the text format of Prometheus, version 0.0.4.
 
 #include <string>
 #include <string_view>
@@ -10,15 +10,15 @@ namespace softgrip::web {
 
 using Labels = std::vector<std::pair<std::string_view, std::string_view>>;
 
-/// Families one after the other, each with its samples. What is not finite is left out: a quantity that is
-/// not known has no sample.
+/// Writes metric families, each with its samples. A value that is not finite is omitted: an unknown quantity
+/// has no sample.
 class MetricText {
  public:
   enum class Type : unsigned char { gauge, counter, summary };
 
   /// Begins a family. Counters end with `_total`.
   void family(std::string_view name, Type type, std::string_view help);
-  /// A sample of the family that was begun last. `suffix`: "_sum" or "_count" of a summary.
+  /// Adds a sample to the latest family. `suffix` is "_sum" or "_count" for a summary.
   void sample(const Labels& labels, double value, std::string_view suffix = {});
   void sample(double value) { sample({}, value); }
 

@@ -1,4 +1,4 @@
-// The operator's page: everything that it shows comes from one stream, everything that it does is one POST.
+// The operator's page. All data come from one event stream, and each command is one POST request.
 
 const $ = (id) => document.getElementById(id);
 const shown = {status: null, statistics: null, sequences: [], events: [], trend: []};
@@ -12,7 +12,7 @@ const make = (tag, text = "", className = "") => {
   if (className) element.className = className;
   return element;
 };
-// Without the minus of what rounds to zero.
+// A value that rounds to zero has no minus sign.
 const fixed = (value, digits, unit) =>
   (typeof value === "number" ? `${value.toFixed(digits).replace(/^-(0\.?0*)$/, "$1")} ${unit}` : "–");
 const setText = (element, text) => { if (element.textContent !== text) element.textContent = text; };
@@ -207,7 +207,7 @@ async function showRecordings() {
 
 // ------------------------------------------------------------------------------------------------------------ curves
 
-// Columns of a sample behind its time, per finger: command, pressure, displacement, reference.
+// Columns of a sample per finger, after the time: command, pressure, displacement, reference.
 const curves = {
   "pressure-chart": [{column: 1, dashed: false}, {column: 0, dashed: true}],
   "displacement-chart": [{column: 2, dashed: false}, {column: 3, dashed: true}],
@@ -245,7 +245,7 @@ function chartOf(id) {
   });
 }
 
-// Whatever the scheme is now: it may change while the page is open.
+// Reads the colours of the present scheme, which may change while the page is open.
 function colour(options) {
   const style = getComputedStyle(document.body);
   const ink = style.getPropertyValue("--quiet").trim();
@@ -286,7 +286,7 @@ function showSequences(sequences) {
   showParameters();
 }
 
-// As people write what names of parameters end with.
+// The units of parameters as text.
 const units = {kpa: "kPa", mm_per_s: "mm/s", kpa_per_s: "kPa/s"};
 
 function showParameters() {
@@ -390,7 +390,7 @@ async function leave() {
   location.reload();
 }
 
-// A stream that is silent shows the past: it says so, and is begun anew.
+// If the stream is silent, mark the values as out of date. If it is closed, open it again.
 setInterval(() => {
   if (!stream || Date.now() - heardAt < 3000) return;
   document.body.classList.add("stale");

@@ -1,5 +1,5 @@
 #pragma once
-// The page itself, which is part of the program: no file of a disk is named by a browser's path.
+// The files of the page. They are part of the program, so that no path of a browser names a file on the disk.
 
 #include <string_view>
 
