@@ -189,7 +189,7 @@ class Limits(web.WebTest):
                                            "STUCK_FOLDER": str(self.runs)})
         status, text, _ = told.ask("/api/recordings")
         self.assertEqual(status, 503, text)
-        self.assertIn("the disk of the recordings does not answer", text)
+        self.assertIn("the disk with the recordings does not respond", text)
         self.assert_heard(told)
         self.assertEqual(told.end(), 0)
 

@@ -34,11 +34,11 @@ std::string check_start(const Json& body) {
   const auto sequence = body.find("sequence");
   if (sequence == body.end() || !sequence->is_string() || sequence->get<std::string>().empty() ||
       sequence->get<std::string>().size() > longest_sequence_name) {
-    return "`sequence` is the name of a sequence";
+    return "`sequence` must be the name of a sequence";
   }
   const auto parameters = body.find("parameters");
   if (parameters != body.end() && !are_parameters(*parameters))
-    return "`parameters` are numbers by their names";
+    return "`parameters` must map names to numbers";
   return {};
 }
 
@@ -46,12 +46,12 @@ std::string check_start(const Json& body) {
 
 tl::expected<Json, std::string> command_in(std::string_view body) {
   const Json json = Json::parse(body, nullptr, false);
-  if (!json.is_object()) return tl::unexpected<std::string>{"the body is no JSON object"};
+  if (!json.is_object()) return tl::unexpected<std::string>{"the body must be a JSON object"};
   const auto command = json.find("command");
   constexpr std::array<std::string_view, 5> commands{"start", "stop", "vent", "release", "acknowledge"};
   if (command == json.end() || !command->is_string() ||
       std::find(commands.begin(), commands.end(), command->get<std::string>()) == commands.end()) {
-    return tl::unexpected<std::string>{"`command` is one of start, stop, vent, release, acknowledge"};
+    return tl::unexpected<std::string>{"`command` must be start, stop, vent, release or acknowledge"};
   }
   const bool starts = *command == "start";
   for (const auto& [key, value] : json.items()) {
@@ -70,7 +70,7 @@ tl::expected<std::uint64_t, Json> Commander::send(Json request, Nanoseconds now)
   const bool is_urgent = command == "stop" || command == "vent";
   const bool is_start = command == "start";
   if (waiting_.size() >= (is_urgent ? 2 * most_waiting : most_waiting))
-    return tl::unexpected<Json>{failure("busy", "too many commands wait for their answers")};
+    return tl::unexpected<Json>{failure("busy", "too many commands wait for their responses")};
   if (is_start && given_up_.size() >= most_waiting)
     return tl::unexpected<Json>{failure("busy", "the daemon has not confirmed the stops of earlier starts")};
   if (auto refusal = connect()) return tl::unexpected{std::move(*refusal)};
@@ -84,7 +84,7 @@ tl::expected<std::uint64_t, Json> Commander::send(Json request, Nanoseconds now)
 /// Connects if there is no connection. Returns the error response that replaces the daemon's if this fails.
 std::optional<Json> Commander::connect() {
   if (daemon_) return std::nullopt;
-  if (socket_.empty()) return failure("not_allowed", "this page is for looking only");
+  if (socket_.empty()) return failure("not_allowed", "this page is read-only");
   auto daemon = tools::DaemonClient::connect_at_once(socket_);
   if (!daemon) return failure("no_daemon", daemon.error().message);
   daemon_.emplace(std::move(*daemon));
@@ -100,13 +100,14 @@ std::uint64_t Commander::send_numbered(Json request) {
 
 std::optional<Json> Commander::take_answer(std::uint64_t number, Nanoseconds now) {
   const auto found = waiting_.find(number);
-  if (found == waiting_.end()) return failure("no_answer", "nobody waits for that answer");
+  if (found == waiting_.end()) return failure("no_answer", "this response is not expected");
   Waiting& waiting = found->second;
   if (!waiting.answer && now > waiting.give_up) {
     end(waiting,
-        failure("no_answer", waiting.start_id.empty()
-                                 ? "the daemon does not answer"
-                                 : "the daemon does not answer; softgrip-web stops this start when it does"));
+        failure("no_answer",
+                waiting.start_id.empty()
+                    ? "the daemon does not respond"
+                    : "the daemon does not respond; softgrip-web stops this start after a reconnection"));
   }
   std::optional<Json> answer = std::move(waiting.answer);
   if (answer) waiting_.erase(found);
@@ -193,9 +194,10 @@ void Commander::lose() {
   for (auto& [number, waiting] : waiting_) {
     if (waiting.answer) continue;
     end(waiting,
-        failure("no_answer", waiting.start_id.empty()
-                                 ? "the daemon went before it answered: look whether it was done"
-                                 : "the daemon went before it answered; softgrip-web stops this start"));
+        failure("no_answer",
+                waiting.start_id.empty()
+                    ? "the connection was lost before the response: check whether the command was executed"
+                    : "the connection was lost before the response; softgrip-web stops this start"));
   }
 }
 

@@ -21,7 +21,7 @@ using httplib::Request;
 using httplib::Response;
 
 constexpr const char* json_type = "application/json";
-constexpr const char* disk_is_silent = "the disk of the recordings does not answer";
+constexpr const char* disk_is_silent = "the disk with the recordings does not respond";
 /// Allows only the page's own files. Forbids frames and forms that submit to other sites.
 constexpr const char* page_policy =
     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self'; connect-src 'self'; "
@@ -84,7 +84,7 @@ Site::Site(const Settings& settings, Gate& gate, const LiveState& state, const O
                                         : httplib::Server::HandlerResponse::Unhandled;
   });
   engine_.set_error_handler([](const Request&, Response& response) {
-    if (response.body.empty()) put_error(response, response.status, "there is no such thing here");
+    if (response.body.empty()) put_error(response, response.status, "not found");
   });
   engine_.set_exception_handler([](const Request&, Response& response, const std::exception_ptr&) {
     put_error(response, 500, "the request could not be served");
@@ -130,9 +130,9 @@ bool Site::need(Role role, Response& response) const {
   if (role_ >= role) return true;
   if (role_ == Role::none) {
     response.set_header("WWW-Authenticate", "Bearer");
-    put_error(response, 401, "show a token first");
+    put_error(response, 401, "log in with a token first");
   } else {
-    put_error(response, 403, "who only looks may not do that");
+    put_error(response, 403, "read-only clients may not do that");
   }
   return false;
 }
@@ -167,7 +167,7 @@ void Site::add_sessions() {
   engine_.Post("/api/session", [this](const Request& request, Response& response) {
     const Json body = Json::parse(request.body, nullptr, false);
     if (!body.is_object() || !body.contains("token") || !body["token"].is_string())
-      return put_error(response, 400, "the body is {\"token\": \"...\"}");
+      return put_error(response, 400, "the body must be {\"token\": \"...\"}");
     const auto session = gate_.open(body["token"].get<std::string>(), now_);
     if (!session) return put_error(response, session.error().status, session.error().message);
     response.set_header("Set-Cookie",
@@ -193,7 +193,7 @@ void Site::add_data() {
   });
   engine_.Get("/api/status", [this](const Request&, Response& response) {
     if (!need(Role::look, response)) return;
-    if (state_.status().is_null()) return put_error(response, 503, "softgripd does not answer");
+    if (state_.status().is_null()) return put_error(response, 503, "softgripd does not respond");
     put_json(response, state_.status());
   });
   engine_.Get("/api/stream", [this](const Request&, Response& response) { greet(response); });
@@ -213,13 +213,14 @@ std::string Site::metrics() const {
   using enum MetricText::Type;
   metrics.family("softgrip_web_connections", gauge, "Connections of browsers and collectors.");
   metrics.sample(static_cast<double>(counts_.connections));
-  metrics.family("softgrip_web_pages", gauge, "Pages that are open.");
+  metrics.family("softgrip_web_pages", gauge, "Open pages.");
   metrics.sample(static_cast<double>(counts_.followers));
-  metrics.family("softgrip_web_unsent_bytes", gauge, "Bytes that the program keeps for slow readers.");
+  metrics.family("softgrip_web_unsent_bytes", gauge, "Bytes that clients have not read yet.");
   metrics.sample(static_cast<double>(counts_.unsent));
-  metrics.family("softgrip_web_turned_away_total", counter, "Connections for which there was no place.");
+  metrics.family("softgrip_web_turned_away_total", counter,
+                 "Connections that were refused, or closed for others.");
   metrics.sample(static_cast<double>(counts_.turned_away));
-  metrics.family("softgrip_web_answers_total", counter, "Answers by their status.");
+  metrics.family("softgrip_web_answers_total", counter, "HTTP responses, by status.");
   for (const auto& [status, count] : counts_.answers)
     metrics.sample({{"status", std::to_string(status)}}, static_cast<double>(count));
   return metrics.text();
@@ -253,7 +254,7 @@ void Site::show(const Request& request, Response& response) {
   }
   if (!reply_.disk->done()) return put_error(response, 503, disk_is_silent);
   const auto& file = reply_.disk->file();
-  if (!file) return put_error(response, 404, "there is no such file");
+  if (!file) return put_error(response, 404, "the file does not exist or cannot be shown");
   replace_header(response, "Content-Security-Policy", recording_policy);
   const std::string type(content_type_of(name));
   if (file->size == 0) return response.set_content("", type);
@@ -270,7 +271,7 @@ void Site::add_commands() {
 void Site::command(const Request& request, Response& response) {
   if (!need(Role::operate, response)) return;
   if (!request.get_header_value("Content-Type").starts_with(json_type))
-    return put_error(response, 415, "the body is JSON, and says so");
+    return put_error(response, 415, "the Content-Type must be application/json");
   auto command = command_in(request.body);
   if (!command) return put_error(response, 400, command.error());
   if (reply_.daemon == nullptr) {

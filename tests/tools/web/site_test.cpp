@@ -167,7 +167,7 @@ TEST_F(SiteTest, ADiskThatDoesNotAnswerIsSaid) {
     EXPECT_TRUE(site_.serve(request, 0).disk_request) << path;
     const Outcome given_up = site_.serve(request, 0, {.disk = &silent});
     EXPECT_EQ(given_up.status, 503) << path;
-    EXPECT_NE(given_up.bytes.find("does not answer"), std::string::npos) << path;
+    EXPECT_NE(given_up.bytes.find("does not respond"), std::string::npos) << path;
   }
 }
 

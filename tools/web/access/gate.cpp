@@ -15,7 +15,8 @@ Gate::Gate(const Settings& settings, Tokens tokens)
 
 tl::expected<Role, Refusal> Gate::admit(const Credentials& credentials, bool changes, Nanoseconds now) {
   if (!is_own_host(credentials.host, settings_.hosts)) {
-    return tl::unexpected{Refusal{421, "this is no name of this computer; `listen: hosts:` lists them"}};
+    return tl::unexpected{
+        Refusal{421, "the Host header does not name this computer; `listen: hosts:` lists its names"}};
   }
   const bool elsewhere = !credentials.origin.empty() && !is_own_origin(credentials.origin, credentials.host);
   const bool linked = credentials.fetch_site == "cross-site" || credentials.fetch_site == "same-site";
@@ -23,8 +24,7 @@ tl::expected<Role, Refusal> Gate::admit(const Credentials& credentials, bool cha
     return tl::unexpected{Refusal{403, "the request comes from another page"}};
   const bool says_where = !credentials.origin.empty() || !bearer_of(credentials.authorization).empty();
   if (changes && !says_where)
-    return tl::unexpected{
-        Refusal{403, "the request says neither from which page it comes nor brings a token"}};
+    return tl::unexpected{Refusal{403, "the request has neither an Origin header nor a token"}};
   return role_of(credentials, now);
 }
 
@@ -39,7 +39,8 @@ Role Gate::role_of(const Credentials& credentials, Nanoseconds now) {
 
 tl::expected<std::string, Refusal> Gate::open(std::string_view token, Nanoseconds now) {
   const Grant grant = tokens_.grant_of(token);
-  if (grant.role == Role::none) return tl::unexpected{Refusal{401, "nobody has given out that token"}};
+  if (grant.role == Role::none)
+    return tl::unexpected{Refusal{401, "unknown token: the token file does not list it"}};
   return sessions_.open(grant, now);
 }
 

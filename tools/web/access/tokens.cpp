@@ -15,7 +15,7 @@ namespace softgrip::web {
 namespace {
 
 constexpr std::size_t longest_file = 65536;
-constexpr const char* how_to_make = "openssl rand -hex 24 makes one";
+constexpr const char* how_to_make = "`openssl rand -hex 24` creates one";
 
 bool is_token_character(char character) {
   const auto within = [character](char first, char last) { return character >= first && character <= last; };
@@ -56,16 +56,16 @@ tl::expected<Tokens, std::string> Tokens::parse(std::string_view text) {
     if (role.empty() || role.front() == '#') continue;
     const std::string_view token = word_of(line);
     if (role != "look" && role != "operate")
-      return tl::unexpected{fmt::format("line {}: it begins with neither `look` nor `operate`", number)};
+      return tl::unexpected{fmt::format("line {}: the first word must be `look` or `operate`", number)};
     if (!word_of(line).empty())
-      return tl::unexpected{fmt::format("line {}: there is more than a role and a token", number)};
+      return tl::unexpected{fmt::format("line {}: unexpected text after the role and the token", number)};
     if (token.size() < shortest || token.size() > longest ||
         !std::all_of(token.begin(), token.end(), is_token_character)) {
       return tl::unexpected{fmt::format("line {}: a token has {} to {} letters, digits, - and _; {}", number,
                                         shortest, longest, how_to_make)};
     }
     if (tokens.role_of(token) != Role::none)
-      return tl::unexpected{fmt::format("line {}: the token stands in an earlier line", number)};
+      return tl::unexpected{fmt::format("line {}: an earlier line contains the same token", number)};
     tokens.tokens_.push_back({role == "look" ? Role::look : Role::operate, std::string(token)});
   }
   if (tokens.empty()) return tl::unexpected{fmt::format("there is no token; {}", how_to_make)};
@@ -77,7 +77,7 @@ tl::expected<Tokens, std::string> Tokens::load(const std::string& path) {
   if (::stat(path.c_str(), &about) != 0)
     return tl::unexpected{fmt::format("cannot read {}: {}", path, std::strerror(errno))};
   if ((about.st_mode & 07U) != 0)
-    return tl::unexpected{fmt::format("{} may be read by everybody: chmod o= {}", path, path)};
+    return tl::unexpected{fmt::format("{} is readable by all users: run `chmod o= {}`", path, path)};
   const auto text = read_file(path, longest_file);
   if (!text) return tl::unexpected{text.error()};
   auto tokens = parse(*text);

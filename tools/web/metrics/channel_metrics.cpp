@@ -24,15 +24,16 @@ struct Quantity {
 constexpr Quantity quantities[] = {
     {"softgrip_reading_age_seconds", "age_s", 1, "Age of the displacement reading."},
     {"softgrip_displacement_meters", "displacement_mm", mm_per_m, "Measured displacement."},
-    {"softgrip_reference_meters", "reference_mm", mm_per_m, "Displacement that is asked for."},
-    {"softgrip_pressure_pascals", "pressure_kpa", kpa_per_pa, "Measured pressure, where it is measured."},
-    {"softgrip_temperature_celsius", "temperature_c", 1, "Measured temperature, where it is measured."},
-    {"softgrip_pressure_command_pascals", "command_kpa", kpa_per_pa, "Pressure that is asked of the valve."},
-    {"softgrip_squeeze_pascals", "squeeze_kpa", kpa_per_pa, "By how much of it the finger presses."},
+    {"softgrip_reference_meters", "reference_mm", mm_per_m, "Commanded displacement."},
+    {"softgrip_pressure_pascals", "pressure_kpa", kpa_per_pa, "Measured pressure, if the rig measures it."},
+    {"softgrip_temperature_celsius", "temperature_c", 1, "Measured temperature, if the rig measures it."},
+    {"softgrip_pressure_command_pascals", "command_kpa", kpa_per_pa, "Pressure command to the valve."},
+    {"softgrip_squeeze_pascals", "squeeze_kpa", kpa_per_pa,
+     "Gripping pressure: command minus free-motion pressure."},
     {"softgrip_model_residual_meters", "residual_mm", mm_per_m,
-     "Displacement beside what the running model says of the free finger."},
+     "Measured displacement minus the free motion of the running model."},
     {"softgrip_model_residual_rms_meters", "health_rms_mm", mm_per_m,
-     "Root mean square of the residual by which the model is judged."},
+     "Root mean square of the residual. The model health depends on it."},
 };
 
 void tell_each(const Json& channels, MetricText& metrics, const auto& value_of) {
@@ -71,15 +72,14 @@ void tell_channels(const Json& channels, MetricText& metrics) {
       "softgrip_pressure_use_ratio", gauge,
       "Distance of the command from the rest pressure, from 0 at rest to 1 at the limit on its side.");
   tell_each(channels, metrics, pressure_use);
-  metrics.family("softgrip_reading_valid", gauge, "1 while the displacement reading is good.");
+  metrics.family("softgrip_reading_valid", gauge, "1 while the displacement reading is valid.");
   tell_each(channels, metrics,
             [](const Json& channel) { return text(channel, "validity") == "valid" ? 1.0 : 0.0; });
-  metrics.family("softgrip_pressure_limited", gauge,
-                 "1 while a limit keeps the pressure from what is wanted.");
+  metrics.family("softgrip_pressure_limited", gauge, "1 while a limit restricts the pressure.");
   tell_each(channels, metrics,
             [](const Json& channel) { return member(channel, "limit").is_string() ? 1.0 : 0.0; });
   metrics.family("softgrip_model_health", gauge,
-                 "1 for what the daemon says of the finger's running model, 0 for the others.");
+                 "1 for the present health of the finger's running model, 0 for the others.");
   tell_one_of(channels, metrics, "health", {"unknown", "healthy", "suspect", "unfit"});
 }
 

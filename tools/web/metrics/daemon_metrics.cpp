@@ -28,14 +28,15 @@ void tell_one(MetricText& metrics, std::string_view name, MetricText::Type type,
 void tell_state(const Json& status, MetricText& metrics) {
   metrics.family("softgrip_build_info", gauge, "Always 1: version of softgripd and name of the rig.");
   metrics.sample({{"version", status.value("version", "")}, {"rig", status.value("rig", "")}}, 1);
-  tell_one(metrics, "softgrip_simulated", gauge, "1 where there is no board and everything is computed.",
+  tell_one(metrics, "softgrip_simulated", gauge, "1 if there is no board and everything is simulated.",
            flag(status, "simulated"));
-  tell_one(metrics, "softgrip_uptime_seconds", gauge, "Since the daemon's start.", number(status, "time_s"));
-  metrics.family("softgrip_state", gauge, "1 for the state that the rig is in, 0 for the others.");
+  tell_one(metrics, "softgrip_uptime_seconds", gauge, "Time since the daemon's start.",
+           number(status, "time_s"));
+  metrics.family("softgrip_state", gauge, "1 for the present state of the rig, 0 for the others.");
   const std::string state = status.value("state", "");
   for (const char* name : {"starting", "idle", "resynchronising", "running", "stopping", "faulted"})
     metrics.sample({{"state", name}}, state == name ? 1 : 0);
-  metrics.family("softgrip_fault", gauge, "1 for the fault that is latched; no sample without one.");
+  metrics.family("softgrip_fault", gauge, "1 for the latched fault; no sample without a fault.");
   if (const Json& fault = member(status, "fault"); fault.is_object()) {
     const std::string channel = fault.contains("channel") && fault["channel"].is_string()
                                     ? fault["channel"].get<std::string>()
@@ -43,8 +44,7 @@ void tell_state(const Json& status, MetricText& metrics) {
     metrics.sample(
         {{"code", fault.value("code", "")}, {"name", fault.value("name", "")}, {"channel", channel}}, 1);
   }
-  tell_one(metrics, "softgrip_under_pressure", gauge,
-           "1 where nothing moves and fingers are under pressure all the same.",
+  tell_one(metrics, "softgrip_under_pressure", gauge, "1 if no sequence runs and fingers are pressurised.",
            member(status, "under_pressure").is_object() ? 1 : 0);
 }
 
@@ -53,8 +53,8 @@ void tell_lines(const Json& status, MetricText& metrics) {
   if (!lines.is_object()) return;
   tell_one(metrics, "softgrip_emergency_stop", gauge, "1 while the emergency stop is pressed.",
            flag(lines, "emergency_stop"));
-  tell_one(metrics, "softgrip_digital_lines_lost", gauge,
-           "1 where the digital lines cannot be read any more.", flag(lines, "lost"));
+  tell_one(metrics, "softgrip_digital_lines_lost", gauge, "1 if the digital lines can no longer be read.",
+           flag(lines, "lost"));
 }
 
 /// Writes a summary of the durations since the daemon's start.
@@ -75,11 +75,11 @@ void tell_durations(MetricText& metrics, const std::string& name, std::string_vi
 void tell_loop(const Json& loop, MetricText& metrics) {
   tell_one(metrics, "softgrip_loop_ticks_total", counter, "Ticks of the control loop.",
            number(loop, "ticks"));
-  metrics.family("softgrip_loop_overruns_total", counter,
-                 "Periods of the loop's grid in which no tick began, by cause.");
-  metrics.sample({{"cause", "woken_late"}}, number(loop, "slips_woken_late"));
-  metrics.sample({{"cause", "took_long"}}, number(loop, "slips_took_long"));
-  tell_durations(metrics, "softgrip_loop_wake_up_seconds", "From the grid's time to the tick's beginning.",
+  metrics.family("softgrip_loop_overruns_total", counter, "Missed cycles of the control loop, by cause.");
+  metrics.sample({{"cause", "woken_late"}}, number(loop, "slips_woken_late"));  // words-ok: API key
+  metrics.sample({{"cause", "took_long"}}, number(loop, "slips_took_long"));    // words-ok: API key
+  tell_durations(metrics, "softgrip_loop_wake_up_seconds",
+                 "Wake-up latency: from the scheduled time to the beginning of the tick.",
                  member(loop, "wake_up"));
   tell_durations(metrics, "softgrip_loop_compute_seconds", "Duration of a tick.", member(loop, "compute"));
   tell_durations(metrics, "softgrip_loop_reading_age_seconds",
@@ -87,41 +87,40 @@ void tell_loop(const Json& loop, MetricText& metrics) {
 }
 
 void tell_bus(const Json& bus, MetricText& metrics) {
-  tell_one(metrics, "softgrip_bus_exchanges_total", counter, "Exchanges with the board, good and failed.",
-           number(bus, "exchanges"));
+  tell_one(metrics, "softgrip_bus_exchanges_total", counter,
+           "Exchanges with the board, successful and failed.", number(bus, "exchanges"));
   tell_one(metrics, "softgrip_bus_errors_total", counter,
            "Exchanges with the board that failed, and failed attempts to connect.", number(bus, "failures"));
-  tell_one(metrics, "softgrip_bus_sessions_total", counter, "Sessions that were begun with the board.",
+  tell_one(metrics, "softgrip_bus_sessions_total", counter, "Sessions that were opened with the board.",
            number(bus, "sessions"));
-  tell_one(metrics, "softgrip_bus_overruns_total", counter,
-           "Periods of the bus' grid in which no exchange began.", number(bus, "slips"));
-  tell_durations(metrics, "softgrip_bus_exchange_seconds", "Duration of good exchanges.",
+  tell_one(metrics, "softgrip_bus_overruns_total", counter, "Missed cycles of the bus.",
+           number(bus, "slips"));  // words-ok: API key
+  tell_durations(metrics, "softgrip_bus_exchange_seconds", "Duration of successful exchanges.",
                  member(bus, "exchange"));
 }
 
 void tell_recorder(const Json& recording, MetricText& metrics) {
   tell_one(metrics, "softgrip_recorder_active", gauge, "1 while a recording is written.",
            flag(recording, "active"));
-  tell_one(metrics, "softgrip_recorder_failed", gauge, "1 where the last recording could not be written.",
+  tell_one(metrics, "softgrip_recorder_failed", gauge, "1 if the last recording could not be written.",
            member(recording, "error").is_string() ? 1 : 0);
   tell_one(metrics, "softgrip_recorder_dropped_rows_total", counter,
-           "Rows that recordings lack because the disk did not keep up.", number(recording, "dropped_rows"));
+           "Rows that were not recorded because the disk was too slow.", number(recording, "dropped_rows"));
 }
 
 }  // namespace
 
 void tell_daemon(const Json& status, const Json& statistics, MetricText& metrics) {
-  tell_one(metrics, "softgrip_up", gauge, "1 where softgripd answers.", status.is_object() ? 1 : 0);
+  tell_one(metrics, "softgrip_up", gauge, "1 if softgripd responds.", status.is_object() ? 1 : 0);
   if (!status.is_object()) return;
   tell_state(status, metrics);
   tell_lines(status, metrics);
   tell_channels(member(status, "channels"), metrics);
-  tell_one(metrics, "softgrip_bus_connected", gauge, "1 while the board answers.",
+  tell_one(metrics, "softgrip_bus_connected", gauge, "1 while the board responds.",
            flag(member(status, "bus"), "connected"));
   tell_recorder(member(status, "recording"), metrics);
   if (const Json& real_time = member(status, "real_time"); real_time.is_object())
-    tell_one(metrics, "softgrip_real_time_degraded", gauge,
-             "1 where the machine denied something that the loop's punctuality needs.",
+    tell_one(metrics, "softgrip_real_time_degraded", gauge, "1 if a real-time setting was not granted.",
              flag(real_time, "degraded"));
   if (!statistics.is_object()) return;
   tell_loop(member(statistics, "loop"), metrics);

@@ -83,16 +83,16 @@ void tell_events(const Json& events, const Json& channels, MetricText& metrics) 
   const auto started = Counts(events, "sequence_started").by_code();
   metrics.family("softgrip_sequences_started_total", counter, "Sequences that were started.");
   metrics.sample(started.empty() ? 0 : started.begin()->second);
-  metrics.family("softgrip_sequences_ended_total", counter, "Sequences that ended, by how they did.");
+  metrics.family("softgrip_sequences_ended_total", counter, "Sequences that ended, by outcome.");
   for (const char* end : {"done", "failed", "stopped", "faulted"})
     metrics.sample({{"end", end}}, Counts(events, "sequence_finished").of(end, {}));
-  tell_by_code(events, metrics, "fault_latched", "softgrip_faults_total", "code", "Faults that latched.");
+  tell_by_code(events, metrics, "fault_latched", "softgrip_faults_total", "code", "Latched faults, by code.");
   tell_by_code(events, metrics, "request_refused", "softgrip_requests_refused_total", "code",
-               "Requests that the state did not allow.");
+               "Refused requests, by reason.");
   tell_by_code(events, metrics, "bus_failed", "softgrip_bus_failures_total", "cause",
-               "Times that the board stopped answering, by what failed.");
+               "Losses of communication with the board, by cause.");
   tell_by_code(events, metrics, "reading_invalid", "softgrip_readings_invalid_total", "validity",
-               "Times that a reading ceased to be good, by why.");
+               "Readings that became invalid, by reason.");
 }
 
 }  // namespace softgrip::web

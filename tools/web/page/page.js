@@ -61,12 +61,12 @@ function showPill(element, text, tone) {
 }
 
 function sentenceOfAlarm(status) {
-  if (!status) return "softgripd does not answer. What stands below is not known any more.";
+  if (!status) return "softgripd does not respond. The values below are out of date.";
   if (status.fault) {
     const finger = status.fault.channel ? ` of ${status.fault.channel}` : "";
     return `${status.fault.code} ${status.fault.name}${finger}: ${status.fault.meaning} ${status.fault.next}`;
   }
-  return status.under_pressure ? `Nothing moves, and pressure stays on: ${status.under_pressure.text}` : "";
+  return status.under_pressure ? `Idle with pressurised fingers: ${status.under_pressure.text}` : "";
 }
 
 function showHead(status) {
@@ -94,8 +94,8 @@ const rowsOfFinger = (channel) => [
   ["Reference", fixed(channel.reference_mm, 2, "mm")],
   ["Pressure", fixed(channel.pressure_kpa, 1, "kPa")],
   ...(typeof channel.temperature_c === "number" ? [["Temperature", fixed(channel.temperature_c, 1, "°C")]] : []),
-  ["Asked for", fixed(channel.command_kpa, 1, "kPa")],
-  ["Squeeze", fixed(channel.squeeze_kpa, 1, "kPa")],
+  ["Command", fixed(channel.command_kpa, 1, "kPa")],
+  ["Gripping pressure", fixed(channel.squeeze_kpa, 1, "kPa")],
   ["Reading", channel.validity === "valid" ? `${fixed(channel.age_s * 1000, 0, "ms")} old` : channel.validity,
     channel.validity === "valid" ? "" : "bad"],
   ["Model", channel.health, toneOfHealth[channel.health]],
@@ -137,9 +137,9 @@ function showHealth(status, statistics) {
   if (!status) return showRows($("health"), []);
   const {bus, loop, recording} = status;
   const rows = [
-    ["Board", bus.connected ? "answers" : bus.failure || "does not answer", bus.connected ? "good" : "bad"],
-    ["Loop", `${status.rate_hz} Hz, ${loop.slips} of ${loop.ticks} missed`, loop.slips ? "doubt" : ""],
-    ["Wake-up", `p99 ${loop.wake_up_p99_us.toFixed(0)} µs, at most ${loop.wake_up_max_us.toFixed(0)} µs`],
+    ["Board", bus.connected ? "connected" : bus.failure || "does not respond", bus.connected ? "good" : "bad"],
+    ["Loop", `${status.rate_hz} Hz, ${loop.slips} of ${loop.ticks} cycles missed`, loop.slips ? "doubt" : ""],
+    ["Wake-up latency", `p99 ${loop.wake_up_p99_us.toFixed(0)} µs, maximum ${loop.wake_up_max_us.toFixed(0)} µs`],
   ];
   if (statistics) {
     const {exchanges, failures, exchange} = statistics.bus;
@@ -147,10 +147,10 @@ function showHealth(status, statistics) {
     rows.push(["Exchange", `p99 ${(exchange.p99_us / 1000).toFixed(2)} ms`]);
   }
   if (status.real_time) {
-    rows.push(["Real time", status.real_time.degraded ? "degraded" : "as asked for",
+    rows.push(["Real time", status.real_time.degraded ? "degraded" : "all settings verified",
       status.real_time.degraded ? "doubt" : "good"]);
   }
-  const written = recording.active ? `${recording.rows} rows` : "not now";
+  const written = recording.active ? `${recording.rows} rows` : "not active";
   rows.push(["Recording", recording.error || written, recording.error ? "bad" : ""]);
   rows.push(["Rows lost", String(recording.dropped_rows), recording.dropped_rows ? "doubt" : ""]);
   showRows($("health"), rows);
@@ -219,7 +219,7 @@ const hues = () => (dark.matches ? ["#7db8f5", "#f2b45c", "#6fd49a", "#e29bf0"] 
 function datasetsOf(id) {
   const channels = shown.status ? shown.status.channels : [];
   return channels.flatMap((channel, finger) => curves[id].map(({column, dashed}) => ({
-    label: channel.name + (dashed ? (id === "pressure-chart" ? ", asked for" : ", reference") : ""),
+    label: channel.name + (dashed ? (id === "pressure-chart" ? ", command" : ", reference") : ""),
     data: shown.trend.map((sample) => ({x: sample[0], y: (sample[finger + 1] || [])[column] ?? NaN})),
     borderColor: hues()[finger % 4],
     backgroundColor: hues()[finger % 4],
@@ -361,7 +361,7 @@ function showRole() {
   $("main").hidden = session.role === "none";
   $("login").hidden = session.role !== "none";
   const who = $("who");
-  who.replaceChildren(session.role === "none" ? "" : operates() ? "may operate" : "looking only");
+  who.replaceChildren(session.role === "none" ? "" : operates() ? "may operate" : "read-only");
   if (session.tokens && session.role !== "none") {
     const change = make("button", session.byToken ? "Log out" : "Log in");
     change.type = "button";
