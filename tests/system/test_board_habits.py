@@ -125,7 +125,7 @@ class BoardHabits(bench.BenchTest):
         for order in ("low_first", "high_first_bytes_swapped", "low_first_bytes_swapped"):
             with self.subTest(order):
                 other = self.board(order, ("word_order: high_first", f"word_order: {order}"))
-                self.assert_says(self.examined(plain, other), "make no sense as `high_first`", f"word_order: {order}")
+                self.assert_says(self.examined(plain, other), "are implausible with `high_first`", f"word_order: {order}")
 
     def test_the_doctor_says_addresses_that_are_off_by_one(self):
         inputs = "function: 3\n  address: 0\n  count: 8"
@@ -160,12 +160,12 @@ class BoardHabits(bench.BenchTest):
         self.assert_says(self.examined(plain, plain, fault="few_registers, most: 8"), "(exception 3); 8 registers",
                          "max_registers: 8")
         self.assert_says(self.examined(plain, plain, fault="exception_reply, code: 1"), "(exception 1)", "with its manual")
-        self.assert_says(self.examined(plain, plain, fault="exception_reply, code: 4"), "(exception 4)", "fails by itself")
+        self.assert_says(self.examined(plain, plain, fault="exception_reply, code: 4"), "(exception 4)", "internal failure")
 
     def test_the_doctor_says_what_a_gateway_does(self):
         plain = self.board("plain")
         self.assert_says(self.examined(plain, plain, "--rtu-over-tcp"), "the other framing", "framing: rtu")
-        self.assert_says(self.examined(plain, plain, fault="wrong_transaction"), "its answers are right",
+        self.assert_says(self.examined(plain, plain, fault="wrong_transaction"), "its responses are correct",
                          "accept_no_transaction_id")
 
     def test_a_rig_that_says_its_habits_works(self):

@@ -17,17 +17,18 @@ struct BusAdvice {
 
 constexpr std::array<BusAdvice, 5> bus_advices{{
     {BusStatus::disconnected,
-     "check power and cable of the board, its address in the rig file, and that no other master holds it"},
+     "check power and cable of the board, its address in the rig file, and that no other Modbus client "
+     "occupies it"},
     {BusStatus::closed_at_once,
-     "the board can be reached and serves no further client: end the other programs that are connected "
-     "to it, or wait until it drops a connection that was cut"},
+     "the board is reachable but accepts no further client: end the other programs that are connected "
+     "to it, or wait until it drops a broken connection"},
     {BusStatus::timed_out,
-     "check power and cable of the board and `unit` in the rig file; a board that ignores what comes first "
+     "check power and cable of the board and `unit` in the rig file; a board that ignores the first requests "
      "after a connection needs `settle_s`"},
     {BusStatus::bad_reply,
-     "look for a second master or a gateway that mixes replies; check `unit` in the rig file"},
+     "look for another Modbus client or a gateway that mixes up responses; check `unit` in the rig file"},
     {BusStatus::exception,
-     "the board is reached and refuses the request: compare function, address and count in the board "
+     "the board responds but rejects the request: compare function, address and count in the board "
      "map with its manual"},
 }};
 

@@ -145,11 +145,11 @@ class BusInquiry {
       case gateway_path:
       case gateway_target:
         if (try_other_units(heard, findings)) return;
-        return findings.fail(name_, heard.detail + ", which is the answer of a gateway",
+        return findings.fail(name_, heard.detail + ", a response of a gateway",
                              "check `unit` in the rig file, and power and wires behind the gateway");
       default:
         return findings.fail(name_, heard.detail,
-                             "the board is reached and fails by itself: look at its own display");
+                             "the board responds and reports an internal failure: look at its display");
     }
     findings.fail(name_, heard.detail,
                   "compare function, address and count in the board map with its manual");
@@ -167,7 +167,7 @@ class BusInquiry {
     const Heard from = ask(other);
     const bool is_sensible = inputs_.empty() || read_as(from.words, map_.word_order).has_value();
     if (from.status != BusStatus::ok || (heard.exception == illegal_address && !is_sensible)) return false;
-    findings.fail(name_, fmt::format("{}; function {} answers", heard.detail, other.function),
+    findings.fail(name_, fmt::format("{}; function {} is accepted", heard.detail, other.function),
                   fmt::format("write `function: {}` for `inputs`{} in the board map", other.function,
                               map_.has_fc23 ? " and `fc23: false`" : ""));
     return true;
@@ -176,10 +176,12 @@ class BusInquiry {
   bool try_other_addresses(const Heard& heard, Findings& findings) {
     for (const int by : {-1, 1}) {
       if (!can_move(by) || ask(moved(by)).status != BusStatus::ok) continue;
-      findings.fail(name_,
-                    fmt::format("{}; one register {}, from {} on, it answers: the addresses are off by one",
-                                heard.detail, by < 0 ? "lower" : "higher", asked_.address + by),
-                    base_advice(by));
+      findings.fail(
+          name_,
+          fmt::format(
+              "{}; the request one register {}, from {} on, is accepted: the addresses are off by one",
+              heard.detail, by < 0 ? "lower" : "higher", asked_.address + by),
+          base_advice(by));
       return true;
     }
     return false;
@@ -198,7 +200,7 @@ class BusInquiry {
       fewer.count = static_cast<std::uint16_t>(fewer.count / 2);
       if (ask(fewer).status != BusStatus::ok) continue;
       findings.fail(name_,
-                    fmt::format("{}; {} registers in one request are answered, {} are not", heard.detail,
+                    fmt::format("{}; a request of {} registers is accepted, one of {} is not", heard.detail,
                                 fewer.count, asked_.count),
                     fmt::format("write `max_registers: {}` in the board map", fewer.count));
       return true;
@@ -218,8 +220,8 @@ class BusInquiry {
       if (!answers) continue;
       findings.fail(
           name_,
-          fmt::format("{}; unit id {} answers, unit id {} does not", heard.detail, other.unit, asked_.unit),
-          fmt::format("write `unit: {}` in the rig file, if that is the board", other.unit));
+          fmt::format("{}; unit id {} responds, unit id {} does not", heard.detail, other.unit, asked_.unit),
+          fmt::format("write `unit: {}` in the rig file if this is the board", other.unit));
       return true;
     }
     return false;
@@ -232,24 +234,24 @@ class BusInquiry {
       other.rtu_framing = !tcp->rtu_framing;
       if (try_address(other)) {
         return findings.fail(
-            name_, heard.detail + "; it answers to the other framing",
+            name_, heard.detail + "; it responds to the other framing",
             fmt::format("write `framing: {}` in the rig file", other.rtu_framing ? "rtu" : "tcp"));
       }
       other = *tcp;
       other.numbered = false;
       if (tcp->numbered && !tcp->rtu_framing && try_address(other)) {
         return findings.fail(
-            name_, heard.detail + "; but for the transaction id its answers are right",
-            "a gateway that does not return it: `accept_no_transaction_id` in the rig file names "
+            name_, heard.detail + "; its responses are correct except for the transaction id",
+            "the gateway does not return it. `accept_no_transaction_id` in the rig file accepts "
             "the risk");
       }
     }
     if (try_other_units(heard, findings)) return;
-    findings.fail(
-        name_, heard.detail,
-        heard.status == BusStatus::bad_reply
-            ? "compare `unit` in the rig file with the board's; look for a second master on the line"
-            : "no unit id answers: check power and wires, and that the port is that of Modbus");
+    findings.fail(name_, heard.detail,
+                  heard.status == BusStatus::bad_reply
+                      ? "compare `unit` in the rig file with that of the board; look for another Modbus "
+                        "client on the line"
+                      : "no unit id responds: check power and wires, and that the port is a Modbus port");
   }
 
   bool try_address(const drivers::TcpAddress& other) {
@@ -301,16 +303,15 @@ class BusInquiry {
     const Fit& fit = fits.front();
     const std::string name(drivers::name_of(fit.order));
     if (fit.by != 0) {
-      return findings.fail(
-          name_,
-          fmt::format("the inputs make no sense as the board map reads them; one register {} they "
-                      "are probably {}: the addresses are off by one",
-                      fit.by < 0 ? "lower" : "higher", fit.shown),
-          base_advice(fit.by));
+      return findings.fail(name_,
+                           fmt::format("the inputs are implausible with the board map; one register {} they "
+                                       "are probably {}: the addresses are off by one",
+                                       fit.by < 0 ? "lower" : "higher", fit.shown),
+                           base_advice(fit.by));
     }
     findings.fail(
         name_,
-        fmt::format("the inputs make no sense as `{}`; as `{}` they are {}: probably the word order",
+        fmt::format("the inputs are implausible with `{}`; with `{}` they are {}: probably the word order",
                     drivers::name_of(map_.word_order), name, fit.shown),
         fmt::format("write `word_order: {}` in the board map", name));
   }

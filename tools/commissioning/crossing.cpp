@@ -32,8 +32,7 @@ bool monitor_followed(const rig::RigFile& rig, const ChannelSample& rest, const 
   return (seen.mean - rest.pressure_kpa.mean) / step_kpa >= share_of_step;
 }
 
-/// Element i: the only channel that responded when channel i was moved. Empty if none or more than one
-/// responded.
+/// Element i: the only channel that responded when channel i was moved, or nullopt if none or several did.
 using Shown = std::vector<std::optional<std::size_t>>;
 
 template <class Followed>

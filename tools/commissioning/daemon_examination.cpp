@@ -39,8 +39,9 @@ Json list_in(const Json& json, const char* key) {
 void judge_state(const Json& status, const std::string& rig, Findings& findings) {
   if (!rig.empty() && text_in(status, "rig") != rig) {
     findings.warn("daemon",
-                  fmt::format("it runs the rig `{}`, the file is of `{}`", text_in(status, "rig"), rig),
-                  "name the rig file that it was started with");
+                  fmt::format("softgripd runs the rig `{}`, but the rig file describes `{}`",
+                              text_in(status, "rig"), rig),
+                  "give the rig file with which softgripd was started");
   } else {
     findings.ok("daemon",
                 fmt::format("softgripd {}, {}", text_in(status, "version"), text_in(status, "state")));
@@ -95,16 +96,19 @@ void judge_real_time(const Json& status, Findings& findings) {
 void judge_loop(const Json& status, const Json& statistics, Findings& findings) {
   const Json loop = part(statistics, "loop");
   const double ticks = number_in(loop, "ticks");
-  const double slips = number_in(loop, "slips_woken_late") + number_in(loop, "slips_took_long");
+  const double slips = number_in(loop, "slips_woken_late") +  // words-ok: API key
+                       number_in(loop, "slips_took_long");    // words-ok: API key
   const double period_us = 1e6 / std::max(number_in(status, "rate_hz"), 1e-3);
   const double p99_us = number_in(part(loop, "wake_up"), "p99_us");
-  const std::string text = fmt::format("{:.0f} ticks, {:.0f} slips, wake-up p99 {:.0f} us, max {:.0f} us",
-                                       ticks, slips, p99_us, number_in(part(loop, "wake_up"), "max_us"));
+  const std::string text =
+      fmt::format("{:.0f} ticks, {:.0f} overruns, wake-up latency p99 {:.0f} us, max {:.0f} us", ticks, slips,
+                  p99_us, number_in(part(loop, "wake_up"), "max_us"));
   if (slips > 1e-2 * ticks) {
-    findings.fail("loop", text,
-                  "cycles are lost: see scheduling above, lower rate_hz, or free the processor");
+    findings.fail(
+        "loop", text,
+        "cycles are missed: see scheduling above, lower rate_hz, or reduce the load of the processor");
   } else if (slips > 0 || p99_us > period_us / 10) {
-    findings.warn("loop", text, "a cycle was lost or late now and then: see scheduling above");
+    findings.warn("loop", text, "cycles were missed or late occasionally: see scheduling above");
   } else {
     findings.ok("loop", text);
   }
@@ -127,7 +131,7 @@ void judge_bus(const Json& status, const Json& statistics, Findings& findings) {
                   std::string(bus_advice(text_in(bus, "failure_kind"))) + "; softgripd reconnects");
   } else if (failures > 1e-3 * exchanges) {
     findings.warn("board", text,
-                  "the bus loses exchanges: cable, termination, a second master, a rate too high");
+                  "exchanges fail. Check cable, termination, other Modbus clients and the rate");
   } else {
     findings.ok("board", text);
   }
@@ -147,7 +151,7 @@ void judge_channel(const Json& channel, bool connected, bool has_run, Findings& 
     findings.ok("sensor " + name, text);
   } else {
     findings.fail("sensor " + name, "readings are not valid: " + validity,
-                  "look at the sensor's own display, its wire and its window");
+                  "check the sensor's display, its wire and its window");
     findings.not_judged("model " + name, "see `sensor " + name + "`");
     return;
   }
@@ -155,33 +159,33 @@ void judge_channel(const Json& channel, bool connected, bool has_run, Findings& 
   const std::string residual =
       fmt::format("{}, residual {:.2f} mm RMS", health, number_in(channel, "health_rms_mm"));
   if (health == "unfit" && !has_run) {
-    findings.warn(
-        "model " + name, residual,
-        "no sequence has run since softgripd started: the finger was probably not at rest then. Run one");
+    findings.warn("model " + name, residual,
+                  "no sequence has run since softgripd started, and the finger was probably not at rest "
+                  "then. Run a sequence");
   } else if (health == "unfit") {
     findings.fail("model " + name, residual,
-                  "record tp1 and identify again; look for wear, leaks, a moved sensor");
+                  "record tp1 and identify again; look for wear, leaks or a moved sensor");
   } else if (health == "suspect") {
     findings.warn("model " + name, residual, "calibrate and identify again soon");
   } else {
-    findings.ok("model " + name, health == "unknown" ? "not judged yet: nothing has moved" : residual);
+    findings.ok("model " + name, health == "unknown" ? "not judged yet: no finger has moved" : residual);
   }
 }
 
 void judge_rest(const Json& status, Findings& findings) {
   const Json recording = part(status, "recording");
   if (const std::string error = text_in(recording, "error"); !error.empty()) {
-    findings.fail("recording", error, "free space, rights of the folder");
+    findings.fail("recording", error, "free disk space, or check the permissions of the folder");
   } else if (number_in(recording, "dropped_rows") > 0) {
     findings.warn("recording", fmt::format("{:.0f} rows were lost", number_in(recording, "dropped_rows")),
-                  "the disk is too slow: another disk, or recorder: decimation");
+                  "the disk is too slow: use another disk or raise recorder: decimation");
   }
   const Json gpio = part(status, "gpio");
   if (gpio.empty()) return;
   if (is_set(gpio, "lost")) {
     findings.fail("gpio", "the digital lines cannot be read", "restore the chip and restart softgripd");
   } else if (is_set(gpio, "emergency_stop")) {
-    findings.warn("gpio", "the emergency stop is pressed, or was not yet seen released",
+    findings.warn("gpio", "the emergency stop is pressed, or has not been released since the start",
                   "release it, then `softgrip acknowledge`");
   } else {
     findings.ok("gpio",

@@ -64,10 +64,10 @@ std::string path_of(const std::string& word, const std::string& folder) {
 std::string unknown_name(const std::string& word, const std::string& folder) {
   const std::vector<std::string> names = names_in(folder);
   const std::string near = document::nearest(word, names);
-  const std::string all = names.empty() ? "nothing is there" : "there are " + with_commas(names);
+  const std::string all = names.empty() ? "the folder is empty" : "available: " + with_commas(names);
   const std::string hint = near.empty() ? all : "did you mean " + near + "?";
-  return document::in_backticks(word) + " is no file, nor a name in " + configuration_path(folder) + ": " +
-         hint;
+  return document::in_backticks(word) + " is neither a file nor a name in " + configuration_path(folder) +
+         ": " + hint;
 }
 
 std::optional<int> whole(const std::string& text, int lowest, int highest) {
@@ -90,7 +90,7 @@ std::optional<std::pair<double, double>> two_numbers(const std::string& text) {
 // --- The facts
 
 std::optional<Question> ask_board(const RigDraft&) {
-  return Question{"the board's map, as a file or a name, or several" + in_brackets(names_in("boards")) +
+  return Question{"board map, one or several, each as a file or a name" + in_brackets(names_in("boards")) +
                       ", or `simulated`",
                   ""};
 }
@@ -109,14 +109,14 @@ std::string take_board(const std::string& text, RigDraft& draft) {
     draft.modules.push_back({path, *map});
   }
   if (most_fingers(draft, false) == 0)
-    return "valves need outputs and sensors need inputs: name the other module, too";
+    return "valves need outputs and sensors need inputs: add a module with the missing ones";
   return "";
 }
 
 std::optional<Question> ask_address(const RigDraft& draft) {
   if (draft.modules.empty()) return std::nullopt;
-  return Question{"its address (192.168.1.20 or 192.168.1.20:502) or serial device (/dev/serial/by-id/...)",
-                  ""};
+  return Question{
+      "address of the board (192.168.1.20 or 192.168.1.20:502) or serial device (/dev/serial/by-id/...)", ""};
 }
 
 std::string take_address(const std::string& text, RigDraft& draft) {
@@ -139,7 +139,7 @@ std::string take_address(const std::string& text, RigDraft& draft) {
            (host == "localhost" ? ": write 127.0.0.1" : "");
   }
   const auto port = colon == std::string::npos ? std::optional(502) : whole(word.substr(colon + 1), 1, 65535);
-  if (!port) return "a port is 1 to 65535";
+  if (!port) return "a port must be from 1 to 65535";
   draft.host = host;
   draft.port = *port;
   draft.device.clear();
@@ -148,14 +148,15 @@ std::string take_address(const std::string& text, RigDraft& draft) {
 
 std::optional<Question> ask_unit(const RigDraft& draft) {
   if (draft.modules.empty()) return std::nullopt;
-  return Question{
-      draft.modules.size() > 1 ? "unit id of the first module; the others count on" : "its unit id", "1"};
+  return Question{draft.modules.size() > 1 ? "unit id of the first module; the others follow in order"
+                                           : "unit id of the board",
+                  "1"};
 }
 
 std::string take_unit(const std::string& text, RigDraft& draft) {
   const bool serial = draft.host.empty();
   const auto unit = whole(text, serial ? 1 : 0, serial ? 247 : 255);
-  if (!unit) return serial ? "a unit id is 1 to 247" : "a unit id is 0 to 255";
+  if (!unit) return serial ? "a unit id must be from 1 to 247" : "a unit id must be from 0 to 255";
   draft.unit = *unit;
   return "";
 }
@@ -167,7 +168,7 @@ std::optional<Question> ask_baud(const RigDraft& draft) {
 
 std::string take_baud(const std::string& text, RigDraft& draft) {
   const auto baud = whole(text, 1200, 1'000'000);
-  if (!baud) return "a baud rate is 1200 to 1000000";
+  if (!baud) return "a baud rate must be from 1200 to 1000000";
   draft.baud = *baud;
   return "";
 }
@@ -232,7 +233,7 @@ std::string take_valve(const std::string& text, RigDraft& draft) {
 
 std::optional<Question> ask_pressure_max(const RigDraft& draft) {
   const double highest = std::max(draft.valve.y0, draft.valve.y1);
-  return Question{"highest pressure that a finger bears, kPa", written(std::min(60.0, highest))};
+  return Question{"highest permissible pressure of a finger, kPa", written(std::min(60.0, highest))};
 }
 
 std::string take_pressure_max(const std::string& text, RigDraft& draft) {
@@ -240,8 +241,8 @@ std::string take_pressure_max(const std::string& text, RigDraft& draft) {
   const double lowest = std::max(0.0, std::min(draft.valve.y0, draft.valve.y1));
   const double highest = std::max(draft.valve.y0, draft.valve.y1);
   if (!value || *value <= lowest || *value > highest) {
-    return fmt::format("`{}`: a pressure above {} and up to {}, which the valve controls",
-                       document::shown(text), written(lowest), written(highest));
+    return fmt::format("`{}`: must be above {} and at most {}, the range of the valve", document::shown(text),
+                       written(lowest), written(highest));
   }
   draft.pressure_max_kpa = *value;
   return "";
@@ -279,14 +280,15 @@ std::string take_monitor(const std::string& text, RigDraft& draft) {
 std::optional<Question> ask_watchdog(const RigDraft& draft) {
   if (has_watchdog(draft)) return std::nullopt;
   return Question{
-      "this board does not vent by itself: the outputs keep their last pressure when softgripd dies. Is that "
+      "this board does not vent without communication: it keeps the last pressures if softgripd fails. Is "
+      "this "
       "accepted, yes or no",
       ""};
 }
 
 std::string take_watchdog(const std::string& text, RigDraft& draft) {
   if (text != "yes" && text != "y")
-    return "without that the rig is refused: yes, or another board (Ctrl-C ends)";
+    return "the rig is refused unless this is accepted: enter yes, or choose another board (Ctrl-C ends)";
   draft.accepts_no_watchdog = true;
   return "";
 }
@@ -295,25 +297,26 @@ std::string take_watchdog(const std::string& text, RigDraft& draft) {
 
 const std::vector<Fact>& draft_facts() {
   static const std::vector<Fact> facts{
-      {"board", "Board map, a file or a name in config/boards; once for each module; or `simulated`", 1,
-       ask_board, take_board},
+      {"board", "Board map, a file or a name in config/boards; once per module; or `simulated`", 1, ask_board,
+       take_board},
       {"address", "Numeric address with or without :PORT, or the path of a serial device", 1, ask_address,
        take_address},
       {"unit", "Unit id of the first module [1]", 1, ask_unit, take_unit},
-      {"baud", "Of the serial line [9600]", 1, ask_baud, take_baud},
-      {"finger", "Names, once for each [left right]", 1, ask_fingers, take_fingers},
-      {"model", "Model of the free finger, a file or a name in config/models [bench_twin]", 1, ask_model,
-       take_model},
+      {"baud", "Baud rate of the serial line [9600]", 1, ask_baud, take_baud},
+      {"finger", "Name of a finger; once per finger [left right]", 1, ask_fingers, take_fingers},
+      {"model", "Model of the finger's free motion, a file or a name in config/models [bench_twin]", 1,
+       ask_model, take_model},
       {"valve-kpa", "Pressures at the lower and the upper end of the valve's signal [0 100]", 2, ask_valve,
        take_valve},
-      {"pressure-max-kpa", "Highest pressure that a finger bears [60]", 1, ask_pressure_max,
+      {"pressure-max-kpa", "Highest permissible pressure of a finger [60]", 1, ask_pressure_max,
        take_pressure_max},
       {"sensor-mm", "Displacements at the lower and the upper end of the sensor's signal [-5 45]", 2,
        ask_sensor, take_sensor},
-      {"monitor", "Whether the pressure of each finger is measured, yes or no [yes, where there are inputs]",
-       1, ask_monitor, take_monitor},
-      {"accept-no-watchdog", "`yes`: a board that does not vent by itself is accepted", 1, ask_watchdog,
-       take_watchdog},
+      {"monitor",
+       "`yes` if the pressure of each finger is measured, else `no` [yes if there are enough inputs]", 1,
+       ask_monitor, take_monitor},
+      {"accept-no-watchdog", "`yes`: accept a board that does not vent without communication", 1,
+       ask_watchdog, take_watchdog},
   };
   return facts;
 }

@@ -94,9 +94,9 @@ std::string text_of(const Examination& examination, const Findings& findings, st
   const std::size_t width = std::max(columns > indent ? columns - indent : 0, narrowest);
   std::string text = fmt::format("rig {} ({}){}: {}\n", examination.rig, examination.rig_file,
                                  examination.simulated ? ", SIMULATED" : "",
-                                 examination.daemon_runs ? "softgripd runs and was asked"
-                                 : examination.moved     ? "no softgripd runs; looked at and moved"
-                                                         : "no softgripd runs; looked at, not moved");
+                                 examination.daemon_runs ? "status from the running softgripd"
+                                 : examination.moved     ? "softgripd not running; checked with motion"
+                                                         : "softgripd not running; checked without motion");
   for (const Finding& finding : findings.list()) {
     text += fmt::format("{}{:{}}  {}\n", mark(finding.verdict, colour), finding.name, name_width,
                         wrapped(finding.text, indent, width));

@@ -48,7 +48,7 @@ std::optional<Place> place_of(const std::optional<Settings>& settings) {
 void examine(const std::string& program, const std::string& file, const std::optional<Place>& place,
              const document::Problems& problems, Findings& findings) {
   if (!place) {
-    findings.warn(program, fmt::format("it is enabled, and {} cannot be used", file),
+    findings.warn(program, fmt::format("the service is enabled, but {} cannot be used", file),
                   problems.list().empty() ? "softgrip check " + file : problems.list().front().message);
     return;
   }
@@ -56,7 +56,7 @@ void examine(const std::string& program, const std::string& file, const std::opt
   if (somebody_listens(*place)) {
     findings.ok(program, "listens on " + where);
   } else {
-    findings.warn(program, "it is enabled, and nobody listens on " + where,
+    findings.warn(program, "the service is enabled, but not listening on " + where,
                   fmt::format("systemctl status {}; journalctl -u {}", program, program));
   }
 }

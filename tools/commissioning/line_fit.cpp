@@ -108,7 +108,7 @@ tl::expected<Line, std::string> fit_line(const std::vector<Visit>& visits, const
                                          const std::string& unit, const std::string& electrical) {
   const Means low = means_of(visits, false);
   const Means high = means_of(visits, true);
-  if (low.count == 0 || high.count == 0) return tl::unexpected(std::string("two places are needed"));
+  if (low.count == 0 || high.count == 0) return tl::unexpected(std::string("two positions are needed"));
   for (const Visit& visit : visits) {
     if (!std::isfinite(visit.reference) || !std::isfinite(visit.electrical)) {
       return tl::unexpected(std::string("a value is not a number"));
@@ -144,7 +144,7 @@ tl::expected<Line, std::string> fit_line(const std::vector<Visit>& visits, const
         std::max(spread_at(visits, line.residuals, false), spread_at(visits, line.residuals, true));
     if (*line.repeat_spread > span / 10) {
       return tl::unexpected(
-          fmt::format("it does not repeat: visits to one place differ by {:.4g} {} of {:.4g}",
+          fmt::format("not repeatable: visits to one position differ by {:.4g} {} of {:.4g}",
                       *line.repeat_spread, unit, span));
     }
   }

@@ -48,7 +48,7 @@ void take(const RealTimeStep& step, bool required, Findings& findings) {
     case RealTimeStep::Outcome::verified:
       return findings.ok(step.name, step.detail);
     case RealTimeStep::Outcome::not_asked:
-      return findings.ok(step.name, "not asked for in the rig file");
+      return findings.ok(step.name, "not requested in the rig file");
     case RealTimeStep::Outcome::failed:
       break;
   }
@@ -90,11 +90,13 @@ void judge_timer(const rig::RigFile& rig, const daemon::Histogram& wake_up, Find
     findings.fail("timer", text, "this kernel has no high-resolution timers (CONFIG_HIGH_RES_TIMERS)");
   } else if (static_cast<double>(wake_up.quantile_ns(0.95)) * us_per_ns > period_us / 2) {
     // One late wake-up per second is tolerable. One late wake-up in 20 is a fault of the set-up.
-    findings.fail("timer", text, "cycles will be lost: get SCHED_FIFO, lower rate_hz, or free the processor");
+    findings.fail(
+        "timer", text,
+        "cycles will be missed: grant SCHED_FIFO, lower rate_hz, or reduce the load of the processor");
   } else if (p99_us > period_us / 10 || max_us > period_us / 2) {
     findings.warn(
         "timer", text,
-        "a wake-up was late by a good part of a cycle: see `kernel` and `scheduling`, and what else "
+        "a wake-up was late by a large part of a cycle: see `kernel` and `scheduling`, and check what else "
         "this computer does");
   } else {
     findings.ok("timer", text);
@@ -166,7 +168,7 @@ void examine_clock(Findings& findings) {
   } else if (status < 0 || status == TIME_ERROR || (state.status & STA_UNSYNC) != 0) {
     findings.warn("clock", fmt::format("{}, not synchronised", text),
                   "recordings may carry a wrong date: install chrony or systemd-timesyncd, or compare with a "
-                  "watch. Control uses the monotonic clock and does not mind");
+                  "watch. Control uses the monotonic clock and is not affected");
   } else {
     findings.ok("clock", fmt::format("{}, synchronised", text));
   }

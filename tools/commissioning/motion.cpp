@@ -84,12 +84,12 @@ void judge_model(const control::ChannelSettings& channel, const Motion& motion, 
   const control::ModelHealthSettings& health = channel.health;
   const double healthy_mm = 2 * std::hypot(health.model_error_mm, health.noise_mm);
   const std::string text =
-      fmt::format("{:.2f} mm RMS beside the motion; healthy is below {:.2f}, unfit above {:.2f}",
+      fmt::format("residual {:.2f} mm RMS during the motion; healthy below {:.2f}, unfit above {:.2f}",
                   motion.residual_rms_mm, healthy_mm, health.unfit_mm);
   const std::string name = "model " + channel.name;
   if (motion.residual_rms_mm > health.unfit_mm) {
     findings.fail(name, text,
-                  "another finger, wear, leak or a moved sensor: look, calibrate, then identify again");
+                  "another finger, wear, a leak or a moved sensor: inspect, calibrate, then identify again");
   } else if (motion.residual_rms_mm > healthy_mm) {
     findings.warn(name, text, "grip detection loses margin: record tp1 and identify again soon");
   } else {
@@ -142,14 +142,14 @@ bool judge_valve(const control::ChannelSettings& of, const Sample& monitor, doub
                  Findings& findings) {
   const double step_kpa = std::abs(command_kpa - control::resting_kpa(of.limits));
   const std::string text =
-      fmt::format("{:.2f} kPa were asked for, the monitor shows {:.2f}", command_kpa, monitor.mean);
+      fmt::format("{:.2f} kPa commanded, {:.2f} kPa measured", command_kpa, monitor.mean);
   const double allowed_kpa = std::max(allowed_share_of_step * step_kpa, pressure_floor_kpa);
   const bool follows = std::abs(monitor.mean - command_kpa) <= allowed_kpa;
   if (follows) {
     findings.ok("valve " + of.name, text);
   } else {
     findings.fail("valve " + of.name, text,
-                  "supply pressure, valve power, a leak or a kinked line; if all is well there, "
+                  "check supply pressure, valve power, leaks and kinked lines. If they are in order, "
                   "calibrate valve and monitor");
   }
   return follows;
@@ -166,16 +166,17 @@ void judge_finger(const control::ChannelSettings& of, const Sample& rest, const 
     findings.not_judged("model " + of.name, "see `" + name + "`");
   };
   if (seen.invalid > 0) {
-    broken(fmt::format("readings were not valid on the way: {}", daemon::name_of(seen.why)),
-           "the finger leaves the sensor's range, or its beam is cut");
+    broken(fmt::format("invalid readings during the motion: {}", daemon::name_of(seen.why)),
+           "the finger leaves the sensor's range, or the sensor's beam is interrupted");
   } else if (!has_moved(rest, seen, motion.model_mm)) {
-    broken(text,
-           pressure_seen
-               ? "the pressure is there: a sensor that is stuck, a burst finger, or a line blocked behind "
-                 "the valve"
-               : "no supply, a blocked line, or a sensor that is stuck: move the finger by hand and watch");
+    broken(
+        text,
+        pressure_seen
+            ? "the pressure is present: check for a stuck sensor, a burst finger, or a line blocked behind "
+              "the valve"
+            : "no supply, a blocked line or a stuck sensor: move the finger by hand and watch the reading");
   } else if (moved_mm * motion.model_mm < 0) {
-    broken(text, "the sensor's sign is wrong: calibrate it");
+    broken(text, "the sensor's sign is wrong: calibrate the sensor");
   } else {
     findings.ok(name, text);
     judge_model(of, motion, findings);
@@ -193,7 +194,7 @@ void judge_motion(const rig::RigFile& rig, std::size_t channel, const ChannelSam
   if (!known.valve.empty()) {
     findings.not_judged("valve " + of.name, known.valve);
   } else if (monitor.count == 0) {
-    findings.ok("valve " + of.name, "no pressure monitor: judged by the finger alone");
+    findings.ok("valve " + of.name, "no pressure monitor: judged by the motion of the finger");
   } else {
     pressure_seen = judge_valve(of, monitor, motion.command_kpa, findings);
     if (!pressure_seen && finger_waits.empty()) finger_waits = "see `valve " + of.name + "`";

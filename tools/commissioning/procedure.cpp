@@ -61,7 +61,7 @@ Expected<double> ask_number(MotionSession& session, Operator& person, const std:
     const auto answer = ask(session, person, question);
     if (!answer) return tl::unexpected(answer.error());
     if (const auto value = typed_number(*answer)) return *value;
-    person.tell("`" + *answer + "` is no number: once more, please, like 12.34");
+    person.tell("`" + *answer + "` is not a number. Please enter a number such as 12.34");
   }
   return tl::unexpected(Refusal{ExitCode::input_refused, "no number was given: " + question});
 }
@@ -76,9 +76,9 @@ Expected<std::optional<double>> ask_position(MotionSession& session, Operator& p
     if (first == std::string::npos) return std::optional<double>(asked_mm);
     if (answer->substr(first) == "-") return std::optional<double>();
     if (const auto value = typed_number(*answer)) return std::optional<double>(*value);
-    person.tell(
-        "`" + *answer +
-        "` is no position. Enter if it is there, a number if it is elsewhere (mm), - to leave it out");
+    person.tell("`" + *answer +
+                "` is not a position. Press Enter if the target is there, type its actual position (mm), or "
+                "- to skip it");
   }
   return tl::unexpected(Refusal{ExitCode::input_refused, "no position was given: " + question});
 }
@@ -128,7 +128,7 @@ std::optional<std::string> invalid(const Sample& sample) {
   if (sample.invalid == 0) return std::nullopt;
   return fmt::format(
       "{} of {} readings are not valid ({}): the signal is outside its valid range, or the sensor "
-      "says that it cannot measure",
+      "reports that it cannot measure",
       sample.invalid, sample.invalid + sample.count, daemon::name_of(sample.why));
 }
 
@@ -136,7 +136,7 @@ std::optional<std::string> at_an_end(const Visit& visit, const drivers::InputWir
   const double slack = share_of_end * (wiring.valid_max - wiring.valid_min);
   if (visit.electrical > wiring.valid_min + slack && visit.electrical < wiring.valid_max - slack)
     return std::nullopt;
-  return fmt::format("saturated: the signal stands at {:.4g} {}, an end of its valid range ({:g} to {:g})",
+  return fmt::format("saturated: the signal is at {:.4g} {}, an end of its valid range ({:g} to {:g})",
                      visit.electrical, drivers::name_of(wiring.unit), wiring.valid_min, wiring.valid_max);
 }
 
@@ -156,7 +156,7 @@ Expected<Visit> visit_sensor(const rig::RigFile& rig, MotionSession& session, Op
   const auto reference = ask_number(
       session, person,
       settings.may_move ? fmt::format("gauge at the {} position, mm", place)
-                        : fmt::format("put the target at the {} position; gauge there, mm", place));
+                        : fmt::format("put the target at the {} position; gauge reading, mm", place));
   if (!reference) return tl::unexpected(reference.error());
   const auto halves = average(session, settings);
   if (!halves) return tl::unexpected(halves.error());
@@ -284,7 +284,7 @@ Expected<std::vector<GaugeVisit>> read_positions(MotionSession& session, Operato
     const Sample& second = halves->second.displacement_mm;
     const auto why = invalid(first.invalid > 0 ? first : second);
     if (why || first.count + second.count == 0) {
-      person.tell("left out: " + why.value_or("nothing was read"));
+      person.tell("skipped: " + why.value_or("no reading"));
       continue;
     }
     const auto count = static_cast<double>(first.count + second.count);
@@ -361,7 +361,7 @@ Expected<DeadZoneResult> search_dead_zone(const rig::RigFile& rig, MotionSession
     result.zone = find_dead_zone(command, response);
   }
   if (!result.zone)
-    return tl::unexpected(nonsense("dead zone: nothing followed the ramp: supply, line, sensor?"));
+    return tl::unexpected(nonsense("dead zone: no signal followed the ramp. Check supply, line and sensor"));
   result.zone->end *= side;
   return result;
 }

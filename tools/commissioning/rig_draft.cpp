@@ -119,7 +119,7 @@ std::string simulated_text(const RigDraft& draft, const std::filesystem::path& f
   std::string text = fmt::format(
       "  simulated:                       # nothing is connected, nothing can move\n    seed: 1\n"
       "    watchdog_timeout_s: {}\n    output_bits: 12\n    input_bits: 16\n"
-      "    plants:                        # what each finger really is\n",
+      "    plants:                        # the simulated finger of each channel\n",
       two(simulated_watchdog_s));
   for (const std::string& finger : draft.fingers) {
     text += fmt::format("      {}: {{model: {}, displacement_noise_mm: 0.03, pressure_noise_kpa: 0.1}}\n",
@@ -135,7 +135,7 @@ std::string board_text(const RigDraft& draft, double rate_hz, const std::filesys
     text = fmt::format(
         "  modbus_rtu:\n    device: {}   # the adapter's own name: ls -l /dev/serial/by-id\n    baud: {}\n   "
         " format: 8N1\n"
-        "    turnaround_s: 0.005            # what a module needs to answer; softgrip doctor measures the "
+        "    turnaround_s: 0.005            # response time of a module; softgrip doctor measures the "
         "bus\n",
         draft.device, draft.baud);
   } else {
@@ -144,7 +144,8 @@ std::string board_text(const RigDraft& draft, double rate_hz, const std::filesys
   text += modules_text(draft, folder);
   const double deadline_s = std::clamp(2 / rate_hz, 0.02, 0.5);
   text += fmt::format(
-      "    exchange_deadline_s: {:<9} # an exchange that takes longer has failed and the session is rebuilt\n"
+      "    exchange_deadline_s: {:<9} # after this time an exchange has failed and the session is opened "
+      "again\n"
       "    connect_deadline_s: 2\n    first_pause_s: 0.1             # between attempts to connect; doubles "
       "...\n"
       "    longest_pause_s: 2             # ... up to this\n",
@@ -200,8 +201,9 @@ std::string pressure_fault_text(const RigDraft& draft, double rate_hz) {
   if (!draft.monitor) return "";
   const double range_kpa = std::abs(draft.valve.y1 - draft.valve.y0);
   return fmt::format(
-      "  pressure_cycles: {:<15} # the measured pressure is off: a burst line, a lost supply\n"
-      "  pressure_tolerance_kpa: {}\n  pressure_delay_s: 0.5            # longer than the valve takes, with "
+      "  pressure_cycles: {:<15} # wrong pressure: a burst line, a lost supply\n"
+      "  pressure_tolerance_kpa: {}\n  pressure_delay_s: 0.5            # longer than the delay of the valve "
+      "with "
       "the line\n",
       std::max(3.0, std::round(0.1 * rate_hz)), two(0.05 * range_kpa));
 }

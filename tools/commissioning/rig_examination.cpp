@@ -48,7 +48,7 @@ void judge_bus(const rig::RigFile& rig, const daemon::Histogram::Summary& times,
     findings.fail("bus time", text, "the bus is slower than the loop: lower rate_hz");
   } else if (slow_s > 0.8 * period_s) {
     findings.warn("bus time", text,
-                  "late exchanges leave cycles without one: lower rate_hz, or find what delays");
+                  "late exchanges leave cycles without data: lower rate_hz, or find the cause of the delay");
   } else {
     findings.ok("bus time", text);
   }
@@ -57,12 +57,12 @@ void judge_bus(const rig::RigFile& rig, const daemon::Histogram::Summary& times,
 std::string sensor_advice(model::Validity why) {
   switch (why) {
     case model::Validity::out_of_range:
-      return "target out of the sensor's distance, a broken wire, or another range: look at the sensor's "
+      return "target out of the sensor's range, a broken wire, or a wrong range setting: check the sensor's "
              "display";
     case model::Validity::sensor_error:
-      return "the sensor or its input card says that it cannot measure: target, window, supply";
+      return "the sensor or its input card reports that it cannot measure: check target, window and supply";
     default:
-      return "look at the sensor's display and its wire";
+      return "check the sensor's display and its wire";
   }
 }
 
@@ -84,10 +84,10 @@ void judge_displacement(const control::ChannelSettings& channel, const Sample& s
     findings.fail(name,
                   text + fmt::format("; the limits are {:g} to {:g} mm", channel.limits.displacement_min_mm,
                                      channel.limits.displacement_max_mm),
-                  "the finger or the sensor is not where it was: look, then calibrate the sensor");
+                  "the finger or the sensor has moved: inspect it, then calibrate the sensor");
   } else if (sample.lowest == sample.highest) {
-    findings.warn(name, text + "; all the same",
-                  "very quiet, or frozen (hold mode, blocked beam): --move tells which");
+    findings.warn(name, text + "; no variation",
+                  "very low noise, or a frozen sensor (hold mode, blocked beam): run with --move to decide");
   } else {
     findings.ok(name, text);
   }
@@ -100,24 +100,24 @@ void judge_rest(const control::ChannelSettings& channel, const drivers::ChannelW
   const double span = channel.limits.pressure_max_kpa - channel.limits.pressure_min_kpa;
   const double off = std::abs(sample.readback_kpa.mean - command_kpa);
   if (sample.readback_kpa.count > 0 && off > faults.readback_tolerance_kpa) {
-    findings.fail(
-        "output " + channel.name,
-        fmt::format("{:.2f} kPa were written, the board outputs {:.2f}", command_kpa,
-                    sample.readback_kpa.mean),
-        "another master writes too, a latched trip or manual mode of the board, or a wrong scaling");
+    findings.fail("output " + channel.name,
+                  fmt::format("{:.2f} kPa were written, the board outputs {:.2f}", command_kpa,
+                              sample.readback_kpa.mean),
+                  "another Modbus client writes too, the board has a latched trip or is in manual mode, or "
+                  "the scaling is wrong");
   }
   if (sample.pressure_kpa.count == 0) {
     if (wiring.pressure) {
       findings.fail("pressure " + channel.name, "no reading of the pressure monitor is valid",
-                    "its wire and its supply; compare `valid_v` or `valid_ma` with what it delivers");
+                    "check its wire and its supply; compare `valid_v` or `valid_ma` with its signal");
     }
     return;
   }
   const std::string text = fmt::format("{} kPa at rest, noise {:.2f} kPa", fixed(sample.pressure_kpa.mean, 2),
                                        sample.pressure_kpa.deviation);
   if (std::abs(sample.pressure_kpa.mean - command_kpa) > 0.05 * span) {
-    findings.warn("pressure " + channel.name, text + fmt::format("; {:.2f} were written", command_kpa),
-                  "the monitor is off, or the line does not vent: calibrate, or look at the exhaust");
+    findings.warn("pressure " + channel.name, text + fmt::format("; {:.2f} kPa were written", command_kpa),
+                  "the monitor is wrong, or the line does not vent: calibrate, or check the exhaust");
   } else {
     findings.ok("pressure " + channel.name, text);
   }
@@ -134,7 +134,7 @@ void failed(const MotionFailure& failure, const rig::RigFile& rig, const std::st
       return findings.fail(name, failure.text, "check the sensor's display and its wire");
     case MotionFailure::Kind::beyond:
       return findings.fail(name, failure.text,
-                           "look at the finger; calibrate the sensor; compare with the limits");
+                           "inspect the finger, calibrate the sensor, and compare its range with the limits");
   }
 }
 
@@ -229,7 +229,7 @@ void examine_description(const rig::RigFile& rig, const drivers::Board& board, F
   const std::string text = fmt::format("{}; a cycle is {:.3g} ms", budget.explanation, period_s * ms_per_s);
   if (budget.exchange_s > period_s && rig.accept_over_budget) {
     findings.warn("bus budget", text,
-                  "beyond the budget, as the rig file accepts: cycles may have no exchange");
+                  "over the budget, which the rig file accepts: some cycles may have no exchange");
   } else if (budget.exchange_s > period_s) {
     findings.fail("bus budget", text,
                   fmt::format("lower rate_hz to {:.0f} or less", 0.9 / budget.exchange_s));
@@ -241,15 +241,18 @@ void examine_description(const rig::RigFile& rig, const drivers::Board& board, F
   if (rig.settings.safety.board_vents_when_silent && board.fed_by_readers()) {
     findings.warn(
         "watchdog",
-        "the board vents by itself, but only if no Modbus client sends requests: a client that only "
+        "the board vents without communication, but only if no Modbus client sends requests: a client that "
+        "only "
         "reads feeds the watchdog, too",
-        "let no other program connect to the board: ask softgripd instead, or let only writes feed "
+        "let no other program connect to the board: query softgripd instead, or let only writes feed "
         "the watchdog if the board can");
   } else if (rig.settings.safety.board_vents_when_silent) {
-    findings.ok("watchdog", "the board vents by itself when nobody talks to it");
+    findings.ok("watchdog", "the board vents if communication stops");
   } else {
     findings.warn(
-        "watchdog", fmt::format("none that vents; the rig file accepts: \"{}\"", rig.accept_no_watchdog),
+        "watchdog",
+        fmt::format("the board does not vent without communication; the rig file accepts: \"{}\"",
+                    rig.accept_no_watchdog),
         "set the board's watchdog and safe value, or keep a dump valve in the emergency-stop circuit");
   }
 }
@@ -259,11 +262,12 @@ void examine_rig(const rig::RigFile& rig, drivers::Board& board, const Clock& cl
   MotionSession session(rig, board, clock, std::move(stop));
   if (const auto connected = session.connect(); !connected) {
     failed(connected.error(), rig, "board", findings);
-    return leave_channels(rig, "the board does not answer", findings);
+    return leave_channels(rig, "the board does not respond", findings);
   }
   if (!move && may_hold_a_part(rig)) {
-    findings.ok("board", board.describe() + " answers");
-    return findings.warn("sensors", "not read: that writes the rest pressures, and a part may still be held",
+    findings.ok("board", board.describe() + " responds");
+    return findings.warn("sensors",
+                         "not read: reading writes the rest pressures, and a part may still be held",
                          "take the part out, then run it with --move");
   }
   const auto rest = session.sample(settings.look_s);
@@ -271,7 +275,7 @@ void examine_rig(const rig::RigFile& rig, drivers::Board& board, const Clock& cl
     failed(rest.error(), rig, "board", findings);
     return leave_channels(rig, "see `board`", findings);
   }
-  findings.ok("board", board.describe() + " answers");
+  findings.ok("board", board.describe() + " responds");
   judge_bus(rig, session.exchange_times().summary(), findings);
   judge_clients(board, findings);
   for (std::size_t i = 0; i < rest->size(); ++i) {
@@ -281,7 +285,7 @@ void examine_rig(const rig::RigFile& rig, drivers::Board& board, const Clock& cl
   if (move) move_all(rig, session, *rest, settings, findings);
   if (!session.leave()) {
     findings.fail("safe state", "the board did not confirm the rest pressures",
-                  "look at the fingers before you reach in; vent by hand");
+                  "inspect the fingers before you reach into the gripper; vent by hand");
   } else if (move) {
     findings.ok("safe state", "all channels at their rest pressure, confirmed by the board");
   }
@@ -306,13 +310,13 @@ void examine_gpio(const rig::RigFile& rig, Findings& findings) {
     const auto active = (*lines)->read(line.role);
     const bool stop = line.role == drivers::GpioRole::emergency_stop;
     if (!active) {
-      findings.fail(name, drivers::text_of(line) + ": cannot be read", "look at the chip and its driver");
+      findings.fail(name, drivers::text_of(line) + ": cannot be read", "check the chip and its driver");
     } else if (stop && *active) {
       findings.warn(name, drivers::text_of(line) + ": pressed",
-                    "release it; if it is released, its wire is broken");
+                    "release the emergency stop; if it is released, its wire is broken");
     } else {
       findings.ok(name, drivers::text_of(line) + (stop      ? ": released"
-                                                  : *active ? ": a part is there"
+                                                  : *active ? ": part present"
                                                             : ": no part"));
     }
   }

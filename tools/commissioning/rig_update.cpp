@@ -108,7 +108,7 @@ tl::expected<std::string, std::string> updated_rig(const std::string& text, cons
     const Node::Entry* const entry = map_of(document, results.channel, target.map);
     if (entry == nullptr || !set_points(edit, *entry, target, results)) {
       return tl::unexpected("`" + target.map + "` of channel `" + channel +
-                            "` is written in a way that cannot be changed in place");
+                            "` has a form that cannot be changed in place");
     }
   }
   std::string changed = edit.text();
@@ -125,7 +125,7 @@ tl::expected<std::string, std::string> write_rig(const rig::RigFile& rig, const 
   const auto now = read_file(rig.path, most_bytes);
   if (!now) return tl::unexpected(now.error());
   if (*now != rig.inputs.front().text) {
-    return tl::unexpected(rig.path + " has been changed meanwhile");
+    return tl::unexpected(rig.path + " was changed while the calibration ran");
   }
   const std::time_t time = std::time(nullptr);
   std::tm date{};

@@ -53,7 +53,7 @@ std::string findings(const std::string& what, const Line& line, const std::strin
   const std::string residuals =
       with_commas(line.residuals, [](double residual) { return rounded(residual, 4); });
   return fmt::format(
-      "# {}: error {} {} between the points besides the reference's own, noise of a reading {} {},\n"
+      "# {}: error {} {} between the points without that of the reference, noise of a reading {} {},\n"
       "#   residuals [{}] {}, repeat spread {}\n",
       what, rounded(line.error, 4), unit, rounded(line.noise, 4), unit, residuals, unit,
       line.repeat_spread ? rounded(*line.repeat_spread, 4) + " " + unit
@@ -75,12 +75,12 @@ std::string valve_line(const rig::RigFile& rig, std::size_t channel, const drive
 std::string dead_zone_lines(const DeadZoneResult& result, double rest_kpa) {
   const DeadZone& zone = *result.zone;
   const std::string by =
-      result.by_pressure ? "the pressure monitor" : "the finger (weaker: its own hysteresis counts)";
+      result.by_pressure ? "the pressure monitor" : "the finger (less reliable because of its hysteresis)";
   if (!zone.significant) {
-    return fmt::format("# dead zone: none to be seen up to {} kPa, by {}\n", rounded(result.highest_kpa, 3),
+    return fmt::format("# dead zone: none detected up to {} kPa, by {}\n", rounded(result.highest_kpa, 3),
                        by);
   }
-  return fmt::format("# dead zone: nothing follows from rest to a command of {} kPa ({} from rest), by {}\n",
+  return fmt::format("# dead zone: no response from rest to a command of {} kPa ({} from rest), by {}\n",
                      rounded(zone.end, 2), rounded(std::abs(zone.end - rest_kpa), 2), by);
 }
 

@@ -130,7 +130,7 @@ TEST_F(DoctorTest, AHealthyRigIsFit) {
   EXPECT_EQ(findings_.worst(), Verdict::ok) << text_of({"", "", false, true}, findings_, 100, false);
   expect("board", Verdict::ok, "answers");
   expect("sensor left", Verdict::ok, "mm");
-  expect("valve right", Verdict::ok, "the monitor shows");
+  expect("valve right", Verdict::ok, "kPa measured");
   expect("finger right", Verdict::ok, "moved");
   expect("model left", Verdict::ok, "RMS");
   expect("safe state", Verdict::ok, "confirmed");
@@ -156,8 +156,8 @@ TEST_F(DoctorTest, ABoardThatIsAwayIsAllThatIsSaid) {
   examine_rig(rig_, *board_, time_.clock, time_.stop(), true, {}, findings_);
   expect("board", Verdict::fail, "the simulated bus is down");
   EXPECT_EQ(findings_.count(Verdict::fail), 1U);
-  expect_not_judged("sensor left", "the board does not answer");
-  expect_not_judged("sensor right", "the board does not answer");
+  expect_not_judged("sensor left", "the board does not respond");
+  expect_not_judged("sensor right", "the board does not respond");
 }
 
 TEST_F(DoctorTest, ABoardThatFallsSilentOnTheWay) {
@@ -199,7 +199,7 @@ TEST_F(DoctorTest, AWatchdogThatReadersFeedIsWarnedOfAndOtherClientsAreFound) {
   again(true, 2);
   expect("clients", Verdict::warn, "the board counts 2 clients");
   again(false, 2);
-  expect("watchdog", Verdict::ok, "vents by itself");
+  expect("watchdog", Verdict::ok, "vents if communication stops");
   expect("clients", Verdict::ok, "the board counts 2");
 }
 
@@ -278,10 +278,10 @@ TEST_F(DoctorTest, AMonitorWithoutAValidReadingIsNamedAndTheFingerJudgedAlone) {
 TEST_F(DoctorTest, ASensorThatIsStuckShowsItselfWhenTheFingerMoves) {
   sensor_fault(SensorFault::Kind::stuck);
   examine(false);
-  expect("sensor left", Verdict::warn, "all the same");
+  expect("sensor left", Verdict::warn, "no variation");
   findings_ = {};
   examine(true);
-  expect("valve left", Verdict::ok, "the monitor shows");
+  expect("valve left", Verdict::ok, "kPa measured");
   expect("finger left", Verdict::fail, "moved 0.00 mm");
   EXPECT_NE(finding("finger left").advice.find("the pressure is there"), std::string::npos);
 }
@@ -289,7 +289,7 @@ TEST_F(DoctorTest, ASensorThatIsStuckShowsItselfWhenTheFingerMoves) {
 TEST_F(DoctorTest, AValveThatDoesNotFollow) {
   line_fault(LineFault::Kind::blocked);
   examine(true);
-  expect("valve left", Verdict::fail, "15.00 kPa were asked for");
+  expect("valve left", Verdict::fail, "15.00 kPa commanded");
   expect_not_judged("finger left", "see `valve left`");
   expect_not_judged("model left", "see `valve left`");
   EXPECT_EQ(findings_.count(Verdict::fail), 2U) << "of both fingers: the lines are blocked for all";
@@ -299,7 +299,7 @@ TEST_F(DoctorTest, AValveThatDoesNotFollow) {
 TEST_F(DoctorTest, ALineThatLeaks) {
   line_fault(LineFault::Kind::leaking, 0.4);
   examine(true);
-  expect("valve left", Verdict::fail, "the monitor shows 9");
+  expect("valve left", Verdict::fail, "commanded, 9");
 }
 
 TEST_F(DoctorTest, AnOutputThatCannotBeWritten) {
@@ -508,7 +508,7 @@ TEST(Findings, SimulatedIsPartOfTheVerdict) {
   findings.ok("board", "answers");
   const Examination simulated{"x", "rig.yaml", false, false, true};
   EXPECT_EQ(text_of(simulated, findings, 100, false),
-            "rig x (rig.yaml), SIMULATED: no softgripd runs; looked at, not moved\n"
+            "rig x (rig.yaml), SIMULATED: softgripd not running; checked without motion\n"
             " ok   board  answers\n"
             "fit to run. SIMULATED: no board, valve, finger or sensor was examined\n");
   EXPECT_TRUE(json_of(simulated, findings)["simulated"]);
@@ -519,7 +519,7 @@ TEST(Findings, TheTextNamesWhatToDoUnderWhatIsWrong) {
   findings.ok("kernel", "6.1, PREEMPT_RT");
   findings.fail("board", "does not answer", "check power and cable");
   EXPECT_EQ(text_of({"bench", "rig.yaml", false, false}, findings, 80, false),
-            "rig bench (rig.yaml): no softgripd runs; looked at, not moved\n"
+            "rig bench (rig.yaml): softgripd not running; checked without motion\n"
             " ok   kernel  6.1, PREEMPT_RT\n"
             " FAIL board   does not answer\n"
             "              -> check power and cable\n"

@@ -155,7 +155,7 @@ TEST(DraftFacts, SayWhatIsWrongWithAnAnswer) {
   RigDraft draft;
   EXPECT_NE(take(draft, "board", "adam-6042").find("did you mean adam-6024?"), std::string::npos)
       << take(draft, "board", "adam-6042");
-  EXPECT_NE(take(draft, "board", map_of("waveshare-ao8")).find("name the other module"), std::string::npos);
+  EXPECT_NE(take(draft, "board", map_of("waveshare-ao8")).find("add a module"), std::string::npos);
   EXPECT_EQ(take(draft, "board", map_of("adam-6024")), "");
   EXPECT_NE(take(draft, "address", "localhost").find("127.0.0.1"), std::string::npos);
   EXPECT_NE(take(draft, "address", "10.0.0.1:99999"), "");
