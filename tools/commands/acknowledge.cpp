@@ -1,4 +1,4 @@
-// softgrip acknowledge: takes note of a latched fault.
+// softgrip acknowledge: resets latched faults.
 
 #include <CLI/CLI.hpp>
 #include <cstdio>

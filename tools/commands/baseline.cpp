@@ -1,4 +1,4 @@
-// softgrip baseline: what a healthy finger does, kept for the day on which it does not.
+// softgrip baseline: records a healthy finger as the reference for later comparisons.
 
 #include <CLI/CLI.hpp>
 #include <cmath>
@@ -38,7 +38,7 @@ struct BaselineOptions {
   std::vector<std::string> data;
   std::vector<std::string> check;
   std::string rig;
-  std::string rig_channel;  ///< "": that of --channel
+  std::string rig_channel;  ///< channel of the rig; "": that of --channel
   std::vector<std::string> experiments = usual_commissioning();
   double rest_s = CommissioningOptions{}.rest_s;
   std::string gauge;
@@ -51,11 +51,11 @@ struct BaselineOptions {
   bool json = false;
 };
 
-/// Logs of a healthy finger: the first run, and a second one where there is one.
+/// Logs of a healthy finger: the first run, and the second run if there is one.
 struct Runs {
   std::vector<sysid::Log> healthy, again;
   BaselineContents contents;
-  Json rig;  ///< where they were played; null: they were recorded before
+  Json rig;  ///< the rig that played them; null: recorded before
 };
 
 tl::expected<model::Model, ExitCode> model_of(const BaselineOptions& options,
@@ -81,7 +81,7 @@ tl::expected<model::Model, ExitCode> model_of(const BaselineOptions& options,
   return identified->model;
 }
 
-/// Root mean square of what a model leaves of all readings of some logs [mm].
+/// Returns the RMS error of a model over all readings of some logs [mm].
 double left_mm(const BaselineOptions& options, const model::Model& model,
                const std::vector<sysid::Log>& logs) {
   const sysid::Validation validation = sysid::validate_logs(model, logs, options.logs.record_options());
@@ -94,7 +94,7 @@ double left_mm(const BaselineOptions& options, const model::Model& model,
   return count > 0 ? std::sqrt(squares / count) : 0;
 }
 
-/// What a second run of the healthy finger says; null: there is none.
+/// Compares a second run of the healthy finger with the first. Returns null if there is no second run.
 tl::expected<Json, ExitCode> checked(const BaselineOptions& options, const Runs& runs,
                                      const model::Model& model, bool& holds) {
   if (runs.again.empty()) return Json(nullptr);
@@ -113,7 +113,7 @@ tl::expected<Json, ExitCode> checked(const BaselineOptions& options, const Runs&
                 {"second_run", left_mm(options, model, runs.again)}}}};
 }
 
-/// "The second run: ...", and by how much the model holds.
+/// Returns a text such as "The second run: ..." with the RMS errors of the model.
 std::string text_of_check(const Json& check) {
   if (check.is_null())
     return "No second run was given (--check): whether the finger repeats itself is not known.";
@@ -145,7 +145,7 @@ tl::expected<Runs, ExitCode> recorded(const BaselineOptions& options) {
   return runs;
 }
 
-/// One channel's log of each experiment, as it goes into the folder.
+/// The log of one channel for each experiment, for the baseline folder.
 std::vector<BaselineFile> files_of_played(const std::vector<sysid::Log>& logs, const std::string& rig) {
   std::vector<BaselineFile> files;
   files.reserve(logs.size());
@@ -219,7 +219,7 @@ ExitCode keep(const BaselineOptions& options, Runs runs, const std::vector<std::
   return holds ? ExitCode::done : ExitCode::not_acceptable;
 }
 
-/// A baseline that is there: its files, and its second run against its first once more.
+/// Checks an existing baseline: its files, and the comparison of its second run with its first.
 ExitCode checked_again(BaselineOptions options) {
   const std::string folder = options.check.front();
   const auto baseline = read_baseline(folder);
@@ -260,7 +260,7 @@ ExitCode run(const BaselineOptions& options, const std::vector<std::string>& cal
   return keep(options, std::move(*runs), call);
 }
 
-/// What belongs to a rig that is moved.
+/// Adds the options that apply to a rig file.
 void add_rig_options(CLI::App& command, BaselineOptions& options) {
   CLI::Option* const data = command.get_option("--data");
   CLI::Option* const rig =

@@ -26,7 +26,7 @@ std::string file_of(const sysid::Log& log) {
   return is_folder(log.path) ? (fs::path(log.path) / "run.csv").string() : log.path;
 }
 
-/// Writes files one by one and keeps what baseline.json says of them, up to the first failure.
+/// Writes files one by one and collects their entries for baseline.json, until the first failure.
 class FolderWriter {
  public:
   explicit FolderWriter(std::string folder) : folder_(std::move(folder)) {}

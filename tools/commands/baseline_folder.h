@@ -1,6 +1,7 @@
 #pragma once
-// What `softgrip baseline` leaves and `softgrip diagnose --baseline` reads: healthy_1.csv ..., second_1.csv
-// ... of the run that checked them, gauge.csv, model.yaml, and baseline.json with where they came from.
+// The folder that `softgrip baseline` writes and `softgrip diagnose --baseline` reads. It contains
+// healthy_1.csv ..., second_1.csv ... of the second run, gauge.csv, model.yaml, and baseline.json with their
+// origin.
 
 #include <optional>
 #include <string>
@@ -16,14 +17,14 @@ namespace softgrip::tools {
 
 struct Baseline {
   std::vector<std::string> logs;    ///< paths inside the folder, in order
-  std::vector<std::string> second;  ///< of the second run; empty: there was none
+  std::vector<std::string> second;  ///< logs of the second run; empty: there was none
   std::string model;                ///< path of model.yaml
   std::string gauge;                ///< path of gauge.csv; empty: the sensor was not checked
 };
 
-/// A file that goes into the folder.
+/// A file for the folder.
 struct BaselineFile {
-  std::string source;  ///< where it came from, for people
+  std::string source;  ///< origin of the file, as text
   std::string bytes;
 };
 
@@ -34,24 +35,24 @@ struct BaselineContents {
   model::Model model;
 };
 
-/// The files of logs, byte by byte.
+/// Reads the files of logs unchanged.
 [[nodiscard]] tl::expected<std::vector<BaselineFile>, std::string> files_of(
     const std::vector<sysid::Log>& logs);
-/// Any one file.
+/// Reads any one file unchanged.
 [[nodiscard]] tl::expected<BaselineFile, std::string> baseline_file(const std::string& path);
 
-/// Names of the files that write_baseline() writes or replaces; `*` is a number.
+/// Returns the names of the files that write_baseline() writes or replaces. `*` stands for a number.
 [[nodiscard]] std::vector<std::string> baseline_files();
 
-/// Writes the folder. One that was not there appears whole or not at all, and Ctrl-C waits for it. Returns
-/// the text of baseline.json.
-/// @param about  what baseline.json says besides.
+/// Writes the folder. A new folder appears completely or not at all, and Ctrl-C waits for it. Returns the
+/// text of baseline.json.
+/// @param about  further members of baseline.json.
 [[nodiscard]] tl::expected<std::string, std::string> write_baseline(const std::string& folder,
                                                                     const BaselineContents& contents,
                                                                     nlohmann::ordered_json about);
 
-/// Reads baseline.json and compares the hashes of what it names; a folder that is none, or in which something
-/// was changed, is refused with a sentence.
+/// Reads baseline.json and compares the hashes of the files that it names. The error is a sentence if the
+/// folder is not a baseline or if a file was changed.
 [[nodiscard]] tl::expected<Baseline, std::string> read_baseline(const std::string& folder);
 
 }  // namespace softgrip::tools

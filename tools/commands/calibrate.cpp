@@ -1,4 +1,4 @@
-// softgrip calibrate: sensor and valve against gauge and manometer, two points each.
+// softgrip calibrate: calibrates sensor and valve at two points against a gauge and a manometer.
 
 #include <CLI/CLI.hpp>
 
@@ -76,7 +76,7 @@ std::string names_of(const rig::RigFile& rig) {
   return with_commas(rig.settings.channels, &control::ChannelSettings::name);
 }
 
-/// Pressures of the two places: as given, or those of set_places().
+/// Sets the pressures of the two positions to the given values, or with set_places().
 std::optional<ExitCode> set_pressures(const CalibrateOptions& options, const control::LimitSettings& limits,
                                       calibrate::Settings& settings) {
   calibrate::set_places(settings, limits);
@@ -91,7 +91,7 @@ std::optional<ExitCode> set_pressures(const CalibrateOptions& options, const con
               "--at-kpa LOW HIGH must rise and stay within the limits of the rig file");
 }
 
-/// Each answer serves for one visit; two answers serve for all visits.
+/// Each answer applies to one visit. Two answers apply to all visits.
 std::vector<std::string> spread(const std::vector<std::string>& answers, std::size_t repeats) {
   std::vector<std::string> all;
   if (answers.size() != 2) return answers;
@@ -99,7 +99,7 @@ std::vector<std::string> spread(const std::vector<std::string>& answers, std::si
   return all;
 }
 
-/// Whether the board is free to be taken.
+/// Returns an exit code if a daemon uses the board.
 std::optional<ExitCode> refuse_beside_daemon(const CalibrateOptions& options, const rig::RigFile& rig) {
   if (!daemon_runs(options.socket.empty() ? rig.socket.path : options.socket)) return std::nullopt;
   return fail(ExitCode::state_refused, stop_the_daemon);
@@ -138,7 +138,7 @@ calibrate::Expected<calibrate::Results> measure(const rig::RigFile& rig, const C
   return results;
 }
 
-/// Yes or no, asked until it is one of them.
+/// Repeats the question until the answer is yes or no.
 bool confirmed(calibrate::TerminalOperator& terminal, const Clock& clock, const StopRequest& stop,
                const std::string& question) {
   constexpr Nanoseconds look_ns = 50'000'000;
@@ -155,7 +155,7 @@ bool confirmed(calibrate::TerminalOperator& terminal, const Clock& clock, const 
   }
 }
 
-/// What is odd about the results; true if they may be written all the same.
+/// Prints the warnings about the results. Returns true if the results may be written.
 bool accepted(const rig::RigFile& rig, const calibrate::Results& results, const CalibrateOptions& options,
               calibrate::TerminalOperator& terminal, const Clock& clock, const StopRequest& stop) {
   const std::vector<std::string> odd = calibrate::doubts(rig, results);
@@ -188,7 +188,7 @@ ExitCode write_results(const rig::RigFile& rig, const calibrate::Results& result
   return ExitCode::done;
 }
 
-/// What can be said before anything moves: exit code, or the settings.
+/// Checks the options before any motion. Returns the settings or an exit code.
 tl::expected<calibrate::Settings, ExitCode> prepare(CalibrateOptions& options, const rig::RigFile& rig) {
   const auto channel = channel_of(rig, options.channel);
   if (!channel) {
@@ -230,7 +230,7 @@ tl::expected<calibrate::Settings, ExitCode> prepare(CalibrateOptions& options, c
   return settings;
 }
 
-/// Connected, measured, left at the rest pressures.
+/// Connects, measures, and leaves the rest pressures.
 ExitCode carry_out(const rig::RigFile& rig, const CalibrateOptions& options,
                    const calibrate::Settings& settings) {
   const auto lock = daemon::BoardLock::take(rig);

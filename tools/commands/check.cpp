@@ -1,4 +1,4 @@
-// softgrip check: what is wrong with configuration files, all of it at once.
+// softgrip check: reports all errors of configuration files at once.
 
 #include "rig/check.h"
 

@@ -1,4 +1,4 @@
-// softgrip completion: a script by which a shell completes softgrip's commands and options.
+// softgrip completion: prints a script for a shell that completes softgrip's commands and options.
 
 #include "tools/command_line/completion.h"
 

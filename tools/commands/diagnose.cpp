@@ -1,4 +1,4 @@
-// softgrip diagnose: what a model gets wrong on measured data, the cause, the extension, the gain.
+// softgrip diagnose: finds the error of a model on measured data, its cause, the extension and its benefit.
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -32,7 +32,7 @@
 namespace softgrip::tools {
 namespace {
 
-/// Causes with more numbers than this are printed without those that the logs do not determine.
+/// For causes with more parameters than this, those that the logs do not determine are not printed.
 constexpr std::size_t most_undetermined = 5;
 
 struct DiagnoseOptions {
@@ -53,7 +53,7 @@ struct DiagnoseOptions {
   bool json = false;
 };
 
-/// Diagnoses with its progress shown.
+/// Diagnoses the logs and shows the progress.
 tl::expected<sysid::Diagnosis, std::string> diagnosed(const std::vector<sysid::Log>& logs,
                                                       const model::Model& model,
                                                       sysid::DiagnosisOptions options) {
@@ -64,7 +64,7 @@ tl::expected<sysid::Diagnosis, std::string> diagnosed(const std::vector<sysid::L
   return diagnosis;
 }
 
-/// The same for what follows.
+/// Computes the next experiment and the closed loop, and shows the progress.
 Consequences followed(const sysid::Diagnosis& diagnosis, const ConsequenceOptions& options) {
   ProgressLine line;
   line.show()("plays experiments and the closed loop in simulation");
@@ -78,7 +78,7 @@ void print_cause(const sysid::NamedCause& named) {
               fixed(named.heldout_gain_percent.upper, 1).c_str());
   std::size_t passed_over = 0;
   for (const sysid::CauseParameter& p : named.parameters) {
-    // Of many, those of which the logs say something.
+    // If there are many parameters, print only those that the logs determine.
     if (named.parameters.size() > most_undetermined && !p.determined()) {
       ++passed_over;
       continue;
@@ -143,7 +143,7 @@ ConsequenceOptions consequence_options(const DiagnoseOptions& options, const std
   return wanted;
 }
 
-/// What the report says of the next experiment.
+/// Returns the next experiment for the report.
 std::optional<sysid::ProposedExperiment> proposed_experiment(const Consequences& consequences) {
   const sysid::NextExperiment& next = consequences.experiment;
   if (!next.best) return std::nullopt;
@@ -151,7 +151,7 @@ std::optional<sysid::ProposedExperiment> proposed_experiment(const Consequences&
                                    next.best->minutes, next.best->waveform.about};
 }
 
-/// The closed loop as the report draws it; models without a feedforward have no curve of their own.
+/// Returns the curves of the closed loop for the report. A model without feedforward has no curve.
 std::optional<sysid::ClosedLoopCurves> closed_loop_curves(const Consequences& consequences) {
   if (!consequences.closed_loop) return std::nullopt;
   const ClosedLoopGain& gain = *consequences.closed_loop;
@@ -168,7 +168,7 @@ std::optional<sysid::ClosedLoopCurves> closed_loop_curves(const Consequences& co
   return curves;
 }
 
-/// What changed between the healthy logs and the others.
+/// Reports the change between the healthy logs and the other logs.
 ExitCode changed(const DiagnoseOptions& options, const model::Model& model,
                  const std::vector<sysid::Log>& logs, const std::vector<std::string>& call) {
   const auto healthy = read_logs(options.healthy, options.logs, unit_of(model));

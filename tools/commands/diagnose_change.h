@@ -1,5 +1,5 @@
 #pragma once
-// softgrip diagnose --healthy: what became of a finger.
+// softgrip diagnose --healthy: reports the change of a finger since its healthy logs.
 
 #include <string>
 #include <vector>
@@ -15,13 +15,13 @@ struct ChangeQuestion {
   model::Model given;
   sysid::ChangeOptions options;
   std::string out;
-  std::string figures;  ///< folder for the figures as files; "": none
+  std::string figures;  ///< folder for the figures as files; "": no figures
   std::vector<std::string> call;
   bool json = false;
   bool explain = false;  ///< prints the comparison behind each name
 };
 
-/// Diagnoses, writes diagnosis.json and report.html and prints what came of it.
+/// Diagnoses the change, writes diagnosis.json and report.html, and prints the result.
 [[nodiscard]] ExitCode run_change(ChangeQuestion question);
 
 }  // namespace softgrip::tools

@@ -1,4 +1,4 @@
-// softgrip doctor: is this rig fit to run today?
+// softgrip doctor: checks that the rig is ready to run.
 
 #include <unistd.h>
 
@@ -29,7 +29,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Where the system's service manager keeps what it starts.
+/// The folder in which systemd keeps the enabled units.
 constexpr const char* enabled_units = "/etc/systemd/system/multi-user.target.wants";
 constexpr const char* daemon_holds_the_board =
     "softgripd runs and holds the board: stop it, or leave out --move";
@@ -45,8 +45,8 @@ bool is_simulated(const rig::RigFile& rig) {
   return std::holds_alternative<simulation::SimulatedBoardSettings>(rig.board);
 }
 
-/// Asks the daemon, and looks at what stands in front of it; nothing is left to be looked at but the disk and
-/// the clock. Returns its status, or null.
+/// Examines the rig through the daemon, and the programs that connect clients to it. Only the disk and the
+/// clock remain to be examined then. Returns the daemon's status, or null.
 Json ask_running(DaemonClient& client, const std::string& rig, doctor::Findings& findings) {
   const auto status = client.ask({{"command", "status"}});
   const auto statistics = status ? client.ask({{"command", "statistics"}}) : status;
@@ -61,7 +61,7 @@ Json ask_running(DaemonClient& client, const std::string& rig, doctor::Findings&
   return *status;
 }
 
-/// What the recordings of the working days said last; nothing where nobody asked them.
+/// Reports the last result of `softgrip health`. Adds no finding if there is none.
 void examine_health(const rig::RigFile& rig, doctor::Findings& findings) {
   for (const HealthLine& line : health_lines(last_health(rig.recorder.directory))) {
     if (line.good)
@@ -107,7 +107,8 @@ ExitCode conclude(const DoctorOptions& options, const doctor::Examination& exami
   return findings.worst() == doctor::Verdict::fail ? ExitCode::not_acceptable : ExitCode::done;
 }
 
-/// Which rig it is about is nobody's guess: a file that happens to lie here may be another rig's, or none's.
+/// Requests the name of the rig. A rig file in the present folder may belong to another rig, so it is not
+/// used.
 ExitCode ask_for_a_name(const std::string& socket) {
   const std::string near = configuration_path("rig.yaml");
   std::string hint;
@@ -122,7 +123,7 @@ ExitCode ask_for_a_name(const std::string& socket) {
                                    hint);
 }
 
-/// Without a rig file: what runs here, if anything does.
+/// Examines the running daemon if no rig file is given.
 ExitCode run_unnamed(const DoctorOptions& options) {
   const std::string socket = options.socket.empty() ? default_socket_path() : options.socket;
   auto client = DaemonClient::connect(socket);

@@ -1,4 +1,4 @@
-// softgrip events: what the daemon had to tell.
+// softgrip events: prints the events of the daemon.
 
 #include <CLI/CLI.hpp>
 #include <chrono>

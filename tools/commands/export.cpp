@@ -1,4 +1,4 @@
-// softgrip export: recordings, logs and series for other programs.
+// softgrip export: converts recordings, logs and series for other programs.
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -38,7 +38,7 @@ const std::vector<std::string>& formats() {
   return names;
 }
 
-/// What was asked for, or what the file's ending says; empty: neither.
+/// Returns the requested format, or that of the file's extension, or "" if neither is known.
 std::string format_of(const ExportOptions& options) {
   if (!options.format.empty()) return options.format;
   std::string ending = std::filesystem::path(options.out).extension().string();
@@ -97,7 +97,7 @@ bool is_yaml(const std::string& path) {
   return ending == ".yaml" || ending == ".yml";
 }
 
-/// What was asked for and makes no sense.
+/// Returns an exit code if the options contradict each other.
 std::optional<ExitCode> refused(const ExportOptions& options, const std::string& format) {
   if (const auto code = refuse_overwriting({options.out}, {options.input})) return code;
   if (format == "c") return std::nullopt;

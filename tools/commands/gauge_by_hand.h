@@ -1,5 +1,5 @@
 #pragma once
-// The sensor of a real rig against a gauge, with somebody at the terminal who holds the target.
+// Checks the sensor of a real rig against a gauge. A person at the terminal holds the target.
 
 #include <string>
 
@@ -7,7 +7,7 @@
 
 namespace softgrip::tools {
 
-/// Reads the sensor through the board. The outputs stay at their lowest; nothing moves by itself.
+/// Reads the sensor through the board. The outputs stay at their lowest values, and the rig moves nothing.
 [[nodiscard]] GaugeTaker gauge_by_hand(ExperimentRig rig, Consent consent);
 
 }  // namespace softgrip::tools

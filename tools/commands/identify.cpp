@@ -1,4 +1,4 @@
-// softgrip identify: a model's parameters from logs.
+// softgrip identify: estimates the parameters of a model from logs.
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -54,7 +54,7 @@ sysid::ShowProgress progress_on(ProgressLine& line, model::OutputUnit output_uni
 
 constexpr const char* automatic = "auto";
 
-/// The structure that is to be looked for, if none was given.
+/// Returns the structures to choose from if no structure was given.
 std::optional<sysid::StructureQuestion> question_of(const IdentifyOptions& options) {
   using sysid::HysteresisForm, sysid::StructureQuestion;
   if (options.structure == name_of(HysteresisForm::bouc_wen)) return StructureQuestion::bouc_wen;
@@ -63,7 +63,7 @@ std::optional<sysid::StructureQuestion> question_of(const IdentifyOptions& optio
   return std::nullopt;
 }
 
-/// Fits with its progress shown.
+/// Fits the model and shows the progress.
 tl::expected<sysid::IdentifiedLogs, std::string> identified(sysid::IdentifyQuestion question) {
   ProgressLine line;
   question.options.progress = progress_on(line, question.logs.front().output_unit);
@@ -212,7 +212,7 @@ void add_fit_options(CLI::App& command, sysid::IdentifyOptions& fit) {
   command.add_option("--threads", fit.threads, "0: as many as there are cores")->capture_default_str();
 }
 
-/// Chooses among structures of its own: what belongs to the fit of a given one is refused beside it.
+/// Adds the option that chooses among structures. It excludes the options of a fit with a given structure.
 void add_structure_option(CLI::App& command, IdentifyOptions& options) {
   using sysid::HysteresisForm;
   const std::vector<std::string> names{automatic, std::string(name_of(HysteresisForm::bouc_wen)),

@@ -1,4 +1,4 @@
-// softgrip import: other people's files made into logs.
+// softgrip import: converts external files to logs.
 
 #include <CLI/CLI.hpp>
 #include <memory>

@@ -1,4 +1,4 @@
-// softgrip init: a first rig file, from questions or options.
+// softgrip init: creates a rig file from questions or options.
 
 #include <poll.h>
 #include <unistd.h>
@@ -27,7 +27,7 @@ struct InitOptions {
   std::string name;
   double rate_hz = 0;
   bool service = false;
-  std::map<std::string, std::vector<std::string>> facts;  ///< words by key
+  std::map<std::string, std::vector<std::string>> facts;  ///< values by key
 };
 
 std::string joined(const std::vector<std::string>& words) {
@@ -36,7 +36,7 @@ std::string joined(const std::vector<std::string>& words) {
   return text;
 }
 
-/// A line; nothing when the input has ended.
+/// Waits for a line. Returns nullopt at the end of the input.
 std::optional<std::string> wait_for_line(calibrate::TerminalOperator& person) {
   for (;;) {
     if (auto line = person.answer()) return line;
@@ -46,7 +46,7 @@ std::optional<std::string> wait_for_line(calibrate::TerminalOperator& person) {
   }
 }
 
-/// Asks until the answer is taken; false when the input has ended.
+/// Repeats the question until the answer is valid. Returns false at the end of the input.
 bool ask(const Fact& fact, const Fact::Question& question, RigDraft& draft,
          calibrate::TerminalOperator& person) {
   for (;;) {
@@ -60,7 +60,8 @@ bool ask(const Fact& fact, const Fact::Question& question, RigDraft& draft,
   }
 }
 
-/// From the option, an answer, or what is usual; an exit code where none of them will do.
+/// Takes the fact from the option, an answer or the default. Returns an exit code if none of them is
+/// available.
 std::optional<ExitCode> settle(const Fact& fact, const InitOptions& options, RigDraft& draft,
                                calibrate::TerminalOperator& person) {
   const auto given = options.facts.find(fact.key);

@@ -1,5 +1,5 @@
-// softgrip investigate: diagnose, play the experiment that tells more, diagnose again; then extend, retune,
-// measure.
+// softgrip investigate: diagnoses, plays the experiment that separates the causes and diagnoses again. Then
+// it extends the model, retunes the gains and measures the result.
 
 #include <unistd.h>
 
@@ -42,17 +42,17 @@ struct InvestigateOptions {
   std::string gauge;
   std::string out;
   LogInput logs;
-  std::string rig_channel;  ///< "": that of the logs
+  std::string rig_channel;  ///< channel of the rig; "": that of the logs
   sysid::DiagnosisOptions diagnosis;
   double budget_minutes = 30;
-  double pressure_max_kpa = 0;  ///< of --rig-command; 0: the largest of the logs
+  double pressure_max_kpa = 0;  ///< with --rig-command; 0: the largest of the logs
   double slew_kpa_per_s = 300;
   bool yes = false;
   bool no_closed_loop = false;
   bool json = false;
 };
 
-/// What a campaign tells about the rig.
+/// Properties of the rig that are estimated from the logs.
 struct CampaignScales {
   double largest_kpa = 0;
   double gain_mm_per_kpa = 0;
@@ -73,14 +73,14 @@ CampaignScales scales_of(const std::vector<sysid::Log>& logs) {
   return scales;
 }
 
-/// Where experiments are played, and within which limits.
+/// The rig on which experiments are played, and its limits.
 struct Playground {
   Player play;
-  GaugeTaker take_gauge;  ///< empty: nobody can put the sensor's target anywhere
+  GaugeTaker take_gauge;  ///< empty: no person or program can move the sensor's target
   sysid::RigLimits limits;
   std::string name;
   std::string channel;
-  std::optional<ExperimentRig> rig;  ///< of a rig file: the closed loop can be measured on it
+  std::optional<ExperimentRig> rig;  ///< from a rig file: the closed loop can be measured on it
 };
 
 tl::expected<Playground, ExitCode> playground_of(const InvestigateOptions& options,
@@ -111,7 +111,8 @@ tl::expected<Playground, ExitCode> playground_of(const InvestigateOptions& optio
   return ground;
 }
 
-/// The extension's worth on the rig itself. A rig that cannot be measured is said, and no failure.
+/// Measures the benefit of the extension on the rig itself. If this is impossible, it prints the reason and
+/// returns nullopt. This is no failure of the command.
 std::optional<RigTracking> on_rig(const InvestigateOptions& options, const Playground& ground,
                                   const Investigation& investigation,
                                   const std::optional<ClosedLoopGain>& gain) {
@@ -160,11 +161,11 @@ ExitCode exit_code_of(const Investigation& investigation) {
   return ExitCode::failed;
 }
 
-/// Extends, retunes, measures, and leaves the result.
+/// Extends the model, retunes, measures, and writes the results.
 ExitCode conclude(const InvestigateOptions& options, const model::Model& given, const Playground& ground,
                   const Investigation& investigation) {
   ConsequenceOptions wanted;
-  wanted.experiment.most_minutes = 0;  // whatever is still open was judged in the last step
+  wanted.experiment.most_minutes = 0;  // causes that are still open were judged in the last step
   wanted.closed_loop = !options.no_closed_loop && investigation.end != InvestigationEnd::stopped;
   wanted.seed = options.diagnosis.seed;
   const Consequences consequences = consequences_of(investigation.last, wanted);

@@ -1,4 +1,4 @@
-// softgrip plot: a recording as a picture.
+// softgrip plot: draws a recording.
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
@@ -69,7 +69,7 @@ void report(const PlotOptions& options, const std::vector<Recording>& recordings
 }
 
 ExitCode run(const PlotOptions& options) {
-  // A stream has no ending: SVG.
+  // A stream has no file extension, so its format is SVG.
   const auto format = is_stream(options.out) ? PictureFormat::svg : picture_format_of(options.out);
   if (!format)
     return fail(ExitCode::usage, "plot writes " + std::string(picture_formats()) +

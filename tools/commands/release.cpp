@@ -1,4 +1,4 @@
-// softgrip release: the part is let go, as the sequence says.
+// softgrip release: releases the part as the sequence defines.
 
 #include "tools/client/daemon_command.h"
 #include "tools/commands/commands.h"

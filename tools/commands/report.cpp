@@ -1,4 +1,4 @@
-// softgrip report: what a report says, computed again.
+// softgrip report: recomputes the numbers of a report.
 
 #include <CLI/CLI.hpp>
 #include <cstdio>

@@ -1,5 +1,5 @@
 #pragma once
-// What every command that plays experiments on a rig file's rig asks before anything moves.
+// The checks of every command that plays experiments on the rig of a rig file, before any motion.
 
 #include <string>
 
@@ -10,12 +10,13 @@
 
 namespace softgrip::tools {
 
-/// Asks on the terminal; with `yes` everything is allowed.
+/// Requests consent on the terminal. With `yes`, everything is allowed.
 [[nodiscard]] Consent consent_on_terminal(bool yes);
 
-/// The rig of a file, one channel chosen ("": its only one). What stands in the way is printed: a file that
-/// cannot be read or is refused, no such channel, nobody who could be asked, a softgripd or another program
-/// on the board. A simulated rig, in process, is nobody else's.
+/// Opens the rig of a file and selects a channel ("" selects the only channel). Prints the reason and returns
+/// an exit code in these cases: the file is unreadable or invalid, the channel does not exist, no terminal is
+/// available for the consent, or softgripd or another program uses the board. A rig that is simulated in the
+/// process is always free.
 [[nodiscard]] tl::expected<ExperimentRig, ExitCode> rig_to_move(const std::string& path,
                                                                 const std::string& channel, bool yes);
 

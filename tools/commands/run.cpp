@@ -1,4 +1,4 @@
-// softgrip run: one sequence on a rig, in the foreground.
+// softgrip run: runs one sequence on a rig in the foreground.
 
 #include <CLI/CLI.hpp>
 #include <cstdio>

@@ -1,4 +1,4 @@
-// softgrip sequences: what the daemon can start, and with which parameters.
+// softgrip sequences: lists the sequences that the daemon can start, with their parameters.
 
 #include <CLI/CLI.hpp>
 #include <cstdio>

@@ -32,7 +32,7 @@ std::vector<sysid::LogSeries> series_of(const sysid::Diagnosis& diagnosis,
   for (std::size_t i = 0; i < logs.size(); ++i) {
     const sysid::Record& record = diagnosis.records[i];
     all.push_back(sysid::series_of(logs[i], record, false));
-    // A reading that was taken for an outlier was fitted by nobody, but it was not held out to judge by.
+    // Outliers were excluded from the fit, but they were not held out for validation.
     all.back().held_out.clear();
     for (const auto& [name, fit] : fits) {
       if (i < fit->point.starts.size())
@@ -61,7 +61,7 @@ tl::expected<void, std::string> write_series(const std::string& folder,
                                              const std::vector<sysid::LogSeries>& series) {
   std::map<std::string, int> seen;
   for (const sysid::LogSeries& one : series) {
-    // A log that was fitted may be given once more to be predicted.
+    // A log may be given twice: once for the fit and once for the prediction.
     const std::string plain = sysid::series_path(one.name);
     const int count = ++seen[plain];
     const std::string name =

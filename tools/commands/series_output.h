@@ -1,5 +1,6 @@
 #pragma once
-// What identify, validate and diagnose write beside their reports: the series.csv of every log, and figures.
+// The files that identify, validate and diagnose write beside their reports: series.csv of every log, and
+// figures.
 
 #include <string>
 #include <vector>
@@ -17,27 +18,27 @@ class App;
 
 namespace softgrip::tools {
 
-/// Of logs that a model predicted, with the scores of these records; `held_out`: it was fitted to none of
-/// them.
+/// Returns the series of logs that a model predicted. `records` contains their scores. `held_out`: the model
+/// was fitted to none of these logs.
 [[nodiscard]] std::vector<sysid::LogSeries> series_of(const std::vector<sysid::Log>& logs,
                                                       const std::vector<sysid::Record>& records,
                                                       const std::vector<sysid::Score>& scores,
                                                       const std::string& model, bool held_out);
 
-/// Of a diagnosis: the model as it was given, recalibrated, and extended where it is; each as fitted to all
-/// readings (what diagnosis.json says of held-out blocks was judged on others).
+/// Returns the series of a diagnosis: the given, the refitted and, if it exists, the extended model. Each was
+/// fitted to all readings. The held-out results in diagnosis.json come from other fits.
 [[nodiscard]] std::vector<sysid::LogSeries> series_of(const sysid::Diagnosis& diagnosis,
                                                       const std::vector<sysid::Log>& logs);
 
 /// Returns the files in the folders of --out and --figures that a report with these names, its series and its
-/// figures would replace: for refuse_overwriting().
+/// figures would replace. Use it with refuse_overwriting().
 [[nodiscard]] std::vector<std::string> replaced_by_report(const std::string& out, const std::string& figures,
                                                           std::vector<std::string> names);
 
-/// Adds --figures DIR to a command that writes a report; write_figures() (tools/figures) fills the folder.
+/// Adds --figures DIR to a command that writes a report. write_figures() (tools/figures) fills the folder.
 void add_figures_option(CLI::App& command, std::string& folder);
 
-/// Writes FOLDER/LOG/series.csv for each. The error is a sentence.
+/// Writes FOLDER/LOG/series.csv for each log. The error is a sentence.
 [[nodiscard]] tl::expected<void, std::string> write_series(const std::string& folder,
                                                            const std::vector<sysid::LogSeries>& series);
 

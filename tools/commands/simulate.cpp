@@ -1,4 +1,4 @@
-// softgrip simulate: a model's answer to a test signal or to the command of a log.
+// softgrip simulate: simulates a model with a test signal or the command of a log.
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
@@ -39,7 +39,7 @@ std::string signal_names() {
   return names;
 }
 
-/// The command to answer to, or an exit code.
+/// Returns the command to simulate, or an exit code.
 tl::expected<sysid::Log, ExitCode> read_input(const SimulateOptions& options) {
   if (const auto signal = model::signal_named(options.input)) {
     return sampled_signal(*signal, options.rate_hz.value_or(default_rate_hz));
@@ -59,7 +59,7 @@ tl::expected<sysid::Log, ExitCode> read_input(const SimulateOptions& options) {
   }
   if (campaign.logs.empty()) return tl::unexpected{refuse_logs(problems)};
   sysid::Log log = std::move(campaign.logs.front());
-  // What was measured on a finger would pass for the model's.
+  // Remove the measured signals, because they would be mistaken for results of the model.
   log.pressure_kpa.clear();
   log.others.clear();
   return log;

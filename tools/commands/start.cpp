@@ -1,4 +1,4 @@
-// softgrip start: lets the daemon run a sequence.
+// softgrip start: starts a sequence of the daemon.
 
 #include <poll.h>
 #include <unistd.h>
@@ -34,24 +34,24 @@ struct StartOptions {
   bool wait = false;
 };
 
-/// The newest event of the daemon, so that only later ones are followed.
+/// Returns the number of the daemon's latest event, so that only later events are shown.
 tl::expected<std::uint64_t, ClientFailure> newest_event(DaemonClient& client) {
   const auto result = client.ask({{"command", "events"}, {"since", 0}, {"limit", 1}});
   if (!result) return tl::unexpected{result.error()};
   return result->value("newest", std::uint64_t{0});
 }
 
-/// Its motion may have to be planned first.
+/// The daemon may have to plan the motion before the start.
 constexpr std::chrono::seconds longest_planning{90};
 
-/// Why a start is not followed any further: a signal, or the daemon or the standard output has failed.
+/// The reason why a start is no longer followed: a signal, or a failure of the daemon or the standard output.
 struct Break {
   int signal = 0;
   ClientFailure failure;
 };
 
-/// One start, from the request to the end of its sequence or of the wait. If the wait breaks for any reason,
-/// the start is taken back: its sequence must not continue behind a program that has ended.
+/// Follows one start from the request to the end of the sequence or of the wait. If the wait ends early for
+/// any reason, the sequence is stopped: it must not continue after the program has ended.
 class FollowedStart {
  public:
   FollowedStart(const StartOptions& options, DaemonClient& client)
@@ -72,10 +72,10 @@ class FollowedStart {
   DaemonClient& client_;
   std::string id_;
   Descriptor signals_;
-  bool pipe_ends_ = true;  ///< the program that called this one does not ignore SIGPIPE
+  bool pipe_ends_ = true;  ///< true unless the calling program ignores SIGPIPE
 };
 
-/// Waits for the descriptor to be readable, or for a signal that ends the program, and returns that; else 0.
+/// Waits until the descriptor is readable or a signal ends the program. Returns this signal, otherwise 0.
 int FollowedStart::signal_within(std::chrono::milliseconds patience, int descriptor) {
   std::array<pollfd, 2> watched{{{signals_.get(), POLLIN, 0}, {descriptor, POLLIN, 0}}};
   if (::poll(watched.data(), watched.size(), static_cast<int>(patience.count())) <= 0) return 0;
@@ -115,11 +115,10 @@ tl::expected<void, Break> FollowedStart::print(const Json& event) const {
                               {ExitCode::io, "the standard output cannot be written"}}};
 }
 
-/// Prints what happens until the sequence that `request` started has ended.
+/// Prints the events until the sequence that `request` started has ended.
 tl::expected<ExitCode, Break> FollowedStart::follow(std::uint64_t request, std::uint64_t since) {
   constexpr std::chrono::milliseconds pause{50};
-  // A closed pipe is seen where the output is flushed, and the sequence is stopped before it ends the
-  // program.
+  // A closed pipe is detected when the output is flushed. The sequence is stopped before the program ends.
   pipe_ends_ = std::signal(SIGPIPE, SIG_IGN) != SIG_IGN;
   while (true) {
     const auto line = reply(client_, {{"command", "events"}, {"since", since}, {"limit", 1000}},
@@ -139,7 +138,7 @@ tl::expected<ExitCode, Break> FollowedStart::follow(std::uint64_t request, std::
   }
 }
 
-/// Over a connection of its own: on the other one the daemon may owe a reply.
+/// Uses a separate connection, because the daemon may still owe a response on the other one.
 bool FollowedStart::stop_confirmed() {
   auto client = DaemonClient::connect(options_.daemon.socket);
   if (!client) return false;
@@ -187,7 +186,7 @@ ExitCode run(const StartOptions& options) {
   if (!arguments) return arguments.error();
   Json request{{"command", "start"}, {"sequence", options.sequence}};
   if (!arguments->empty()) request["parameters"] = json_of(*arguments);
-  // A file here goes as a text; other names are the daemon's to find.
+  // Send the text of a local file. The daemon resolves any other name.
   if (::access(options.sequence.c_str(), R_OK) == 0) {
     const auto text = read_file(options.sequence, longest_sequence);
     if (!text) return fail(ExitCode::io, text.error());

@@ -1,4 +1,4 @@
-// softgrip status: what the daemon does now.
+// softgrip status: shows the state of the daemon.
 
 #include <unistd.h>
 
@@ -16,7 +16,7 @@
 namespace softgrip::tools {
 namespace {
 
-/// Of the rig that runs, as far as its file can be read.
+/// Returns the last health result of the running rig, or null if its rig file cannot be read.
 nlohmann::ordered_json health_of(const nlohmann::ordered_json& status) {
   const auto file = status.find("rig_file");
   if (file == status.end() || !file->is_string()) return nullptr;
@@ -39,7 +39,7 @@ ExitCode run(const DaemonOptions& options) {
   const ViewStyle style{on_terminal() ? terminal_columns() : 100, wants_colour(),
                         on_terminal() && has_unicode()};
   for (const std::string& line : view_of(*status, style)) std::printf("%s\n", line.c_str());
-  // The state is shown even where the recordings are on a network mount that does not respond.
+  // Show the state even if the recordings are on a network mount that does not respond.
   std::fflush(stdout);
   for (const HealthLine& line : health_lines(health_of(*status)))
     std::printf("health       %s\n", line.text.c_str());

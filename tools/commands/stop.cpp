@@ -1,4 +1,4 @@
-// softgrip stop: ends the running sequence.
+// softgrip stop: stops the running sequence.
 
 #include "tools/client/daemon_command.h"
 #include "tools/commands/commands.h"

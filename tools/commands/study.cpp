@@ -1,4 +1,4 @@
-// softgrip study: the project's studies, each by one command.
+// softgrip study: reproduces the studies of the project, one per command.
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
@@ -44,7 +44,7 @@ ExitCode write_all(const Output& output, const std::string& json_name, const std
   return ExitCode::done;
 }
 
-/// Runs a study with its progress shown and writes what came of it.
+/// Runs a study, shows the progress and writes the results.
 template <class Options, class Result>
 ExitCode run_study(const Output& output, Options options, Result (*study)(const Options&),
                    const std::string& json_name, std::string (*json)(const Result&),

@@ -1,4 +1,4 @@
-// softgrip validate: what a model predicts for logs that it was not fitted to.
+// softgrip validate: compares a model's prediction with logs to which it was not fitted.
 
 #include <CLI/CLI.hpp>
 #include <algorithm>

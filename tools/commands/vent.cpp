@@ -1,4 +1,4 @@
-// softgrip vent: the pressure goes down, whatever runs.
+// softgrip vent: stops every sequence and vents all channels.
 
 #include "tools/client/daemon_command.h"
 #include "tools/commands/commands.h"

@@ -1,4 +1,4 @@
-// softgrip watch: the daemon's state, live.
+// softgrip watch: shows the live state of the daemon.
 
 #include <poll.h>
 #include <unistd.h>
@@ -47,13 +47,13 @@ void print(const Json& status, bool json) {
   std::fflush(stdout);
 }
 
-/// A signal is the usual end, but it interrupts a number of updates that was asked for.
+/// A signal is the normal end. It is an interruption if the user requested a number of updates.
 ExitCode ended_by(int signal, std::uint64_t count) {
   if (count > 0) note_ending_signal(signal);
   return ExitCode::done;
 }
 
-/// A line per update, until a signal ends it.
+/// Prints a line per update until a signal ends the program.
 ExitCode print_updates(DaemonClient& client, const WatchOptions& options) {
   const Descriptor signals = take_ending_signals();
   for (std::uint64_t lines = 0; options.count == 0 || lines < options.count;) {
@@ -65,7 +65,7 @@ ExitCode print_updates(DaemonClient& client, const WatchOptions& options) {
       if (signal != 0 && signal != SIGTSTP && signal != SIGWINCH) return ended_by(signal, options.count);
     }
     if (watched[0].revents == 0) continue;
-    // Everything that came, or poll() would not tell of what is already buffered here.
+    // Read all lines, because poll() does not report lines that are already buffered here.
     auto line = client.next_line(whole_line);
     for (; line && *line; line = client.next_line(std::chrono::milliseconds{0})) {
       if (!(*line)->contains("watch") || (options.count > 0 && lines == options.count)) continue;
@@ -77,7 +77,7 @@ ExitCode print_updates(DaemonClient& client, const WatchOptions& options) {
   return ExitCode::done;
 }
 
-/// Between two looks for new events, and how long nothing is looked at at most.
+/// Pause between two requests for new events [s], and the longest wait of poll() [ms].
 constexpr double event_pause_s = 0.5;
 constexpr int look_pause_ms = 250;
 constexpr std::uint64_t event_page = 200;
@@ -86,8 +86,8 @@ double now_s() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-/// "stopping", "started pick_stone", "acknowledged F202 reading_out_of_range of left": once the daemon has
-/// accepted.
+/// Returns the message after the daemon has accepted a command: "stopping", "started pick_stone" or
+/// "acknowledged F202 reading_out_of_range of left".
 std::string done_of(const Json& request, const Json& result) {
   const std::string command = request.value("command", "");
   if (command == "start") return "started " + request.value("sequence", "");
@@ -97,9 +97,9 @@ std::string done_of(const Json& request, const Json& result) {
   return sentence_of_acknowledged(result);
 }
 
-/// The screen and the keys, until somebody leaves: by `q`, by a signal that ends programs, when the daemon is
-/// gone, or after `count` updates (0: never). The terminal is restored in each case, and while Ctrl-Z has
-/// stopped the program.
+/// Shows the screen and processes keys until `q`, a signal that ends programs, the end of the daemon, or
+/// `count` updates (0: no limit). The terminal is restored in each case, and also while Ctrl-Z has stopped
+/// the program.
 class LiveWatch {
  public:
   explicit LiveWatch(DaemonClient& client)
@@ -110,7 +110,7 @@ class LiveWatch {
   ExitCode run(std::uint64_t count);
 
  private:
-  /// False when it is time to leave.
+  /// Returns false if the program must end.
   bool hear_signals(std::uint64_t count);
   bool hear_keys();
   [[nodiscard]] std::optional<ClientFailure> hear_daemon();
@@ -129,14 +129,14 @@ class LiveWatch {
   bool keyboard_;
   LiveState state_;
   KeyDialogue dialogue_;
-  std::map<std::uint64_t, Json> asked_;  ///< requests without an answer yet, by their id
+  std::map<std::uint64_t, Json> asked_;  ///< requests without a response, by id
   std::uint64_t last_id_ = 0;
   std::uint64_t newest_event_ = 0;
-  bool events_known_ = false;  ///< where the newest ones begin
+  bool events_known_ = false;  ///< newest_event_ is valid
   bool events_asked_ = false;
   double events_due_s_ = 0;
   std::uint64_t updates_ = 0;
-  std::string started_;  ///< the sequence that was started here last
+  std::string started_;  ///< the sequence that this program started last
 };
 
 void LiveWatch::ask(Json request) {
@@ -150,7 +150,7 @@ void LiveWatch::ask_for_events() {
   if (events_asked_ || now_s() < events_due_s_) return;
   events_asked_ = true;
   events_due_s_ = now_s() + event_pause_s;
-  // The first look only asks how many there are: the old ones are not wanted.
+  // The first request only fetches the id of the newest event, because old events are not shown.
   ask({{"command", "events"}, {"since", newest_event_}, {"limit", events_known_ ? event_page : 1}});
 }
 
@@ -195,7 +195,7 @@ void LiveWatch::take_line(const Json& line) {
   take_answer(request, line);
 }
 
-/// Everything that came, or poll() would not tell of what is already buffered here.
+/// Reads all lines, because poll() does not report lines that are already buffered here.
 std::optional<ClientFailure> LiveWatch::hear_daemon() {
   auto line = client_.next_line(whole_line);
   for (; line && *line; line = client_.next_line(std::chrono::milliseconds{0})) take_line(**line);
@@ -219,7 +219,7 @@ bool LiveWatch::hear_keys() {
   std::array<char, 256> typed{};
   const ssize_t count = ::read(STDIN_FILENO, typed.data(), typed.size());
   if (count <= 0) {
-    keyboard_ = false;  // it is gone; the screen stays
+    keyboard_ = false;  // the keyboard is lost, but the screen stays
     return true;
   }
   const std::string_view keys(typed.data(), static_cast<std::size_t>(count));
@@ -246,7 +246,7 @@ void LiveWatch::draw() {
   screen_->draw(screen_of(state_, style, terminal_rows()));
 }
 
-/// A start that was confirmed with a key and not answered yet may begin after the program has ended.
+/// A start without a response may still begin after the program has ended.
 void LiveWatch::leave() {
   screen_.reset();
   for (const auto& [id, request] : asked_) {
