@@ -65,7 +65,7 @@ class Baseline(bench.BenchTest):
 
     def test_a_simulated_rig_is_commissioned_and_a_change_found(self):
         done = self.commissioned(self.simulated(), *SHORT)
-        self.assertRegex(done.stdout, r"The second run: Unchanged.*What the base leaves: 0\.\d+ mm of the first run")
+        self.assertRegex(done.stdout, r"The second run: Unchanged.*Residual of the baseline model: 0\.\d+ mm on the first run")
         about = self.check_whole(2)
         self.assertEqual(about["check"]["verdict"], "unchanged")
         self.assertEqual((about["rig"]["channel"], about["rig"]["simulated"]), ("left", True))
@@ -124,7 +124,7 @@ class Baseline(bench.BenchTest):
         for arguments, code, why in (
                 (["--rig", free, "--out", "base"], 2, "the rig has 2 channels"),
                 (["--rig", free, "--rig-channel", "middle", "--out", "base"], 2, "no channel 'middle'"),
-                (["--rig", free, "--rig-channel", "left", "--out", "config"], 2, "config is there already"),
+                (["--rig", free, "--rig-channel", "left", "--out", "config"], 2, "config already exists"),
                 (["--rig", free, "--rig-channel", "left"], 2, "--out is required"),
                 (["--rig", free, "--data", "log.csv", "--out", "base"], 2, "excludes"),
                 (["--rig", "nowhere.yaml", "--out", "base"], 4, "nowhere.yaml"),
@@ -154,11 +154,11 @@ class Baseline(bench.BenchTest):
     def test_who_is_not_allowed_moves_nothing(self):
         board = self.emulator()
         rig = self.rig(board.port)
-        self.assertIn("nobody to ask: --yes allows it", self.commissioned(rig, expect=2).stderr)
+        self.assertIn("allow it with --yes", self.commissioned(rig, expect=2).stderr)
         screen = terminal.Terminal([bench.SOFTGRIP, "baseline", "--rig", rig, "--rig-channel", "left", "--out", "base"],
                                    self.folder, columns=200)
         self.addCleanup(screen.close)
-        bench.wait_for("the question", lambda: "Go on? [y/N]" in screen.text())
+        bench.wait_for("the question", lambda: "Continue? [y/N]" in screen.text())
         self.assertRegex(screen.text(), r"channel 'left' of bench will move, .* up to [\d.]+ kPa, about 17 minutes; "
                                         "nothing may be in its way")
         screen.type("n\n")

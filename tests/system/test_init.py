@@ -87,13 +87,13 @@ class Init(bench.BenchTest):
 
     def test_what_has_no_usual_value_must_be_given(self):
         done = self.softgrip("init", "mine.yaml", "--board", "adam-6024", expect=2)
-        self.assertIn("--address is needed", done.stderr)
+        self.assertIn("--address is required", done.stderr)
         self.assertFalse((self.folder / "mine.yaml").exists())
 
     def test_a_file_that_is_there_is_never_overwritten(self):
         before = (self.folder / "config/rig.yaml").read_bytes()
         done = self.softgrip("init", "config/rig.yaml", *self.OPTIONS, expect=5)
-        self.assertIn("there already", done.stderr)
+        self.assertIn("already exists", done.stderr)
         self.assertEqual((self.folder / "config/rig.yaml").read_bytes(), before)
 
     def test_a_wrong_option_writes_nothing(self):

@@ -14,7 +14,7 @@ namespace softgrip::tools {
 void add_acknowledge(CLI::App& program, ExitCode& outcome) {
   auto options = std::make_shared<DaemonOptions>();
   CLI::App* command = program.add_subcommand(
-      "acknowledge", "Clears latched faults whose cause is gone; nothing moves until the next start");
+      "acknowledge", "Reset latched faults whose cause is gone; nothing moves until the next start");
   add_daemon_options(*command, *options);
   command->callback([options, &outcome] {
     const auto result = ask_daemon(*options, {{"command", "acknowledge"}});

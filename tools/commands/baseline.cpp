@@ -116,15 +116,15 @@ tl::expected<Json, ExitCode> checked(const BaselineOptions& options, const Runs&
 /// Returns a text such as "The second run: ..." with the RMS errors of the model.
 std::string text_of_check(const Json& check) {
   if (check.is_null())
-    return "No second run was given (--check): whether the finger repeats itself is not known.";
+    return "There is no second run (--check), so the repeatability of the finger is unknown.";
   const auto number = [](const Json& value) { return significant(value.get<double>(), 3); };
   const std::string unit = " " + check["output_unit"].get<std::string>();
   const Json& model = check["model_rmse_mm"];
   return "The second run: " + check["sentence"].get<std::string>() +
-         " What the base leaves: " + number(check["healthy_heldout_rms_mm"]) + unit +
-         " of the first run, held out, " + number(check["second_run_rms_mm"]) + unit +
-         " of the second; model.yaml from the command: " + number(model["first_run"]) + " and " +
-         number(model["second_run"]) + unit + ".";
+         " Residual of the baseline model: " + number(check["healthy_heldout_rms_mm"]) + unit +
+         " on the first run (held out), " + number(check["second_run_rms_mm"]) + unit +
+         " on the second. Error of model.yaml simulated from the command: " + number(model["first_run"]) +
+         " and " + number(model["second_run"]) + unit + ".";
 }
 
 tl::expected<Runs, ExitCode> recorded(const BaselineOptions& options) {
@@ -156,8 +156,7 @@ std::vector<BaselineFile> files_of_played(const std::vector<sysid::Log>& logs, c
 tl::expected<Runs, ExitCode> played(const BaselineOptions& options) {
   std::error_code none;
   if (std::filesystem::exists(options.out, none) && !std::filesystem::is_empty(options.out, none))
-    return tl::unexpected(
-        fail(ExitCode::usage, options.out + " is there already: name a folder that is not"));
+    return tl::unexpected(fail(ExitCode::usage, options.out + " already exists: name a new folder"));
   const auto rig = rig_to_move(
       options.rig, options.rig_channel.empty() ? options.logs.channel : options.rig_channel, options.yes);
   if (!rig) return tl::unexpected(rig.error());
@@ -225,7 +224,8 @@ ExitCode checked_again(BaselineOptions options) {
   const auto baseline = read_baseline(folder);
   if (!baseline) return fail(ExitCode::input_refused, baseline.error());
   if (baseline->second.empty())
-    return fail(ExitCode::input_refused, folder + " holds no second run: make it with --check or --rig");
+    return fail(ExitCode::input_refused,
+                folder + " has no second run: record the baseline with --check or --rig");
   options.data = baseline->logs;
   options.check = baseline->second;
   const auto runs = recorded(options);
@@ -238,7 +238,7 @@ ExitCode checked_again(BaselineOptions options) {
   if (options.json) {
     std::printf("%s\n", Json{{"schema", 1}, {"baseline", folder}, {"check", *check}}.dump(2).c_str());
   } else {
-    std::printf("Baseline in %s: its files are those that were written. %s\n", folder.c_str(),
+    std::printf("Baseline in %s: its files are unchanged. %s\n", folder.c_str(),
                 text_of_check(*check).c_str());
   }
   return holds ? ExitCode::done : ExitCode::not_acceptable;
@@ -248,7 +248,7 @@ ExitCode run(const BaselineOptions& options, const std::vector<std::string>& cal
   if (options.data.empty() && options.rig.empty()) {
     if (options.check.size() == 1) return checked_again(options);
     return fail(ExitCode::usage,
-                "a baseline needs --rig or --data; --check DIR alone looks at one that is there");
+                "a new baseline needs --rig or --data; --check DIR alone checks an existing baseline");
   }
   if (options.out.empty()) return fail(ExitCode::usage, "--out is required: the folder of the baseline");
   std::vector<std::string> inputs = options.data;
@@ -263,22 +263,21 @@ ExitCode run(const BaselineOptions& options, const std::vector<std::string>& cal
 /// Adds the options that apply to a rig file.
 void add_rig_options(CLI::App& command, BaselineOptions& options) {
   CLI::Option* const data = command.get_option("--data");
-  CLI::Option* const rig =
-      command.add_option("--rig", options.rig, "Rig file: play the commissioning experiment on it, twice");
+  CLI::Option* const rig = command.add_option(
+      "--rig", options.rig, "Rig file: play the commissioning experiment on this rig twice");
   rig->excludes(data)->excludes(command.get_option("--check"));
   command
-      .add_option("--rig-channel", options.rig_channel,
-                  "With --rig: which of its channels is moved [that of --channel]")
+      .add_option("--rig-channel", options.rig_channel, "With --rig: the channel to move [that of --channel]")
       ->needs(rig);
   std::vector<std::string> menu;
   for (const sysid::Waveform& waveform : sysid::experiment_menu({})) menu.push_back(waveform.name);
-  command.add_option("--experiments", options.experiments, "With --rig: which of the menu are played")
+  command.add_option("--experiments", options.experiments, "With --rig: the experiments to play")
       ->needs(rig)
       ->check(CLI::IsMember(menu))
       ->capture_default_str();
   command
       .add_option("--rest-s", options.rest_s,
-                  "With --rig: at no pressure before each experiment, until the finger has crept back")
+                  "With --rig: rest at zero pressure before each experiment, in which creep decays")
       ->needs(rig)
       ->check(CLI::Range(0.0, 3600.0))
       ->capture_default_str();
@@ -290,19 +289,20 @@ void add_rig_options(CLI::App& command, BaselineOptions& options) {
 void add_baseline(CLI::App& program, ExitCode& outcome) {
   auto options = std::make_shared<BaselineOptions>();
   CLI::App* command =
-      program.add_subcommand("baseline", "Keep what a healthy finger does, to be compared with later");
+      program.add_subcommand("baseline", "Record a healthy finger as the reference for change detection");
   command->add_option("--data", options->data, "Logs of the healthy finger, in order");
   command->add_option(
       "--check", options->check,
-      "Logs of a second run of the healthy finger: nothing may have changed (exit 6). Alone: a "
-      "baseline's folder, looked at again");
+      "Logs of a second run of the healthy finger: a change ends with exit code 6. Alone: the "
+      "folder of an existing baseline to check");
   add_rig_options(*command, *options);
   command->add_option("--gauge", options->gauge,
-                      "What the sensor reads at positions that a gauge knows: kept beside the logs");
+                      "Readings of the sensor at positions that a gauge measured: kept with the logs");
   command->add_option("--model", options->model, "Model file of the finger [identified from the logs]");
   command->add_option("--out", options->out, "Folder for the logs, model.yaml and baseline.json");
-  command->add_option("--seed", options->seed, "Of starts and resampling")->capture_default_str();
-  command->add_option("--threads", options->threads, "0: as many as there are cores")->capture_default_str();
+  command->add_option("--seed", options->seed, "Seed of starts and resampling")->capture_default_str();
+  command->add_option("--threads", options->threads, "Number of threads; 0: one per core")
+      ->capture_default_str();
   add_log_options(*command, options->logs);
   command->add_flag("--json", options->json, "Print baseline.json");
   command->callback([options, command, &outcome] { outcome = run(*options, call_of(*command)); });

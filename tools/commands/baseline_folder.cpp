@@ -109,21 +109,21 @@ tl::expected<std::string, std::string> write_baseline(const std::string& folder,
 tl::expected<Baseline, std::string> read_baseline(const std::string& folder) {
   const std::string path = (fs::path(folder) / "baseline.json").string();
   const auto text = read_file(path, largest_json);
-  if (!text) return Failure(folder + " is no baseline: " + text.error());
+  if (!text) return Failure(folder + " is not a baseline: " + text.error());
   const Json json = parse_json<Json>(*text);
   if (!json.is_object() || !json.contains("logs") || !json["logs"].is_array() || !json.contains("model"))
-    return Failure(path + " is not what softgrip baseline writes");
+    return Failure(path + " was not written by softgrip baseline");
   Baseline baseline;
   const auto known = [&](const Json& entry) -> tl::expected<std::string, std::string> {
     if (!entry.is_object() || !entry.value("file", Json()).is_string() ||
         !entry.value("sha256", Json()).is_string())
-      return Failure(path + " is not what softgrip baseline writes");
+      return Failure(path + " was not written by softgrip baseline");
     const std::string file =
         (fs::path(folder) / fs::path(entry["file"].get<std::string>()).filename()).string();
     const auto bytes = read_file(file, largest_log);
     if (!bytes) return Failure(bytes.error());
     if (sha256(*bytes) != entry["sha256"].get<std::string>())
-      return Failure(file + " is not the file that the baseline was made with: make the baseline again");
+      return Failure(file + " was changed after the baseline was recorded: record the baseline again");
     return file;
   };
   const auto all = [&](const char* key, std::vector<std::string>& files) -> tl::expected<void, std::string> {

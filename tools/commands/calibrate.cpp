@@ -151,7 +151,7 @@ bool confirmed(calibrate::TerminalOperator& terminal, const Clock& clock, const 
     if (!answer) return false;
     if (*answer == "yes" || *answer == "y") return true;
     if (*answer == "no" || *answer == "n") return false;
-    terminal.tell("`" + *answer + "` is neither");
+    terminal.tell("`" + *answer + "` is neither yes nor no");
   }
 }
 
@@ -161,7 +161,7 @@ bool accepted(const rig::RigFile& rig, const calibrate::Results& results, const 
   const std::vector<std::string> odd = calibrate::doubts(rig, results);
   for (const std::string& sentence : odd) std::fprintf(stderr, "doubtful: %s\n", sentence.c_str());
   if (odd.empty() || !options.write || options.yes) return true;
-  return confirmed(terminal, clock, stop, "write it into " + rig.path + " all the same?");
+  return confirmed(terminal, clock, stop, "write the points into " + rig.path + " nevertheless?");
 }
 
 ExitCode write_into_rig(const rig::RigFile& rig, const calibrate::Results& results) {
@@ -170,7 +170,7 @@ ExitCode write_into_rig(const rig::RigFile& rig, const calibrate::Results& resul
   if (!changed) return fail(ExitCode::not_acceptable, "not written: " + changed.error());
   const auto backup = calibrate::write_rig(rig, *changed);
   if (!backup) return fail(ExitCode::io, "not written: " + backup.error());
-  std::fprintf(stderr, "%s: channel `%s` has the new points; as it was: %s\n", rig.path.c_str(),
+  std::fprintf(stderr, "%s: channel `%s` has the new points; old file: %s\n", rig.path.c_str(),
                channel.c_str(), backup->c_str());
   return ExitCode::done;
 }
@@ -182,7 +182,7 @@ ExitCode write_results(const rig::RigFile& rig, const calibrate::Results& result
     return fail(ExitCode::io, written.error());
   if (options.out != "-" && !options.write) {
     std::fprintf(report_stream(options.out),
-                 "%s: put its lines into channel `%s` of %s, then softgrip check\n", options.out.c_str(),
+                 "%s: copy its lines into channel `%s` of %s, then run softgrip check\n", options.out.c_str(),
                  rig.settings.channels[results.channel].name.c_str(), rig.path.c_str());
   }
   return ExitCode::done;
@@ -200,13 +200,13 @@ tl::expected<calibrate::Settings, ExitCode> prepare(CalibrateOptions& options, c
     options.valve = options.dead_zone = options.move;
   }
   if ((options.valve || options.dead_zone) && !options.move) {
-    return tl::unexpected(
-        fail(ExitCode::usage, "valve and dead zone are found by moving: allow it with --move"));
+    return tl::unexpected(fail(
+        ExitCode::usage, "the calibration of valve and dead zone moves the finger: allow it with --move"));
   }
   for (const auto* const answers : {&options.gauge_mm, &options.manometer_kpa}) {
     for (const std::string& answer : *answers) {
       if (!calibrate::typed_number(answer)) {
-        return tl::unexpected(fail(ExitCode::input_refused, "`" + answer + "` is no number"));
+        return tl::unexpected(fail(ExitCode::input_refused, "`" + answer + "` is not a number"));
       }
     }
   }
@@ -246,12 +246,14 @@ ExitCode carry_out(const rig::RigFile& rig, const CalibrateOptions& options,
   calibrate::TerminalOperator terminal;
   const auto results = measure(rig, options, settings, session, terminal);
   const bool safe = session.leave();
-  if (!safe) std::fprintf(stderr, "the board did NOT confirm the rest pressures: look before you reach in\n");
+  if (!safe)
+    std::fprintf(stderr,
+                 "the board did NOT confirm the rest pressures: check before you reach into the gripper\n");
   if (!results) return fail(results.error().code, results.error().text);
   ExitCode code = write_results(rig, *results, options);
   if (!accepted(rig, *results, options, terminal, clock, stop)) {
     return fail(ExitCode::not_acceptable,
-                "not written: " + rig.path + " is what it was; --yes writes without asking");
+                "not written: " + rig.path + " is unchanged; --yes writes without a question");
   }
   if (code == ExitCode::done && options.write) code = write_into_rig(rig, *results);
   return code == ExitCode::done && !safe ? ExitCode::io : code;
@@ -273,20 +275,18 @@ ExitCode run(CalibrateOptions options) {
 void add_measuring_options(CLI::App& command, CalibrateOptions& options) {
   command
       .add_option("--at-kpa", options.at_kpa,
-                  "Pressures of the two points [a sixth and two thirds of the limits]")
+                  "Pressures of the two points [1/6 and 2/3 of the range of the limits]")
       ->expected(2);
   command.add_option("--settle-s", options.settle_s, "Wait after every motion")
       ->check(CLI::Range(0.0, 600.0))
       ->capture_default_str();
-  command.add_option("--average-s", options.average_s, "Average so long")
+  command.add_option("--average-s", options.average_s, "Duration of each average")
       ->check(CLI::Range(0.1, 600.0))
       ->capture_default_str();
   command.add_option("--ramp-s", options.ramp_s, "Duration of the dead zone's ramp")
       ->check(CLI::Range(1.0, 600.0))
       ->capture_default_str();
-  command
-      .add_option("--repeats", options.repeats,
-                  "Visits to each point; from two on the repeat spread is known")
+  command.add_option("--repeats", options.repeats, "Visits to each point; at least 2 give the repeat spread")
       ->check(CLI::Range(1, 20))
       ->capture_default_str();
 }
@@ -295,35 +295,38 @@ void add_measuring_options(CLI::App& command, CalibrateOptions& options) {
 
 void add_calibrate(CLI::App& program, ExitCode& outcome) {
   auto options = std::make_shared<CalibrateOptions>();
-  CLI::App* command = program.add_subcommand(
-      "calibrate", "Sensor and valve against gauge and manometer: lines for the rig file");
+  CLI::App* command =
+      program.add_subcommand("calibrate", "Calibrate sensor and valve against a gauge and a manometer");
   command->add_option("--rig", options->rig, "Rig file [config/rig.yaml, or the installed one]");
-  command->add_option("--channel", options->channel, "Which one; needed if the rig has several");
-  command->add_flag("--sensor", options->sensor, "The displacement sensor, against a gauge");
+  command->add_option("--channel", options->channel, "Channel; required if the rig has several");
+  command->add_flag("--sensor", options->sensor, "Calibrate the displacement sensor against a gauge");
   command->add_flag("--valve", options->valve,
-                    "The valve's output, against the pressure monitor or a manometer; with --move");
-  command->add_flag("--dead-zone", options->dead_zone, "Where the valve begins to follow; with --move");
-  command->add_flag(
-      "--move", options->move,
-      "I allow it to move the finger, within the limits; without it the target is placed by hand");
+                    "Calibrate the valve against the pressure monitor or a manometer; needs --move");
+  command->add_flag("--dead-zone", options->dead_zone,
+                    "Find the lowest command that the valve follows; needs --move");
+  command->add_flag("--move", options->move,
+                    "Consent to move the finger within the limits; otherwise you place the target by hand");
   command->add_flag("--manometer", options->manometer,
-                    "Ask for a manometer although there is a pressure monitor");
+                    "Use a manometer although there is a pressure monitor");
   command
       ->add_option("--gauge-mm", options->gauge_mm,
-                   "The gauge's readings, instead of asking: two, or two per visit")
+                   "Readings of the gauge instead of questions: two, or two per visit")
       ->expected(2, 40);
-  command->add_option("--manometer-kpa", options->manometer_kpa, "The manometer's readings, likewise")
+  command
+      ->add_option("--manometer-kpa", options->manometer_kpa,
+                   "Readings of the manometer instead of questions: two, or two per visit")
       ->expected(2, 40);
   add_measuring_options(*command, *options);
-  command->add_option("--date", options->date, "Of the calibration [today]");
-  command->add_option("--socket", options->socket, "Of a daemon that must not run [the rig file's]");
-  command->add_option("--out", options->out, "Where the lines go; - is the standard output")
+  command->add_option("--date", options->date, "Date of the calibration [today]");
+  command->add_option("--socket", options->socket, "Socket of a daemon that must not run [the rig file's]");
+  command->add_option("--out", options->out, "File for the lines; - is the standard output")
       ->capture_default_str();
   command->add_flag("--write", options->write,
-                    "Write the points into the rig file, in place, with the old file kept beside it");
-  command->add_flag("--yes", options->yes, "Write what is doubtful without asking");
+                    "Write the points into the rig file and keep the old file next to it");
+  command->add_flag("--yes", options->yes, "Write doubtful results without a question");
   command->footer(
-      "Questions go to the standard error, answers come line by line from the standard input.\nExit codes: 0 "
+      "Questions go to the standard error. Answers are read line by line from the standard input.\nExit "
+      "codes: 0 "
       "done, 2 usage, 3 input refused, 4 the board or a file, 5 the daemon runs,\n6 what was measured "
       "makes no "
       "calibration, or a sensor that the motion needs gave no valid readings.");

@@ -61,12 +61,12 @@ void print_report_text(const rig::CheckReport& report) {
     if (!file.name.empty()) std::printf(" '%s'", document::shown(file.name).c_str());
     const bool unfitted = file.kind == rig::FileKind::sequence && !report.has_rig;
     if (file.passed_over) {
-      std::printf(": passed over\n");
+      std::printf(": skipped\n");
     } else if (file.errors > 0) {
       std::printf(": %zu %s\n", file.errors, file.errors == 1 ? "error" : "errors");
     } else {
       std::printf(": ok%s%s\n", file.warnings > 0 ? ", with warnings" : "",
-                  unfitted ? ", by itself: name a rig file beside it" : "");
+                  unfitted ? ", but not checked with a rig: name a rig file too" : "");
     }
   }
 }
@@ -86,15 +86,13 @@ ExitCode run(const CheckOptions& options) {
 
 void add_check(CLI::App& program, ExitCode& outcome) {
   auto options = std::make_shared<CheckOptions>();
-  CLI::App* command =
-      program.add_subcommand("check", "What is wrong with rigs, boards, models and sequences");
+  CLI::App* command = program.add_subcommand("check", "Validate rig, board, model and sequence files");
   command
-      ->add_option(
-          "FILE", options->files,
-          "Files of any of these kinds, or folders of them; sequences are fitted to the rigs among them")
+      ->add_option("FILE", options->files,
+                   "Files of these kinds, or folders of them; sequences are checked with the rigs among them")
       ->required();
   add_set_option(*command, options->settings);
-  command->add_flag("--json", options->json, "The findings as JSON");
+  command->add_flag("--json", options->json, "Print the findings as JSON");
   command->callback([options, &outcome] { outcome = run(*options); });
 }
 

@@ -12,13 +12,12 @@ namespace softgrip::tools {
 
 void add_completion(CLI::App& program, ExitCode& outcome) {
   auto shell = std::make_shared<std::string>();
-  CLI::App* command =
-      program.add_subcommand("completion", "A script for a shell: completes commands, options, sequences");
+  CLI::App* command = program.add_subcommand("completion", "Print a completion script for bash, zsh or fish");
   command->add_option("SHELL", *shell, "bash, zsh or fish")
       ->required()
       ->check(CLI::IsMember({"bash", "zsh", "fish"}));
   command->footer(
-      "The Debian package has installed them. Elsewhere: source <(softgrip completion bash);\n"
+      "The Debian package installs the scripts. Otherwise: source <(softgrip completion bash);\n"
       "softgrip completion zsh >DIRECTORY_OF_FPATH/_softgrip;\n"
       "softgrip completion fish >~/.config/fish/completions/softgrip.fish.");
   command->callback([&program, shell, &outcome] {

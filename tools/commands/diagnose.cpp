@@ -67,13 +67,13 @@ tl::expected<sysid::Diagnosis, std::string> diagnosed(const std::vector<sysid::L
 /// Computes the next experiment and the closed loop, and shows the progress.
 Consequences followed(const sysid::Diagnosis& diagnosis, const ConsequenceOptions& options) {
   ProgressLine line;
-  line.show()("plays experiments and the closed loop in simulation");
+  line.show()("simulates experiments and the closed loop");
   return consequences_of(diagnosis, options);
 }
 
 void print_cause(const sysid::NamedCause& named) {
-  std::printf("  %-26s held-out gain %s %% (%s .. %s)\n", std::string(named.cause.id).c_str(),
-              fixed(named.heldout_gain_percent.value, 1).c_str(),
+  std::printf("  %-26s held-out error reduction %s %% (95 %%: %s to %s)\n",
+              std::string(named.cause.id).c_str(), fixed(named.heldout_gain_percent.value, 1).c_str(),
               fixed(named.heldout_gain_percent.lower, 1).c_str(),
               fixed(named.heldout_gain_percent.upper, 1).c_str());
   std::size_t passed_over = 0;
@@ -87,9 +87,10 @@ void print_cause(const sysid::NamedCause& named) {
     std::printf("      %-22s %s %s\n", p.name.c_str(), significant(p.value, 5).c_str(), interval.c_str());
   }
   if (passed_over > 0)
-    std::printf("      %zu numbers that these logs do not determine are in diagnosis.json\n", passed_over);
+    std::printf("      %zu parameters that these logs do not determine are in diagnosis.json\n", passed_over);
   for (const sysid::Cause& alternative : named.alternatives) {
-    std::printf("      %s explains as much\n", std::string(alternative.id).c_str());
+    std::printf("      alternative: %s explains the data equally well\n",
+                std::string(alternative.id).c_str());
   }
 }
 
@@ -99,23 +100,25 @@ void print_summary(const sysid::Diagnosis& d, const std::string& out) {
     std::printf("  %-34s %s %s\n", what, significant(value, digits).c_str(),
                 std::string(model::name_of(d.extended_model.output_unit)).c_str());
   };
-  print("noise of the readings", d.noise_mm, 3);
-  print("RMSE of the model as given", d.as_given_rmse_mm, 4);
-  print("recalibrated, held out", d.recalibrated_rmse_mm, 4);
-  print("extended, held out", d.extended_rmse_mm, 4);
-  std::printf("  %-34s %s %%\n\n", "structure left", fixed(d.unexplained_percent, 1).c_str());
+  print("measurement noise (1 sigma)", d.noise_mm, 3);
+  print("RMSE, given model", d.as_given_rmse_mm, 4);
+  print("held-out RMSE, refitted model", d.recalibrated_rmse_mm, 4);
+  print("held-out RMSE, extended model", d.extended_rmse_mm, 4);
+  std::printf("  %-34s %s %%\n\n", "unexplained share", fixed(d.unexplained_percent, 1).c_str());
   if (d.evidence && d.unexplained_recalibrated.present)
     std::printf("%s\n", sysid::dependence_sentence(d.evidence->recalibrated).c_str());
   for (const sysid::NamedCause& named : d.causes) print_cause(named);
   if (d.in_valve && !d.in_valve->named.empty()) {
-    std::puts("  In the valve, by the measured pressure:");
+    std::puts("  Valve, from command to measured pressure:");
     for (const sysid::NamedCause& named : d.in_valve->named) print_cause(named);
   }
-  if (!d.partial.empty()) std::puts("  Part of it, but not enough to be named the cause:");
+  if (!d.partial.empty()) std::puts("  Partial explanations, too small to be reported as the cause:");
   for (const sysid::NamedCause& named : d.partial) print_cause(named);
   if (const auto& nulls = d.null_calibration) {
-    std::printf("of %zu null campaigns the search named something in %zu; p = %s for the gain\n",
-                nulls->campaigns, nulls->named, significant(nulls->p_value, 2).c_str());
+    std::printf(
+        "of %zu simulated data sets without a cause, the search named a cause in %zu; p = %s for the error "
+        "reduction\n",
+        nulls->campaigns, nulls->named, significant(nulls->p_value, 2).c_str());
   }
   for (const std::string& warning : d.warnings) std::printf("warning: %s\n", warning.c_str());
   std::printf("%s s; report: %s\n", significant(d.wall_s, 3).c_str(),
@@ -196,7 +199,7 @@ ExitCode run(DiagnoseOptions options, const std::vector<std::string>& call) {
     options.healthy = baseline->logs;
     if (options.model.empty()) options.model = baseline->model;
   }
-  if (options.model.empty()) return fail(ExitCode::usage, "--model is required where there is no --baseline");
+  if (options.model.empty()) return fail(ExitCode::usage, "--model is required without --baseline");
   if (const auto code = refuse_own_inputs(options)) return *code;
   const auto model = read_model(options.model);
   if (!model) return model.error();
@@ -246,13 +249,15 @@ ExitCode run(DiagnoseOptions options, const std::vector<std::string>& call) {
 
 void add_diagnose(CLI::App& program, ExitCode& outcome) {
   auto options = std::make_shared<DiagnoseOptions>();
-  CLI::App* command = program.add_subcommand("diagnose", "What a model gets wrong on measured data, and why");
-  command->add_option("--model", options->model, "Model file as it is used today [the baseline's]");
+  CLI::App* command =
+      program.add_subcommand("diagnose", "Find the error of a model on measured data, and its cause");
+  command->add_option("--model", options->model, "Model file in use [that of the baseline]");
   command
-      ->add_option("--data", options->data, "Logs of one campaign, in order (CSV, or a recording's folder)")
+      ->add_option("--data", options->data,
+                   "Logs of one measurement campaign, in order (CSV, or a recording's folder)")
       ->required();
   command->add_option("--healthy", options->healthy,
-                      "Logs from when the finger was healthy: diagnose what changed since");
+                      "Logs of the healthy finger: diagnose the change since then");
   command
       ->add_option("--baseline", options->baseline,
                    "Folder of `softgrip baseline`: its logs are the healthy ones")
@@ -267,25 +272,29 @@ void add_diagnose(CLI::App& program, ExitCode& outcome) {
   add_figures_option(*command, options->figures);
   command->add_option(
       "--gauge", options->gauge,
-      "What the sensor reads at positions that a gauge knows (CSV: gauge_mm,displacement_mm)");
+      "Readings of the sensor at positions that a gauge measured (CSV: gauge_mm,displacement_mm)");
   command
-      ->add_option("--nulls", options->diagnosis.null_campaigns,
-                   "Calibrate the search on so many campaigns without a cause (19 show p = 0.05)")
+      ->add_option(
+          "--nulls", options->diagnosis.null_campaigns,
+          "Number of simulated data sets without a cause that calibrate the search (19 show p = 0.05)")
       ->capture_default_str();
-  command->add_option("--seed", options->diagnosis.seed, "Of starts and resampling")->capture_default_str();
-  command->add_option("--threads", options->diagnosis.threads, "0: as many as there are cores")
+  command->add_option("--seed", options->diagnosis.seed, "Seed of starts and resampling")
+      ->capture_default_str();
+  command->add_option("--threads", options->diagnosis.threads, "Number of threads; 0: one per core")
       ->capture_default_str();
   command->add_flag("--propose", options->consequences.experiment.always,
-                    "Propose an experiment also where the verdict has no alternatives");
+                    "Propose an experiment even if the verdict has no alternatives");
   command
       ->add_option("--pressure-max-kpa", options->pressure_max_kpa,
-                   "Bound of the proposed experiment [the largest of the logs]")
+                   "Highest pressure of the proposed experiment [the largest of the logs]")
       ->check(CLI::PositiveNumber);
-  command->add_option("--slew-kpa-per-s", options->slew_kpa_per_s, "Of the rig, for the proposed experiment")
+  command
+      ->add_option("--slew-kpa-per-s", options->slew_kpa_per_s,
+                   "Slew rate of the rig, for the proposed experiment")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   command->add_flag("--no-closed-loop", options->no_closed_loop,
-                    "Do not measure the extension's gain in closed loop");
+                    "Do not simulate the closed loop with the extended model");
   add_log_options(*command, options->logs);
   command->add_flag("--json", options->json, "Print diagnosis.json");
   command->callback([options, command, &outcome] { outcome = run(*options, call_of(*command)); });

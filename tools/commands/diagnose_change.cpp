@@ -28,7 +28,7 @@ void print_cause(const sysid::ChangeCause& cause) {
               interval_text(cause).c_str(), significant(cause.full_pressure_mm, 3).c_str(),
               unit_of(cause.judged, cause.output_unit).c_str());
   for (const std::string& alternative : cause.alternatives)
-    std::printf("      %s explains as much\n", alternative.c_str());
+    std::printf("      alternative: %s explains the data equally well\n", alternative.c_str());
   for (const std::string_view step : sysid::next_steps(cause.id))
     std::printf("      - %s\n", std::string(step).c_str());
 }
@@ -37,10 +37,11 @@ void print_explanation(const sysid::JudgedChange& judged) {
   std::printf("\n%s: model \"%s\", %zu healthy run%s\n", name_of(judged.judged), judged.base.c_str(),
               judged.healthy_runs, judged.healthy_runs == 1 ? "" : "s");
   std::printf(
-      "  error of healthy runs that were left out %s %s; another healthy run may have %s; later logs %s\n",
+      "  error of held-out healthy runs %s %s; limit for another healthy run %s; error of the later logs "
+      "%s\n",
       significant(judged.healthy_mm, 3).c_str(), unit_of(judged.judged, judged.output_unit).c_str(),
       significant(judged.allowed_mm, 3).c_str(), significant(judged.later_mm, 3).c_str());
-  std::printf("  whitened squared error of the later logs %s (1: as in healthy runs)\n",
+  std::printf("  whitened squared error of the later logs %s (1: equal to that of healthy runs)\n",
               significant(judged.loss_before, 3).c_str());
   std::printf("%s\n%s", sysid::text_of(sysid::run_table(judged)).c_str(),
               sysid::text_of(sysid::tried_table(judged)).c_str());
@@ -52,11 +53,12 @@ void print_summary(const sysid::ChangeDiagnosis& d, const std::string& out) {
   std::printf("%s\n\n", sysid::change_sentence(d).c_str());
   for (const sysid::ChangeCause& cause : d.causes) print_cause(cause);
   for (const sysid::JudgedChange& judged : d.readings) {
-    std::printf("  %-12s noise %s, healthy base leaves %s, of the later logs %s, with the causes %s %s\n",
-                name_of(judged.judged), significant(judged.noise_mm, 2).c_str(),
-                significant(judged.healthy_mm, 3).c_str(), significant(judged.later_mm, 3).c_str(),
-                significant(judged.explained_mm, 3).c_str(),
-                unit_of(judged.judged, judged.output_unit).c_str());
+    std::printf(
+        "  %-12s noise %s; residual of the baseline model: %s on baseline logs, %s on later logs, %s with "
+        "the causes %s\n",
+        name_of(judged.judged), significant(judged.noise_mm, 2).c_str(),
+        significant(judged.healthy_mm, 3).c_str(), significant(judged.later_mm, 3).c_str(),
+        significant(judged.explained_mm, 3).c_str(), unit_of(judged.judged, judged.output_unit).c_str());
   }
   for (const std::string& warning : d.warnings) std::printf("warning: %s\n", warning.c_str());
   std::printf("%s s; report: %s\n", significant(d.wall_s, 3).c_str(),

@@ -32,7 +32,7 @@ using Json = nlohmann::ordered_json;
 /// The folder in which systemd keeps the enabled units.
 constexpr const char* enabled_units = "/etc/systemd/system/multi-user.target.wants";
 constexpr const char* daemon_holds_the_board =
-    "softgripd runs and holds the board: stop it, or leave out --move";
+    "softgripd runs and controls the board: stop softgripd, or omit --move";
 
 struct DoctorOptions {
   std::string rig;
@@ -53,7 +53,7 @@ Json ask_running(DaemonClient& client, const std::string& rig, doctor::Findings&
   if (!status || !statistics) {
     const ClientFailure& failure = !status ? status.error() : statistics.error();
     findings.fail("daemon", failure.message,
-                  "its socket is there but it does not answer: `systemctl status softgripd`");
+                  "the socket exists, but softgripd does not respond: `systemctl status softgripd`");
     return nullptr;
   }
   doctor::examine_daemon(*status, *statistics, rig, findings);
@@ -69,7 +69,7 @@ void examine_health(const rig::RigFile& rig, doctor::Findings& findings) {
     else
       findings.warn("health", line.text,
                     line.advice.empty()
-                        ? "look at the finger's page in " + rig.recorder.directory + "/" + health_folder
+                        ? "see the finger's page in " + rig.recorder.directory + "/" + health_folder
                         : line.advice);
   }
 }
@@ -115,10 +115,10 @@ ExitCode ask_for_a_name(const std::string& socket) {
   if (::access(near.c_str(), R_OK) == 0) {
     document::Problems problems;
     const auto rig = rig::load_rig(near, problems);
-    hint = "; " + near + (rig && is_simulated(*rig) ? " would be the simulated rig" : " lies here");
+    hint = "; " + near + (rig && is_simulated(*rig) ? " is the simulated rig" : " exists here");
   }
   return fail(ExitCode::usage, "no daemon runs on " + socket +
-                                   " that could be asked: name the rig, `softgrip doctor --rig RIG`, or the "
+                                   ": name the rig, `softgrip doctor --rig RIG`, or the "
                                    "daemon's socket with --socket" +
                                    hint);
 }
@@ -172,7 +172,8 @@ ExitCode run(const DoctorOptions& options) {
     doctor::examine_disk(*rig, findings);
     examine_health(*rig, findings);
   } else if (runs) {
-    findings.fail("daemon", client.error().message, "without an answer the board is not touched");
+    findings.fail("daemon", client.error().message,
+                  "without a response of the daemon, the board is not examined");
   } else {
     look_myself(*rig, options.move, findings);
   }
@@ -186,15 +187,16 @@ void add_doctor(CLI::App& program, ExitCode& outcome) {
   auto options = std::make_shared<DoctorOptions>();
   CLI::App* command = program.add_subcommand(
       "doctor",
-      "Is this rig fit to run today? Computer, board, sensors, disk: ok, warn or fail, and what to do");
-  command->add_option("--rig", options->rig, "Rig file; without it a running daemon is asked for its own");
+      "Check that the rig is ready: computer, board, sensors, disk. Each check is ok, warn or fail");
+  command->add_option("--rig", options->rig, "Rig file [that of the running daemon]");
   command->add_flag("--move", options->move,
-                    "I allow it to move: each finger a little, within its limits, to see that it follows");
-  command->add_option("--socket", options->socket, "Of a running daemon [the rig file's]");
-  command->add_flag("--json", options->json, "The findings as JSON");
+                    "Consent to move each finger a little, within its limits, to check that it follows");
+  command->add_option("--socket", options->socket, "Socket of a running daemon [the rig file's]");
+  command->add_flag("--json", options->json, "Print the findings as JSON");
   command->footer(
-      "Without a daemon it writes the rest pressures to the board and reads; a running daemon is asked "
-      "instead.\nExit codes: 0 fit, 6 not fit, 2 no rig is named and no daemon runs, 3 the rig file is "
+      "Without a daemon it writes the rest pressures to the board and reads the sensors. With a running "
+      "daemon it reads the status instead.\nExit codes: 0 fit, 6 not fit, 2 no rig is named and no daemon "
+      "runs, 3 the rig file is "
       "refused, 4 it cannot be read, 5 --move "
       "while "
       "the daemon runs.");

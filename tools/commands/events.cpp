@@ -40,7 +40,7 @@ ExitCode run(EventsOptions options) {
     const auto since = parse_since(options.since, wall_time_now());
     if (!since) {
       return fail(ExitCode::usage,
-                  "--since takes an event's number, or a time: 10min, 2h, 10:15, 2026-11-21 10:15");
+                  "--since takes the number of an event or a time: 10min, 2h, 10:15, 2026-11-21 10:15");
     }
     options.query.since = *since;
   }
@@ -61,19 +61,20 @@ ExitCode run(EventsOptions options) {
 
 void add_events(CLI::App& program, ExitCode& outcome) {
   auto options = std::make_shared<EventsOptions>();
-  CLI::App* command = program.add_subcommand("events", "What the daemon had to tell, the newest last");
+  CLI::App* command = program.add_subcommand("events", "Show the events of the daemon, newest last");
   add_daemon_options(*command, options->daemon);
   command
-      ->add_option("-n,--lines,--limit", options->query.lines, "The newest so many; the daemon keeps 10000")
+      ->add_option("-n,--lines,--limit", options->query.lines,
+                   "Number of newest events to show; the daemon keeps 10000")
       ->capture_default_str()
       ->check(CLI::Range(1, 10'000));
   command->add_option("--since", options->since,
-                      "Only those behind the event with this number, or since a time: 10min, 2h, 10:15, "
+                      "Only events after the one with this number, or since a time: 10min, 2h, 10:15, "
                       "2026-11-21 10:15");
-  command->add_option("--severity", options->query.severity, "Only those that are at least so grave")
+  command->add_option("--severity", options->query.severity, "Only events of at least this severity")
       ->capture_default_str()
       ->check(CLI::IsMember({"information", "warning", "error"}));
-  command->add_flag("-f,--follow", options->follow, "Go on with new ones until interrupted");
+  command->add_flag("-f,--follow", options->follow, "Continue with new events until interrupted");
   command->callback([options, &outcome] { outcome = run(*options); });
 }
 

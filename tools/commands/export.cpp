@@ -62,7 +62,7 @@ void report(const ExportOptions& options, const std::string& format, const std::
     std::fprintf(stream, "%s\n", json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
     return;
   }
-  for (const std::string& name : left_out) std::fprintf(stream, "left out, a text: %s\n", name.c_str());
+  for (const std::string& name : left_out) std::fprintf(stream, "skipped, not numeric: %s\n", name.c_str());
   std::fprintf(stream, "%zu signals, %zu samples -> %s\n", signals, samples, options.out.c_str());
 }
 
@@ -102,17 +102,18 @@ std::optional<ExitCode> refused(const ExportOptions& options, const std::string&
   if (const auto code = refuse_overwriting({options.out}, {options.input})) return code;
   if (format == "c") return std::nullopt;
   if (is_yaml(options.input))
-    return fail(ExitCode::usage, options.input + " is no recording, log or series: a model becomes .c");
+    return fail(ExitCode::usage,
+                options.input + " is not a recording, log or series: a model can only be exported as .c");
   if (options.rate_hz)
-    return fail(ExitCode::usage, "--rate-hz goes with --format c: samples keep their own times");
+    return fail(ExitCode::usage, "--rate-hz is only for --format c: samples keep their own times");
   return std::nullopt;
 }
 
 ExitCode run(const ExportOptions& options) {
   const std::string format = format_of(options);
   if (format.empty())
-    return fail(ExitCode::usage,
-                "the ending of " + options.out + " says no format: --format csv, mat, mcap or c");
+    return fail(ExitCode::usage, "the extension of " + options.out +
+                                     " is not a known format: use --format csv, mat, mcap or c");
   if (const auto code = refused(options, format)) return *code;
   if (format == "c") return export_c(options);
   if (format == "mat" && is_stream(options.out))
@@ -141,22 +142,24 @@ ExitCode run(const ExportOptions& options) {
 void add_export(CLI::App& program, ExitCode& outcome) {
   auto options = std::make_shared<ExportOptions>();
   CLI::App* command = program.add_subcommand(
-      "export", "A recording, log or series for other programs: wide CSV, MATLAB, MCAP; a model as C");
+      "export", "Export a recording, log or series (wide CSV, MATLAB, MCAP) or a model (C)");
   command
       ->add_option("INPUT", options->input,
                    "A recording's folder, a log, or a series.csv; for C a model file")
       ->required();
   command
       ->add_option("--format", options->format,
-                   "csv (a column per signal and finger), mat, mcap or c [the ending's]")
+                   "csv (a column per signal and finger), mat, mcap or c [by the file extension]")
       ->check(CLI::IsMember(formats()));
   command->add_option("--out", options->out, "File to write ('-': standard output)")->required();
   command->add_option("--rate-hz", options->rate_hz, "Calls per second of the C function")
       ->check(number_between(0.1, 100000));
-  command->add_option("--pressure-max-kpa", options->pressure_max_kpa, "Up to which its inverse must exist")
+  command
+      ->add_option("--pressure-max-kpa", options->pressure_max_kpa,
+                   "Highest pressure at which the inverse must exist")
       ->check(number_between(0.1, 10000))
       ->capture_default_str();
-  command->add_flag("--json", options->json, "Say what was done as JSON");
+  command->add_flag("--json", options->json, "Print a summary as JSON");
   command->callback([options, &outcome] { outcome = run(*options); });
 }
 

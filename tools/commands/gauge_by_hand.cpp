@@ -25,7 +25,7 @@ std::string what_is_done(const ExperimentRig& rig, std::size_t readings) {
   return "The sensor of channel '" + rig.channel_name() + "' of " + rig.rig.name +
          " is checked against a gauge: you hold its target at " + std::to_string(readings) + " positions, " +
          significant(sysid::minutes_for(readings), 2) +
-         " minutes. The finger is vented and stays so; nothing moves by itself";
+         " minutes. The finger is vented, and the rig moves nothing";
 }
 
 }  // namespace
@@ -45,7 +45,7 @@ GaugeTaker gauge_by_hand(ExperimentRig rig, Consent consent) {
     MotionSession session(rig.rig, *board, clock, [&signals] { return signals.first() != 0; });
     if (const auto connected = session.connect(); !connected) return failed(connected.error().text);
     calibrate::TerminalOperator terminal;
-    terminal.tell("Enter: the target is there; a number: it is there instead [mm]; -: leave it out");
+    terminal.tell("Enter: the target is there; a number: its actual position [mm]; -: skip this position");
     calibrate::Settings settings;
     settings.channel = rig.channel;
     const auto visits = calibrate::read_positions(session, terminal, settings, positions_mm);
@@ -53,7 +53,8 @@ GaugeTaker gauge_by_hand(ExperimentRig rig, Consent consent) {
     if (!visits)
       return tl::unexpected(
           NotPlayed{visits.error().code == ExitCode::failed, visits.error().text, visits.error().code});
-    if (!safe) return failed("the board did not confirm the rest pressures: look before you reach in");
+    if (!safe)
+      return failed("the board did not confirm the rest pressures: check before you reach into the gripper");
     std::vector<sysid::GaugeReading> readings;
     for (const calibrate::GaugeVisit& visit : *visits)
       readings.push_back({visit.position_mm, visit.reading_mm, static_cast<double>(visit.count)});

@@ -96,7 +96,7 @@ void print_scores(const char* title, const std::vector<sysid::Score>& scores) {
 
 void print_structure(const sysid::StructureEvidence& s, model::OutputUnit output_unit) {
   const std::string unit(name_of(output_unit));
-  std::printf("Structures, RMSE of the fit and of %zu held-out interleaved blocks\n", s.blocks);
+  std::printf("Structures, with the RMSE of the fit and of %zu held-out interleaved blocks\n", s.blocks);
   for (const sysid::StructureEvidence::Candidate& c : s.candidates) {
     std::printf("  %c %-86s %8s  %8s %s\n", c.chosen ? '*' : ' ', c.description.c_str(),
                 significant(c.rmse_mm, 4).c_str(), significant(c.heldout_rmse_mm, 4).c_str(), unit.c_str());
@@ -128,7 +128,7 @@ void print_summary(const sysid::IdentifyReport& report, const std::string& out) 
   std::puts("Parameters, 95 % intervals");
   print_estimates(r.parameters);
   print_estimates(r.starts);
-  std::puts("What the finger shows");
+  std::puts("Observations");
   print_estimates(r.combinations);
   std::printf("%.0f %% of %zu starts reached the best fit, %s s; report: %s\n",
               100 * r.multistart.share_at_best, r.multistart.starts, significant(r.wall_s, 3).c_str(),
@@ -196,20 +196,20 @@ ExitCode run(IdentifyOptions options, const std::vector<std::string>& call) {
 }
 
 void add_fit_options(CLI::App& command, sysid::IdentifyOptions& fit) {
-  command.add_option("--fix", fit.fixed, "Parameters that keep the start's value (bouc_wen.gamma_per_kpa)");
+  command.add_option("--fix", fit.fixed, "Parameters that keep their start value (bouc_wen.gamma_per_kpa)");
   command.add_option("--free", fit.free, "Only these parameters are free");
-  command.add_option("--starts", fit.starts, "Searches from as many points")
+  command.add_option("--starts", fit.starts, "Number of start points of the search")
       ->check(CLI::Range(1, 10000))
       ->capture_default_str();
-  command.add_option("--seed", fit.seed, "Of the starts")->capture_default_str();
+  command.add_option("--seed", fit.seed, "Seed of the start points")->capture_default_str();
   command.add_option("--exponents", fit.exponents, "Exponents of the hysteresis to try")
       ->check(CLI::Range(1, 4));
-  command.add_flag("--robust", fit.robust, "Outliers count linearly (Huber)");
-  command.add_flag("--profile", fit.profile, "Intervals by profile likelihood besides");
-  command.add_option("--fit-share", fit.fit_share, "Fit this first share of every log, hold out the rest")
+  command.add_flag("--robust", fit.robust, "Robust fit: outliers count linearly (Huber)");
+  command.add_flag("--profile", fit.profile, "Also compute intervals by profile likelihood");
+  command.add_option("--fit-share", fit.fit_share, "Fit this first share of every log and hold out the rest")
       ->check(number_between(0.05, 1.0))
       ->capture_default_str();
-  command.add_option("--threads", fit.threads, "0: as many as there are cores")->capture_default_str();
+  command.add_option("--threads", fit.threads, "Number of threads; 0: one per core")->capture_default_str();
 }
 
 /// Adds the option that chooses among structures. It excludes the options of a fit with a given structure.
@@ -230,7 +230,8 @@ void add_structure_option(CLI::App& command, IdentifyOptions& options) {
 
 void add_identify(CLI::App& program, ExitCode& outcome) {
   auto options = std::make_shared<IdentifyOptions>();
-  CLI::App* command = program.add_subcommand("identify", "A model's parameters from logs, with intervals");
+  CLI::App* command =
+      program.add_subcommand("identify", "Estimate model parameters from logs, with 95 % intervals");
   command->add_option("--data", options->data, "Logs to fit (CSV, or a recording's folder)")->required();
   command->add_option("--validate", options->validate, "Logs to predict");
   command->add_option("--start", options->start, "Model file to start from [the base structure]");

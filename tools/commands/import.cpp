@@ -12,13 +12,13 @@ namespace softgrip::tools {
 void add_import(CLI::App& program, ExitCode& outcome) {
   auto options = std::make_shared<ImportOptions>();
   CLI::App* command = program.add_subcommand("import",
-                                             "Logs out of other people's files: CSV in any dialect (.gz "
+                                             "Convert external files to logs: CSV in any dialect (.gz "
                                              "too), XLSX, LabVIEW, MATLAB, HDF5, recordings");
   command->add_option("FILE", options->files, "Files, or recordings' folders")->required();
   command
       ->add_option(
           "--out", options->out,
-          "Log to write ('-': standard output); of several files the folder for them. What was taken from "
+          "Log to write ('-': standard output), or a folder for several files. The column assignment "
           "where is kept beside it (.import.yaml)")
       ->required();
   for (const sysid::RoleSpec& spec : sysid::roles) {
@@ -29,7 +29,7 @@ void add_import(CLI::App& program, ExitCode& outcome) {
                          (spec.role == sysid::Role::time ? "each for its own columns" : "averaged"))
         ->allow_extra_args(false);
   }
-  command->add_option("--unit", options->units, "ROLE=UNIT, where the column does not say it (pressure=psi)")
+  command->add_option("--unit", options->units, "ROLE=UNIT, if the file does not state it (pressure=psi)")
       ->allow_extra_args(false);
   command
       ->add_option("--scale", options->scales,
@@ -43,20 +43,21 @@ void add_import(CLI::App& program, ExitCode& outcome) {
       ->check(number_between(1e-3, 1e7));
   command
       ->add_option("--missing", options->missing,
-                   "What stands where nothing was read (-999), besides NaN and the like")
+                   "Value of a missing reading (-999), in addition to NaN and similar")
       ->allow_extra_args(false);
-  command->add_option("--separator", options->separator, "comma, semicolon, tab, space or bar [found]");
-  command->add_option("--channel", options->channel, "Only the rows, or the columns, of this channel");
-  command->add_option("--sheet", options->sheet, "Sheet of a workbook, where several have numbers");
-  command->add_flag("--skip-bad-lines", options->skip_bad_lines,
-                    "Leave out lines that cannot be read, and count them");
-  command->add_option("--from-s", options->from_s, "Only samples from here on, counted from the first one")
+  command->add_option("--separator", options->separator, "comma, semicolon, tab, space or bar [detected]");
+  command->add_option("--channel", options->channel, "Only the rows or columns of this channel");
+  command->add_option("--sheet", options->sheet, "Sheet of a workbook if several contain numbers");
+  command->add_flag("--skip-bad-lines", options->skip_bad_lines, "Skip unreadable lines, and count them");
+  command
+      ->add_option("--from-s", options->from_s,
+                   "First sample to use, relative to the first one of the file [s]")
       ->check(number_between(0.0, 1e9));
-  command->add_option("--to-s", options->to_s, "Only samples up to here")->check(number_between(0.0, 1e9));
+  command->add_option("--to-s", options->to_s, "Last sample to use [s]")->check(number_between(0.0, 1e9));
   command->add_option("--map", options->map,
-                      "What an earlier import kept (.import.yaml); options overrule it");
-  command->add_flag("--yes", options->yes, "Agree to what is proposed without being asked");
-  command->add_flag("--json", options->json, "Say what was done as JSON");
+                      "Assignment of an earlier import (.import.yaml); options override it");
+  command->add_flag("--yes", options->yes, "Accept the proposed assignment without a question");
+  command->add_flag("--json", options->json, "Print a summary as JSON");
   command->callback([options, &outcome] { outcome = run_import(*options); });
 }
 

@@ -81,18 +81,18 @@ std::optional<ExitCode> settle(const Fact& fact, const InitOptions& options, Rig
   }
   if (question->otherwise.empty()) {
     return fail(ExitCode::usage,
-                "there is no terminal to ask at: --" + fact.key + " is needed (" + question->text + ")");
+                "without a terminal, --" + fact.key + " is required (" + question->text + ")");
   }
   const std::string complaint = fact.take(question->otherwise, draft);
   if (complaint.empty()) return std::nullopt;
-  return fail(ExitCode::usage, "--" + fact.key + " is needed: " + complaint);
+  return fail(ExitCode::usage, "--" + fact.key + " is required: " + complaint);
 }
 
 ExitCode run(const InitOptions& options) {
   std::error_code error;
   if (std::filesystem::exists(options.file, error)) {
     return fail(ExitCode::state_refused,
-                options.file + " is there already and stays as it is: name another file");
+                options.file + " already exists and is not changed: name another file");
   }
   RigDraft draft;
   draft.name = options.name.empty() ? std::filesystem::path(options.file).stem().string() : options.name;
@@ -107,7 +107,7 @@ ExitCode run(const InitOptions& options) {
   if (!text) return refuse(text.error());
   if (const auto written = create_file(options.file, *text); !written)
     return fail(ExitCode::io, written.error());
-  std::printf("%s is written; next:\n  softgrip check %s\n  softgrip doctor --rig %s\n", options.file.c_str(),
+  std::printf("%s is written. Next:\n  softgrip check %s\n  softgrip doctor --rig %s\n", options.file.c_str(),
               options.file.c_str(), options.file.c_str());
   return ExitCode::done;
 }
@@ -117,15 +117,15 @@ ExitCode run(const InitOptions& options) {
 void add_init(CLI::App& program, ExitCode& outcome) {
   auto options = std::make_shared<InitOptions>();
   CLI::App* command =
-      program.add_subcommand("init", "A first rig file, from a few questions or from options");
-  command->add_option("FILE", options->file, "The rig file; one that is there is never overwritten")
+      program.add_subcommand("init", "Create a commented rig file, interactively or from options");
+  command->add_option("FILE", options->file, "Rig file to create; an existing file is never overwritten")
       ->capture_default_str();
-  command->add_option("--name", options->name, "Of the rig [the file's]");
+  command->add_option("--name", options->name, "Name of the rig [that of the file]");
   command
       ->add_option("--rate-hz", options->rate_hz,
-                   "Of loop and bus [the highest usual one that the board allows]")
+                   "Rate of loop and bus [the highest usual rate that the board allows]")
       ->check(CLI::Range(1.0, 10000.0));
-  command->add_flag("--service", options->service, "Folders of the system service instead of /tmp");
+  command->add_flag("--service", options->service, "Use the folders of the system service instead of /tmp");
   for (const Fact& fact : draft_facts()) {
     CLI::Option* const option = command->add_option("--" + fact.key, options->facts[fact.key], fact.about);
     if (fact.words > 1) {
@@ -135,11 +135,12 @@ void add_init(CLI::App& program, ExitCode& outcome) {
     }
   }
   command->footer(
-      "At a terminal what is not given as an option is asked for; without one the usual is taken, and what "
-      "has no\n"
-      "usual value must be given. Exit codes: 0 written, 1 stopped, 2 usage, 3 the rig file's reader refuses "
+      "On a terminal, init asks a question for each missing option. Otherwise it uses the default, and an "
+      "option\n"
+      "without a default is required. Exit codes: 0 written, 1 stopped, 2 usage, 3 the rig file's reader "
+      "refuses "
       "it,\n"
-      "4 the file cannot be written, 5 it is there already.");
+      "4 the file cannot be written, 5 the file already exists.");
   command->callback([options, &outcome] { outcome = run(*options); });
 }
 

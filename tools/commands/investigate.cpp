@@ -188,7 +188,7 @@ ExitCode conclude(const InvestigateOptions& options, const model::Model& given, 
   } else {
     print_end(investigation, consequences.closed_loop, options.out);
     if (tracking) {
-      std::printf("on the rig: recalibrated %s mm, extended %s mm\n",
+      std::printf("on the rig: refitted model %s mm, extended model %s mm\n",
                   significant(tracking->recalibrated_rmse_mm, 3).c_str(),
                   significant(tracking->extended_rmse_mm, 3).c_str());
     }
@@ -198,11 +198,11 @@ ExitCode conclude(const InvestigateOptions& options, const model::Model& given, 
 
 ExitCode run(const InvestigateOptions& options) {
   if (options.rig.empty() == options.rig_command.empty())
-    return fail(ExitCode::usage, "an investigation needs --rig or --rig-command, and not both");
+    return fail(ExitCode::usage, "an investigation needs either --rig or --rig-command");
   if (!options.rig_channel.empty() && options.rig.empty())
-    return fail(ExitCode::usage, "--rig-channel goes with --rig");
+    return fail(ExitCode::usage, "--rig-channel needs --rig");
   if (!options.gauge_command.empty() && options.rig_command.empty())
-    return fail(ExitCode::usage, "--gauge-command goes with --rig-command");
+    return fail(ExitCode::usage, "--gauge-command needs --rig-command");
   std::vector<std::string> inputs = options.data;
   inputs.insert(inputs.end(), {options.model, options.rig, options.gauge});
   std::vector<std::string> names = diagnosis_files();
@@ -254,35 +254,35 @@ ExitCode run(const InvestigateOptions& options) {
 void add_investigate(CLI::App& program, ExitCode& outcome) {
   auto options = std::make_shared<InvestigateOptions>();
   CLI::App* command = program.add_subcommand(
-      "investigate", "Diagnose, play the experiment that tells more, diagnose again, until one cause stands");
-  command->add_option("--model", options->model, "Model file as it is used today")->required();
-  command->add_option("--data", options->data, "Logs of one campaign, in order")->required();
+      "investigate", "Run the experiments that separate ambiguous causes, until one cause remains");
+  command->add_option("--model", options->model, "Model file in use")->required();
+  command->add_option("--data", options->data, "Logs of one measurement campaign, in order")->required();
   command->add_option("--rig", options->rig, "Rig file of the rig that is moved");
   command->add_option("--rig-channel", options->rig_channel,
-                      "With --rig: which of its channels is moved [that of --channel]");
+                      "With --rig: the channel to move [that of --channel]");
   command->add_option("--rig-command", options->rig_command,
                       "Command that plays on another rig: COMMAND COMMAND_CSV LOG_OUT");
   command->add_option(
       "--gauge-command", options->gauge_command,
       "With --rig-command: checks its sensor against a gauge: COMMAND POSITIONS_CSV GAUGE_OUT");
-  command->add_option("--gauge", options->gauge,
-                      "A gauge file that is there already (CSV: gauge_mm,displacement_mm)");
-  command->add_option("--out", options->out, "Folder for everything that is found")->required();
-  command->add_option("--budget-minutes", options->budget_minutes, "Of the rig's time")
+  command->add_option("--gauge", options->gauge, "An existing gauge file (CSV: gauge_mm,displacement_mm)");
+  command->add_option("--out", options->out, "Folder for all results")->required();
+  command->add_option("--budget-minutes", options->budget_minutes, "Limit of the time on the rig")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   command
       ->add_option("--pressure-max-kpa", options->pressure_max_kpa,
-                   "With --rig-command: its largest pressure [the largest of the logs]")
+                   "With --rig-command: highest pressure of the rig [the largest of the logs]")
       ->check(CLI::PositiveNumber);
-  command->add_option("--slew-kpa-per-s", options->slew_kpa_per_s, "With --rig-command: its fastest change")
+  command->add_option("--slew-kpa-per-s", options->slew_kpa_per_s, "With --rig-command: slew rate of the rig")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  command->add_flag("--yes", options->yes, "Move the rig without asking");
+  command->add_flag("--yes", options->yes, "Move the rig without a question");
   command->add_flag("--no-closed-loop", options->no_closed_loop,
-                    "Do not retune and measure the extension's gain in closed loop");
-  command->add_option("--seed", options->diagnosis.seed, "Of starts and resampling")->capture_default_str();
-  command->add_option("--threads", options->diagnosis.threads, "0: as many as there are cores")
+                    "Do not retune and measure the closed loop with the extended model");
+  command->add_option("--seed", options->diagnosis.seed, "Seed of starts and resampling")
+      ->capture_default_str();
+  command->add_option("--threads", options->diagnosis.threads, "Number of threads; 0: one per core")
       ->capture_default_str();
   add_log_options(*command, options->logs);
   command->add_flag("--json", options->json, "Print investigation.json");

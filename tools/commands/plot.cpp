@@ -73,7 +73,7 @@ ExitCode run(const PlotOptions& options) {
   const auto format = is_stream(options.out) ? PictureFormat::svg : picture_format_of(options.out);
   if (!format)
     return fail(ExitCode::usage, "plot writes " + std::string(picture_formats()) +
-                                     ", by the ending: " + options.out + " ends in none of them");
+                                     ", selected by the extension: " + options.out + " has none of them");
   if (const auto code = refuse_overwriting({options.out}, options.recordings)) return *code;
   if (!(options.from_s < options.to_s)) return fail(ExitCode::usage, "--from must be below --to");
   std::vector<Recording> recordings;
@@ -102,10 +102,10 @@ ExitCode run(const PlotOptions& options) {
 void add_plot(CLI::App& program, ExitCode& outcome) {
   auto options = std::make_shared<PlotOptions>();
   CLI::App* command =
-      program.add_subcommand("plot", "A recording as a picture: pressure, displacement, error, states");
+      program.add_subcommand("plot", "Plot a recording: pressure, displacement, error, states");
   command
       ->add_option("RECORDING", options->recordings,
-                   "A recording's folder, or a log (CSV); two of them: the second over the first")
+                   "A recording's folder or a log (CSV); with two, the second is drawn over the first")
       ->required()
       ->expected(1, 2);
   command
@@ -116,7 +116,7 @@ void add_plot(CLI::App& program, ExitCode& outcome) {
   command->add_option("--from", options->from_s, "Begin at this time [s]");
   command->add_option("--to", options->to_s, "End at this time [s]");
   command->add_flag("--beside", options->beside, "Two recordings side by side instead of over each other");
-  command->add_flag("--json", options->json, "Say what was done as JSON");
+  command->add_flag("--json", options->json, "Print a summary as JSON");
   command->callback([options, &outcome] { outcome = run(*options); });
 }
 

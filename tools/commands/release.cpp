@@ -8,8 +8,8 @@ namespace softgrip::tools {
 void add_release(CLI::App& program, ExitCode& outcome) {
   add_plain_request(
       program, outcome, "release",
-      "Lets go: the running sequence goes on with its release step; what is held without one is "
-      "let down",
+      "Release: the running sequence continues with its release step; without one, fingers under "
+      "pressure are vented",
       "releasing");
 }
 

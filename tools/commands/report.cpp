@@ -40,7 +40,7 @@ void print_verification(const Verification& v, const std::string& folder) {
     std::printf("  %s: reported %s, recomputed %s\n", d.where.c_str(), d.reported.c_str(),
                 d.recomputed.c_str());
   if (v.comparison.differences.empty()) {
-    std::printf("%s: all %zu numbers are what they were\n", folder.c_str(), v.comparison.numbers);
+    std::printf("%s: all %zu numbers are reproduced\n", folder.c_str(), v.comparison.numbers);
   } else {
     std::printf("%s: of %zu numbers the %zu above differ\n", folder.c_str(), v.comparison.numbers,
                 v.comparison.differences.size());
@@ -63,15 +63,15 @@ ExitCode run(const ReportOptions& options) {
 void add_report(CLI::App& program, ExitCode& outcome) {
   auto options = std::make_shared<ReportOptions>();
   CLI::App* command =
-      program.add_subcommand("report", "Whether a report's numbers come out again from the same logs");
+      program.add_subcommand("report", "Recompute a report from its logs and compare the numbers");
   command
       ->add_option("--verify", options->folder,
-                   "Folder that identify, validate or diagnose wrote; its call is made again and compared")
+                   "Folder that identify, validate or diagnose wrote; the call is repeated and compared")
       ->required();
-  command->add_option("--tolerance", options->tolerance, "Relative; numbers within it are the same")
+  command->add_option("--tolerance", options->tolerance, "Relative tolerance for equal numbers")
       ->check(number_between(0.0, 1.0))
       ->capture_default_str();
-  command->add_flag("--json", options->json, "What differs, as JSON");
+  command->add_flag("--json", options->json, "Print the differences as JSON");
   command->callback([options, &outcome] { outcome = run(*options); });
 }
 

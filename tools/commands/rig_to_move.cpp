@@ -15,7 +15,7 @@ namespace softgrip::tools {
 Consent consent_on_terminal(bool yes) {
   if (yes) return [](const std::string&) { return true; };
   return [](const std::string& what) {
-    std::fprintf(stderr, "%s. Ctrl-C vents it. Go on? [y/N] ", what.c_str());
+    std::fprintf(stderr, "%s. Ctrl-C vents the rig. Continue? [y/N] ", what.c_str());
     std::fflush(stderr);
     std::string answer;
     return std::getline(std::cin, answer) && (answer == "y" || answer == "Y" || answer == "yes");
@@ -32,8 +32,9 @@ tl::expected<ExperimentRig, ExitCode> rig_to_move(const std::string& path, const
   if (!rig) return tl::unexpected(fail(ExitCode::usage, rig.error()));
   if (rig->simulated) return std::move(*rig);
   if (!yes && ::isatty(STDIN_FILENO) == 0) {
-    return tl::unexpected(
-        fail(ExitCode::usage, "this would move a rig and there is nobody to ask: --yes allows it"));
+    return tl::unexpected(fail(ExitCode::usage,
+                               "this command moves a rig, and the question cannot be asked without a "
+                               "terminal: allow it with --yes"));
   }
   if (daemon_runs(rig->rig.socket.path))
     return tl::unexpected(fail(ExitCode::state_refused, stop_the_daemon));

@@ -45,7 +45,7 @@ void report(const RunOptions& options, const daemon::Outcome& outcome) {
   if (options.json) {
     const Json safe_state_confirmed = began ? Json(outcome.safe_state_confirmed) : Json(nullptr);
     Json json{{"sequence_end", end},      {"left_safely", safe_state_confirmed},
-              {"ticks", outcome.ticks},   {"slips", outcome.overruns},
+              {"ticks", outcome.ticks},   {"slips", outcome.overruns},  // words-ok: API key
               {"wall_s", outcome.wall_s}, {"results", Json::object()}};
     for (std::size_t i = 0; i < channels.size(); ++i) json["results"][channels[i]] = title(i);
     print_json(json);
@@ -58,7 +58,7 @@ void report(const RunOptions& options, const daemon::Outcome& outcome) {
   for (std::size_t i = 0; i < channels.size(); ++i)
     std::printf("%s: %s\n", channels[i].c_str(), title(i).c_str());
   const bool by_signal = outcome.ending == daemon::Ending::interrupted && outcome.signal != 0;
-  std::printf("sequence %s%s; %s ticks, %s slips in %s s; %s\n", end.c_str(),
+  std::printf("sequence %s%s; %s ticks, %s overruns in %s s; %s\n", end.c_str(),
               by_signal ? (" by " + name_of_signal(outcome.signal)).c_str() : "",
               std::to_string(outcome.ticks).c_str(), std::to_string(outcome.overruns).c_str(),
               significant(outcome.wall_s, 4).c_str(),
@@ -106,7 +106,7 @@ ExitCode run(const RunOptions& options) {
   const daemon::Outcome outcome = (*daemon)->run();
   if (!outcome.message.empty()) fail(ExitCode::failed, outcome.message);
   if (!outcome.recording_error.empty())
-    fail(ExitCode::io, "the recording is not whole: " + outcome.recording_error);
+    fail(ExitCode::io, "the recording is incomplete: " + outcome.recording_error);
   report(options, outcome);
   return daemon::exit_code_of(outcome);
 }
@@ -116,21 +116,20 @@ ExitCode run(const RunOptions& options) {
 void add_run(CLI::App& program, ExitCode& outcome) {
   auto options = std::make_shared<RunOptions>();
   CLI::App* command =
-      program.add_subcommand("run", "One sequence on a rig, in the foreground; no daemon is needed");
+      program.add_subcommand("run", "Run one sequence on a rig in the foreground, without a daemon");
   command->add_option("SEQUENCE", options->sequence, "Sequence file")->required();
   add_set_option(*command, options->settings);
   command->add_option("--rig", options->rig, "Rig file [config/rig.yaml, or the installed one]");
-  command->add_option("--record", options->record, "Record into this folder, whatever the rig file says");
+  command->add_option("--record", options->record, "Record into this folder; overrides the rig file");
   command->add_flag("--virtual-time", options->virtual_time,
-                    "As fast as possible, repeatable; simulated boards only");
-  command->add_option("--seed", options->seed, "Of a simulated board, in place of the rig file's");
+                    "Run as fast as possible and repeatably; simulated boards only");
+  command->add_option("--seed", options->seed, "Seed of a simulated board; overrides the rig file");
   command->add_flag("--no-socket", options->no_socket, "Do not listen on the rig file's socket");
-  command->add_flag("--quiet", options->quiet, "Only the results");
-  command->add_flag("--json", options->json, "Events and results as JSON, one per line");
+  command->add_flag("--quiet", options->quiet, "Print only the results");
+  command->add_flag("--json", options->json, "Print events and results as JSON, one per line");
   command->footer(
-      "Ctrl-C and other ending signals: it writes the safe outputs, then ends by the same signal, so that "
-      "the "
-      "loop of a\nshell does not start the next sequence.");
+      "Ctrl-C and other ending signals: the command writes the safe outputs and then ends by the same "
+      "signal,\nso that a loop of a shell does not start the next sequence.");
   command->callback([options, &outcome] { outcome = run(*options); });
 }
 

@@ -28,7 +28,7 @@ ExitCode run(const SequencesOptions& options) {
   const auto sequences = result->value("sequences", nlohmann::ordered_json::array());
   for (const std::string& line : options.names ? names_of_sequences(sequences) : view_of_sequences(sequences))
     std::printf("%s\n", line.c_str());
-  if (sequences.empty()) std::fprintf(stderr, "the daemon's sequence directory has none\n");
+  if (sequences.empty()) std::fprintf(stderr, "the daemon's sequence directory contains no sequences\n");
   return ExitCode::done;
 }
 
@@ -36,10 +36,10 @@ ExitCode run(const SequencesOptions& options) {
 
 void add_sequences(CLI::App& program, ExitCode& outcome) {
   auto options = std::make_shared<SequencesOptions>();
-  CLI::App* command =
-      program.add_subcommand("sequences", "Which sequences the daemon can start, with their parameters");
+  CLI::App* command = program.add_subcommand(
+      "sequences", "List the sequences that the daemon can start, with their parameters");
   add_daemon_options(*command, options->daemon);
-  command->add_flag("--names", options->names, "Only their names");
+  command->add_flag("--names", options->names, "Print only the names");
   command->callback([options, &outcome] { outcome = run(*options); });
 }
 

@@ -45,7 +45,7 @@ tl::expected<sysid::Log, ExitCode> read_input(const SimulateOptions& options) {
     return sampled_signal(*signal, options.rate_hz.value_or(default_rate_hz));
   }
   if (options.rate_hz) {
-    return tl::unexpected{fail(ExitCode::usage, "--rate-hz goes with a SIGNAL; a log has its own times")};
+    return tl::unexpected{fail(ExitCode::usage, "--rate-hz is only for a SIGNAL; a log has its own times")};
   }
   document::Problems problems;
   sysid::LogOptions log_options;
@@ -84,7 +84,7 @@ void report(const SimulateOptions& options, const model::Model& model, const sys
     std::fprintf(stream, "%s\n", json.dump().c_str());
     return;
   }
-  std::fprintf(stream, "%s answers %s: %zu samples, %s s, span %s %s, noise %s %s, seed %s -> %s\n",
+  std::fprintf(stream, "%s, response to %s: %zu samples, %s s, span %s %s, noise %s %s, seed %s -> %s\n",
                model.name.c_str(), options.input.c_str(), log.size(), significant(duration_s).c_str(),
                significant(span_mm).c_str(), unit.c_str(), significant(options.settings.noise_mm).c_str(),
                unit.c_str(), std::to_string(options.settings.seed).c_str(), options.out.c_str());
@@ -109,7 +109,7 @@ ExitCode run(const SimulateOptions& options) {
 void add_simulate(CLI::App& program, ExitCode& outcome) {
   auto options = std::make_shared<SimulateOptions>();
   CLI::App* command =
-      program.add_subcommand("simulate", "A model's answer to a test signal or to the command of a log");
+      program.add_subcommand("simulate", "Simulate a model with a test signal or the command of a log");
   command->add_option("--model", options->model, "Model file")->required();
   command
       ->add_option("--input", options->input,
@@ -121,11 +121,11 @@ void add_simulate(CLI::App& program, ExitCode& outcome) {
                    "Standard deviation of white noise on the reading, in the unit of the model's output")
       ->capture_default_str()
       ->check(number_between(0, 1000));
-  command->add_option("--seed", options->settings.seed, "Of all noise")->capture_default_str();
+  command->add_option("--seed", options->settings.seed, "Seed of all noise")->capture_default_str();
   command->add_option("--rate-hz", options->rate_hz, "Samples per second of a SIGNAL [100]")
       ->check(number_between(0.1, 100000));
-  command->add_option("--channel", options->channel, "Which channel of a log with several");
-  command->add_flag("--json", options->json, "Say what was done as JSON");
+  command->add_option("--channel", options->channel, "Channel of a log with several channels");
+  command->add_flag("--json", options->json, "Print a summary as JSON");
   command->callback([options, &outcome] { outcome = run(*options); });
 }
 

@@ -98,7 +98,7 @@ tl::expected<Json, Break> FollowedStart::reply(DaemonClient& client, const Json&
     auto line = client.next_line(std::chrono::milliseconds{0});
     if (!line) return tl::unexpected{Break{0, line.error()}};
     if (*line) return std::move(**line);
-    if (left.count() <= 0) return tl::unexpected{Break{0, {ExitCode::io, "the daemon does not answer"}}};
+    if (left.count() <= 0) return tl::unexpected{Break{0, {ExitCode::io, "the daemon does not respond"}}};
   }
 }
 
@@ -204,14 +204,14 @@ ExitCode run(const StartOptions& options) {
 
 void add_start(CLI::App& program, ExitCode& outcome) {
   auto options = std::make_shared<StartOptions>();
-  CLI::App* command = program.add_subcommand("start", "Lets the daemon run a sequence");
+  CLI::App* command = program.add_subcommand("start", "Start a sequence of the daemon");
   command->add_option("SEQUENCE", options->sequence, "A file, or a name in the daemon's sequence directory")
       ->required();
   add_set_option(*command, options->settings);
   add_daemon_options(*command, options->daemon);
   command->add_flag("--wait", options->wait,
-                    "Follow it to its end, and stop it if this is interrupted; exit code 6 unless every "
-                    "grip went well");
+                    "Follow the sequence to its end, and stop it if this command is interrupted; exit code 6 "
+                    "unless every grip succeeded");
   command->callback([options, &outcome] { outcome = run(*options); });
 }
 

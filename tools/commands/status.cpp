@@ -50,7 +50,7 @@ ExitCode run(const DaemonOptions& options) {
 
 void add_status(CLI::App& program, ExitCode& outcome) {
   auto options = std::make_shared<DaemonOptions>();
-  CLI::App* command = program.add_subcommand("status", "What the daemon does now");
+  CLI::App* command = program.add_subcommand("status", "Show the state of the daemon");
   add_daemon_options(*command, *options);
   command->callback([options, &outcome] { outcome = run(*options); });
 }

@@ -6,8 +6,7 @@
 namespace softgrip::tools {
 
 void add_stop(CLI::App& program, ExitCode& outcome) {
-  add_ending_request(program, outcome, "stop",
-                     "Ends the running sequence as the rig file's safe_action says for its phase",
+  add_ending_request(program, outcome, "stop", "Stop the sequence with the safe action of its phase",
                      "stopping");
 }
 

@@ -62,7 +62,7 @@ ExitCode run_study(const Output& output, Options options, Result (*study)(const 
 void add_output(CLI::App& command, Output& output) {
   command.add_option("--out", output.out, "Folder for the report and the numbers")->required();
   add_figures_option(command, output.figures);
-  command.add_flag("--json", output.json, "The numbers as JSON on the standard output");
+  command.add_flag("--json", output.json, "Print the numbers as JSON");
 }
 
 void add_published(CLI::App& study, ExitCode& outcome) {
@@ -72,10 +72,10 @@ void add_published(CLI::App& study, ExitCode& outcome) {
   };
   auto options = std::make_shared<Options>();
   CLI::App* command = study.add_subcommand(
-      "published", "What the published numbers say: latency that hysteresis absorbs, and what follows");
+      "published", "Consequences of the published numbers: hysteresis that absorbs latency");
   add_output(*command, options->output);
-  command->add_option("--seed", options->study.seed, "Of noise and starts")->capture_default_str();
-  command->add_option("--starts", options->study.starts, "Searches per identification")
+  command->add_option("--seed", options->study.seed, "Seed of noise and start points")->capture_default_str();
+  command->add_option("--starts", options->study.starts, "Start points per identification")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   command->callback([options, &outcome] {
@@ -91,16 +91,20 @@ void add_control(CLI::App& study, ExitCode& outcome) {
   };
   auto options = std::make_shared<Options>();
   CLI::App* command = study.add_subcommand(
-      "control", "The simulated finger tracked by every scheme, with mismatch, noise and margins");
+      "control",
+      "Track references with a simulated finger and every scheme, with mismatch, noise and margins");
   add_output(*command, options->output);
-  command->add_option("--draws", options->study.draws, "Fingers per figure")
+  command->add_option("--draws", options->study.draws, "Simulated fingers per figure")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();
-  command->add_option("--seed", options->study.seed, "Of fingers, noise and logs")->capture_default_str();
-  command->add_option("--frequencies-hz", options->study.frequencies_hz, "Of the references")
+  command->add_option("--seed", options->study.seed, "Seed of fingers, noise and logs")
+      ->capture_default_str();
+  command->add_option("--frequencies-hz", options->study.frequencies_hz, "Frequencies of the references")
       ->check(number_between(0.01, 2.0))
       ->capture_default_str();
-  command->add_option("--max-sensitivity", options->study.most_sensitivity, "Ms of every loop, at most")
+  command
+      ->add_option("--max-sensitivity", options->study.most_sensitivity,
+                   "Largest sensitivity peak Ms of every loop")
       ->check(number_between(1.05, 5.0))
       ->capture_default_str();
   command->callback([options, &outcome] {
@@ -112,7 +116,7 @@ void add_control(CLI::App& study, ExitCode& outcome) {
 }  // namespace
 
 void add_study(CLI::App& program, ExitCode& outcome) {
-  CLI::App* study = program.add_subcommand("study", "Studies that can be repeated");
+  CLI::App* study = program.add_subcommand("study", "Reproduce the studies of the paper");
   study->require_subcommand(1);
   add_published(*study, outcome);
   add_control(*study, outcome);

@@ -126,7 +126,8 @@ ExitCode run(TuneOptions& options) {
   task.finger = *model;
   take_defaults(task);
   if (!options.rig.empty()) {
-    if (options.rate_hz) return fail(ExitCode::usage, "--rate-hz goes without --rig, which has its own");
+    if (options.rate_hz)
+      return fail(ExitCode::usage, "--rate-hz excludes --rig, because the rig file has its own rate");
     if (const auto code = take_rig(options, task)) return *code;
   }
   if (options.rate_hz) task.rate_hz = *options.rate_hz;
@@ -166,35 +167,37 @@ ExitCode run(TuneOptions& options) {
 
 void add_tune(CLI::App& program, ExitCode& outcome) {
   auto options = std::make_shared<TuneOptions>();
-  CLI::App* command = program.add_subcommand("tune", "PID gains for a model that is not quite the finger");
+  CLI::App* command = program.add_subcommand("tune", "Tune PID gains that tolerate model errors");
   command->add_option("--model", options->model, "Model file")->required();
   command->add_option("--rig", options->rig, "Rig file: rate, limits, feedforward and latency of a channel");
-  command->add_option("--channel", options->channel, "Which channel of the rig [the first]");
-  command->add_option("--rate-hz", options->rate_hz, "Of the loop, without a rig [200]")
+  command->add_option("--channel", options->channel, "Channel of the rig [the first]");
+  command->add_option("--rate-hz", options->rate_hz, "Rate of the loop, without --rig [200]")
       ->check(number_between(10.0, 2000.0));
-  command->add_option("--feedforward", options->feedforward, "In place of the rig's, or of none")
+  command->add_option("--feedforward", options->feedforward, "Feedforward [that of the rig, or none]")
       ->check(CLI::IsMember(
           std::vector<std::string>(control::feedforward_names.begin(), control::feedforward_names.end())));
   command->add_option("--pressure-max-kpa", options->pressure_max_kpa, "Highest pressure, without a rig [60]")
       ->check(number_between(1.0, 1000.0));
-  command->add_option("--mismatch-percent", options->mismatch_percent, "Every parameter is off by up to this")
+  command->add_option("--mismatch-percent", options->mismatch_percent, "Largest error of every parameter")
       ->check(number_between(0.0, 50.0))
       ->capture_default_str();
-  command->add_option("--max-sensitivity", options->task.most_sensitivity, "Ms of the loop, at most")
+  command
+      ->add_option("--max-sensitivity", options->task.most_sensitivity,
+                   "Largest sensitivity peak Ms of the loop")
       ->check(number_between(1.05, 5.0))
       ->capture_default_str();
-  command->add_option("--frequencies-hz", options->task.frequencies_hz, "Sines that are tracked")
+  command->add_option("--frequencies-hz", options->task.frequencies_hz, "Frequencies of the tracked sines")
       ->check(number_between(0.01, 5.0))
       ->capture_default_str();
-  command->add_option("--noise-mm", options->task.noise_mm, "Of the sensor, without a rig")
+  command->add_option("--noise-mm", options->task.noise_mm, "Noise of the sensor, without --rig")
       ->check(number_between(0.0, 10.0))
       ->capture_default_str();
   command->add_option("--draws", options->task.draws, "Fingers")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
-  command->add_option("--seed", options->task.seed, "Of fingers and noise")->capture_default_str();
+  command->add_option("--seed", options->task.seed, "Seed of fingers and noise")->capture_default_str();
   command->add_option("--out", options->out, "Snippet for the rig file ('-': standard output)")->required();
-  command->add_flag("--json", options->json, "The numbers as JSON");
+  command->add_flag("--json", options->json, "Print the numbers as JSON");
   command->callback([options, &outcome] { outcome = run(*options); });
 }
 

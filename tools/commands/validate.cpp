@@ -114,14 +114,14 @@ ExitCode run(const ValidateOptions& options, const std::vector<std::string>& cal
 
 void add_validate(CLI::App& program, ExitCode& outcome) {
   auto options = std::make_shared<ValidateOptions>();
-  CLI::App* command = program.add_subcommand("validate", "How well a model predicts logs");
+  CLI::App* command = program.add_subcommand("validate", "Report how well a model predicts logs");
   command->add_option("--model", options->model, "Model file")->required();
   command->add_option("--data", options->data, "Logs to predict (CSV, or a recording's folder)")->required();
   command->add_option("--out", options->out, "Folder for validate.json, report.html, and series.csv per log");
   add_figures_option(*command, options->figures);
   command
       ->add_option("--at-most-percent", options->at_most_percent,
-                   "Exit with 6 if the RMSE of a log is a larger share of its span")
+                   "Exit with 6 if the RMSE of a log exceeds this share of its span")
       ->check(number_between(0.0, 100.0));
   add_log_options(*command, options->logs);
   command->add_flag("--json", options->json, "Print validate.json");

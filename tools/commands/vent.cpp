@@ -6,8 +6,7 @@
 namespace softgrip::tools {
 
 void add_vent(CLI::App& program, ExitCode& outcome) {
-  add_plain_request(program, outcome, "vent", "Ends what runs and vents all channels: a held part drops",
-                    "venting");
+  add_plain_request(program, outcome, "vent", "Stop and vent all channels; a held part drops", "venting");
 }
 
 }  // namespace softgrip::tools

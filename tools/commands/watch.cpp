@@ -227,7 +227,7 @@ bool LiveWatch::hear_keys() {
   if (outcome.leave) return false;
   state_.said = {};
   if (outcome.request) {
-    state_.said = {outcome.request->value("command", "") + " is asked for", Tone::faint};
+    state_.said = {outcome.request->value("command", "") + " requested", Tone::faint};
     ask(std::move(*outcome.request));
   }
   return true;
@@ -273,7 +273,7 @@ ExitCode LiveWatch::run(std::uint64_t count) {
         return fail(failure->code, failure->message);
       }
     }
-    if (dialogue_.lapse(now_s())) state_.said = {"nobody answered: nothing was asked for", Tone::doubtful};
+    if (dialogue_.lapse(now_s())) state_.said = {"no confirmation: no command was sent", Tone::doubtful};
     draw();
   }
   leave();
@@ -293,15 +293,16 @@ ExitCode run(const WatchOptions& options) {
 
 void add_watch(CLI::App& program, ExitCode& outcome) {
   auto options = std::make_shared<WatchOptions>();
-  CLI::App* command = program.add_subcommand("watch",
-                                             "The daemon's state, live, with trends, events and keys that "
-                                             "stop, vent, release, acknowledge and start; a "
-                                             "line per update where there is no terminal");
+  CLI::App* command =
+      program.add_subcommand("watch",
+                             "Show the live state of the daemon with trends, events, and keys that "
+                             "stop, vent, release, acknowledge and start; a "
+                             "line per update without a terminal");
   add_daemon_options(*command, options->daemon);
   command->add_option("--rate-hz", options->rate_hz, "Updates per second")
       ->capture_default_str()
       ->check(number_between(0.1, 50));
-  command->add_option("--count", options->count, "Leave after so many updates; 0: when interrupted")
+  command->add_option("--count", options->count, "Number of updates; 0: until interrupted")
       ->capture_default_str();
   command->callback([options, &outcome] { outcome = run(*options); });
 }
