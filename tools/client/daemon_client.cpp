@@ -18,7 +18,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// The daemon answers within a second whatever happens; then something is wrong.
+// A longer line counts as malformed.
 constexpr std::size_t longest_line = std::size_t{8} << 20U;
 
 constexpr const char* how_to_start =
@@ -47,7 +47,7 @@ std::string listed(const Json& problems) {
   std::string text;
   for (const Json& problem : problems) {
     text += "\n" + problem.value("file", "");
-    // Without a line it is about the file as a whole.
+    // A problem without a line concerns the whole file.
     if (problem.value("line_text", Json()) != Json("")) {
       text +=
           ":" + std::to_string(problem.value("line", 0)) + ":" + std::to_string(problem.value("column", 0));
@@ -88,7 +88,7 @@ tl::expected<DaemonClient, ClientFailure> DaemonClient::connect(const std::strin
 
 tl::expected<DaemonClient, ClientFailure> DaemonClient::connect_at_once(const std::string& path) {
   auto client = connect(path, SOCK_NONBLOCK, longest_send);
-  // Only to connect: send() leaves a line whole.
+  // Only connect() must not block. A blocking send() writes a line completely.
   if (client) ::fcntl(client->descriptor(), F_SETFL, 0);
   return client;
 }
@@ -103,7 +103,7 @@ tl::expected<DaemonClient, ClientFailure> DaemonClient::connect(const std::strin
   std::memcpy(address.sun_path, path.data(), path.size());
   Descriptor socket{::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | flags, 0)};
   const timeval limit{send_limit.count() / 1000, send_limit.count() % 1000 * 1000};
-  // It limits connect() too.
+  // The limit also applies to connect().
   if (!socket || ::setsockopt(socket.get(), SOL_SOCKET, SO_SNDTIMEO, &limit, sizeof limit) != 0 ||
       ::connect(socket.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
     return tl::unexpected{cannot_connect(path, errno)};
@@ -118,7 +118,7 @@ void DaemonClient::send(const Json& request) {
     if (count < 0 && errno == EINTR) continue;
     if (count < 0) {
       deaf_ = errno == EAGAIN || errno == EWOULDBLOCK;
-      // Half of a request must not become the begin of the next one.
+      // A partial request must not become the beginning of the next one.
       if (deaf_) ::shutdown(socket_.get(), SHUT_RDWR);
       return;
     }
@@ -163,7 +163,7 @@ tl::expected<std::optional<Json>, ClientFailure> DaemonClient::next_line(std::ch
   return std::optional<Json>{std::move(*line)};
 }
 
-/// Whatever comes behind it is not to be trusted either.
+/// Ends the connection, because the bytes after a malformed line cannot be trusted either.
 ClientFailure DaemonClient::malformed(const std::string& why) {
   ::shutdown(socket_.get(), SHUT_RDWR);
   pending_.clear();

@@ -1,5 +1,6 @@
 #pragma once
-// A connection to softgripd's socket: one JSON object per line each way (docs/reference/socket-api.md).
+// A connection to softgripd's socket with one JSON object per line in each direction
+// (docs/reference/socket-api.md).
 
 #include <chrono>
 #include <optional>
@@ -13,45 +14,47 @@
 
 namespace softgrip::tools {
 
-/// Where softgripd listens unless told otherwise: $SOFTGRIP_SOCKET, or the packaged service's path.
+/// Returns the default path of softgripd's socket: $SOFTGRIP_SOCKET, or the path of the packaged service.
 [[nodiscard]] std::string default_socket_path();
 
-/// "file:line:col: message" of each problem that the daemon has with a sequence, each on a line begun anew.
+/// Returns "file:line:col: message" for each problem of a sequence that the daemon reports. Each begins on a
+/// new line.
 [[nodiscard]] std::string listed(const nlohmann::ordered_json& problems);
 
-/// Why a request came to nothing, for the user, and what the program exits with.
+/// The reason why a request failed, for the user, and the exit code of the program.
 struct ClientFailure {
   ExitCode code = ExitCode::io;
   std::string message;
-  bool nobody_listens = false;  ///< no daemon runs on that socket
+  bool nobody_listens = false;  ///< no daemon listens on this socket
 };
 
 class DaemonClient {
  public:
   static constexpr std::chrono::milliseconds longest_answer{5000};
 
-  /// The failure says what to do when no daemon is there.
+  /// Connects to the daemon. If no daemon runs, the failure explains how to start one.
   [[nodiscard]] static tl::expected<DaemonClient, ClientFailure> connect(const std::string& path);
-  /// For a program that must not wait: fails if the daemon has too many connections to accept, and a request
-  /// waits for `longest_send` at most. connect(), and the requests after it, wait for `longest_answer`.
+  /// Connects without waiting. Fails if the daemon has too many connections to accept. A later request waits
+  /// for at most `longest_send`. With connect(), connecting and each request wait for at most
+  /// `longest_answer`.
   [[nodiscard]] static tl::expected<DaemonClient, ClientFailure> connect_at_once(const std::string& path);
   static constexpr std::chrono::milliseconds longest_send{50};
 
-  /// Sends a request and waits for nothing. What cannot be sent shows itself in next_line(): the reason
-  /// stands in what the daemon says last, if it gave one before it hung up. The connection ends if the daemon
-  /// does not take the request.
+  /// Sends a request without waiting for the response. next_line() reports a request that could not be sent.
+  /// If the daemon gave a reason before it closed the connection, the reason is in its last line. The
+  /// connection ends if the daemon does not accept the request.
   void send(const nlohmann::ordered_json& request);
-  /// The `result` of an answer that next_line() brought; a refusal as a failure, as of ask().
+  /// Returns the `result` of a response from next_line(), or a failure if the daemon refused, like ask().
   [[nodiscard]] static tl::expected<nlohmann::ordered_json, ClientFailure> result_of(
       const nlohmann::ordered_json& answer);
 
-  /// Sends a request and returns the `result` of its answer. Refusals of the daemon are failures with
-  /// ExitCode::state_refused, refused sequences with ExitCode::input_refused.
+  /// Sends a request and returns the `result` of its response. A refusal of the daemon is a failure with
+  /// ExitCode::state_refused, a refused sequence with ExitCode::input_refused.
   [[nodiscard]] tl::expected<nlohmann::ordered_json, ClientFailure> ask(
       const nlohmann::ordered_json& request, std::chrono::milliseconds patience = longest_answer);
 
-  /// The next line that the daemon sends by itself (a watched state); nothing when `patience` ends first.
-  /// Each line has passed parse_reply(). One that does not pass ends the connection (ExitCode::io).
+  /// Returns the next line of the daemon, for example a watched state, or nullopt after `patience`. Each line
+  /// has passed parse_reply(). A line that does not pass ends the connection (ExitCode::io).
   [[nodiscard]] tl::expected<std::optional<nlohmann::ordered_json>, ClientFailure> next_line(
       std::chrono::milliseconds patience);
 
@@ -68,12 +71,12 @@ class DaemonClient {
   Descriptor socket_;
   std::string path_;
   std::string pending_;
-  bool deaf_ = false;  // the daemon did not take a request
+  bool deaf_ = false;  // the daemon did not accept a request
 };
 
-/// Whether a daemon runs on that socket, be it that it does not answer: it holds the board then.
+/// Returns true if a daemon runs on this socket, even if it does not respond: it then controls the board.
 [[nodiscard]] bool daemon_runs(const std::string& path);
-/// What to do about one that must not.
+/// The remedy if no daemon may run.
 inline constexpr const char* stop_the_daemon =
     "softgripd runs and holds the board: stop it first (systemctl stop softgripd)";
 

@@ -64,8 +64,8 @@ void add_plain_request(CLI::App& program, ExitCode& outcome, const std::string& 
 
 namespace {
 
-/// What stays under pressure when the rig has come to a stand; null where nothing does, or it does not in
-/// time.
+/// Waits at most 3 s until the rig is idle or faulted and returns its `under_pressure`. Returns null if no
+/// finger is pressurised, or if the rig is still in motion.
 Json pressure_left(DaemonClient& client) {
   constexpr std::chrono::milliseconds pause{20};
   for (int looks = 0; looks < 150; ++looks) {

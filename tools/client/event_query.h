@@ -1,5 +1,5 @@
 #pragma once
-// Which of the daemon's events somebody wants to see.
+// Selects events of the daemon.
 
 #include <cstdint>
 #include <optional>
@@ -13,26 +13,28 @@
 
 namespace softgrip::tools {
 
-/// Since when: behind the event with a number, or from a time of day on.
+/// The beginning of the selection: after an event, or from a time on.
 struct Since {
-  std::uint64_t id = 0;  ///< only events with a larger one
-  std::string at;        ///< only events at or after this time, in UTC as the socket API tells it; empty: all
+  std::uint64_t id = 0;  ///< only events with a larger id
+  std::string at;  ///< only events at or after this UTC time, in the format of the socket API; empty: all
 };
 
-/// "1234" is an event's number; "90s", "10min", "2h", "1d" so long before `now` (nanoseconds since 1970);
-/// "10:15", "10:15:30", "2026-11-21", "2026-11-21 10:15" a local time. Nothing for anything else.
+/// Parses the number of an event ("1234"), a duration before `now` ("90s", "10min", "2h", "1d"; `now` in
+/// nanoseconds since 1970), or a local time ("10:15", "10:15:30", "2026-11-21", "2026-11-21 10:15"). Returns
+/// nullopt for any other text.
 [[nodiscard]] std::optional<Since> parse_since(const std::string& text, Nanoseconds now);
 
 struct EventQuery {
   Since since;
-  std::string severity = "information";  ///< at least this: information, warning, error
-  std::size_t lines = 100;               ///< the newest so many
+  std::string severity = "information";  ///< lowest severity: information, warning, error
+  std::size_t lines = 100;               ///< number of the newest events
 };
 
-/// Whether an event is among them, but for their number.
+/// Returns true if the query selects the event, regardless of `lines`.
 [[nodiscard]] bool wanted(const EventQuery& query, const nlohmann::ordered_json& event);
 
-/// The events of a query, newest last. `newest` becomes the number of the newest one that was looked at.
+/// Returns the events of a query, newest last. Sets `newest` to the number of the newest event that was
+/// examined.
 [[nodiscard]] tl::expected<std::vector<nlohmann::ordered_json>, ClientFailure> events_of(
     DaemonClient& client, const EventQuery& query, std::uint64_t& newest);
 

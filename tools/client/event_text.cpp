@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t longest_text = 1000;
 
-/// "2026-11-21T08:32:05.123Z" in local time; empty of what is no such time.
+/// Converts a UTC time such as "2026-11-21T08:32:05.123Z" to local time. Returns "" for any other text.
 std::string local_time(const std::string& utc) {
   tm parts{};
   const char* const end = ::strptime(utc.c_str(), "%Y-%m-%dT%H:%M:%S", &parts);

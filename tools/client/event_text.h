@@ -1,5 +1,5 @@
 #pragma once
-// Events of the daemon as lines for people.
+// Formats events of the daemon as text lines.
 
 #include <string>
 #include <string_view>
@@ -12,11 +12,11 @@ namespace softgrip::tools {
 /// that carries the time of day, "2026-11-21 09:32:05.123  warning  ..." in local time.
 [[nodiscard]] std::string line_of_event(const nlohmann::ordered_json& event);
 
-/// Text of several lines, line by line without what a terminal would obey.
+/// Replaces the control characters of a text line by line, so that a terminal does not execute them.
 [[nodiscard]] std::string shown_lines(std::string_view text);
 
-/// "acknowledged F202 reading_out_of_range of left; nothing moves until the next start" of what the daemon
-/// answers to an acknowledgement.
+/// Formats the response to an acknowledgement: "acknowledged F202 reading_out_of_range of left; nothing moves
+/// until the next start".
 [[nodiscard]] std::string sentence_of_acknowledged(const nlohmann::ordered_json& result);
 
 /// line_of_event() for a narrow screen: "09:32:05 !  left: Grip result: NO PART.", with `!` for a

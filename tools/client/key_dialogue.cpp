@@ -48,7 +48,7 @@ void KeyDialogue::ask(Json request, std::string question, double time_s) {
 
 KeyDialogue::Outcome KeyDialogue::take(std::string_view typed, double time_s, const std::string& ran) {
   lapse(time_s);
-  // Escape alone is a key of its own; with something behind it, it is an arrow or a function key.
+  // Escape alone is a key. Escape with further characters is an arrow key or a function key.
   if (typed.size() > 1 && typed.front() == escape_key) return {};
   for (const char one : typed) {
     const Waiting before = waiting_;
@@ -65,7 +65,7 @@ KeyDialogue::Outcome KeyDialogue::key(char key, double time_s, const std::string
   if (waiting_ == Waiting::for_a_yes) {
     waiting_ = Waiting::for_a_key;
     if (key == 'y' || key == 'Y') return {false, std::move(request_)};
-    // The ways out are heard in the place of an answer, too.
+    // Stop and vent are also accepted instead of an answer.
     if (key != 's' && key != 'v') return {};
   }
   switch (key) {

@@ -1,5 +1,5 @@
 #pragma once
-// What the keys of `softgrip watch` ask of the daemon. Knows no terminal and no socket.
+// Converts the keys of `softgrip watch` to requests to the daemon. It uses no terminal and no socket.
 
 #include <optional>
 #include <string>
@@ -9,26 +9,26 @@
 
 namespace softgrip::tools {
 
-/// A stop and a vent go out at once: they are the ways out. What moves the fingers otherwise (a start, a
-/// release) is asked back, and the answer is a key that is typed after the question, within `patience_s`.
+/// Stop and vent are sent at once. Start and release, which move the fingers, need a confirmation: a key that
+/// is typed after the question and within `patience_s`.
 class KeyDialogue {
  public:
   static constexpr double patience_s = 10;
 
   struct Outcome {
     bool leave = false;
-    std::optional<nlohmann::ordered_json> request;  ///< for the daemon
+    std::optional<nlohmann::ordered_json> request;  ///< request to the daemon
   };
-  /// What was typed since the last look. `ran` is the sequence that a start offers, or empty. Behind a
-  /// question the rest is dropped: a paste must not answer it. Sequences of arrow and function keys are
-  /// ignored.
+  /// Processes the keys that were typed since the last call. `ran` is the sequence that a start offers, or
+  /// empty. After a question, the remaining keys are dropped, so that pasted text cannot confirm it. Arrow
+  /// keys and function keys are ignored.
   Outcome take(std::string_view typed, double time_s, const std::string& ran);
-  /// A question that nobody answers lapses. True if it just did.
+  /// Withdraws a question after `patience_s`. Returns true if this call withdrew it.
   bool lapse(double time_s);
 
-  /// The question that waits for an answer; empty: none does.
+  /// Returns the question that waits for an answer, or "".
   [[nodiscard]] std::string question() const;
-  /// Which key does what, in one line of 58 columns.
+  /// Returns the help of the keys in one line of 58 columns.
   [[nodiscard]] static std::string_view help();
 
  private:

@@ -22,7 +22,7 @@ std::string age_text(double age_s) {
   return age_s < 2 * day_s ? fixed(age_s / hour_s, 0) + " h ago" : fixed(age_s / day_s, 0) + " days ago";
 }
 
-/// The first thing that somebody can do about the first suspect.
+/// Returns the first remedy of the first candidate fault.
 std::string first_step(const Json& finger) {
   const auto suspects = finger.find("suspects");
   if (suspects == finger.end() || !suspects->is_array() || suspects->empty()) return {};

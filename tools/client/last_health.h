@@ -1,5 +1,5 @@
 #pragma once
-// What `softgrip health` found last, as it lies beside the recordings.
+// Reads the last result of `softgrip health` from the folder of the recordings.
 
 #include <string>
 #include <vector>
@@ -8,20 +8,21 @@
 
 namespace softgrip::tools {
 
-/// Folder of the results within the folder of the recordings; softgrip-health.service writes there.
+/// The subfolder for the results in the folder of the recordings. softgrip-health.service writes there.
 inline constexpr const char* health_folder = "health";
-/// Older than this, nobody looks at the fingers any more [s].
+/// A result of this age is out of date [s].
 inline constexpr double health_old_s = 3 * 86400.0;
 
-/// health.json of that folder, with `age_s` added; null where there is none that can be read.
-/// @param recordings  empty: there are none.
+/// Returns health.json of this folder with the added member `age_s`. Returns null if it cannot be read.
+/// @param recordings  folder of the recordings, or empty if there is none.
 [[nodiscard]] nlohmann::ordered_json last_health(const std::string& recordings);
 
-/// One line per finger that is another, or one for all; and one if it is long ago. None of null.
+/// One line per finger that has changed, or one line for all fingers, and one line if the result is out of
+/// date. The list is empty if `health` is null.
 struct HealthLine {
   std::string text;
   bool good = true;
-  std::string advice;  ///< what to do; empty where nothing is to be done
+  std::string advice;  ///< remedy; empty if none is needed
 };
 [[nodiscard]] std::vector<HealthLine> health_lines(const nlohmann::ordered_json& health);
 

@@ -17,7 +17,7 @@ using Lines = std::vector<std::string>;
 
 constexpr std::string_view trend_legend = "  trends: 1 column 1 s";
 constexpr std::size_t event_indent = 12;
-/// A screen goes without other things before it has room for fewer.
+/// Other parts of the screen are omitted before fewer rows of events are shown.
 constexpr std::size_t fewest_event_rows = 3;
 
 void append(Lines& lines, const Lines& more) {
@@ -45,7 +45,7 @@ Lines lines_of_event(const Json& event, const ViewStyle& style) {
   return broken(style, brief_line_of_event(event), tone, event_indent);
 }
 
-/// The newest events that fit into so many lines, the newest last; one that does not fit whole is left out.
+/// Returns the newest events that fit completely into `rows` lines, newest last.
 Lines lines_of_events(const LiveState& state, const ViewStyle& style, std::size_t rows) {
   Lines lines;
   for (auto event = state.events.rbegin(); event != state.events.rend(); ++event) {
@@ -56,13 +56,13 @@ Lines lines_of_events(const LiveState& state, const ViewStyle& style, std::size_
   return lines;
 }
 
-/// What a low screen goes without.
+/// The parts that a screen with few rows omits.
 struct Arrangement {
   bool blanks = true;     ///< lines between the parts
   bool machinery = true;  ///< loop and recording
 };
 
-/// Everything but events and footer.
+/// Returns all lines except events and footer.
 Lines body_of(const StatusParts& parts, const ViewStyle& style, const Arrangement& arrangement) {
   Lines lines = parts.head;
   const auto add = [&](const Lines& more) {
@@ -88,7 +88,7 @@ void take_status(LiveState& state, Json status) {
   state.trends.resize(channels.size());
   for (std::size_t i = 0; i < channels.size(); ++i) {
     const Json& channel = channels[i];
-    // What was read last before a cable came out is no reading of now.
+    // A value that was read before the sensor was disconnected is not a present reading.
     const bool valid = channel.is_object() && channel.value("validity", "") == "valid";
     const auto pressure = channel.is_object() ? number_at(channel, "pressure_kpa") : std::nullopt;
     const auto command = channel.is_object() ? number_at(channel, "command_kpa") : std::nullopt;

@@ -1,5 +1,6 @@
 #pragma once
-// The screen of `softgrip watch`: status with trends, the last events, what a key led to, the keys.
+// The screen of `softgrip watch`: status with trends, the latest events, the result of the last key, and the
+// key help.
 
 #include <cstddef>
 #include <deque>
@@ -12,25 +13,25 @@
 
 namespace softgrip::tools {
 
-/// What is known when the screen is drawn.
+/// The data for drawing the screen.
 struct LiveState {
   nlohmann::ordered_json status;
   std::vector<ChannelTrends> trends;          ///< one per channel
-  std::deque<nlohmann::ordered_json> events;  ///< the newest last
-  std::string question;                       ///< that waits for a key; empty: none
-  Span said;                                  ///< what the last key led to; empty: nothing yet
+  std::deque<nlohmann::ordered_json> events;  ///< newest last
+  std::string question;                       ///< the question that waits for a key; empty: none
+  Span said;                                  ///< result of the last key; empty: no key yet
 };
 
-/// Events that are kept for the screen.
+/// Number of events that are kept for the screen.
 inline constexpr std::size_t events_shown = 50;
 
-/// Takes a status into the state and its trends.
+/// Stores a status and updates the trends.
 void take_status(LiveState& state, nlohmann::ordered_json status);
-/// Takes an event; the oldest beyond events_shown is forgotten.
+/// Stores an event and drops the oldest one beyond `events_shown`.
 void take_event(LiveState& state, nlohmann::ordered_json event);
 
-/// At most `rows` (> 0) lines. The keys are the last line, whatever the height; what does not fit above them
-/// is left out with a line that says so, the events first.
+/// Returns at most `rows` (> 0) lines. The last line is always the key help. If the rest does not fit, the
+/// events are omitted first, and a line says so.
 [[nodiscard]] std::vector<std::string> screen_of(const LiveState& state, const ViewStyle& style,
                                                  std::size_t rows);
 

@@ -1,5 +1,5 @@
 #pragma once
-// Starts that the program which made them may have to take back: the daemon stops one by its `start_id`
+// Identifies starts that their program may have to stop: the daemon stops a single one by its `start_id`
 // (docs/reference/socket-api.md, "A stop of one start").
 
 #include <optional>
@@ -11,20 +11,20 @@
 
 namespace softgrip::tools {
 
-/// Returns an id that no other start has.
+/// Returns a unique id for a start.
 [[nodiscard]] std::string new_start_id();
 
-/// Asks the daemon. Returns nullopt if it can stop one start alone; else the reason to make no start.
+/// Checks that the daemon can stop a single start. Returns nullopt if it can, else the reason not to start.
 [[nodiscard]] std::optional<ClientFailure> cannot_name_starts(DaemonClient& client);
 
-/// Returns the request that stops the start with this id and nothing else.
+/// Returns the request that stops only the start with this id.
 [[nodiscard]] nlohmann::ordered_json stop_of(const std::string& start_id);
 
-/// Returns true if, by the daemon's reply to stop_of(), the start does not run and will not begin.
+/// Returns true if the daemon's reply to stop_of() confirms that the start does not run and will not begin.
 [[nodiscard]] bool confirms_stop(const nlohmann::ordered_json& reply);
 
-/// Returns true if the daemon refused a start with this reply, so that it does not run. A loop that did not
-/// answer in time may still begin it: false.
+/// Returns true if this reply means that the daemon refused the start. Returns false if the control loop did
+/// not respond in time, because it may still begin the start.
 [[nodiscard]] bool refuses_start(const nlohmann::ordered_json& reply);
 
 }  // namespace softgrip::tools

@@ -14,10 +14,11 @@ using Json = nlohmann::ordered_json;
 // The names of the shapes are short words, as in the protocol.
 namespace reply_shape {
 
-/// The daemon needs five levels. Copies and outputs of JSON use the stack for each level.
+/// The daemon needs five levels. The limit is needed because copying and printing JSON use the stack for each
+/// level.
 constexpr std::size_t deepest = 32;
 
-/// Kinds of values, as bits: a field may have several.
+/// The kinds of values as bits, because a field may allow several kinds.
 enum Kind : unsigned { text = 1, number = 2, count = 4, flag = 8, object = 16, list = 32, null = 64 };
 
 struct Shape;
@@ -25,13 +26,13 @@ struct Shape;
 struct Field {
   const char* key;
   unsigned kinds;
-  const Shape* inside = nullptr;  ///< of the object, or of each value of the list
+  const Shape* inside = nullptr;  ///< shape of the object, or of each value of the list
   bool is_required = false;
 };
 
 struct Shape {
   std::span<const Field> fields;
-  bool is_whole = true;  ///< required fields are required here, too
+  bool is_whole = true;  ///< the required fields must be present
 };
 
 constexpr Field problem_fields[] = {{"file", text},      {"line", count},   {"column", count},
@@ -90,7 +91,7 @@ constexpr Field status_fields[] = {{"version", text},
                                    {"recording", object, &recording},
                                    {"real_time", object | null, &real_time}};
 constexpr Shape status{status_fields};
-/// A result may be a status.
+/// A result can be a status, so no field is required.
 constexpr Shape perhaps_status{status_fields, false};
 
 constexpr Field parameter_fields[] = {{"name", text},    {"unit", text},      {"lower", number},
@@ -151,7 +152,7 @@ Fault fault_of_field(const Json& owner, const Field& field, bool is_required, co
   return std::nullopt;
 }
 
-/// `value` is an object.
+/// Checks an object. `value` must be an object.
 Fault fault_of(const Json& value, const Shape& shape, const std::string& path) {
   for (const Field& field : shape.fields) {
     const std::string place = path.empty() ? field.key : path + "." + field.key;
@@ -172,7 +173,7 @@ bool nests_too_deep(std::string_view line) {
   bool in_text = false;
   for (std::size_t i = 0; i < line.size(); ++i) {
     const char byte = line[i];
-    if (in_text && byte == '\\') ++i;  // what it escapes ends no text
+    if (in_text && byte == '\\') ++i;  // an escaped character does not end a text
     if (byte == '"') in_text = !in_text;
     if (in_text) continue;
     if (byte == '[' || byte == '{') ++depth;
@@ -186,7 +187,7 @@ bool nests_too_deep(std::string_view line) {
 }  // namespace
 
 tl::expected<Json, std::string> parse_reply(std::string_view line) {
-  // Before parsing: to copy and to print JSON takes stack for each level.
+  // Check this before parsing, because copying and printing JSON use the stack for each level.
   if (reply_shape::nests_too_deep(line)) {
     return tl::unexpected("a line nests deeper than " + std::to_string(reply_shape::deepest) + " levels");
   }

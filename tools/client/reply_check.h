@@ -1,6 +1,6 @@
 #pragma once
-// The one place where lines of the daemon are checked. What passes has the promised kinds in all places that
-// the programs here read (docs/reference/socket-api.md), so that no reader meets another kind.
+// The only place that checks lines of the daemon. In a checked line, all values that the programs read have
+// the kinds of docs/reference/socket-api.md, so that readers need no further checks.
 
 #include <string>
 #include <string_view>
@@ -10,8 +10,8 @@
 
 namespace softgrip::tools {
 
-/// Parses a line of the daemon: a reply, a state or an event. The error says what is malformed. Keys that
-/// nobody here reads may be of any kind: a newer daemon may have more of them.
+/// Parses a line of the daemon: a reply, a state or an event. The error says what is malformed. Unknown keys
+/// may have any kind, because a newer daemon may send more keys.
 [[nodiscard]] tl::expected<nlohmann::ordered_json, std::string> parse_reply(std::string_view line);
 
 }  // namespace softgrip::tools

@@ -21,7 +21,7 @@ std::string written_at(const Json& json, const char* key) {
   return written(json.value(key, 0.0));
 }
 
-/// " kPa" of "kpa", " mm/s" of "mm_per_s".
+/// Formats a unit: " kPa" for "kpa", " mm/s" for "mm_per_s".
 std::string unit_of(const Json& parameter) {
   std::string unit = text_of(parameter, "unit");
   if (const std::size_t per = unit.find("_per_"); per != std::string::npos) unit.replace(per, 5, "/");

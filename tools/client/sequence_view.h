@@ -1,5 +1,5 @@
 #pragma once
-// The daemon's list of sequences for people.
+// Formats the daemon's list of sequences as text.
 
 #include <string>
 #include <vector>
@@ -8,11 +8,11 @@
 
 namespace softgrip::tools {
 
-/// One line per sequence, and below it one per parameter: name, range, unit, default, what it is. One that
-/// cannot be started says why.
+/// Returns one line per sequence, followed by one line per parameter with name, range, unit, default and
+/// description. For a sequence that cannot be started, it states the reason.
 [[nodiscard]] std::vector<std::string> view_of_sequences(const nlohmann::ordered_json& sequences);
 
-/// Their names alone.
+/// Returns only the names.
 [[nodiscard]] std::vector<std::string> names_of_sequences(const nlohmann::ordered_json& sequences);
 
 }  // namespace softgrip::tools

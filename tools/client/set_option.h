@@ -1,5 +1,5 @@
 #pragma once
-// `--set NAME=VALUE`: the parameters of a sequence on the command line.
+// The option `--set NAME=VALUE`: parameters of a sequence on the command line.
 
 #include <string>
 #include <vector>
@@ -12,15 +12,15 @@
 
 namespace softgrip::tools {
 
-/// Adds --set, which may come several times.
+/// Adds --set, which may be given several times.
 void add_set_option(CLI::App& command, std::vector<std::string>& settings);
 
-/// What the user set. One that has no name or whose value is no number is refused with a sentence on the
-/// standard error and ExitCode::usage; which names and values there may be only the sequence knows.
+/// Parses the values of --set. If a name is missing or a value is not a number, prints a sentence to the
+/// standard error and returns ExitCode::usage. Only the sequence knows the valid names and ranges.
 [[nodiscard]] tl::expected<std::vector<control::Argument>, ExitCode> arguments_of(
     const std::vector<std::string>& settings);
 
-/// As the socket's `start` takes them: {"squeeze_kpa": 4}.
+/// Returns the parameters for the socket's `start`: {"squeeze_kpa": 4}.
 [[nodiscard]] nlohmann::ordered_json json_of(const std::vector<control::Argument>& arguments);
 
 }  // namespace softgrip::tools

@@ -30,7 +30,7 @@ Tone tone_of_result(const std::string& result) {
   return Tone::bad;
 }
 
-/// What a bar shows, on one scale.
+/// The value and the mark of a bar, on one scale.
 struct Bar {
   double lower = 0;
   double upper = 1;
@@ -38,7 +38,7 @@ struct Bar {
   std::optional<double> mark;
 };
 
-/// Where a value lies on a bar of `cells` cells, in eighths of a cell.
+/// Returns the position of a value on a bar of `cells` cells, in eighths of a cell.
 std::optional<std::size_t> eighths(const Bar& bar, std::optional<double> value, std::size_t cells) {
   if (!value || !(bar.upper > bar.lower)) return std::nullopt;
   const double share = std::clamp((*value - bar.lower) / (bar.upper - bar.lower), 0.0, 1.0);
@@ -65,11 +65,11 @@ void add_bar(Line& line, const Bar& bar, std::size_t cells) {
 constexpr std::size_t label_columns = 16;
 constexpr std::size_t numbers_columns = 46;
 constexpr std::size_t shortest_bar = 10;
-/// Where a trend stands beside its numbers, and from which width on it does.
+/// Column of a trend next to the numbers, and the smallest screen width for it.
 constexpr std::size_t trend_column = 56;
 constexpr std::size_t columns_beside = 72;
 
-/// "  pressure       [######|   ]  32.10 kPa, command 32.40"; the numbers below where they do not fit.
+/// Adds "  pressure       [######|   ]  32.10 kPa, command 32.40". The numbers go below if they do not fit.
 void add_bar_lines(std::vector<std::string>& lines, const ViewStyle& style, std::string_view label,
                    const Bar& bar, const std::string& numbers) {
   Line line(style);
@@ -88,7 +88,8 @@ void add_glyphs(Line& line, const Trend& trend, std::size_t cells, double least_
     line.add_glyph(glyph);
 }
 
-/// "  pressure      32.10 kPa, command 32.40         ▁▂▃▅▇"; without the trend where it would be too short.
+/// Adds "  pressure      32.10 kPa, command 32.40         ▁▂▃▅▇". The trend is omitted if it would be too
+/// short.
 void add_trend_line(std::vector<std::string>& lines, const ViewStyle& style, std::string_view label,
                     const std::string& numbers, const Trend& trend, double least_span) {
   Line line(style);
@@ -100,7 +101,7 @@ void add_trend_line(std::vector<std::string>& lines, const ViewStyle& style, std
   lines.push_back(line.text());
 }
 
-/// "                ▁▂▃▅▇ kPa  ▁▂▃▅▇ mm": both below, on a narrow screen.
+/// Adds "                ▁▂▃▅▇ kPa  ▁▂▃▅▇ mm": both trends below the numbers, for a narrow screen.
 void add_trends_below(std::vector<std::string>& lines, const ViewStyle& style, const ChannelTrends& trends,
                       double least_kpa, double least_mm) {
   constexpr std::size_t units_columns = 9;
@@ -114,7 +115,7 @@ void add_trends_below(std::vector<std::string>& lines, const ViewStyle& style, c
   lines.push_back(line.text());
 }
 
-/// What has kept the pressure from what is wanted for longer than a moment.
+/// Adds the limit that has restricted the pressure for more than a moment.
 void add_limit(std::vector<std::string>& lines, const Json& channel, const ViewStyle& style) {
   const std::string words = text_at(channel, "limit_text");
   if (words == "-") return;
@@ -142,7 +143,7 @@ void add_channel_head(std::vector<std::string>& lines, const Json& channel, cons
   for (const std::string& line : flowed(style, spans, label_columns)) lines.push_back(line);
 }
 
-/// The least span of a trend, as a share of what the limits allow: noise is no motion.
+/// Smallest span of a trend as a share of the range of the limits, so that noise does not look like motion.
 constexpr double least_share = 0.1;
 
 void add_channel(std::vector<std::string>& lines, const Json& channel, const ViewStyle& style,
@@ -198,7 +199,7 @@ void add_head(std::vector<std::string>& lines, const Json& status, const ViewSty
   for (const std::string& line : flowed(style, spans, 2)) lines.push_back(line);
 }
 
-/// "F202 of left"
+/// Returns a title such as "F202 of left".
 std::string fault_title(const Json& fault) {
   const std::string channel = text_at(fault, "channel");
   return text_at(fault, "code") + (channel == "-" ? "" : " of " + channel);
@@ -219,14 +220,14 @@ void add_fault(std::vector<std::string>& lines, const Json& status, const ViewSt
   }
 }
 
-/// Loud, with the command that ends it.
+/// Adds the pressurised fingers in a prominent colour, with the command that vents them.
 void add_pressure(std::vector<std::string>& lines, const Json& status, const ViewStyle& style) {
   const std::string text = text_at(object_at(status, "under_pressure"), "text");
   if (text == "-") return;
   for (const std::string& line : broken(style, text, Tone::bad, 0)) lines.push_back(line);
 }
 
-/// What is being tried of a board that does not answer, how often, and what it says.
+/// Adds the connection attempts to a board that does not respond: their number and the last failure.
 void add_silence(std::vector<std::string>& lines, const Json& bus, const ViewStyle& style) {
   const auto attempts = number_at(bus, "attempts");
   const auto retry_s = number_at(bus, "retry_s");

@@ -1,5 +1,6 @@
 #pragma once
-// Lines of a terminal that know how wide they are, whatever escapes and multi-byte characters they hold.
+// Lines for a terminal with known width in columns. Escapes and multi-byte characters do not count as
+// columns.
 
 #include <cstddef>
 #include <string>
@@ -9,20 +10,20 @@
 namespace softgrip::tools {
 
 struct ViewStyle {
-  std::size_t columns = 80;  ///< no line is longer
+  std::size_t columns = 80;  ///< largest length of a line
   bool colour = false;       ///< ANSI colours
   bool unicode = false;      ///< block characters in bars and trends
 };
 
 enum class Tone : unsigned char { plain, strong, good, doubtful, bad, faint };
 
-/// Text of one tone.
+/// A text with one tone.
 struct Span {
   std::string text;
   Tone tone = Tone::plain;
 };
 
-/// One line. What does not fit is cut with a sign: an ellipsis, or `>` without unicode.
+/// One line. A line that is too long is cut and ends with an ellipsis, or with `>` without unicode.
 class Line {
  public:
   explicit Line(const ViewStyle& style) : style_(style) {}
@@ -31,12 +32,12 @@ class Line {
   Line& add(std::string_view text, Tone tone = Tone::plain);
   /// Adds one character that is one column wide.
   Line& add_glyph(std::string_view glyph, Tone tone = Tone::plain);
-  /// Adds blanks up to a column, counted from 0.
+  /// Adds blanks up to the given column, counted from 0.
   Line& to_column(std::size_t column);
 
   [[nodiscard]] std::size_t columns() const noexcept { return columns_; }
   [[nodiscard]] const ViewStyle& style() const noexcept { return style_; }
-  /// With escapes, cut to the style's columns.
+  /// Returns the line with escapes, cut to the columns of the style.
   [[nodiscard]] std::string text() const;
 
  private:
@@ -50,13 +51,13 @@ class Line {
   std::size_t columns_ = 0;
 };
 
-/// Spans one behind the other, each whole; one that does not fit any more begins another line, `indent`
-/// blanks in. Blanks that would begin a line are left out.
+/// Puts spans one after the other. A span that does not fit begins another line, indented by `indent` blanks.
+/// Blanks at the beginning of a line are omitted.
 [[nodiscard]] std::vector<std::string> flowed(const ViewStyle& style, const std::vector<Span>& spans,
                                               std::size_t indent);
 
-/// ASCII text broken at its line breaks, and at its blanks where it is too long; all lines but the first
-/// begin `indent` blanks in.
+/// Breaks ASCII text at its line breaks, and at blanks if a line is too long. All lines but the first are
+/// indented by `indent` blanks.
 [[nodiscard]] std::vector<std::string> broken(const ViewStyle& style, std::string_view text, Tone tone,
                                               std::size_t indent);
 

@@ -1,5 +1,5 @@
 #pragma once
-// How a quantity went lately, in one line of characters.
+// Draws the recent course of a quantity as one line of characters.
 
 #include <cstddef>
 #include <deque>
@@ -9,21 +9,21 @@
 
 namespace softgrip::tools {
 
-/// The newest value of each second, the last `seconds_kept` of them. A second without one is a gap.
+/// The newest value of each second, for the last `seconds_kept` seconds. A second without a value is a gap.
 class Trend {
  public:
   static constexpr std::size_t seconds_kept = 300;
 
-  /// `time_s` never falls; one that does (another daemon) begins anew.
+  /// Adds a value. `time_s` normally never decreases. A decrease (another daemon) restarts the trend.
   void add(double time_s, std::optional<double> value);
 
-  /// At most `cells` characters, one per second, the newest last; each is one column wide. From the lowest to
-  /// the highest that is shown, or over `least_span` (> 0) where that is more.
+  /// Returns at most `cells` characters, one per second, newest last. Each is one column wide. The scale
+  /// covers the shown values, but at least `least_span` (> 0).
   [[nodiscard]] std::vector<std::string> glyphs(std::size_t cells, double least_span, bool unicode) const;
 
  private:
   std::deque<std::optional<double>> values_;
-  long second_ = 0;  ///< of the newest value
+  long second_ = 0;  ///< second of the newest value
 };
 
 /// The trends of one channel.
