@@ -28,18 +28,18 @@ using control::FeedforwardKind;
 using Json = nlohmann::ordered_json;
 
 constexpr double rate_hz = 100;
-/// Rigs on which gains are searched, and others on which they are judged.
+/// Number of simulated rigs for the search of the gains, and number of other rigs for the evaluation.
 constexpr std::uint64_t searched_rigs = 2;
 constexpr std::uint64_t judged_rigs = 5;
 constexpr double largest_sensitivity = 2;
 constexpr double mean_mm = 13;
 constexpr double amplitude_mm = 7;
-/// The published reference goes to 20 mm, which a finger of 22 mm and more reaches with room for its creep.
+/// The published reference reaches 20 mm. A finger with a span of at least 22 mm reaches it with a reserve
+/// for creep.
 constexpr double span_needed_mm = 22;
 constexpr control::GainSearch gain_search{.iterations = 25, .coarseness = 2};
 
-/// Judged over less than the whole of its noise, a model that the finger's random errors are part of would be
-/// counted twice.
+/// Removes the random errors of the sensor from the model, because the simulation adds its noise separately.
 model::Model body_of(const model::Model& model) {
   return model::only(model, [](const model::BlockInfo& info) {
     return !model::is<model::SensorNoise, model::Quantisation, model::Outliers>(info);
@@ -61,8 +61,8 @@ class Rigs {
   [[nodiscard]] double mean() const { return mean_mm_; }
   [[nodiscard]] double amplitude() const { return amplitude_mm_; }
 
-  /// With the inverse of the whole model; without one, with a plan by it or the inverse of what of it has
-  /// one, whichever tracks better. An infinite error where there is none of them.
+  /// Uses the inverse of the whole model if it exists. Otherwise uses a plan with the model or the inverse of
+  /// its invertible part; the one with the smaller error counts. The error is infinite if neither exists.
   [[nodiscard]] ClosedLoopScheme with_model(const model::Model& believed) const {
     ClosedLoopScheme whole = measured(believed, FeedforwardKind::full_model);
     if (whole.refused.empty()) return whole;

@@ -1,6 +1,6 @@
 #pragma once
-// What an extension is worth in closed loop: the same reference tracked on a simulated rig with the
-// recalibrated and with the extended model in the feedforward, gains from the same search for each.
+// Computes the benefit of an extended model in closed loop. A simulated rig tracks the same reference with
+// the refitted and with the extended model in the feedforward. The gains of both come from the same search.
 
 #include <cstdint>
 #include <optional>
@@ -17,29 +17,30 @@
 
 namespace softgrip::tools {
 
-/// The question.
+/// Input of the comparison.
 struct ClosedLoopQuestion {
   model::Model recalibrated;
-  model::Model extended;  ///< also the rig, with other parameters within `rig_scatter`
+  model::Model extended;  ///< also the simulated rig, with other parameters within `rig_scatter`
   double noise_mm = 0.03;
-  double span_mm = 0;  ///< of the logs: the reference is scaled to it where 13 ± 7 mm is too much
+  double span_mm = 0;  ///< span of the logs: the reference is scaled down if 13 ± 7 mm is too large for it
   double pressure_max_kpa = 60;
   double frequency_hz = 0.2;
-  double rig_scatter = 0.02;  ///< no model is exact: the rig's parameters differ from the extended model's
+  double rig_scatter = 0.02;  ///< relative difference of the rig's parameters from the extended model's,
+                              ///< because no model is exact
   std::uint64_t seed = 1;
 };
 
-/// One controller on that rig.
+/// The result of one controller on the simulated rigs.
 struct ClosedLoopScheme {
-  double rmse_mm = 0;  ///< median over rigs
+  double rmse_mm = 0;  ///< median over the rigs
   control::PidSettings pid;
-  /// full_model; where the model cannot be undone tick by tick, planned, or full_model of what of it can be
-  /// undone, whichever tracks better; where neither serves better than the PID alone, none: then the numbers
-  /// are the PID's.
+  /// full_model if the model has a causal inverse. Otherwise planned, or full_model of the invertible part;
+  /// the one with the smaller error counts. If neither is better than the PID alone, none: the numbers are
+  /// then those of the PID.
   control::FeedforwardKind feedforward = control::FeedforwardKind::none;
-  std::string refused;                          ///< why it is not full_model, or not of the whole model
-  std::optional<control::InvertiblePart> part;  ///< what the feedforward is of, where not of the whole model
-  control::TrackingTrace trace;                 ///< on the rig of that median
+  std::string refused;  ///< reason if the feedforward is not full_model of the whole model
+  std::optional<control::InvertiblePart> part;  ///< the part that is inverted, if it is not the whole model
+  control::TrackingTrace trace;                 ///< on the rig with the median error
 };
 
 struct ClosedLoopGain {
@@ -55,12 +56,12 @@ struct ClosedLoopGain {
   double wall_s = 0;
 
   [[nodiscard]] std::string reference() const;           ///< "13 ± 7 mm at 0.2 Hz"
-  [[nodiscard]] std::vector<std::string> notes() const;  ///< what must be known beside the numbers
+  [[nodiscard]] std::vector<std::string> notes() const;  ///< remarks on the numbers
 };
 
 [[nodiscard]] ClosedLoopGain measure_closed_loop(const ClosedLoopQuestion& question);
 
-/// Fills in "closed_loop" of a diagnosis.json or investigation.json.
+/// Adds "closed_loop" to a diagnosis.json or investigation.json.
 void add_closed_loop(nlohmann::ordered_json& json, const ClosedLoopGain& gain);
 
 }  // namespace softgrip::tools

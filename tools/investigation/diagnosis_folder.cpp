@@ -21,7 +21,7 @@ namespace softgrip::tools {
 namespace {
 
 constexpr const char* experiment_file = "next_experiment.yaml";
-/// Where the extended model is not undone as a whole: what of it is.
+/// The invertible part of an extended model that has no inverse as a whole.
 constexpr const char* feedforward_file = "feedforward_model.yaml";
 
 std::string complete_json(const sysid::Diagnosis& diagnosis, const DiagnosisSource& source,
@@ -84,7 +84,7 @@ tl::expected<std::string, std::string> write_diagnosis_folder(const std::string&
   } else {
     std::filesystem::remove(out / feedforward_file, ignored);
   }
-  // One that stands there may have been filled in by now: never overwritten, never removed.
+  // An existing file may contain readings of the user, so it is never overwritten or removed.
   if (const auto& check = consequences.experiment.gauge_check;
       check && !std::filesystem::exists(out / sysid::gauge_positions_file, ignored)) {
     files.emplace_back(sysid::gauge_positions_file,

@@ -1,5 +1,5 @@
 #pragma once
-// What a diagnosis leaves behind: diagnosis.json, model.yaml, next_experiment.yaml, gauge_positions.csv.
+// Writes the files of a diagnosis: diagnosis.json, model.yaml, next_experiment.yaml, gauge_positions.csv.
 
 #include <optional>
 #include <string>
@@ -13,10 +13,10 @@
 
 namespace softgrip::tools {
 
-/// What follows from a diagnosis.
+/// The consequences of a diagnosis.
 struct Consequences {
   sysid::NextExperiment experiment;
-  std::optional<ClosedLoopGain> closed_loop;  ///< empty: not wanted, or there is no extension
+  std::optional<ClosedLoopGain> closed_loop;  ///< empty: not requested, or there is no extension
 };
 
 struct ConsequenceOptions {
@@ -28,29 +28,30 @@ struct ConsequenceOptions {
 [[nodiscard]] Consequences consequences_of(const sysid::Diagnosis& diagnosis,
                                            const ConsequenceOptions& options);
 
-/// What a diagnosis was made of.
+/// The input of a diagnosis.
 struct DiagnosisSource {
   const std::vector<sysid::Log>& logs;
   const model::Model& given;
-  std::vector<std::string> call;  ///< the command and what it was given; empty: by no command of its own
+  std::vector<std::string>
+      call;  ///< command line of the diagnosis; empty: not called as a command of its own
 };
 
-/// Names of the files that write_diagnosis_folder() writes, replaces or removes.
+/// Returns the names of the files that write_diagnosis_folder() writes, replaces or removes.
 [[nodiscard]] std::vector<std::string> diagnosis_files();
 
-/// Writes the files into `folder` and returns what diagnosis.json says; a next_experiment.yaml or a
-/// feedforward_model.yaml of an earlier diagnosis goes where there is none.
-/// @param channel  for which the experiment is written; "": all of the rig.
+/// Writes the files into `folder` and returns the text of diagnosis.json. Removes the next_experiment.yaml or
+/// feedforward_model.yaml of an earlier diagnosis if there is no new one.
+/// @param channel  channel for which the experiment is written; "": all channels of the rig.
 [[nodiscard]] tl::expected<std::string, std::string> write_diagnosis_folder(const std::string& folder,
                                                                             const sysid::Diagnosis& diagnosis,
                                                                             const DiagnosisSource& source,
                                                                             const Consequences& consequences,
                                                                             const std::string& channel = "");
 
-/// The question of the closed loop that a diagnosis answers.
+/// Returns the input of the closed-loop comparison for a diagnosis.
 [[nodiscard]] ClosedLoopQuestion closed_loop_question(const sysid::Diagnosis& diagnosis, std::uint64_t seed);
 
-/// Sentences about the consequences, for people; one per line.
+/// Returns sentences about the consequences, one per line.
 [[nodiscard]] std::string text_of(const Consequences& consequences, const std::string& folder);
 
 }  // namespace softgrip::tools

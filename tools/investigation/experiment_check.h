@@ -1,5 +1,5 @@
 #pragma once
-// Whether a rig played what an experiment asked for, on a finger that touched nothing.
+// Checks that a rig played the requested experiment and that the finger touched no object.
 
 #include <optional>
 #include <string>
@@ -10,14 +10,14 @@
 
 namespace softgrip::tools {
 
-/// A sentence where the log's command is not the waveform: another length, another largest pressure, another
-/// distance travelled.
+/// Returns a sentence if the command of the log differs from the waveform in duration, largest pressure or
+/// total travel.
 [[nodiscard]] std::optional<std::string> broken_promise(const sysid::Waveform& asked, const sysid::Log& log);
 
-/// A sentence where the finger was stopped on its way: within the pressures that the model was fitted to, it
-/// moves as the model says in the lower part of its stroke and far less in the upper part.
-/// @param predicted  the log, predicted by a model that knows no contact
-/// @param known_kpa  the largest pressure that the model was fitted to
+/// Returns a sentence if the finger was blocked. Within the pressures to which the model was fitted, it then
+/// moves as predicted in the lower part of its stroke, and far less in the upper part.
+/// @param predicted  the log, predicted by a model without contact
+/// @param known_kpa  the largest pressure to which the model was fitted
 [[nodiscard]] std::optional<std::string> touched(const sysid::Validation& predicted, const sysid::Log& log,
                                                  double known_kpa);
 

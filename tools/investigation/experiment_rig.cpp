@@ -23,8 +23,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Of the displacement range, what the finger may reach as the logs' gain predicts: where logs have been, and
-/// beyond, where creep and softening come on top of it.
+/// Share of the displacement range that the finger may reach according to the gain of the logs: at pressures
+/// that the logs contain, and at higher pressures, where creep and softening add displacement.
 constexpr double known_range_share = 0.95;
 constexpr double predicted_range_share = 0.85;
 
@@ -55,13 +55,13 @@ tl::expected<sysid::Log, NotPlayed> log_of(const std::string& path, const std::s
   return std::move(campaign.logs.front());
 }
 
-/// Calls `command IN OUT` and waits for it.
+/// Calls `command IN OUT` and waits for its end.
 tl::expected<void, NotPlayed> call(const std::string& command, const std::string& in,
                                    const std::string& out) {
   std::fflush(nullptr);
   const int status = std::system((command + " " + shell_word(in) + " " + shell_word(out)).c_str());
   const bool by_signal = WIFSIGNALED(status) || (WIFEXITED(status) && WEXITSTATUS(status) == 128 + SIGINT);
-  // Ctrl-C reaches this process, too, but system() ignores it meanwhile.
+  // Ctrl-C is also sent to this process, but system() ignores it meanwhile.
   const bool by_user =
       (WIFEXITED(status) && by_signal) || (WIFSIGNALED(status) && WTERMSIG(status) == SIGINT);
   if (by_user) note_ending_signal(SIGINT);
@@ -82,7 +82,7 @@ std::string command_csv(const sysid::Waveform& waveform, double interval_s) {
   std::string csv = "time_s,pressure_command_kpa\n";
   const std::vector<double> samples = sysid::sampled_kpa(waveform, interval_s);
   for (std::size_t i = 0; i < samples.size(); ++i) {
-    // On a grid of a microsecond: times that others print with six digits are the same times.
+    // Round times to 1 µs, so that programs that print six digits write equal times.
     const double time_s = std::round(1e6 * static_cast<double>(i) * interval_s) / 1e6;
     csv += shortest(time_s) + "," + shortest(samples[i]) + "\n";
   }
@@ -139,13 +139,13 @@ tl::expected<std::string, NotPlayed> run_on(const ExperimentRig& rig, const std:
   options.sequence = std::move(*sequence);
   options.record_folder = (fs::path(folder) / name).string();
   options.listen = false;
-  std::string fault;  // the first one
+  std::string fault;  // the first fault
   options.on_event = [&fault](const daemon::EventEntry& event) {
     if (fault.empty() && event.severity == daemon::Severity::error) fault = event.text;
   };
   const auto outcome = rig.run(rig.rig, options);
   if (!outcome) return failed(outcome.error());
-  // A signal that came in the last moment of the experiment must keep the next one from moving the finger.
+  // A signal at the very end of an experiment must prevent the next experiment.
   if (outcome->signal != 0) return stopped("stopped by the user; the rig is vented");
   if (outcome->ending != daemon::Ending::sequence_ended || !outcome->sequence_end ||
       *outcome->sequence_end != control::SequenceEnd::done) {

@@ -1,6 +1,6 @@
 #pragma once
-// What an investigation plays its experiments on: a rig file's rig through the daemon's own code, or a
-// command of the user's.
+// The rigs on which an investigation plays its experiments: the rig of a rig file through the daemon's own
+// code, or a command of the user.
 
 #include <cstdint>
 #include <functional>
@@ -16,55 +16,56 @@
 
 namespace softgrip::tools {
 
-/// One channel of a rig file's rig.
+/// One channel of the rig of a rig file.
 struct ExperimentRig {
   rig::RigFile rig;
   std::size_t channel = 0;
-  bool simulated = false;  ///< in process: nothing moves, time is virtual
-  /// Plays the sequences. A test may give one with another clock and another board.
+  bool simulated = false;  ///< simulated in the process: nothing moves, and time is virtual
+  /// Plays the sequences. A test may replace it with another clock and another board.
   daemon::DaemonRunner run = daemon::run_daemon;
 
   [[nodiscard]] const std::string& channel_name() const { return rig.settings.channels[channel].name; }
-  /// The same rig on another occasion: a simulated one draws other noise, a real one does so by itself.
+  /// Returns the rig for another run: a simulated rig then draws other noise.
   [[nodiscard]] ExperimentRig at(std::uint64_t occasion) const;
-  /// What the menu may ask of it. @param gain_mm_per_kpa  of the logs, keeps the finger inside its
-  /// displacement range; 0: unknown. @param known_kpa  the largest pressure of the logs, beyond which less of
-  /// it is used.
+  /// Returns the limits of the rig for the menu of experiments.
+  /// @param gain_mm_per_kpa  gain of the logs, which limits the displacement; 0: unknown.
+  /// @param known_kpa  the largest pressure of the logs. A smaller share of the displacement range is used
+  /// above it.
   [[nodiscard]] sysid::RigLimits limits(double gain_mm_per_kpa, double known_kpa) const;
 };
 
-/// The channel of that name, the only one where none is named, or a sentence.
+/// Returns the channel with this name, or the only channel if the name is empty. The error is a sentence.
 [[nodiscard]] tl::expected<ExperimentRig, std::string> experiment_rig(rig::RigFile rig,
                                                                       const std::string& channel);
 
-/// Plays one sequence text and returns where its recording is: `folder`/NAME.
+/// Plays one sequence text and returns the path of its recording: `folder`/NAME.
 [[nodiscard]] tl::expected<std::string, NotPlayed> run_on(const ExperimentRig& rig, const std::string& name,
                                                           const std::string& sequence_yaml,
                                                           const std::string& folder);
 
-/// The same, and the rig's channel read from that recording.
+/// Plays one sequence text and returns the log of the rig's channel.
 [[nodiscard]] tl::expected<sysid::Log, NotPlayed> played_on(const ExperimentRig& rig, const std::string& name,
                                                             const std::string& sequence_yaml,
                                                             const std::string& folder);
 
-/// Asked before anything moves, with a sentence that says what will. False: it does not move.
+/// Called before any motion with a sentence that describes it. The motion is allowed only if it returns true.
 using Consent = std::function<bool(const std::string& what)>;
 
-/// Plays in the foreground as `softgrip run` does; a signal vents the rig and stops the investigation.
+/// Plays in the foreground as `softgrip run` does. A signal vents the rig and stops the investigation.
 [[nodiscard]] Player rig_player(ExperimentRig rig, Consent consent);
 
-/// Plays by calling `COMMAND COMMAND_CSV LOG_OUT`: time_s, pressure_command_kpa every `interval_s` in, a log
-/// out.
+/// Plays by calling `COMMAND COMMAND_CSV LOG_OUT`. The input has the columns time_s and pressure_command_kpa
+/// at every `interval_s`, and the output is a log.
 [[nodiscard]] Player command_player(std::string command, double interval_s, Consent consent);
 
-/// Checks the sensor of a simulated rig by itself: known lengths go through the sensor of the truth, with the
-/// rig's noise and quantisation. Lengths that it cannot measure are left out.
+/// Checks the sensor of a simulated rig: known lengths pass through the sensor of the true model, with the
+/// rig's noise and quantisation. Lengths outside the range of the sensor are omitted.
 [[nodiscard]] GaugeTaker simulated_gauge(ExperimentRig rig);
 
 /// Checks a sensor by calling `COMMAND POSITIONS_CSV GAUGE_OUT`.
 [[nodiscard]] GaugeTaker command_gauge(std::string command, Consent consent);
 
-/// Writes what was read to `folder`/gauge.csv and reads it back as any other gauge file.
+/// Writes the readings to `folder`/gauge.csv and reads the file like any other gauge file.
 [[nodiscard]] tl::expected<sysid::GaugeFile, NotPlayed> gauge_file_of(
     const std::vector<sysid::GaugeReading>& readings, const std::string& folder);
 

@@ -17,7 +17,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 using sysid::Verdict;
 
-/// Beyond any menu: a bound on what a loop can do.
+/// Limit of the number of steps, larger than any menu.
 constexpr std::size_t most_steps = 20;
 
 InvestigationStep step_of(const sysid::Diagnosis& diagnosis, const std::string& folder) {
@@ -55,7 +55,8 @@ class Investigator {
   }
 
  private:
-  /// One diagnosis and, where it asks for one, one experiment. False: it is over.
+  /// Makes one diagnosis and, if it proposes one, one experiment. Returns false at the end of the
+  /// investigation.
   tl::expected<bool, NotInvestigated> step() {
     const std::string name = "step_" + std::to_string(result_.steps.size() + 1);
     sysid::DiagnosisOptions how = options_.diagnosis;
@@ -98,7 +99,8 @@ class Investigator {
     return end(why.stopped ? InvestigationEnd::stopped : InvestigationEnd::failed, why.why);
   }
 
-  /// Nothing separates the alternatives: within the budget, or at all?
+  /// Distinguishes the two reasons for having no experiment: the budget is too small, or no experiment
+  /// separates the causes.
   bool end_without_experiment(const sysid::NextExperiment& none) {
     sysid::ExperimentOptions unbounded = plan_;
     unbounded.most_minutes = 1e9;
@@ -134,7 +136,7 @@ class Investigator {
     return true;
   }
 
-  /// A contact that the campaign does not know yet. What the diagnosis holds possible is no surprise.
+  /// Returns a sentence if the log shows a contact that the diagnosis does not already regard as possible.
   [[nodiscard]] std::optional<std::string> contact_in(const sysid::Log& log) const {
     for (const sysid::NamedCause& named : result_.last.causes) {
       const auto is_contact = [](const sysid::Cause& cause) {
@@ -147,7 +149,7 @@ class Investigator {
     return touched(*result_.steps.back().answer, log, sysid::campaign_size(result_.last.records).largest_kpa);
   }
 
-  /// No waveform tells the alternatives apart, and they make different sensors.
+  /// Checks the sensor with a gauge if no waveform separates the alternatives but they differ in the sensor.
   bool check_sensor(const sysid::ProposedGaugeCheck& check, const std::string& folder) {
     if (check.minutes > result_.budget_minutes - result_.spent_minutes) {
       return end(InvestigationEnd::budget_spent,

@@ -1,5 +1,5 @@
 #pragma once
-// An investigation as one page: what was asked, what the rig answered, what stands in the end.
+// Formats an investigation as one page: experiments, responses of the rig, and the result.
 
 #include <string>
 
@@ -7,8 +7,9 @@
 
 namespace softgrip::tools {
 
-/// @param rig  what the experiments were played on
-/// @param closed_loop  sentences about the gain in closed loop; empty: it was not measured
+/// Returns the HTML page.
+/// @param rig          the rig of the experiments
+/// @param closed_loop  sentences about the closed loop; empty: it was not simulated
 [[nodiscard]] std::string investigation_html(const Investigation& investigation, const std::string& rig,
                                              const std::string& closed_loop);
 

@@ -26,7 +26,7 @@ std::string tracking_yaml(const ClosedLoopGain& gain, const std::string& channel
          "}\n  - release: {duration_s: 2, purge_s: 1, timeout_s: 20, on_fail: vent}\n";
 }
 
-/// The rig with another model and other gains on its channel, or why it would not be loaded.
+/// Returns the rig with another model and other gains on its channel, or the reason why this is not possible.
 tl::expected<ExperimentRig, NotPlayed> with_scheme(ExperimentRig rig, const model::Model& model,
                                                    const ClosedLoopScheme& scheme) {
   control::ChannelSettings& channel = rig.rig.settings.channels[rig.channel];

@@ -1,5 +1,5 @@
 #pragma once
-// The closed loop measured on a rig: the same sine tracked with one controller and with another.
+// Measures the closed loop on a rig: it tracks the same sine with two controllers.
 
 #include <string>
 
@@ -12,19 +12,20 @@
 
 namespace softgrip::tools {
 
-/// Root mean square of reading minus reference over the measured cycles of a track step.
+/// RMS of reading minus reference over the measured cycles of a track step [mm].
 struct RigTracking {
   double recalibrated_rmse_mm = 0;
   double extended_rmse_mm = 0;
   int cycles = 0;
 };
 
-/// Tracks the gain's reference with its gains, twice, on one channel of the rig; recordings go into `folder`.
+/// Tracks the reference of `gain` with both of its controllers on one channel of the rig. Recordings go into
+/// `folder`.
 [[nodiscard]] tl::expected<RigTracking, NotPlayed> track_on_rig(
     const ExperimentRig& rig, const model::Model& recalibrated, const model::Model& extended,
     const ClosedLoopGain& gain, const std::string& folder, const Consent& consent);
 
-/// Fills in "closed_loop.on_rig" of an investigation.json.
+/// Adds "closed_loop.on_rig" to an investigation.json.
 void add_rig_tracking(nlohmann::ordered_json& json, const RigTracking& tracking);
 
 }  // namespace softgrip::tools

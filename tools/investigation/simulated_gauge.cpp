@@ -1,4 +1,4 @@
-// A gauge for simulated rigs: the truth's sensor without its finger.
+// A gauge for simulated rigs: the sensor of the true model without its finger.
 
 #include <cmath>
 #include <optional>
@@ -17,12 +17,12 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr Nanoseconds interval = 10'000'000;
-/// Placing the target takes most of a reading's time; the last of it is averaged.
+/// Most of the time of a reading is used for moving the target. The last part of it is averaged [s].
 constexpr double averaged_s = 2;
-/// What a simulated output can be asked for.
+/// Largest length that a simulated output can represent [mm].
 constexpr double longest_mm = 10'000;
 
-/// A chain that is where it is told: 1 mm for every kPa, and the sensor's blocks of `truth`.
+/// Returns a model with a gain of 1 mm per kPa and the sensor blocks of `truth`.
 model::Model sensor_alone(const model::Model& truth) {
   model::Model sensor =
       model::only(truth, [](const model::BlockInfo& info) { return info.station == model::Station::sensor; });
@@ -37,7 +37,7 @@ class SensorBench {
   SensorBench(simulation::SimulatedBoardSettings settings, std::size_t channel)
       : channel_(channel), board_(on_bench(std::move(settings), channel), clock_) {}
 
-  /// The mean of what the sensor shows there; nothing where it cannot measure.
+  /// Returns the mean reading at a position, or nullopt if the sensor cannot measure it.
   std::optional<sysid::GaugeReading> read(double position_mm) {
     if (position_mm < 0) return std::nullopt;
     std::vector<double> commands(board_.channels(), 0.0);
