@@ -1,4 +1,4 @@
-// The study of control as a page.
+// The control study as a page.
 
 #include <algorithm>
 #include <cmath>
@@ -14,7 +14,7 @@ namespace {
 
 using sysid::Colour;
 
-/// RMSE of one scheme over that of another; NaN where one is missing.
+/// Returns the RMSE of `worse` divided by the RMSE of `better`, or NaN if one is missing.
 double gain_of(const ControlStudy& study, const std::string& worse, const std::string& better,
                double frequency_hz, double mismatch) {
   const ControlFigure* const a = study.find(worse, frequency_hz, mismatch);

@@ -1,4 +1,4 @@
-// The study of control as text: for a terminal, and as JSON.
+// The control study as text for a terminal, and as JSON.
 
 #include <cmath>
 #include <nlohmann/json.hpp>

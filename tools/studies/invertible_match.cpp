@@ -13,16 +13,16 @@
 namespace softgrip::tools {
 namespace {
 
-/// Millimetres of residual per mm/kPa of excess.
+/// Weight of the bound: millimetres of residual per mm/kPa of excess.
 constexpr double weight_kpa = 1e5;
-/// Factor between the extremes of the drawn starts.
+/// Ratio of the largest to the smallest drawn start value.
 constexpr double spread = 3;
 
 std::size_t index_of(const model::Model& model, const char* path) {
   return model::find_path(model, path).value();
 }
 
-/// Residuals of a chain and one more row, which is 0 while beta <= most_ratio (alpha + 1/k0).
+/// Residuals of a chain with one more row, which is 0 while beta <= most_ratio (alpha + 1/k0).
 class WithBoundOnRatio final : public sysid::Residuals {
  public:
   WithBoundOnRatio(const std::vector<sysid::Record>& records, const sysid::FitSpace& space,

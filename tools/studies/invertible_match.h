@@ -1,5 +1,5 @@
 #pragma once
-// An invertible model that answers as some log does.
+// Fits an invertible model to the response in a log.
 
 #include <cstddef>
 #include <cstdint>
@@ -11,16 +11,17 @@
 namespace softgrip::tools {
 
 struct MatchOptions {
-  double most_ratio = 0.8;  ///< of beta/(alpha + 1/k0)
+  double most_ratio = 0.8;  ///< upper limit of beta/(alpha + 1/k0)
   std::size_t starts = 12;
   std::uint64_t seed = 1;
   unsigned threads = 0;
 };
 
-/// Least squares of a Bouc-Wen element beside Kelvin-Voigt branches behind a lag and a delay, with
-/// beta <= most_ratio (alpha + 1/k0). The bound is on a combination, so it is put into the residuals: one
-/// more row of most_ratio's excess, heavy enough that what is left of it is below 1e-6 of the gain.
-/// `start` has exactly those blocks; k0 keeps its value, since only alpha + 1/k0 is visible.
+/// Fits a Bouc-Wen element in parallel with Kelvin-Voigt branches, behind a lag and a delay, by least squares
+/// with beta <= most_ratio (alpha + 1/k0). The bound concerns a combination of parameters, so it is an
+/// additional residual: the excess over the bound with a weight that keeps the remaining excess below 1e-6 of
+/// the gain. `start` must contain exactly these blocks. k0 keeps its value, because the data determine only
+/// alpha + 1/k0.
 [[nodiscard]] model::Model invertible_match(const std::vector<sysid::Log>& logs, const model::Model& start,
                                             const MatchOptions& options);
 

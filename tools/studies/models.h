@@ -1,6 +1,6 @@
 #pragma once
-// The fingers of the studies, with their numbers in them: a study must not depend on which files are
-// installed. tests/tools/studies compares them with config/models.
+// The simulated fingers of the studies, with fixed parameters, so that a study does not depend on installed
+// files. tests/tools/studies compares them with config/models.
 
 #include "model/model.h"
 
@@ -8,16 +8,16 @@ namespace softgrip::tools {
 
 inline constexpr double kpa_per_bar = 100;
 
-/// The published model with the given eta [1/bar], which was never published.
+/// Returns the published model with the given eta [1/bar], which the paper does not state.
 [[nodiscard]] model::Model published_model(double eta_per_bar);
-/// An ordinary actuator, beta = 0.57 (alpha + 1/k0), behind a valve (0: no such block).
+/// Returns an ordinary actuator with beta = 0.57 (alpha + 1/k0) behind a valve. A value of 0 omits the block.
 [[nodiscard]] model::Model ordinary_model(double lag_s, double delay_s);
-/// The finger of the simulated rig: config/models/bench_twin.yaml.
+/// Returns the finger of the simulated rig: config/models/bench_twin.yaml.
 [[nodiscard]] model::Model bench_twin();
 
-/// beta/(alpha + 1/k0): from 1 on the model moves the wrong way first.
+/// Returns beta/(alpha + 1/k0). From 1 on, the model has an inverse response.
 [[nodiscard]] double wrong_way_ratio(const model::Model& model);
-/// A value by its path, which must exist.
+/// Returns the value at a path. The path must exist.
 [[nodiscard]] double value_of(const model::Model& model, const char* path);
 
 }  // namespace softgrip::tools

@@ -31,9 +31,9 @@ struct Hidden {
 constexpr std::array<Hidden, 5> hidden{
     {{0, 0, 0.57}, {0.05, 0.02, 0.78}, {0.10, 0.05, 1.28}, {0.15, 0.05, 1.69}, {0.25, 0.10, 9.5}}};
 constexpr std::array<double, 4> etas_per_bar{0.5, 1, 2, 4};
-/// beta/alpha of the elements whose inverse is tried, between the published one and its absence.
+/// beta/alpha of the elements for which an inverse is computed, from an invertible one to the published one.
 constexpr std::array<double, 8> ratios{0.5, 0.8, 0.95, 1.0, 1.05, 1.25, 1.75, 17.207 / 7.079};
-/// The log that every inverse is asked for: a sine from 0 to 60 kPa and back.
+/// The pressure that every inverse must reproduce: a sine from 0 to 60 kPa and back.
 constexpr double inverse_hz = 0.1;
 constexpr double inverse_s = 20;
 
@@ -46,7 +46,7 @@ std::string refusal_of(const model::Model& model, control::FeedforwardKind kind,
   return accepted ? std::string() : accepted.error().with_advice();
 }
 
-/// Which branch of a two-branch element is the faster one: 1 or 2.
+/// Returns the number of the faster branch of a two-branch element: 1 or 2.
 int faster_branch(const model::Model& model) {
   const double tau1 =
       value_of(model, "kelvin_voigt.c1_kpa_s_per_mm") / value_of(model, "kelvin_voigt.k1_kpa_per_mm");
@@ -96,7 +96,7 @@ HiddenLatency identify_behind(const Hidden& valve, const PublishedOptions& optio
   return row;
 }
 
-/// An ordinary finger behind a valve, from which the match of the published response starts.
+/// Returns an ordinary finger behind a valve: the start point for matching the published response.
 model::Model match_start() {
   model::Model start = ordinary_model(0.06, 0.06);
   std::vector<double> values = model::flat_values(start);
@@ -139,7 +139,7 @@ PublishedMatch match_published(double eta_per_bar, const PublishedOptions& optio
   return row;
 }
 
-/// The published Bouc-Wen element with another beta.
+/// Returns the published Bouc-Wen element with another beta.
 model::Model element(double ratio) {
   const model::Model published = model::only(
       published_model(2), [](const model::BlockInfo& info) { return model::is<model::BoucWen>(info); });
@@ -148,7 +148,8 @@ model::Model element(double ratio) {
   return model::with_values(published, values);
 }
 
-/// p(k) = (y(k) + h(k-1))/alpha, the "multiplicative" form: pressures, and how fast an error grows.
+/// Computes p(k) = (y(k) + h(k-1))/alpha, the "multiplicative" form. `growth` is the growth of an error per
+/// sample.
 std::vector<double> explicit_inverse(const model::Model& element, const std::vector<double>& wanted_mm,
                                      double tick_s, double& growth) {
   const double alpha = model::flat_values(element)[0];
@@ -162,7 +163,7 @@ std::vector<double> explicit_inverse(const model::Model& element, const std::vec
     chain.step(tick_s, p);
     pressures.push_back(p);
   }
-  // What a hair at the start becomes in a sample, with the wanted displacement held.
+  // Growth of a small error within one sample, with the reference held.
   chain.reset(0);
   constexpr double hair_kpa = 1e-6;
   chain.step(tick_s, hair_kpa);
@@ -211,7 +212,7 @@ InverseTrial try_inverse(double ratio, const std::vector<double>& true_kpa, doub
   return trial;
 }
 
-/// Where the published element goes on its first loading.
+/// Computes the response of the published element to its first loading.
 void first_loading(PublishedStudy& study) {
   model::Chain<double> chain(element(ratios.back()));
   chain.reset(0);

@@ -1,11 +1,11 @@
 #pragma once
-// The study behind the project: what the published numbers of Zhang et al. 2025 say about a finger.
+// The consequences of the published numbers of Zhang et al. 2025 for a finger.
 //
-// 1. An ordinary actuator behind a valve that nobody modelled, identified with the published structure: how
-//    far beta/(alpha + 1/k0) is from the truth.
-// 2. The published response, matched by an ordinary, invertible actuator behind lag and delay.
-// 3. What follows for an inverse of the Bouc-Wen element: the explicit form and the implicit one.
-// 4. The paper's four RMSE figures, beside those of simulated fingers.
+// 1. An ordinary actuator behind an unmodelled valve is identified with the published structure. The result
+// is the deviation of beta/(alpha + 1/k0) from its true value.
+// 2. The published response is matched by an ordinary, invertible actuator behind lag and delay.
+// 3. Inverses of the Bouc-Wen element: the explicit and the implicit form.
+// 4. The four RMSE figures of the paper, compared with those of simulated fingers.
 
 #include <cstdint>
 #include <functional>
@@ -21,37 +21,37 @@
 namespace softgrip::tools {
 
 struct PublishedOptions {
-  std::uint64_t seed = 1;  ///< of noise and starts
-  double rate_hz = 100;    ///< of all logs
+  std::uint64_t seed = 1;  ///< seed of noise and start points
+  double rate_hz = 100;    ///< sampling rate of all logs
   double noise_mm = 0.05;
-  std::size_t starts = 12;     ///< of every identification and every match
-  std::size_t most_cases = 9;  ///< of each table; fewer for a quick look
-  unsigned threads = 0;        ///< 0: as many as there are cores
+  std::size_t starts = 12;     ///< start points of every identification and every match
+  std::size_t most_cases = 9;  ///< rows of each table; fewer for a quick run
+  unsigned threads = 0;        ///< 0: one per core
   std::function<void(const std::string&)> progress;
 };
 
-/// Row of the first table: a hidden valve and what the published structure makes of it.
+/// Row of the first table: a hidden valve and the fit of the published structure.
 struct HiddenLatency {
   double lag_s = 0;
   double delay_s = 0;
-  double planned_ratio = 0;  ///< the figure that the study is to reproduce
-  double ratio = 0;          ///< beta/(alpha + 1/k0) as fitted
+  double planned_ratio = 0;  ///< the expected value of `ratio`
+  double ratio = 0;          ///< fitted beta/(alpha + 1/k0)
   double true_ratio = 0;
-  double other_ratio = 0;  ///< the same from the other triangles
+  double other_ratio = 0;  ///< `ratio` for the other choice of triangles
   double rmse_mm = 0;
   double span_mm = 0;
-  double tau2_s = 0;  ///< of the fitted faster branch
+  double tau2_s = 0;  ///< time constant of the fitted faster branch
   double k2_kpa_per_mm = 0;
   double c2_kpa_s_per_mm = 0;
-  bool refused = false;  ///< the controller would refuse the fitted model's inverse
+  bool refused = false;  ///< the controller would refuse the inverse of the fitted model
   model::Model fitted;
 };
 
-/// Row of the second table.
+/// Row of the second table: a match of the published response.
 struct PublishedMatch {
   double eta_per_bar = 0;  ///< assumed for the published model
   double rmse_mm = 0;
-  double other_rmse_mm = 0;  ///< on a signal that was not used
+  double other_rmse_mm = 0;  ///< on a signal that was not fitted
   double span_mm = 0;
   double lag_s = 0;
   double delay_s = 0;
@@ -59,16 +59,16 @@ struct PublishedMatch {
   model::Model model;
 };
 
-/// Row of the third: the inverse of one Bouc-Wen element, asked for the pressure behind its own answer.
+/// Row of the third table: an inverse of one Bouc-Wen element, applied to the element's own response.
 struct InverseTrial {
-  double ratio = 0;   ///< beta/alpha
-  double growth = 0;  ///< factor by which a small error of the explicit form grows, first sample to sample
-  double explicit_error_kpa = 0;  ///< largest, of the explicit form, unbounded
-  double implicit_error_kpa = 0;  ///< largest, of the implicit solve within 0 to 60 kPa
-  double implicit_jump_kpa = 0;   ///< largest change from sample to sample
-  double true_jump_kpa = 0;       ///< the same of the pressure that is to be found
-  double unreached_share = 0;     ///< of the samples for which the implicit solve finds no pressure
-  bool refused = false;           ///< by the check before a controller starts
+  double ratio = 0;               ///< beta/alpha
+  double growth = 0;              ///< growth of a small error of the explicit form, per sample
+  double explicit_error_kpa = 0;  ///< largest error of the explicit form, without pressure limits
+  double implicit_error_kpa = 0;  ///< largest error of the implicit form within 0 to 60 kPa
+  double implicit_jump_kpa = 0;   ///< largest change per sample of the implicit form
+  double true_jump_kpa = 0;       ///< largest change per sample of the true pressure
+  double unreached_share = 0;     ///< share of the samples without a solution of the implicit form
+  bool refused = false;           ///< refused by the check before a controller starts
   std::vector<double> explicit_kpa;
   std::vector<double> implicit_kpa;
 };
@@ -81,37 +81,38 @@ struct PublishedStudy {
   std::vector<PaperRow> paper;
   std::vector<double> inverse_time_s;
   std::vector<double> inverse_true_kpa;
-  double twin_rmse_mm = 0;         ///< of bench_twin against the published response with eta 2 /bar
-  double published_ratio = 0;      ///< beta/(alpha + 1/k0)
-  double falls_until_kpa = 0;      ///< the published element falls on first loading up to here
-  double falls_by_mm = 0;          ///< by so much
-  double back_at_kpa = 0;          ///< and is back at 0 here; NaN: not below 60 kPa
-  std::string bouc_wen_refusal;    ///< what the controller says of the published element
-  std::string full_model_refusal;  ///< and of the whole published model
-  sysid::Log match_log;            ///< of the first match: published response
-  std::vector<double> match_mm;    ///< and the matching model's
-  sysid::Log latency_log;          ///< of the longest latency: what was fitted
-  std::vector<double> latency_mm;  ///< and what the fitted model says
+  double twin_rmse_mm = 0;     ///< bench_twin compared with the published response for eta = 2 /bar
+  double published_ratio = 0;  ///< beta/(alpha + 1/k0)
+  double falls_until_kpa =
+      0;  ///< on first loading, the response of the published element falls up to this pressure
+  double falls_by_mm = 0;          ///< depth of this fall
+  double back_at_kpa = 0;          ///< pressure at which the response is back at 0; NaN: not below 60 kPa
+  std::string bouc_wen_refusal;    ///< the controller's reason to refuse the published element
+  std::string full_model_refusal;  ///< the controller's reason to refuse the whole published model
+  sysid::Log match_log;            ///< published response of the first match
+  std::vector<double> match_mm;    ///< response of the matching model
+  sysid::Log latency_log;          ///< log of the longest latency, which was fitted
+  std::vector<double> latency_mm;  ///< response of the fitted model
   double wall_s = 0;
 };
 
-/// Two choices among triangles of 20 to 60 kPa at 0.1 to 0.4 Hz.
+/// Two sequences of triangles of 20 to 60 kPa at 0.1 to 0.4 Hz.
 enum class Triangles {
-  mixed,   ///< six, amplitude and rate independent, twice
-  rising,  ///< three, the larger the faster, four times
+  mixed,   ///< six triangles with independent amplitude and rate, twice
+  rising,  ///< three triangles whose rate increases with the amplitude, four times
 };
-/// The command; displacement_mm is empty.
+/// Returns the command. displacement_mm is empty.
 [[nodiscard]] sysid::Log triangles(Triangles choice, double rate_hz);
 
 [[nodiscard]] PublishedStudy study_published(const PublishedOptions& options);
 
-/// A ratio for people: "> 100" where alpha + 1/k0 is next to nothing.
+/// Formats a ratio: "> 100" if alpha + 1/k0 is almost zero.
 [[nodiscard]] std::string ratio_text(double ratio);
-/// published.json
+/// Returns the text of published.json.
 [[nodiscard]] std::string published_json(const PublishedStudy& study);
-/// report.html
+/// Returns the content of report.html.
 [[nodiscard]] sysid::Page published_page(const PublishedStudy& study);
-/// The tables for a terminal.
+/// Returns the tables as text for a terminal.
 [[nodiscard]] std::string published_text(const PublishedStudy& study);
 
 }  // namespace softgrip::tools

@@ -57,7 +57,7 @@ Chart ratio_chart(const PublishedStudy& study) {
   return chart;
 }
 
-/// What was fitted and what is left, one below the other.
+/// Returns the fitted log and the residual, one below the other.
 sysid::ChartRows fit_charts(const sysid::Log& log, const std::vector<double>& answer_mm,
                             const std::string& given, const std::string& answering) {
   Chart overlay;

@@ -8,10 +8,10 @@
 namespace softgrip::tools {
 namespace {
 
-// The model's own noise and the noise that is added must not be the same numbers.
+// Makes the added noise independent of the model's own noise.
 constexpr std::uint64_t added_noise = 1;
 
-/// The interval of a regular log, 0 of an irregular one.
+/// Returns the interval of a regular log, or 0 for an irregular log.
 double sample_time_of(const sysid::Log& log) {
   return log.size() < 2 ? 0 : sysid::sampling_of(log).sample_time_s();
 }
@@ -29,7 +29,7 @@ model::Surroundings surroundings_at(const sysid::Log& log, std::size_t i) {
 sysid::Log sampled_signal(model::SignalName signal, double rate_hz) {
   sysid::Log log;
   log.name = model::name_of(signal);
-  // The last sample may lie a rounding error behind the end.
+  // Include a last sample that exceeds the end by a rounding error.
   const auto intervals = static_cast<std::size_t>(std::floor(model::duration_s(signal) * rate_hz + 1e-6));
   for (std::size_t i = 0; i <= intervals; ++i) {
     const double time_s = static_cast<double>(i) / rate_hz;

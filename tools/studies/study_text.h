@@ -1,5 +1,5 @@
 #pragma once
-// What the texts of the studies share.
+// Functions for the texts of all studies.
 
 #include <nlohmann/json.hpp>
 
@@ -10,10 +10,10 @@
 
 namespace softgrip::tools {
 
-/// `text` at the right of a column of `width` characters; longer text stands as it is.
+/// Right-aligns `text` in a column of `width` characters. A longer text is unchanged.
 [[nodiscard]] std::string cell(const std::string& text, std::size_t width);
 
-/// {"bouc_wen.alpha_mm_per_kpa": 0.0708, ...}: every parameter by its path.
+/// Returns every parameter by its path: {"bouc_wen.alpha_mm_per_kpa": 0.0708, ...}.
 [[nodiscard]] nlohmann::ordered_json parameters_of(const model::Model& model);
 
 }  // namespace softgrip::tools
