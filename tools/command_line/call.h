@@ -1,5 +1,5 @@
 #pragma once
-// How a command was called, so that it can be called again.
+// Records how a command was called, so that the call can be repeated.
 
 #include <string>
 #include <vector>
@@ -10,8 +10,8 @@ class App;
 
 namespace softgrip::tools {
 
-/// The command's name and what it was given, for its JSON: `softgrip report --verify` calls it so again. Not
-/// where its output goes (--out, --json, --figures).
+/// Returns the command's name and arguments for its JSON result, without those that select the output (--out,
+/// --json, --figures). `softgrip report --verify` repeats this call.
 [[nodiscard]] std::vector<std::string> call_of(const CLI::App& command);
 
 }  // namespace softgrip::tools

@@ -27,14 +27,14 @@ using AddCommand = void (*)(CLI::App& program, ExitCode& outcome);
 /// Prints "PROGRAM: message" to the standard error and returns `code`: `return fail(ExitCode::io, ...)`.
 ExitCode fail(ExitCode code, std::string_view message);
 
-/// Prints all problems of the inputs to the standard error, each with its place, and how many they are.
-/// Returns ExitCode::input_refused.
+/// Prints all problems of the inputs to the standard error, each with its location, and their number. Returns
+/// ExitCode::input_refused.
 ExitCode refuse(const document::Problems& problems);
 
-/// Empty if `path` is a folder or a regular file that can be opened for reading; else the reason.
+/// Returns "" if `path` is a folder or a regular file that can be opened for reading, else the reason.
 [[nodiscard]] std::string why_unreadable(const std::string& path);
 
-/// ExitCode::io, and a sentence on the standard error, if there is such a reason.
+/// Returns ExitCode::io and prints a sentence to the standard error if `path` is unreadable, else nullopt.
 [[nodiscard]] std::optional<ExitCode> unreadable(const std::string& path);
 
 }  // namespace softgrip::tools

@@ -8,13 +8,13 @@
 namespace softgrip::tools {
 namespace {
 
-/// An option, or what stands in a place of its own.
+/// An option or a positional argument.
 struct Choice {
-  std::vector<std::string> names;  ///< with their dashes; empty for a place
+  std::vector<std::string> names;  ///< with their dashes; empty for a positional argument
   std::string about;
   bool takes_value = false;
   bool repeats = false;
-  std::vector<std::string> words;  ///< that it takes; empty: files
+  std::vector<std::string> words;  ///< allowed values; empty: files
 };
 
 struct Command {
@@ -22,12 +22,12 @@ struct Command {
   std::string about;
   std::vector<Choice> options;
   std::vector<Choice> places;
-  bool asks_for_sequences = false;  ///< of a daemon
+  bool asks_for_sequences = false;  ///< names of the daemon's sequences
 };
 
 constexpr const char* ask_for_sequences = "sequences --names 2>/dev/null";
 
-/// The words in the "{a,b}" of an option that takes one of some.
+/// Returns the allowed values of an option with a type such as "{a,b}".
 std::vector<std::string> words_of(const std::string& type) {
   std::vector<std::string> words;
   const std::size_t begin = type.find('{');
@@ -57,7 +57,7 @@ Choice choice_of(const CLI::Option& option) {
 
 Command command_of(const CLI::App& app);
 
-/// Of a command that has commands: their names, and all that one of them takes.
+/// Adds the subcommands of a command: their names, and all options and arguments of each.
 void add_nested(const CLI::App& app, Command& command) {
   Choice place;
   for (const CLI::App* nested : app.get_subcommands([](const CLI::App*) { return true; })) {
@@ -107,7 +107,7 @@ std::vector<std::string> names_of(const std::vector<Choice>& options) {
   return names;
 }
 
-/// `text` within single quotes, with `escaped` behind a backslash.
+/// Returns `text` in quotes, with the characters `escaped` preceded by a backslash.
 std::string quoted(const std::string& text, std::string_view escaped, std::string_view quote) {
   std::string out;
   for (const char c : text) {
@@ -123,7 +123,7 @@ std::string quoted(const std::string& text, std::string_view escaped, std::strin
   return out;
 }
 
-// bash: what is empty is completed as files, by `-o default`.
+// bash: an argument without candidates is completed as a file, by `-o default`.
 
 void bash_values(std::string& out, const std::string& command, const std::vector<Choice>& options) {
   for (const Choice& option : options) {

@@ -1,5 +1,5 @@
 #pragma once
-// Completion for shells, out of the options and subcommands that the program has: it cannot know others.
+// Completion scripts for shells, generated from the options and subcommands of the program.
 
 #include <optional>
 #include <string>
@@ -12,11 +12,11 @@ class App;
 namespace softgrip::tools {
 
 enum class Shell { bash, zsh, fish };
-/// "bash", "zsh", "fish"; nothing for another name.
+/// Parses "bash", "zsh" or "fish". Returns nullopt for any other name.
 [[nodiscard]] std::optional<Shell> shell_named(std::string_view name);
 
-/// A script that completes the program's commands, options, the words that an option takes, and files. A
-/// sequence that a daemon starts is completed with the names that the daemon says.
+/// Returns a script that completes the program's commands, options, allowed values and files. The sequences
+/// of a daemon are completed with the names that the daemon reports.
 [[nodiscard]] std::string completion_script(const CLI::App& program, Shell shell);
 
 }  // namespace softgrip::tools

@@ -1,5 +1,5 @@
 #pragma once
-// Where configuration files are when the user does not say it.
+// Finds configuration files without an explicit path.
 
 #include <filesystem>
 #include <string>
@@ -7,12 +7,13 @@
 
 namespace softgrip::tools {
 
-/// The path of a file or folder of the configuration ("rig.yaml", "boards"): in ./config if it is there,
-/// else where it is installed.
+/// Returns the path of a file or folder of the configuration ("rig.yaml", "boards"): in ./config if it exists
+/// there, else in the installed configuration.
 [[nodiscard]] std::string configuration_path(const std::string& name);
-/// The folder where it is installed.
+/// Returns the folder of the installed configuration.
 [[nodiscard]] std::string installed_configuration();
-/// The YAML files of a folder without their ending, by name; none where it cannot be read.
+/// Returns the sorted names of the YAML files in a folder, without their extension. The list is empty if the
+/// folder is unreadable.
 [[nodiscard]] std::vector<std::string> document_names(const std::filesystem::path& folder);
 
 }  // namespace softgrip::tools

@@ -1,5 +1,5 @@
 #pragma once
-// Reading a model as the desk's commands take it.
+// Reads models for the commands that need no rig.
 
 #include <string>
 
@@ -10,9 +10,9 @@
 
 namespace softgrip::tools {
 
-/// Reads a model file; where it is refused, prints all problems and returns the exit code.
+/// Reads a model file. If the file is refused, prints all problems and returns the exit code.
 [[nodiscard]] tl::expected<model::Model, ExitCode> read_model(const std::string& path);
-/// Reads a model file for a rig: another output unit than mm is refused.
+/// Reads a model file for a rig. Refuses an output unit other than mm.
 [[nodiscard]] tl::expected<model::Model, ExitCode> read_rig_model(const std::string& path);
 
 }  // namespace softgrip::tools

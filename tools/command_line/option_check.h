@@ -1,5 +1,5 @@
 #pragma once
-// Checks of options that CLI11 leaves to be desired.
+// Checks of options that CLI11 does not provide.
 
 #include <CLI/CLI.hpp>
 #include <cmath>
@@ -9,7 +9,7 @@
 
 namespace softgrip::tools {
 
-/// A number in [lower, upper]. CLI::Range lets nan pass, which is on no side of either.
+/// Accepts a number in [lower, upper]. Unlike CLI::Range, it refuses NaN.
 [[nodiscard]] inline CLI::Validator number_between(double lower, double upper) {
   const std::string range = "a number from " + significant(lower) + " to " + significant(upper);
   const auto check = [=](const std::string& text) {

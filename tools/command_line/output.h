@@ -1,5 +1,5 @@
 #pragma once
-// Where the output of a command goes.
+// Writes the output of commands.
 
 #include <cstdio>
 #include <optional>
@@ -13,31 +13,33 @@
 
 namespace softgrip::tools {
 
-/// Writes a file whole or not at all. "-" is the standard output, and what exists and is no regular file
-/// (/dev/stdout, a pipe) is written to as it is. The error is one sentence.
+/// Writes a file completely or not at all. "-" is the standard output. An existing path that is not a regular
+/// file (/dev/stdout, a pipe) is opened and written. The error is one sentence.
 [[nodiscard]] tl::expected<void, std::string> write_output(const std::string& path, std::string_view text);
 
-/// True for "-" and for what exists and is no regular file: it has no name that could say what goes in.
+/// Returns true for "-" and for an existing path that is not a regular file. Its name does not define a
+/// format.
 [[nodiscard]] bool is_stream(const std::string& path);
 
-/// Returns ExitCode::usage, and prints a sentence, if one of `outputs` is the same file as one of `inputs`:
-/// same device and inode, through links. An input may be a recording's folder: its run.csv and run.json
-/// count. Empty paths and "-" never match. Ask before anything is computed.
+/// Returns ExitCode::usage and prints a sentence if one of `outputs` and one of `inputs` are the same file:
+/// same device and inode, through links. An input may be a recording's folder, which includes its run.csv and
+/// run.json. Empty paths and "-" never match. Call this before any computation.
 [[nodiscard]] std::optional<ExitCode> refuse_overwriting(const std::vector<std::string>& outputs,
                                                          const std::vector<std::string>& inputs);
 
-/// The same for a command that fills a folder: returns the files in it, and in the folders in it, whose names
-/// match one of the patterns (`*`: any characters), which the command can replace. "" has none.
+/// Returns the files that a command can replace in its output folder: files in the folder and in its
+/// subfolders whose names match one of the patterns (`*`: any characters). For "", the result is empty.
 [[nodiscard]] std::vector<std::string> files_in(const std::string& folder,
                                                 const std::vector<std::string>& patterns);
 
-/// Creates the folder if it is missing. The error says why nothing can be written into it: to be asked before
-/// what takes minutes, not after.
+/// Creates the folder if it is missing. The error says why the folder is not writable. Call this before a
+/// long computation.
 [[nodiscard]] tl::expected<void, std::string> prepare_folder(const std::string& folder);
-/// The same for the folder of a file; "-" is always writable.
+/// Creates the parent folder of a file if it is missing. "-" is always writable.
 [[nodiscard]] tl::expected<void, std::string> prepare_parent(const std::string& path);
 
-/// Where to say what was done: the standard output, unless the output itself goes there.
+/// Returns the stream for the summary: the standard output, or the standard error if the output itself goes
+/// there.
 [[nodiscard]] std::FILE* report_stream(const std::string& path);
 
 }  // namespace softgrip::tools

@@ -16,7 +16,7 @@ bool is_digit(char c) {
   return c >= '0' && c <= '9';
 }
 
-/// The numbers of the first "3 of 20" in a text.
+/// Returns the numbers of the first "3 of 20" in a text.
 std::optional<std::pair<std::size_t, std::size_t>> share_in(std::string_view text) {
   constexpr std::string_view between = " of ";
   for (std::size_t at = text.find(between); at != std::string_view::npos; at = text.find(between, at + 1)) {
@@ -54,7 +54,7 @@ double RestEstimate::left_s(const std::string& text, double now_s) {
 
 ProgressLine::ProgressLine(std::FILE* to, std::chrono::milliseconds every)
     : to_(to), every_(every), terminal_(::isatty(::fileno(to)) == 1) {
-  // A signal must end the work, not be lost in what only tells of it.
+  // This thread blocks all signals, so that the main thread receives them.
   sigset_t all, before;
   sigfillset(&all);
   pthread_sigmask(SIG_SETMASK, &all, &before);
@@ -80,8 +80,7 @@ std::function<void(const std::string&)> ProgressLine::show() {
 std::string ProgressLine::latest() const {
   const double now_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - began_).count();
   std::string line = seconds_text(now_s) + ": " + text_;
-  // What has passed since the text came has passed of the rest, too; nobody is told again and again that
-  // nothing is left.
+  // Subtract the time since the estimate was made. A remaining time below 1 s is not shown.
   const double rest_s = left_s_ - (now_s - said_s_);
   if (rest_s >= 1) line += ", about " + seconds_text(rest_s) + " left";
   return line;

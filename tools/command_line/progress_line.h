@@ -1,5 +1,5 @@
 #pragma once
-// How far long work is, on a terminal and in a file.
+// Shows the progress of long computations on a terminal and in a file.
 
 #include <chrono>
 #include <condition_variable>
@@ -11,11 +11,11 @@
 
 namespace softgrip::tools {
 
-/// How long the rest of a stage will take by what it took so far. Texts say how far they are as "3 of 20"; a
-/// text without that, or of another whole, begins another stage.
+/// Estimates the remaining time of a stage from its elapsed time. Texts state the progress as "3 of 20". A
+/// text without these numbers, or with another total, begins a new stage.
 class RestEstimate {
  public:
-  /// The seconds that are left after `text`, which came at `now_s`; below 0: nobody can know yet.
+  /// Returns the remaining time [s] after `text`, which was shown at `now_s`. A negative value means unknown.
   double left_s(const std::string& text, double now_s);
 
  private:
@@ -24,8 +24,8 @@ class RestEstimate {
   double began_s_ = 0;
 };
 
-/// On a terminal one line that is overwritten, cleared at the end. Elsewhere a line each ten seconds: what
-/// was said last, how long it takes already and about how much longer.
+/// On a terminal, it overwrites one line and clears it at the end. Elsewhere it prints a line every 10 s with
+/// the latest text, the elapsed time and the estimated remaining time.
 class ProgressLine {
  public:
   explicit ProgressLine(std::FILE* to = stderr, std::chrono::milliseconds every = std::chrono::seconds(10));
@@ -35,13 +35,14 @@ class ProgressLine {
   ProgressLine(ProgressLine&&) = delete;
   ProgressLine& operator=(ProgressLine&&) = delete;
 
-  /// What shows a text; "" shows nothing until the next one. May be called from any thread, while this lives.
+  /// Returns a function that shows a text; "" hides the line until the next text. It may be called from any
+  /// thread during the lifetime of this object.
   [[nodiscard]] std::function<void(const std::string&)> show();
 
  private:
   void say(const std::string& text);
   void repeat();
-  [[nodiscard]] std::string latest() const;  ///< under the lock
+  [[nodiscard]] std::string latest() const;  ///< call with the lock held
 
   std::FILE* to_;
   std::chrono::milliseconds every_;

@@ -1,5 +1,5 @@
 #pragma once
-// A file that a command reads with a reader that gathers problems.
+// Reads an input file of a command with a reader that collects problems.
 
 #include <string>
 #include <utility>
@@ -11,8 +11,8 @@
 
 namespace softgrip::tools {
 
-/// Returns the result of read(path, problems). If it cannot be opened or is refused, prints the reason and
-/// returns the exit code.
+/// Returns the result of read(path, problems). If the file cannot be opened or is refused, prints the reason
+/// and returns the exit code.
 template <class Read>
 auto read_input(const std::string& path, Read read)
     -> tl::expected<typename decltype(read(path, std::declval<document::Problems&>()))::value_type,

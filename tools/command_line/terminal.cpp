@@ -33,7 +33,7 @@ void put(std::string_view text) {
   }
 }
 
-constexpr std::string_view enter_screen = "\x1b[?1049h\x1b[?25l";  // the other screen, no cursor
+constexpr std::string_view enter_screen = "\x1b[?1049h\x1b[?25l";  // alternate screen, cursor hidden
 constexpr std::string_view leave_screen = "\x1b[?25h\x1b[?1049l";
 
 constexpr std::array<int, 6> crashes{SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGSYS};
@@ -44,7 +44,7 @@ volatile std::sig_atomic_t keyboard_to_restore = 0;
 extern "C" void softgrip_restore_terminal(int signal) {
   put(leave_screen);
   if (keyboard_to_restore != 0) ::tcsetattr(STDIN_FILENO, TCSANOW, &keyboard_before);
-  ::raise(signal);  // SA_RESETHAND has restored the usual ending
+  ::raise(signal);  // SA_RESETHAND has restored the default action
 }
 
 }  // namespace
@@ -119,8 +119,8 @@ Screen::~Screen() {
 }
 
 void Screen::draw(const std::vector<std::string>& lines) {
-  // One write: no flicker. A line is cleared before it is written: behind one that fills the last column the
-  // cursor stands on its last character.
+  // Write everything at once to avoid flicker. Clear each line before writing it: after a line that fills the
+  // last column, the cursor is still on its last character.
   std::string frame = "\x1b[H";
   const std::size_t rows = std::min<std::size_t>(lines.size(), window().ws_row);
   for (std::size_t i = 0; i < rows; ++i) frame += (i > 0 ? "\r\n\x1b[2K" : "\x1b[2K") + lines[i];

@@ -1,5 +1,5 @@
 #pragma once
-// The terminal that a live view owns for a while, and gives back as it was.
+// Controls the terminal for a live view and restores it afterwards.
 
 #include <chrono>
 #include <cstddef>
@@ -10,27 +10,27 @@
 
 namespace softgrip::tools {
 
-/// True if the standard output is a terminal that moves its cursor.
+/// Returns true if the standard output is a terminal that can move its cursor.
 [[nodiscard]] bool on_terminal();
-/// True unless NO_COLOR is set (https://no-color.org) or the output is no terminal.
+/// Returns true unless NO_COLOR is set (https://no-color.org) or the output is not a terminal.
 [[nodiscard]] bool wants_colour();
-/// True if the locale's character encoding is UTF-8.
+/// Returns true if the character encoding of the locale is UTF-8.
 [[nodiscard]] bool has_unicode();
-/// What of a text is no ASCII and has a usual stand-in, by it where the locale is not UTF-8: +- for ±.
+/// Replaces characters by their usual ASCII form if the locale is not UTF-8: ± becomes +-.
 [[nodiscard]] std::string on_screen(std::string text);
-/// Columns and rows of the standard output, or 80 and 24.
+/// Returns the columns and rows of the standard output, or 80 and 24.
 [[nodiscard]] std::size_t terminal_columns();
 [[nodiscard]] std::size_t terminal_rows();
 
-/// Takes SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGTSTP and SIGWINCH as a descriptor in place of their usual
-/// effect.
+/// Blocks the default action of SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGTSTP and SIGWINCH and returns a
+/// descriptor that reports these signals.
 [[nodiscard]] Descriptor take_ending_signals();
 
-/// The signal that waits in that descriptor, or 0.
+/// Returns the next signal of the descriptor, or 0 if there is none.
 [[nodiscard]] int next_signal(const Descriptor& signals);
 
-/// Full-screen drawing. The screen, the cursor and the keyboard are restored when it is destroyed, and by the
-/// signals of a crash. At most one lives at a time.
+/// Full-screen drawing. The destructor restores screen, cursor and keyboard, and so do the signals of a
+/// crash. At most one object may exist at a time.
 class Screen {
  public:
   Screen();
@@ -40,7 +40,7 @@ class Screen {
   Screen& operator=(Screen&&) = delete;
   ~Screen();
 
-  /// Replaces what is shown; lines that do not fit are left out.
+  /// Replaces the displayed lines. Lines that do not fit are omitted.
   void draw(const std::vector<std::string>& lines);
 
  private:

@@ -1,5 +1,5 @@
 #pragma once
-// What is said of a command line that cannot be understood: with what was probably meant.
+// Prints messages for an invalid command line, with a suggestion.
 
 namespace CLI {
 class App;
@@ -8,9 +8,9 @@ class ParseError;
 
 namespace softgrip::tools {
 
-/// Prints help or version where they were asked for, else what is wrong, with the nearest command or option
-/// that there is. Returns what the process shall exit with: 0, 2, or the code that an option's callback left
-/// by a CLI::RuntimeError.
+/// Prints help or version if requested. Otherwise prints the error with the nearest existing command or
+/// option. Returns the exit code of the program: 0, 2, or the code that an option's callback passed with a
+/// CLI::RuntimeError.
 [[nodiscard]] int end_of(const CLI::App& program, const CLI::ParseError& error, int argc, char** argv);
 
 }  // namespace softgrip::tools
