@@ -34,7 +34,7 @@ int run(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return softgrip::tools::end_of(program, error, argc, argv);
   }
-  // Everything is in order and safe. A shell goes on with its loop unless the program dies by the signal.
+  // All results are complete and safe. A shell ends its loop only if the program dies by the signal.
   if (softgrip::ending_signal() != 0) softgrip::end_by_signal(softgrip::ending_signal());
   return static_cast<int>(outcome);
 }

@@ -1,4 +1,4 @@
-// softgrip-plc: softgripd for PLCs and robot controllers, on Modbus TCP.
+// softgrip-plc: connects PLCs and robot controllers to softgripd over Modbus TCP.
 
 #include <sys/signalfd.h>
 
@@ -38,7 +38,7 @@ void add_options(CLI::App& program, Options& options) {
   program.footer("Ready once 'listening on ADDRESS:PORT' is printed.");
 }
 
-/// Blocked for the whole process, as a descriptor.
+/// Blocks the signals for the whole process and returns a descriptor that reports them.
 Descriptor take_signals() {
   sigset_t set;
   sigemptyset(&set);

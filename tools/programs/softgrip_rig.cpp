@@ -88,20 +88,20 @@ void add_options(CLI::App& program, Options& options) {
       "printed.");
 }
 
-/// All signals that the server takes, as a descriptor; blocked for the whole process.
+/// Blocks the signals of the server for the whole process and returns a descriptor that reports them.
 Descriptor take_signals() {
   sigset_t set;
   sigemptyset(&set);
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGUSR1}) sigaddset(&set, signal);
   sigprocmask(SIG_BLOCK, &set, nullptr);
-  // A client that left is found out by the write that fails.
+  // The failing write detects a client that has disconnected.
   std::signal(SIGPIPE, SIG_IGN);
   return Descriptor{signalfd(-1, &set, SFD_CLOEXEC)};
 }
 
-/// A board answers in time however busy the machine is. Who may not ask for that gets an ordinary process.
-/// Bound to one processor: a real-time thread that may wander waited 49 ms on a busy one (Linux 6.18, the
-/// fair server's share), a bound one 1.4 ms at most.
+/// A board responds in time even on a busy computer, so request real-time scheduling. Without the permission,
+/// the process stays an ordinary one. The thread is bound to one processor: on a busy computer an unbound
+/// real-time thread waited up to 49 ms (Linux 6.18, share of the fair server), a bound one at most 1.4 ms.
 void ask_for_real_time() {
   constexpr int below_the_daemon = 40;
   sched_param parameters{};
@@ -117,7 +117,7 @@ void ask_for_real_time() {
   (void)::sched_setaffinity(0, sizeof one, &one);
 }
 
-/// Opens what the modules answer on; `told` says where.
+/// Opens the sockets or the serial line of the modules and appends their addresses to the message.
 ExitCode listen(const Setup& setup, simulation::ServerSockets& sockets, std::string& told) {
   if (setup.line) {
     auto end = simulation::SerialEnd::open(*setup.line);

@@ -18,16 +18,16 @@
 namespace softgrip::tools {
 namespace {
 
-// Distinct seeds of the channels' noise; any odd number does.
+// Distinguishes the noise seeds of the channels. Any odd number is suitable.
 constexpr std::uint64_t seed_step = 0x9e3779b97f4a7c15;
 
-/// A board file as the user named it: a path, or a name in config/boards.
+/// Returns the path of a board file that is given as a path or as a name in config/boards.
 std::string board_path(const std::string& board) {
   const bool is_path = board.find('/') != std::string::npos || board.ends_with(".yaml");
   return is_path ? board : configuration_path("boards") + "/" + board + ".yaml";
 }
 
-/// Says that a board map is not there, and which one was meant.
+/// Reports that a board map does not exist and suggests a similar name.
 ExitCode no_such_board(const std::string& board, const std::string& path) {
   const std::vector<std::string> names = document_names(std::filesystem::path(path).parent_path());
   const std::string stem = std::filesystem::path(path).stem();
@@ -89,7 +89,7 @@ void add_faults(const Options& options, simulation::EmulatorSettings& settings,
 
 constexpr std::uint16_t usual_port = 1502;
 
-/// Board, units and wiring as softgripd has them.
+/// Reads boards, units and wiring from a rig file, as softgripd does.
 tl::expected<Setup, ExitCode> setup_of_rig(const std::string& path) {
   if (const auto code = unreadable(path)) return tl::unexpected{*code};
   document::Problems problems;
@@ -135,7 +135,7 @@ tl::expected<Setup, ExitCode> setup_of_boards(const Options& options) {
   return setup;
 }
 
-/// Where the modules answer: what the options say in the place of what the rig file says.
+/// Sets the addresses or the line of the modules. Options take precedence over the rig file.
 std::optional<ExitCode> place(const Options& options, Setup& setup) {
   if (!options.rtu.empty() || (setup.line && !options.port)) {
     drivers::SerialLine& line = setup.line ? *setup.line : setup.line.emplace();
@@ -145,7 +145,7 @@ std::optional<ExitCode> place(const Options& options, Setup& setup) {
       return fail(ExitCode::usage, "--format takes 8N1, 8E1, 8O1, 8N2 or 8E2, not '" + *options.format + "'");
     }
     line.turnaround_s = options.turnaround_s.value_or(line.turnaround_s);
-    // One line, whatever hosts the rig file may have had.
+    // All modules share one line, even if the rig file has several hosts.
     for (simulation::EmulatedModule& module : setup.emulator.modules) module.link = 0;
     setup.emulator.wire = modbus::Wire::rtu;
     return std::nullopt;
@@ -157,14 +157,14 @@ std::optional<ExitCode> place(const Options& options, Setup& setup) {
   if (setup.addresses.empty()) setup.addresses.push_back({.host = options.bind, .port = usual_port});
   for (std::size_t i = 0; i < setup.addresses.size(); ++i) {
     drivers::TcpAddress& address = setup.addresses[i];
-    // Several hosts of a rig are several addresses of this machine, where they can be.
+    // Several hosts of a rig become several addresses of this computer if possible.
     if (setup.addresses.size() == 1 || !modbus::is_loopback(address.host)) address.host = options.bind;
     if (options.port) address.port = static_cast<std::uint16_t>(*options.port == 0 ? 0 : *options.port + i);
   }
   return std::nullopt;
 }
 
-/// The first input file that cannot be opened.
+/// Returns an exit code for the first input file that cannot be opened.
 std::optional<ExitCode> any_unreadable(const Options& options) {
   std::vector<std::string> files = options.models;
   if (!options.faults.empty()) files.push_back(options.faults);

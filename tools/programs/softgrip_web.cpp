@@ -1,4 +1,4 @@
-// softgrip-web: softgripd for browsers and for Prometheus, over HTTP.
+// softgrip-web: serves softgripd's data to browsers and Prometheus over HTTP.
 
 #include <sys/signalfd.h>
 
@@ -24,7 +24,7 @@
 namespace softgrip::web {
 namespace {
 
-/// As the package libjs-chart.js installs it.
+/// The path to which the package libjs-chart.js installs the file.
 constexpr const char* chart_path = "/usr/share/javascript/chart.js/chart.min.js";
 constexpr std::size_t largest_chart = std::size_t{4} << 20U;
 
@@ -50,7 +50,7 @@ void add_options(CLI::App& program, Options& options) {
   program.footer("Ready once 'listening on http://ADDRESS:PORT/' is printed.");
 }
 
-/// What the command line says in the place of the file.
+/// Overrides settings of the file by the command line.
 void put_in_place(const Options& options, Settings& settings) {
   if (!options.socket.empty()) settings.look_socket = settings.operate_socket = options.socket;
   if (options.port) settings.port = *options.port;
@@ -58,7 +58,7 @@ void put_in_place(const Options& options, Settings& settings) {
   if (options.operate) settings.without_token = Role::operate;
 }
 
-/// Blocked for the whole process, as a descriptor.
+/// Blocks the signals for the whole process and returns a descriptor that reports them.
 Descriptor take_signals() {
   sigset_t set;
   sigemptyset(&set);
@@ -96,7 +96,7 @@ ExitCode run(const Options& options) {
   std::printf("listening on http://%s%s%s:%u/\n", six ? "[" : "", settings->address.c_str(), six ? "]" : "",
               unsigned{listener->port});
   std::fflush(stdout);
-  // Without it the page shows no curves, and says which package draws them.
+  // Without this file, the page shows no curves and names the missing package.
   auto chart = read_file(chart_path, largest_chart);
   Server(*settings, std::move(tokens), chart ? std::move(*chart) : std::string(), std::move(listener->socket),
          std::move(signals))
