@@ -1,12 +1,12 @@
 #pragma once
-// The C99 text of what an exported model is made of: what model/ computes, without templates, for a fixed
-// tick.
+// The C99 source text of the parts of an exported model. It computes the same as model/, without templates
+// and for a fixed tick.
 
 #include <string_view>
 
 namespace softgrip::tools::c_text {
 
-/// Segments and linear responses (model/segment.h, model/exponential.h). Everything else stands on them.
+/// Segments and linear responses (model/segment.h, model/exponential.h). All other fragments use them.
 extern const std::string_view common;
 /// model/blocks/transport_delay.h; needs DELAY_PIECES, a power of two.
 extern const std::string_view transport_delay;
@@ -24,7 +24,7 @@ extern const std::string_view kelvin_voigt;
 extern const std::string_view pressure_dependent_creep;
 /// model/characteristic_map.h and model/blocks/characteristic.h
 extern const std::string_view characteristic;
-/// The pressure that brings the body to a displacement one tick from now.
+/// The pressure that moves the body to a displacement one tick from now.
 extern const std::string_view inverse;
 
 }  // namespace softgrip::tools::c_text

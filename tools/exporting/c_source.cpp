@@ -28,7 +28,7 @@
 namespace softgrip::tools {
 namespace {
 
-/// What is cut needs these, in this order.
+/// Fragments that divide segments need these functions, in this order.
 constexpr std::string_view cutting = R"(
 static double at_share(segment s, double share) {
   return s.begin + (s.end - s.begin) * share + bend_of(s) * (share * (1.0 - share));
@@ -65,13 +65,15 @@ static double phi_one(double w) {
 }
 )";
 
-/// What a block is in C. In code `#` stands for the block's number.
+/// The C source of a block. `#` stands for the number of the block.
 struct CBlock {
   std::string_view text;
   std::string_view state;  ///< declaration
   std::string_view reset;  ///< an expression: the output at rest
-  std::string_view step;  ///< of the pressure's way a statement that passes on, else an expression: a segment
-  std::string_view lead;  ///< of the pressure's way: the time constant for a rate; empty: it leads nothing
+  std::string_view step;   ///< blocks of the valve: a statement that calls the next block; others: an
+                           ///< expression for the output segment
+  std::string_view
+      lead;  ///< blocks of the valve: the time constant for the inverse; empty: the inverse ignores the block
 };
 
 template <template <class> class Block>
@@ -192,7 +194,7 @@ class Generator {
     }
   }
 
-  /// Two pieces a tick, and a few more where a lag before it cuts them.
+  /// Two pieces per tick, and more if a lag before the delay divides them.
   [[nodiscard]] std::size_t delay_pieces() const {
     std::size_t needed = 16;
     for (const std::size_t i : valve_) {
@@ -204,7 +206,7 @@ class Generator {
     return pieces;
   }
 
-  /// What stands behind the valve: elements add up, maps follow.
+  /// Adds the blocks behind the valve: the outputs of elements are added, and characteristic maps follow.
   void add_body() {
     text_ += "\n/* Behind the valve. */\ntypedef struct {\n";
     for (const auto* list : {&elements_, &maps_}) {
@@ -287,7 +289,7 @@ class Generator {
         "highest_kpa);\n  double led = pressure_kpa;\n  body_step(&s->body, straight(TICK_S, "
         "s->pressure_kpa, "
         "pressure_kpa));\n  s->pressure_kpa = pressure_kpa;\n";
-    // From the actuator outwards: what a lag shall give out, and how fast that moves.
+    // From the actuator to the command: the required output of each lag and its rate.
     for (std::size_t k = valve_.size(); k-- > 0;) {
       const CBlock& lag = block(valve_[k]);
       if (lag.lead.empty()) continue;
@@ -305,7 +307,7 @@ class Generator {
   std::string text_;
 };
 
-/// The blocks that have no C, in words; empty: all have.
+/// Returns the names of the blocks without a C version, or "" if all blocks have one.
 std::string without_c(const model::Model& model) {
   std::string names;
   for (const model::BlockSpec& spec : model.blocks) {

@@ -1,5 +1,5 @@
 #pragma once
-// A model as a self-contained C99 file, for Simulink's C blocks, a PLC's or a microcontroller.
+// Exports a model as a self-contained C99 file, for C blocks of Simulink, a PLC or a microcontroller.
 
 #include <string>
 
@@ -11,15 +11,16 @@ namespace softgrip::tools {
 
 struct CSource {
   std::string text;
-  std::string name;        ///< of its functions: NAME_reset(), NAME_step(), NAME_inverse_step()
-  std::string no_inverse;  ///< why there is none; empty: there is
+  std::string name;        ///< prefix of its functions: NAME_reset(), NAME_step(), NAME_inverse_step()
+  std::string no_inverse;  ///< reason why there is no inverse; empty: there is one
 };
 
-/// The file for one tick of `tick_s`: no allocation, no globals, <math.h> alone. Its step is what Chain::step
-/// computes (1e-9 mm), its inverse what full_model feedforward does: the pressure for a displacement one tick
-/// from now, with the valve's lags led and its delay left to whoever knows the reference that far ahead. The
-/// error names the blocks that have no C yet.
-/// @param pressure_max_kpa  up to which the inverse must exist
+/// Returns the file for a tick of `tick_s`. It allocates no memory, has no globals and needs only <math.h>.
+/// Its step computes the same as Chain::step (within 1e-9 mm). Its inverse computes the same as the
+/// full_model feedforward: the pressure for a displacement one tick from now, with the lags of the valve
+/// compensated. The caller must compensate the delay of the valve by passing the reference in advance. The
+/// error names the blocks without a C version.
+/// @param pressure_max_kpa  highest pressure at which the inverse must exist
 [[nodiscard]] tl::expected<CSource, std::string> c_source(const model::Model& model, double tick_s,
                                                           double pressure_max_kpa,
                                                           const std::string& software);

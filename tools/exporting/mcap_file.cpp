@@ -48,7 +48,7 @@ std::string json_text(const std::string& text) {
   return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
-/// The samples of all groups, in time.
+/// The samples of all groups in order of time.
 struct Sample {
   std::uint64_t time_ns = 0;
   std::size_t group = 0;
@@ -143,7 +143,7 @@ class Writer {
 
   void add(const Sample& sample) {
     if (chunk_.empty()) {
-      // Every chunk can be read by itself.
+      // Repeat the schemas in every chunk, so that it can be read alone.
       for (std::size_t g = 0; g < groups_.size(); ++g) chunk_ += schema_record(g) + channel_record(g);
       begin_ns_ = sample.time_ns;
     }
@@ -250,7 +250,7 @@ class Writer {
     put(footer, offsets_start);
     put(footer, std::uint32_t{0});
     footer = record(Opcode::footer, footer);
-    // The checksum covers the footer up to itself.
+    // The checksum covers the footer up to the checksum itself.
     footer.resize(footer.size() - sizeof(std::uint32_t));
     bytes_ += footer;
     put(bytes_, checksum(std::string_view(bytes_).substr(start)));

@@ -1,5 +1,5 @@
 #pragma once
-// Signals as MCAP, the container that Foxglove reads (https://mcap.dev/spec), version 0.
+// Writes signals as MCAP, the container of Foxglove (https://mcap.dev/spec), version 0.
 
 #include <string>
 #include <vector>
@@ -8,9 +8,10 @@
 
 namespace softgrip::tools {
 
-/// The bytes of a file: a topic per group ("/left", without a name "/signals"), a JSON object per sample, its
-/// keys the signals' names and time_s. Times count from the recording's start. Not packed, indexed by chunks
-/// of at most 4 MiB, with checksums. What is not there has no key.
+/// Returns the bytes of a file with one topic per group ("/left"; "/signals" without a name) and one JSON
+/// object per sample. Its keys are time_s, counted from the start of the recording, and the names of the
+/// signals. Missing values have no key. The file is uncompressed, indexed by chunks of at most 4 MiB, and has
+/// checksums.
 [[nodiscard]] std::string mcap_bytes(const std::vector<SignalGroup>& groups, const std::string& library);
 
 }  // namespace softgrip::tools
