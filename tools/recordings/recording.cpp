@@ -24,7 +24,7 @@ std::string text_at(const json& object, const char* key) {
   return found != object.end() && found->is_string() ? found->get<std::string>() : std::string();
 }
 
-/// "pick_stone 4419590a hold_s=5 squeeze_kpa=5"
+/// Formats a recipe: "pick_stone 4419590a hold_s=5 squeeze_kpa=5".
 std::string recipe_of(const json& sequence) {
   std::string recipe = text_at(sequence, "name") + " " + text_at(sequence, "sha256").substr(0, 8);
   const auto parameters = sequence.find("parameters");
@@ -35,7 +35,7 @@ std::string recipe_of(const json& sequence) {
   return recipe;
 }
 
-/// What run.json adds. A recording without one, or with one that was cut off, is still a recording.
+/// Adds the data of run.json. A missing or truncated run.json is no error.
 void read_story(const std::string& path, Recording& recording) {
   const auto text = read_file(path, longest_story);
   if (!text) return;

@@ -1,5 +1,5 @@
 #pragma once
-// A recording as it is looked at: every channel's log, and what happened meanwhile.
+// A recording for display: the log of every channel, and the events.
 
 #include <string>
 #include <vector>
@@ -16,30 +16,31 @@ namespace softgrip::tools {
 struct RecordedEvent {
   double time_s = 0;
   std::string kind;     ///< "grip_result", "fault_latched", "step_started", ...
-  std::string channel;  ///< empty: of the whole rig
+  std::string channel;  ///< empty: the whole rig
   std::string code;     ///< "HOLDING", "F101", ...
   std::string text;
 };
 
 struct Recording {
-  std::string name;                  ///< of the folder or file
+  std::string name;                  ///< name of the folder or file
   std::string sequence;              ///< empty if unknown
-  std::string software_version;      ///< that recorded it, empty if unknown
+  std::string software_version;      ///< software that recorded it; empty if unknown
   std::string started_at;            ///< UTC, empty if unknown or in virtual time
-  std::string recipe;                ///< what two runs of the same sequence, text and parameters share
-  bool unfinished = false;           ///< it is still being recorded, or its daemon was killed
-  std::vector<sysid::Log> channels;  ///< as LogOptions::need_readings = false reads them
+  std::string recipe;                ///< equal for two runs of the same sequence, text and parameters
+  bool unfinished = false;           ///< the recording continues, or its daemon was killed
+  std::vector<sysid::Log> channels;  ///< as read with LogOptions::need_readings = false
   std::vector<RecordedEvent> events;
 };
 
-/// Reads a recording's folder, or a log by itself. Problems are added to `problems`; an unreadable file is
-/// ExitCode::io and printed.
+/// Reads a recording's folder or a single log. Problems are added to `problems`. If a file cannot be read,
+/// prints a message and returns ExitCode::io.
 [[nodiscard]] tl::expected<Recording, ExitCode> read_recording(const std::string& path,
                                                                document::Problems& problems);
 
-/// A column that the log contract does not name, as numbers: NaN where a cell is none. Empty: no such column.
+/// Returns a column outside the log contract as numbers. A cell that is not a number is NaN. Empty: no such
+/// column.
 [[nodiscard]] std::vector<double> numbers_of(const sysid::Log& log, const std::string& column);
-/// The same as texts.
+/// Returns a column outside the log contract as texts.
 [[nodiscard]] std::vector<std::string> texts_of(const sysid::Log& log, const std::string& column);
 
 }  // namespace softgrip::tools

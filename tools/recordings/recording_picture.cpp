@@ -49,7 +49,7 @@ Chart chart(std::string title, std::string y_label, int height) {
   return chart;
 }
 
-/// Grip results and faults that concern a channel, as lines across its charts.
+/// Returns the grip results and faults of a channel as vertical lines in its charts.
 std::vector<Mark> marks_of(const Recording& recording, const std::string& channel) {
   std::vector<Mark> marks;
   for (const RecordedEvent& event : recording.events) {
@@ -102,7 +102,7 @@ Chart error_chart(const sysid::Log& log, const std::vector<double>& errors) {
   return error;
 }
 
-/// A column of words as steps between named levels, in the order in which they first came.
+/// Adds a text column as steps between named levels, in order of first appearance.
 void add_words(Chart& chart, const sysid::Log& log, const std::string& column) {
   const std::vector<std::string> words = texts_of(log, column);
   if (words.empty()) return;
@@ -141,7 +141,7 @@ std::string called(const Recording& recording) {
   return recording.sequence.empty() ? recording.name : recording.sequence + ", " + recording.name;
 }
 
-/// Titles of charts say what they show first; what a number is of the run comes behind it.
+/// Returns the title of a chart without the numbers of the run.
 std::string subject_of(const Chart& chart) {
   return chart.title.substr(0, chart.title.find(','));
 }
