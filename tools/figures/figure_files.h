@@ -1,5 +1,5 @@
 #pragma once
-// The figures of a report as files: for a paper, and for those who draw them anew.
+// Writes the figures of a report as files, for a paper or for other plotting programs.
 
 #include <string>
 #include <vector>
@@ -10,8 +10,8 @@
 
 namespace softgrip::tools {
 
-/// Writes figure-N-NAME.svg, .pdf and .csv for each, N as on the page; nothing where `folder` is empty. The
-/// error is a sentence.
+/// Writes figure-N-NAME.svg, .pdf and .csv for each figure, with the number N of the page. Writes nothing if
+/// `folder` is empty. The error is a sentence.
 [[nodiscard]] tl::expected<void, std::string> write_figures(const std::string& folder,
                                                             const std::vector<sysid::Figure>& figures);
 

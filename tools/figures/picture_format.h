@@ -1,5 +1,5 @@
 #pragma once
-// A figure in the format that a file's name asks for.
+// Converts a figure to the format that a file's extension selects.
 
 #include <optional>
 #include <string>
@@ -13,14 +13,15 @@ namespace softgrip::tools {
 
 enum class PictureFormat { svg, pdf, png, html };
 
-/// By the ending of a path, whatever its case. Nothing where no picture ends so.
+/// Returns the format for the extension of a path, in upper or lower case. Returns nullopt for an unknown
+/// extension.
 [[nodiscard]] std::optional<PictureFormat> picture_format_of(std::string_view path);
 
-/// "svg, pdf, png or html", for messages.
+/// Returns "svg, pdf, png or html" for messages.
 [[nodiscard]] std::string_view picture_formats();
 
-/// The bytes of a file: SVG and HTML in both colour schemes, a PDF of one page of the figure's size, PNG at
-/// twice its pixels. The error is a sentence.
+/// Returns the bytes of a file: SVG and HTML with both colour schemes, PDF with one page of the figure's
+/// size, or PNG at twice the number of pixels. The error is a sentence.
 [[nodiscard]] tl::expected<std::string, std::string> bytes_of(const sysid::Figure& figure,
                                                               PictureFormat format);
 

@@ -1,5 +1,5 @@
 #pragma once
-// SVG drawn on other paper, by librsvg and cairo.
+// Renders SVG as PDF or PNG with librsvg and cairo.
 
 #include <string>
 #include <string_view>
@@ -8,10 +8,11 @@
 
 namespace softgrip::tools {
 
-/// One page of the picture's size, a pixel being 0.75 points; words stay words. The error is a sentence.
+/// Returns a PDF with one page of the picture's size, at 0.75 points per pixel. Text stays text. The error is
+/// a sentence.
 [[nodiscard]] tl::expected<std::string, std::string> pdf_of(std::string_view svg);
 
-/// At twice its pixels, on white.
+/// Returns a PNG at twice the number of pixels, on white.
 [[nodiscard]] tl::expected<std::string, std::string> png_of(std::string_view svg);
 
 }  // namespace softgrip::tools
