@@ -1,5 +1,5 @@
 #pragma once
-// The numbers that stand in registers. docs/reference/plc-map.md lists them; they are a contract.
+// The codes in the registers. docs/reference/plc-map.md lists them. They are part of the public format.
 
 #include <cstdint>
 
@@ -8,18 +8,18 @@ namespace softgrip::plc {
 enum class CommandCode : std::uint16_t { none, start, stop, vent, release, acknowledge };
 inline constexpr std::uint16_t last_command = 5;
 
-/// The end of the command whose counter is `done_counter`, or a newer one that is under way.
+/// The outcome of the command with the counter `done_counter`, or the state of a newer command in progress.
 enum class Outcome : std::uint16_t {
   none,
   executing,
   accepted,
-  refused,  ///< it was not executed; `reason` gives the cause
-  unknown,  ///< the daemon went, or fell silent, before it answered; it is not sent again
+  refused,  ///< not executed; `reason` gives the cause
+  unknown,  ///< the connection to the daemon was lost before its response; the command is not sent again
 };
 
 enum class Reason : std::uint16_t {
   none,
-  first_after_start,  ///< the first counter that this gateway saw: an older one may have carried it out
+  first_after_start,  ///< the first counter after the gateway's start: an older gateway may have executed it
   no_daemon,
   no_such_command,
   no_such_recipe,
@@ -28,11 +28,12 @@ enum class Reason : std::uint16_t {
   sequence_refused,
   not_allowed,
   no_answer,
-  not_next,       ///< the counter does not follow the newest one, or this connection has not written that one
-  refusal = 100,  ///< and the daemon's number: 102 is R02
+  not_next,  ///< the counter does not follow the newest one, or this connection has not written the newest
+             ///< one
+  refusal = 100,  ///< plus the daemon's number: 102 is R02
 };
 
-/// In which state the daemon is, as registers say it; 0 is no daemon.
+/// The state of the daemon in the registers. 0 means no daemon.
 enum class StateCode : std::uint16_t {
   no_daemon,
   starting,
@@ -44,7 +45,7 @@ enum class StateCode : std::uint16_t {
 };
 
 inline constexpr std::uint16_t version_of_map = 1;
-/// Of a quantity: nothing is known, or nothing is asked for.
+/// The value of a quantity that is unknown or not set.
 inline constexpr std::uint16_t no_value = 0x8000;
 
 }  // namespace softgrip::plc

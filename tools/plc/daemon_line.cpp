@@ -9,7 +9,7 @@ namespace softgrip::plc {
 
 namespace {
 
-/// Between two attempts to reach the daemon.
+/// Time between two attempts to connect to the daemon.
 constexpr Nanoseconds retry_pause = ns_per_s / 4;
 
 }  // namespace

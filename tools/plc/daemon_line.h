@@ -1,5 +1,5 @@
 #pragma once
-// The gateway's connection with softgripd: lines each way, and a new attempt after its end.
+// The connection of the gateway to softgripd, with reconnection.
 
 #include <optional>
 #include <string>
@@ -12,14 +12,14 @@ namespace softgrip::plc {
 
 class DaemonLine {
  public:
-  /// `path`: of the daemon's socket. `gateway` outlives it.
+  /// `path` is the path of the daemon's socket. `gateway` must outlive this object.
   DaemonLine(std::string path, Gateway& gateway) : path_(std::move(path)), gateway_(gateway) {}
 
-  /// Connects if there is no connection, and hands the daemon's lines to the gateway. Waits for nothing.
+  /// Connects if there is no connection, and passes the daemon's lines to the gateway. Does not wait.
   void receive(Nanoseconds now);
-  /// Sends the gateway's lines.
+  /// Sends the lines of the gateway.
   void send();
-  /// For poll(); -1 without a connection.
+  /// Returns the descriptor for poll(), or -1 without a connection.
   [[nodiscard]] int descriptor() const noexcept { return client_ ? client_->descriptor() : -1; }
 
  private:
@@ -29,7 +29,7 @@ class DaemonLine {
   std::string path_;
   Gateway& gateway_;
   std::optional<tools::DaemonClient> client_;
-  Nanoseconds tried_at_ = 0;  // to connect
+  Nanoseconds tried_at_ = 0;  // last attempt to connect
 };
 
 }  // namespace softgrip::plc

@@ -14,10 +14,11 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* own_name = "softgrip-plc";
 constexpr double watch_rate_hz = 25;
-/// A daemon that sends nothing for this time counts as none.
+/// A daemon that sends nothing for this time counts as disconnected.
 constexpr Nanoseconds longest_silence = ns_per_s;
 constexpr Nanoseconds beat_period = ns_per_s / 10;
-/// Commands that a silent daemon has not answered. They fit into its socket, so that nothing here waits.
+/// Limit of the commands without a response of the daemon. They fit into its socket, so that sending never
+/// blocks.
 constexpr std::size_t most_unanswered = 32;
 
 CommandCode command_of(Reaction reaction) {
@@ -34,7 +35,8 @@ CommandCode command_of(Reaction reaction) {
   return CommandCode::none;
 }
 
-/// Returns true if the answer to a reaction is final. A daemon that is busy or starting is asked again.
+/// Returns true if the response to a reaction is final. The request is repeated if the daemon is busy or
+/// starting.
 bool is_final(const Json& line) {
   if (line.value("ok", false)) return true;
   const Json error = line.value("error", Json::object());
@@ -71,7 +73,7 @@ modbus::Reply Gateway::serve(Masters::Id id, const modbus::Request& request, Nan
     }
     if (writes(request.pdu, map.at(Name::command_counter))) take_counter(master, now);
   }
-  // A master sends its next request when this one is answered: that one is newer.
+  // The client sends its next request after this response, so it is not older than the silence.
   master.fenced = false;
   modbus::Reply reply;
   reply.pieces.push_back(
@@ -98,7 +100,7 @@ void Gateway::execute(const Handshake::Entry& entry, Nanoseconds now) {
   if (!request) return refuse(request.error());
   const bool starts = entry.command.is(CommandCode::start);
   if (starts && (watch_.silent(now) || watch_.owes())) return refuse(Reason::master_silent);
-  // A daemon that is silent may only be paused: a stop or a vent follows what it was sent before.
+  // A silent daemon may only be delayed, so stop and vent are still sent to it.
   const bool hears = hears_daemon(now) || (connected_ && entry.command.halts());
   if (!hears || asked_.size() >= most_unanswered) return refuse(Reason::no_daemon);
   asked_[send(std::move(*request))] = entry.counter;
@@ -114,7 +116,7 @@ void Gateway::notice_silence(Nanoseconds now) {
   if (watch_.look(now)) reaction_confirms_ = false;
 }
 
-/// Repeats the reaction to a silence until a daemon has given a final answer.
+/// Repeats the reaction to a silence until a daemon has given a final response.
 void Gateway::react(Nanoseconds now) {
   notice_silence(now);
   if (settings_.when_silent == Reaction::nothing) watch_.confirm();
@@ -186,11 +188,11 @@ void Gateway::daemon_said(const Json& line, Nanoseconds now) {
   asked_.erase(asked);
   if (line.value("ok", false)) return handshake_.finish(counter, Outcome::accepted);
   const Reason reason = reason_of(line.value("error", Json::object()));
-  // A loop that has not answered in time may still begin a start: nobody may rely on a refusal.
+  // If the control loop did not respond in time, it may still begin a start, so the outcome is unknown.
   handshake_.finish(counter, reason == Reason::no_answer ? Outcome::unknown : Outcome::refused, reason);
 }
 
-/// The gateway's own registers, and those that this master wrote.
+/// Writes the gateway's own registers and those of this client.
 void Gateway::show(const Master& master, Nanoseconds now) {
   const auto set = [&](Name name, auto value) {
     registers_.set_holding(settings_.registers.at(name), static_cast<std::uint16_t>(value));

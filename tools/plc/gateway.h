@@ -1,6 +1,6 @@
 #pragma once
-// Registers on one side, the daemon's lines on the other. No sockets and no clock: who owns those hands in
-// what arrived and the time, and sends what goes out.
+// Converts between registers and lines of the daemon. It has no sockets and no clock: its owner passes the
+// received data and the time, and sends the results.
 
 #include <cstdint>
 #include <map>
@@ -21,34 +21,35 @@ namespace softgrip::plc {
 
 class Gateway {
  public:
-  /// `settings` outlives it.
+  /// `settings` must outlive the gateway.
   explicit Gateway(const Settings& settings);
 
-  /// Who is connected. Connections come and go here; one that has no place any more is to be closed.
+  /// The connected clients (Modbus masters). Connections are added and removed here. Close a connection that
+  /// has lost its place.
   [[nodiscard]] Masters& masters() noexcept { return masters_; }
   [[nodiscard]] const Masters& masters() const noexcept { return masters_; }
-  /// Answers a master that has a place, and passes its command on to the daemon.
+  /// Responds to a client that has a place, and passes its command to the daemon.
   [[nodiscard]] modbus::Reply serve(Masters::Id id, const modbus::Request& request, Nanoseconds now);
-  /// To be called after the daemon's lines, and every `longest_pause`: commands that waited, silences.
+  /// Processes waiting commands and silences. Call it after the daemon's lines and every `longest_pause`.
   void look_after(Nanoseconds now);
   static constexpr Nanoseconds longest_pause = 20'000'000;
 
-  /// The connection with the daemon is open.
+  /// The connection to the daemon was opened.
   void daemon_came(Nanoseconds now);
-  /// A line of the daemon.
+  /// Processes a line of the daemon.
   void daemon_said(const nlohmann::ordered_json& line, Nanoseconds now);
-  /// The connection with the daemon has ended.
+  /// The connection to the daemon has ended.
   void daemon_went() noexcept;
-  /// Returns the lines that go to the daemon, the oldest first, and forgets them.
+  /// Returns the lines to the daemon, oldest first, and removes them.
   [[nodiscard]] std::vector<nlohmann::ordered_json> lines_to_daemon();
 
   [[nodiscard]] const Handshake& handshake() const noexcept { return handshake_; }
   [[nodiscard]] const MasterWatch& watch() const noexcept { return watch_; }
-  /// A daemon is connected and reports its state.
+  /// Returns true if a daemon is connected and reports its state.
   [[nodiscard]] bool hears_daemon(Nanoseconds now) const noexcept;
-  /// Counters of the commands that the daemon has not answered, the oldest first.
+  /// Returns the counters of the commands without a response of the daemon, oldest first.
   [[nodiscard]] std::vector<std::uint16_t> unanswered() const;
-  /// The reaction to a silence is on its way to the daemon, and whether its answer confirms all silences.
+  /// Returns true if the reaction to a silence was sent and has no response yet.
   [[nodiscard]] bool reacts() const noexcept { return reaction_.has_value(); }
   [[nodiscard]] bool reaction_confirms() const noexcept { return reaction_ && reaction_confirms_; }
 
@@ -66,12 +67,12 @@ class Gateway {
   Handshake handshake_;
   MasterWatch watch_;
   bool connected_ = false;
-  Nanoseconds heard_at_ = 0;  // a state of the daemon
+  Nanoseconds heard_at_ = 0;  // last state of the daemon
   std::vector<nlohmann::ordered_json> to_daemon_;
   std::uint64_t last_id_ = 0;
-  std::map<std::uint64_t, std::uint16_t> asked_;  // counters of commands by the ids of their requests
-  std::optional<std::uint64_t> reaction_;         // the id of its request
-  bool reaction_confirms_ = false;                // no silence has begun since it was sent
+  std::map<std::uint64_t, std::uint16_t> asked_;  // counters of commands, by request id
+  std::optional<std::uint64_t> reaction_;         // request id of the pending reaction
+  bool reaction_confirms_ = false;                // no new silence has begun since the reaction was sent
   Nanoseconds reacted_at_ = 0;
 };
 

@@ -9,8 +9,8 @@ bool Handshake::write(Cursor& cursor, const Entry& entry) noexcept {
     return false;
   }
   if (const Entry* const known = find(entry.counter)) {
-    // A connection that has written this counter may prepare its next command behind it. From another one,
-    // a different command means that two masters have counted to the same number.
+    // The connection that has written this counter may prepare its next command in the registers. A different
+    // command from another connection means that two clients use the same counter.
     const bool repeats =
         entry.command == known->command || entry.command.is(CommandCode::none) || cursor.at == entry.counter;
     cursor.refused = !repeats;

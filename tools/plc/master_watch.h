@@ -1,5 +1,5 @@
 #pragma once
-// Notices that the master has fallen silent, and keeps the reaction to it until it is confirmed.
+// Detects that the client (Modbus master) is silent, and stores the pending reaction until it is confirmed.
 
 #include <optional>
 
@@ -7,18 +7,18 @@
 
 namespace softgrip::plc {
 
-/// Watches the master's heartbeat from its first change on: a master that never writes one is not watched.
+/// Watches the heartbeat of the client from its first change on. A client without a heartbeat is not watched.
 class MasterWatch {
  public:
   explicit MasterWatch(Nanoseconds silence) noexcept : silence_(silence) {}
 
-  /// A heartbeat has changed.
+  /// Call it when a heartbeat has changed.
   void beat(Nanoseconds now) noexcept {
-    look(now);  // a silence that ends before the next look is a silence, too
+    look(now);  // also detects a silence that ends before the next call
     changed_ = now;
     noticed_ = false;
   }
-  /// Returns true once per silence: it is noticed now. To be called often.
+  /// Returns true once per silence, when it is detected. Call it frequently.
   bool look(Nanoseconds now) noexcept {
     if (noticed_ || !silent(now)) return false;
     noticed_ = true;
@@ -27,14 +27,14 @@ class MasterWatch {
   }
   [[nodiscard]] bool watched() const noexcept { return changed_.has_value(); }
   [[nodiscard]] bool silent(Nanoseconds now) const noexcept { return changed_ && now - *changed_ > silence_; }
-  /// The reaction to a silence is not confirmed yet. A master that beats again does not change that.
+  /// Returns true until the reaction to a silence is confirmed, even if the heartbeat has resumed.
   [[nodiscard]] bool owes() const noexcept { return owes_; }
   void confirm() noexcept { owes_ = false; }
 
  private:
   Nanoseconds silence_;
   std::optional<Nanoseconds> changed_;
-  bool noticed_ = false;  // this silence
+  bool noticed_ = false;  // the present silence was detected
   bool owes_ = false;
 };
 

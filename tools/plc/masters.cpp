@@ -9,7 +9,7 @@ namespace softgrip::plc {
 
 namespace {
 
-/// A connection that came or asked within this time is in use. Masters ask several times a second.
+/// A connection with a request within this time is in use. Clients send several requests per second.
 constexpr Nanoseconds in_use = ns_per_s;
 
 bool is_idle(const Master& master, Nanoseconds now) {
@@ -46,7 +46,8 @@ std::size_t Masters::places_of(const std::string& address) const {
 
 Masters::Place Masters::to_drop_for(const std::string& address, Nanoseconds now) {
   const bool has_none = places_of(address) == 0;
-  // The address with the most places comes first. There, those who never asked go first, then the oldest.
+  // The address with the most places comes first. For this address, the order is: connections without a
+  // request, then the one with the oldest request.
   const auto rank = [&](const Place place) {
     const Master& master = place->second;
     return std::tuple(masters_.size() - places_of(master.address), master.asked, master.asked_at);

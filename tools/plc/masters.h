@@ -1,5 +1,5 @@
 #pragma once
-// The connections of masters: who has a place, and what the gateway keeps of each. No sockets.
+// The connections of the clients (Modbus masters) and the data of each. No sockets.
 
 #include <array>
 #include <cstddef>
@@ -14,25 +14,25 @@
 
 namespace softgrip::plc {
 
-/// The registers that a master writes, in the order of Name.
+/// The registers that a client writes, in the order of Name.
 using Written = std::array<std::uint16_t, static_cast<std::size_t>(Name::master_heartbeat) + 1>;
 [[nodiscard]] constexpr std::uint16_t& at(Written& written, Name name) {
   return written[static_cast<std::size_t>(name)];
 }
-/// The command in them.
+/// Returns the command in these registers.
 [[nodiscard]] Command command_in(const Written& written) noexcept;
 
 struct Master {
   std::string address;       ///< numeric
-  Nanoseconds asked_at = 0;  ///< last, or when it came
-  bool asked = false;        ///< it has sent a whole request
-  bool half = false;         ///< a part of a request has arrived
-  /// Its next request may be older than a silence: it starts nothing.
+  Nanoseconds asked_at = 0;  ///< time of the last request, or of the connection
+  bool asked = false;        ///< has sent a complete request
+  bool half = false;         ///< has sent a part of a request
+  /// The next request may be older than a silence, so it cannot start a sequence.
   bool fenced = false;
-  /// Its own copy: what another connection writes, or wrote before it was lost, never becomes part of this
-  /// one's command.
+  /// Registers of this connection only, so that the writes of other connections never become part of its
+  /// command.
   Written written{0, 0, 0, no_value, no_value, no_value, 0};
-  std::optional<std::uint16_t> heartbeat;  ///< the last that it wrote
+  std::optional<std::uint16_t> heartbeat;  ///< the last heartbeat of this connection
   Cursor cursor;
 };
 
@@ -42,32 +42,33 @@ class Masters {
 
   explicit Masters(std::size_t most) : most_(most) {}
 
-  /// A connection from a numeric address. When all places are taken, the oldest idle one of the same address
-  /// is dropped: a master that lost its connections is not locked out by them. An address without a place
-  /// takes one from the address that has the most. Nothing: there is no place.
+  /// Adds a connection from a numeric address. If all places are taken, the oldest idle connection of the
+  /// same address is removed, so that lost connections do not block their client. An address without a place
+  /// gets a place of the address with the most. Returns nullopt if there is no place.
   [[nodiscard]] std::optional<Id> admit(const std::string& address, Nanoseconds now);
-  /// Null: it has no place (any more), and its connection is to be closed.
+  /// Returns null if the connection has no place. Then close the connection.
   [[nodiscard]] Master* find(Id id) noexcept;
   [[nodiscard]] bool has(Id id) const noexcept { return masters_.contains(id); }
   void leave(Id id) noexcept { masters_.erase(id); }
 
-  /// A connection has written: what others have sent half is older than that, and those are dropped.
+  /// Call it after a write of one connection. Removes the other connections with a partial request, because
+  /// that request is older.
   void drop_halves(Id except);
-  /// The masters were silent. A request that has already arrived may be older than the reaction to that: the
-  /// next request of each connection starts nothing.
+  /// Call it after a silence. The next request of each connection may be older than the reaction to the
+  /// silence, so it cannot start a sequence.
   void fence() noexcept;
-  /// Drops every connection that has asked nothing for the time `longest`.
+  /// Removes every connection without a request for the time `longest`.
   void drop_silent(Nanoseconds now, Nanoseconds longest);
-  /// A later connection of the same address begins with this one's counter.
+  /// Stores the counter of this connection for later connections of the same address.
   void remember_counter(const Master& master) { past_[master.address].at = master.cursor.at; }
-  /// A command of an address was refused on one of its connections, and another one may hold it, or a start
-  /// that is older. None of them executes anything until it has written the newest counter.
+  /// Call it after a refused command. Another connection of this address may hold the same command or an
+  /// older start. These connections execute nothing until they have written the newest counter.
   void lose_step(const std::string& address);
-  /// A master has written a heartbeat. Returns true if it has changed: against the last one of the same
-  /// connection, or for the first one of a connection against the last one of the same address.
+  /// Stores a heartbeat. Returns true if it differs from the last one of the same connection, or, for a new
+  /// connection, from the last one of the same address.
   [[nodiscard]] bool take_heartbeat(Master& master, std::uint16_t value);
 
-  /// The memory of an address whose connections have ended. There are as many as the file allows.
+  /// Data of an address after its connections have ended. The file limits the number of addresses.
   struct Past {
     std::optional<std::uint16_t> at;
     std::uint16_t heartbeat = 0;

@@ -1,5 +1,5 @@
 #pragma once
-// Between the daemon's JSON and registers. No sockets.
+// Converts between the daemon's JSON and registers. No sockets.
 
 #include <cstddef>
 #include <cstdint>
@@ -16,26 +16,26 @@
 
 namespace softgrip::plc {
 
-/// All registers of the map, at their values before anything is known.
+/// Returns all registers of the map with their initial values.
 [[nodiscard]] modbus::Registers make_registers(const RegisterMap& map);
 
-/// A quantity as a signed 16-bit count, clamped; no_value where it is not a number.
+/// Returns a quantity as a signed 16-bit count, clamped to its range, or no_value if it is not a number.
 [[nodiscard]] std::uint16_t counts_of(const nlohmann::ordered_json& value, double resolution);
 
 /// Writes a status of the daemon into the registers.
 void show_status(const nlohmann::ordered_json& status, const RegisterMap& map, modbus::Registers& registers);
-/// The daemon does not answer: its state is no_daemon, results and readings are unknown.
+/// Writes the registers for a missing daemon: the state is no_daemon, and results and readings are unknown.
 void show_no_daemon(const RegisterMap& map, modbus::Registers& registers);
 
-/// The request to the daemon that a command stands for, or why there is none.
+/// Returns the request to the daemon for a command, or the reason for refusing it.
 [[nodiscard]] tl::expected<nlohmann::ordered_json, Reason> request_of(const Settings& settings,
                                                                       const Command& command);
-/// The daemon's word for what is to be done.
+/// Returns the name of the daemon's command.
 [[nodiscard]] const char* command_of(CommandCode code) noexcept;
-/// Why the daemon refused: its `error`.
+/// Returns the reason code for the daemon's `error`.
 [[nodiscard]] Reason reason_of(const nlohmann::ordered_json& error);
 
-/// Whether a request that was answered without an exception writes that register.
+/// Returns true if a request that was answered without an exception writes this register.
 [[nodiscard]] bool writes(std::span<const std::uint8_t> pdu, std::uint16_t address) noexcept;
 
 }  // namespace softgrip::plc

@@ -68,7 +68,7 @@ void Server::run() {
   }
 }
 
-/// The newest one goes. poll() watches no more descriptors than the process may have.
+/// Closes the newest connection, because the process may have fewer descriptors than poll() would watch.
 bool Server::give_up_line() {
   if (lines_.empty()) return false;
   gateway_.masters().leave(lines_.back().master);

@@ -1,5 +1,5 @@
 #pragma once
-// Masters on the network, in one thread that never waits for any of them.
+// Serves Modbus clients on the network in one thread that never waits for a client.
 
 #include <chrono>
 #include <list>
@@ -16,8 +16,8 @@ namespace softgrip::plc {
 
 class Server {
  public:
-  /// `listener`: of modbus::listen_tcp(). `signals`: a signalfd; any signal ends run(). References outlive
-  /// it.
+  /// `listener` comes from modbus::listen_tcp(). `signals` is a signalfd, and any signal ends run(). The
+  /// references must outlive the server.
   Server(const Settings& settings, Gateway& gateway, Descriptor listener, Descriptor signals);
   void run();
 
@@ -26,10 +26,10 @@ class Server {
     Masters::Id master;
     modbus::Connection connection;
   };
-  /// The limit of descriptors was lowered. False: there is no connection to give up.
+  /// Closes a connection after the limit of descriptors was lowered. Returns false if there is none.
   [[nodiscard]] bool give_up_line();
   void accept(Nanoseconds now);
-  /// False: it has gone, or is to be closed.
+  /// Serves a connection. Returns false if it has ended or must be closed.
   [[nodiscard]] bool serve(Line& line, short events, Nanoseconds now);
 
   const Settings& settings_;
