@@ -20,17 +20,17 @@ namespace {
 
 using Failure = tl::unexpected<NotCommissioned>;
 
-/// Of the largest pressure, in the motion that comes before all others.
+/// Highest pressure of the first, gentle motion, as a share of the largest pressure.
 constexpr double gentle_share = 0.3;
-/// A finger that goes less than this share of what its model says does not go at all.
+/// A motion below this share of the model's motion counts as no motion.
 constexpr double least_motion = 0.1;
-/// Of the way to displacement_max_mm, what the finger may go.
+/// Largest allowed motion, as a share of the way to displacement_max_mm.
 constexpr double range_share = 0.9;
 constexpr int most_corrections = 8;
-/// What a motion takes beside its waveform: finding rest, opening and leaving the board.
+/// Additional time of a motion: finding rest, connecting to the board and disconnecting [s].
 constexpr double pause_s = 3;
 
-/// Slow triangles to a share of the largest pressure.
+/// Returns slow triangles up to a share of the largest pressure.
 sysid::Waveform slow(const char* name, const char* about, double share, int count,
                      const sysid::RigLimits& limits) {
   const double top_kpa = share * limits.pressure_max_kpa;
@@ -46,8 +46,8 @@ sysid::Waveform gentle(const sysid::RigLimits& limits) {
   return slow("gentle_motion", "does it move, and how far", gentle_share, 1, limits);
 }
 
-/// A finger that was never so far out yet, or not since long ago, goes differently the first time and rests
-/// elsewhere after it.
+/// A finger behaves differently when it reaches a displacement for the first time, or for the first time
+/// after a long pause. Afterwards its rest position has changed.
 sysid::Waveform first_load(const sysid::RigLimits& limits) {
   return slow("first_load", "so that both runs begin after the same loads", 1, 2, limits);
 }
@@ -63,7 +63,7 @@ std::vector<sysid::Waveform> chosen(const std::vector<std::string>& names, const
   return result;
 }
 
-/// How far a finger went, from its first reading on.
+/// The motion of a finger relative to its first reading.
 struct Reach {
   double rest_mm = std::nan("");
   double motion_mm = 0;
@@ -79,7 +79,7 @@ Reach reach_of(const sysid::Log& log) {
   return reach;
 }
 
-/// How far the rig file's model goes on a waveform [mm].
+/// Returns the displacement of the rig file's model for a waveform [mm].
 double expected_mm(const ExperimentRig& rig, const sysid::Waveform& waveform) {
   const control::RigSettings& settings = rig.rig.settings;
   sysid::Log log;
@@ -90,8 +90,9 @@ double expected_mm(const ExperimentRig& rig, const sysid::Waveform& waveform) {
   return reach_of(log).motion_mm;
 }
 
-/// The largest pressure at which no experiment takes the finger near the end of its range.
-/// @param ratio  by which the finger goes further than its model. @param rest_mm  where it begins.
+/// Returns the largest pressure at which no experiment brings the finger near the end of its range.
+/// @param ratio    motion of the finger relative to its model.
+/// @param rest_mm  reading before the motion.
 sysid::RigLimits limits_for(const ExperimentRig& rig, const std::vector<std::string>& experiments,
                             double ratio, double rest_mm) {
   sysid::RigLimits limits = rig.limits(0, 0);
@@ -150,7 +151,7 @@ class Commissioning {
            " mm; is there air, and does the sensor look at this finger? (softgrip doctor --move)";
   }
 
-  /// The gentle motion, and what follows from it for the others.
+  /// Plays the gentle motion and derives the limits of the experiments from it.
   tl::expected<void, NotCommissioned> begin(const std::string& folder) {
     const sysid::Waveform waveform = gentle(runs_.limits);
     const auto log = play(waveform, folder);
@@ -167,11 +168,12 @@ class Commissioning {
     return check_free(*loaded);
   }
 
-  /// One run: a rest and an experiment, again and again.
+  /// Plays one run: a rest before each experiment.
   tl::expected<void, NotCommissioned> play_all(const std::string& folder, const std::string& run,
                                                std::vector<sysid::Log>& logs) {
     for (const sysid::Waveform& waveform : chosen(options_.experiments, runs_.limits)) {
-      const double rest_s = rig_.simulated ? 0 : options_.rest_s;  // what is simulated begins anew
+      const double rest_s =
+          rig_.simulated ? 0 : options_.rest_s;  // a simulated rig starts from its initial state each time
       if (signals_->wait(nanoseconds(rest_s)) != 0)
         return fails(ExitCode::failed, "stopped by the user; the rig is vented");
       runs_.minutes += rest_s / 60;
@@ -214,7 +216,8 @@ class Commissioning {
 
   const ExperimentRig& rig_;
   const CommissioningOptions& options_;
-  // After the question. Between two motions, too, what was recorded goes before the process does.
+  // Created after the consent. A signal between two motions also removes the recordings before the process
+  // ends.
   std::optional<daemon::Signals> signals_;
   CommissioningRuns runs_;
   std::uint64_t motions_ = 0;

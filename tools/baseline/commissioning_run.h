@@ -1,5 +1,5 @@
 #pragma once
-// The commissioning experiment: what a healthy finger is asked on its rig, twice.
+// The commissioning experiment of a healthy finger, played twice on its rig.
 
 #include <functional>
 #include <string>
@@ -14,39 +14,40 @@
 
 namespace softgrip::tools {
 
-/// Entries of the menu of experiments that are played where none are named: several heights, rates over two
-/// decades, holds, small loops.
+/// Returns the default experiments of the menu: several heights, rates over two decades, holds and small
+/// loops.
 [[nodiscard]] const std::vector<std::string>& usual_commissioning();
 
 struct CommissioningOptions {
-  std::vector<std::string> experiments;  ///< names of the menu, each once
-  /// At no pressure before each, so that it begins as on any morning: fingers creep back for a minute. Not
-  /// for a simulated rig, which begins anew each time.
+  std::vector<std::string> experiments;  ///< names of the menu, each at most once
+  /// Rest at zero pressure before each experiment, because creep needs about a minute to decay. A simulated
+  /// rig needs no rest, because it starts from its initial state each time.
   double rest_s = 60;
-  Consent consent;  ///< asked once, before anything moves; never for a simulated rig
-  std::function<void(const std::string&)> tell;  ///< one line before each motion; may be empty
+  Consent consent;                               ///< called once before any motion; never for a simulated rig
+  std::function<void(const std::string&)> tell;  ///< reports one line before each motion; may be empty
 };
 
 struct CommissioningRuns {
-  std::vector<sysid::Log> first;   ///< one per experiment, of the one channel
-  std::vector<sysid::Log> second;  ///< the same experiments again
-  sysid::RigLimits limits;         ///< within which they were played
-  double minutes = 0;              ///< of the rig's time, as the experiments say
+  std::vector<sysid::Log> first;   ///< one log per experiment, of the selected channel
+  std::vector<sysid::Log> second;  ///< logs of the repeated experiments
+  sysid::RigLimits limits;         ///< limits of the experiments
+  double minutes = 0;              ///< time on the rig, by the durations of the experiments
 };
 
-/// Why there are no runs. The rig is vented; nothing is left behind.
+/// The reason why there are no runs. The rig is vented, and no files remain.
 struct NotCommissioned {
   ExitCode code = ExitCode::failed;
   std::string why;  ///< a sentence
 };
 
-/// A gentle pressure first, to see that the finger moves and how far the rest may go: within the channel's
-/// limits, and no further than 90 % of the way to displacement_max_mm as the model says, scaled by what the
-/// gentle pressure did. Then the finger is loaded twice to the largest pressure of all, so that both runs
-/// find it in the same state. Every log is judged as it comes: a finger that hardly moves, that touches
-/// something, a rig that plays something else or has a fault ends it with ExitCode::not_acceptable; a refusal
-/// or Ctrl-C with ExitCode::failed. The model that the rig file has for the channel says what a free
-/// way looks like. Signals are held back while it runs.
+/// Plays the commissioning experiment twice. First, a gentle pressure shows that the finger moves. It also
+/// limits the experiments: within the limits of the channel, and to 90 % of the way to displacement_max_mm as
+/// predicted by the model and scaled by the measured motion. Then the finger is loaded twice to the largest
+/// pressure, so that both runs begin in the same state.
+///
+/// Every log is checked against the rig file's model of the channel. ExitCode::not_acceptable: the finger
+/// hardly moves or touches an object, or the rig plays something else or has a fault. ExitCode::failed: no
+/// consent, or Ctrl-C. Signals are held back during the runs.
 [[nodiscard]] tl::expected<CommissioningRuns, NotCommissioned> play_commissioning(
     const ExperimentRig& rig, const CommissioningOptions& options);
 
