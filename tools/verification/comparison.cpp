@@ -16,7 +16,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Of these another run says something else without being another result.
+/// Keys that may differ between two runs with the same result.
 constexpr std::array<std::string_view, 8> not_compared{"wall_s", "stages_s", "software", "path",
                                                        "file",   "call",     "hash",     "source"};
 

@@ -1,5 +1,5 @@
 #pragma once
-// Two results of the same call, number by number.
+// Compares two results of the same call, number by number.
 
 #include <string>
 #include <vector>
@@ -11,16 +11,16 @@
 
 namespace softgrip::tools {
 
-/// One thing that is not what it was.
+/// One value that differs.
 struct Difference {
   std::string where;  ///< "identify.json: rmse_mm.tp1", "tp1/series.csv: residual_identified_mm, line 17"
   std::string reported;
   std::string recomputed;
 };
 
-/// What was compared, and what differs.
+/// The number of compared values, and the differences.
 struct Comparison {
-  double tolerance = 0;  ///< relative; numbers within it are the same
+  double tolerance = 0;  ///< relative; numbers within it count as equal
   std::size_t numbers = 0;
   std::vector<Difference> differences;
 
@@ -28,16 +28,16 @@ struct Comparison {
   void compare(const std::string& where, const std::string& reported, const std::string& recomputed);
 };
 
-/// All numbers, words and truths, but how long it took, by which version and where files lay.
+/// Compares all numbers, texts and Booleans except durations, versions and paths.
 void compare_json(const std::string& file, const nlohmann::ordered_json& reported,
                   const nlohmann::ordered_json& recomputed, Comparison& comparison);
 
-/// All cells; of each column the line that differs most. Texts of other columns or lengths are one
-/// difference.
+/// Compares all cells and reports the line with the largest difference of each column. Different columns or
+/// numbers of lines count as one difference.
 void compare_csv(const std::string& file, const std::string& reported, const std::string& recomputed,
                  Comparison& comparison);
 
-/// The blocks and their parameters.
+/// Compares the blocks and their parameters.
 void compare_models(const std::string& file, const model::Model& reported, const model::Model& recomputed,
                     Comparison& comparison);
 

@@ -29,7 +29,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::size_t largest_file = std::size_t{512} * 1024 * 1024;
 
-/// What may be called, and what it leaves.
+/// A command that can be repeated, and its result file.
 struct Kind {
   const char* command;
   const char* json;
@@ -37,7 +37,7 @@ struct Kind {
 constexpr std::array kinds{Kind{"identify", "identify.json"}, Kind{"validate", "validate.json"},
                            Kind{"diagnose", "diagnosis.json"}};
 
-/// Calls the program with its standard output closed; its exit code, or -1.
+/// Runs the program with its standard output discarded. Returns its exit code, or -1.
 int called(const std::string& program, std::vector<std::string> words) {
   words.insert(words.begin(), program);
   std::vector<char*> arguments;
@@ -57,14 +57,14 @@ int called(const std::string& program, std::vector<std::string> words) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
-/// The member of an object; an empty array where there is none, or no object.
+/// Returns the member of an object, or an empty array if it is missing or `json` is not an object.
 const Json& member(const Json& json, const char* key) {
   static const Json none = Json::array();
   const auto found = json.is_object() ? json.find(key) : json.end();
   return found != json.end() ? *found : none;
 }
 
-/// The text at a key; empty where there is none.
+/// Returns the text at a key, or "" if it is missing.
 std::string text_in(const Json& json, const char* key) {
   const Json& value = member(json, key);
   return value.is_string() ? value.get<std::string>() : std::string();
@@ -129,7 +129,7 @@ class Verifier {
     return true;
   }
 
-  /// The hash that the report names for a file, by the option that takes it.
+  /// Returns the hash of a file in the report. `option` is the option of the call that takes the file.
   [[nodiscard]] std::string hash_of(const std::string& option, const std::string& path) const {
     for (const Json* logs : {&member(json_, "logs"), &member(member(json_, "validation"), "logs")}) {
       for (const Json& log : *logs) {
@@ -143,7 +143,7 @@ class Verifier {
     return {};
   }
 
-  /// Puts every file of the call where it is now.
+  /// Replaces the path of every file of the call by its present path.
   bool find_inputs() {
     static const std::set<std::string> takes_files{"--data", "--validate", "--start", "--model", "--gauge"};
     std::string option;

@@ -1,5 +1,5 @@
 #pragma once
-// A report of identify, validate or diagnose, computed again from what its folder says it was made of.
+// Recomputes a report of identify, validate or diagnose from the inputs that its folder names.
 
 #include <string>
 #include <vector>
@@ -9,18 +9,19 @@
 namespace softgrip::tools {
 
 struct Verification {
-  /// Sentences: what cannot be computed again, and why (a log that is not there or is another one, a folder
-  /// that does not say how it was made). Where there are any, nothing was compared.
+  /// Sentences about inputs that prevent the comparison: a missing or changed log, or a folder without the
+  /// call. If there is one, nothing was compared.
   std::vector<std::string> missing;
   std::string reported_by;  ///< software and version
   std::string recomputed_by;
   Comparison comparison;
 };
 
-/// Calls the command that made `folder` once more, into a folder that is removed afterwards, and compares its
-/// JSON, its series and its model. Logs and models are looked for where they were named, then in `folder` and
-/// beside it; each must have the hash that the report names.
-/// @param program  of softgrip. @param tolerance  relative
+/// Repeats the command that wrote `folder` in a temporary folder, and compares JSON, series and model. Logs
+/// and models are searched at their original paths, in `folder` and next to it. Each must have the hash in
+/// the report.
+/// @param program    path of softgrip.
+/// @param tolerance  relative tolerance.
 [[nodiscard]] Verification verify_report(const std::string& folder, const std::string& program,
                                          double tolerance);
 
