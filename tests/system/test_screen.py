@@ -65,7 +65,7 @@ class Screen(bench.BenchTest):
         self.assertFalse(status["bus"]["answered"])
         self.assertIn("Connection refused", status["bus"]["failure"])
         shown = self.softgrip("status").stdout
-        self.assertRegex(" ".join(shown.split()), r"never answered yet: connecting has been tried \d+ times, goes on "
+        self.assertRegex(" ".join(shown.split()), r"no response yet: \d+ connection attempts, one "
                                                   r"every [\d.]+ s\. .*Connection refused")
         self.assertIn("- mm, reference -", shown)
         self.assertIn("board NOT CONNECTED", self.softgrip("watch", "--count", "1").stdout)

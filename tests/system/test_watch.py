@@ -47,7 +47,7 @@ class Watch(bench.BenchTest):
         screen = watched.wait_for("UNDER PRESSURE")
         self.assertIn("`softgrip release`", screen)
         watched.type("r")
-        watched.wait_for("what is held drops")
+        watched.wait_for("held parts drop")
         self.assertGreater(min(self.emulated.commands_kpa()), 1)
         watched.type("y")
         watched.wait_for("releasing")
@@ -85,14 +85,14 @@ class Watch(bench.BenchTest):
         screen = watched.wait_for("The cause is gone")
         # What was too long for its line goes on in the next one: the remedy's last word is there, too.
         self.assertIn("measure the signal.", " ".join(screen.split()))
-        self.assertIn("s stop  v vent  r release  a acknowledge  g start  q leave", screen)
+        self.assertIn("s stop  v vent  r release  a acknowledge  g start  q quit", screen)
 
     def test_it_follows_the_size_of_its_window(self):
         watched = self.watch(columns=100, rows=30)
         watched.resize(60, 20)
         watched.wait_for(lambda text: text.split("\n")[19].startswith("s stop"))
         watched.resize(80, 6)
-        watched.wait_for("lines more in a higher window")
+        watched.wait_for("more lines: enlarge the window")
         watched.resize(100, 40)
         watched.wait_for("recording")
 

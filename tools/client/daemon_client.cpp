@@ -22,7 +22,7 @@ using Json = nlohmann::ordered_json;
 constexpr std::size_t longest_line = std::size_t{8} << 20U;
 
 constexpr const char* how_to_start =
-    "start the service ('systemctl start softgripd') or a daemon of your own ('softgripd --config RIG'), "
+    "start the service ('systemctl start softgripd') or your own daemon ('softgripd --config RIG'), "
     "or name its socket with --socket";
 
 ClientFailure cannot_connect(const std::string& path, int error) {
@@ -30,12 +30,13 @@ ClientFailure cannot_connect(const std::string& path, int error) {
     case ENOENT:
       return {ExitCode::io, "no daemon is running: there is no socket " + path + "; " + how_to_start, true};
     case ECONNREFUSED:
-      return {ExitCode::io, "no daemon is running: nobody listens on " + path + "; " + how_to_start, true};
+      return {ExitCode::io, "no daemon is running: no process listens on " + path + "; " + how_to_start,
+              true};
     case EACCES:
-      return {ExitCode::io,
-              "you may not open " + path + ": who may move the gripper is decided by that file's group"};
+      return {ExitCode::io, "no permission to open " + path +
+                                ": the group of this file determines who may move the gripper"};
     case EAGAIN:
-      return {ExitCode::io, "the daemon at " + path + " accepts no connection: it is paused or overloaded"};
+      return {ExitCode::io, "the daemon at " + path + " accepts no connections: it is paused or overloaded"};
     default:
       return {ExitCode::io, "cannot connect to " + path + ": " + std::strerror(error)};
   }
@@ -136,7 +137,7 @@ tl::expected<Json, ClientFailure> DaemonClient::ask(const Json& request, std::ch
   const auto answer = next_line(patience);
   if (!answer) return tl::unexpected{answer.error()};
   if (!*answer)
-    return tl::unexpected{ClientFailure{ExitCode::io, "the daemon at " + path_ + " does not answer"}};
+    return tl::unexpected{ClientFailure{ExitCode::io, "the daemon at " + path_ + " does not respond"}};
   return result_of(**answer);
 }
 
@@ -172,7 +173,7 @@ ClientFailure DaemonClient::malformed(const std::string& why) {
 
 ClientFailure DaemonClient::gone() const {
   return {ExitCode::io,
-          "the daemon at " + path_ + (deaf_ ? " does not take requests" : " closed the connection")};
+          "the daemon at " + path_ + (deaf_ ? " does not accept requests" : " closed the connection")};
 }
 
 bool daemon_runs(const std::string& path) {

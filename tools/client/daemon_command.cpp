@@ -27,14 +27,15 @@ std::string socket_of(const std::string& rig) {
 
 void add_daemon_options(CLI::App& command, DaemonOptions& options) {
   options.socket = default_socket_path();
-  auto* socket = command.add_option("--socket", options.socket, "The daemon's socket; also $SOFTGRIP_SOCKET")
-                     ->capture_default_str();
+  auto* socket =
+      command.add_option("--socket", options.socket, "Socket of the daemon; also $SOFTGRIP_SOCKET")
+          ->capture_default_str();
   command
       .add_option_function<std::string>(
           "--rig", [&options](const std::string& path) { options.socket = socket_of(path); },
-          "The daemon's rig file, which names its socket")
+          "Rig file of the daemon, which names its socket")
       ->excludes(socket);
-  command.add_flag("--json", options.json, "Output as JSON");
+  command.add_flag("--json", options.json, "Print the result as JSON");
 }
 
 tl::expected<Json, ExitCode> ask_daemon(const DaemonOptions& options, const Json& request) {

@@ -18,7 +18,7 @@ constexpr std::size_t longest_name = 100;
 }  // namespace
 
 std::string_view KeyDialogue::help() {
-  return "s stop  v vent  r release  a acknowledge  g start  q leave";
+  return "s stop  v vent  r release  a acknowledge  g start  q quit";
 }
 
 std::string KeyDialogue::question() const {
@@ -80,7 +80,7 @@ KeyDialogue::Outcome KeyDialogue::key(char key, double time_s, const std::string
     case 'a':
       return plain("acknowledge");
     case 'r':
-      ask({{"command", "release"}}, "Release? The fingers open, what is held drops.", time_s);
+      ask({{"command", "release"}}, "Release? The fingers open, and held parts drop.", time_s);
       return {};
     case 'g':
       name_.clear();

@@ -67,11 +67,10 @@ std::vector<HealthLine> health_lines(const Json& health) {
         lines.push_back({warning.get<std::string>().substr(0, longest_sentence), false, ""});
     }
   }
-  const std::string when = "judged " + age_text(age_s);
-  if (!changed)
-    lines.push_back({"nothing has changed at " + std::to_string(fingers) + " fingers, " + when, true, ""});
+  const std::string when = "checked " + age_text(age_s);
+  if (!changed) lines.push_back({"no change at " + std::to_string(fingers) + " fingers, " + when, true, ""});
   if (age_s > health_old_s)
-    lines.push_back({"the fingers were " + when, false, "systemctl status softgrip-health.timer"});
+    lines.push_back({"the fingers were last " + when, false, "systemctl status softgrip-health.timer"});
   return lines;
 }
 

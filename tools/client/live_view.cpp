@@ -74,7 +74,7 @@ Lines body_of(const StatusParts& parts, const ViewStyle& style, const Arrangemen
   if (arrangement.machinery) {
     append(lines, parts.machinery);
   } else {
-    lines.push_back(Line(style).add("... loop and recording in a higher window", Tone::faint).text());
+    lines.push_back(Line(style).add("... enlarge the window for loop and recording", Tone::faint).text());
   }
   return lines;
 }
@@ -119,7 +119,7 @@ Lines screen_of(const LiveState& state, const ViewStyle& style, std::size_t rows
     lines.resize(room - 1);
     lines.push_back(
         Line(style)
-            .add("... " + std::to_string(hidden) + " lines more in a higher window", Tone::doubtful)
+            .add("... " + std::to_string(hidden) + " more lines: enlarge the window", Tone::doubtful)
             .text());
   } else if (lines.size() + 1 < room) {
     const Lines events = lines_of_events(state, style, room - lines.size() - 1);

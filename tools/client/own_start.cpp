@@ -42,10 +42,9 @@ std::optional<ClientFailure> cannot_name_starts(DaemonClient& client) {
   if (!hello) return hello.error();
   const Json names = hello->value("capabilities", Json::array());
   if (std::find(names.begin(), names.end(), Json(capability)) != names.end()) return std::nullopt;
-  return ClientFailure{
-      ExitCode::state_refused,
-      "this softgripd is older than this program: it cannot stop one start alone, so nothing "
-      "was started. Restart the daemon (systemctl restart softgripd)"};
+  return ClientFailure{ExitCode::state_refused,
+                       "softgripd is older than this program and cannot stop a single start, so nothing "
+                       "was started. Restart the daemon (systemctl restart softgripd)"};
 }
 
 Json stop_of(const std::string& start_id) {

@@ -192,8 +192,8 @@ tl::expected<Json, std::string> parse_reply(std::string_view line) {
     return tl::unexpected("a line nests deeper than " + std::to_string(reply_shape::deepest) + " levels");
   }
   Json json = Json::parse(line, nullptr, false);
-  if (json.is_discarded()) return tl::unexpected<std::string>("a line is no JSON in UTF-8");
-  if (!json.is_object()) return tl::unexpected<std::string>("a line is no JSON object");
+  if (json.is_discarded()) return tl::unexpected<std::string>("a line is not JSON in UTF-8");
+  if (!json.is_object()) return tl::unexpected<std::string>("a line is not a JSON object");
   if (auto wrong = reply_shape::fault_of_line(json)) return tl::unexpected(std::move(*wrong));
   return json;
 }

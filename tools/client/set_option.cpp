@@ -29,7 +29,7 @@ tl::expected<control::Argument, std::string> argument_of(const std::string& sett
 
 void add_set_option(CLI::App& command, std::vector<std::string>& settings) {
   command
-      .add_option("--set", settings, "A parameter of the sequence in the place of its default; several times")
+      .add_option("--set", settings, "Parameter of the sequence that overrides its default; may be repeated")
       ->type_name("NAME=VALUE")
       ->allow_extra_args(false);
 }
@@ -42,7 +42,7 @@ tl::expected<std::vector<control::Argument>, ExitCode> arguments_of(
     if (!argument) return tl::unexpected(fail(ExitCode::usage, argument.error()));
     const auto same = [&](const control::Argument& other) { return other.name == argument->name; };
     if (std::any_of(arguments.begin(), arguments.end(), same)) {
-      return tl::unexpected(fail(ExitCode::usage, "--set " + argument->name + " stands there twice"));
+      return tl::unexpected(fail(ExitCode::usage, "--set " + argument->name + " is given twice"));
     }
     arguments.push_back(std::move(*argument));
   }

@@ -213,8 +213,8 @@ void add_fault(std::vector<std::string>& lines, const Json& status, const ViewSt
   };
   add("fault " + fault_title(fault) + "  " + text_at(fault, "name") + ": " + text_at(fault, "meaning"),
       Tone::bad);
-  add("  usually: " + text_at(fault, "cause"), Tone::plain);
-  add("  do: " + text_at(fault, "remedy"), Tone::plain);
+  add("  usual cause: " + text_at(fault, "cause"), Tone::plain);
+  add("  remedy: " + text_at(fault, "remedy"), Tone::plain);
   if (const std::string next = text_at(fault, "next"); next != "-") {
     add("  " + next, object_at(fault, "present").empty() ? Tone::good : Tone::doubtful);
   }
@@ -233,10 +233,10 @@ void add_silence(std::vector<std::string>& lines, const Json& bus, const ViewSty
   const auto retry_s = number_at(bus, "retry_s");
   const bool answered = bus.value("answered", false);
   std::string text(label_columns, ' ');
-  text += answered ? "lost" : "never answered yet";
+  text += answered ? "lost" : "no response yet";
   if (attempts && *attempts > 0) {
-    text += ": connecting has been tried " + fixed(*attempts, 0) + (*attempts == 1 ? " time" : " times");
-    if (retry_s && *retry_s > 0) text += ", goes on every " + significant(*retry_s, 2) + " s";
+    text += ": " + fixed(*attempts, 0) + (*attempts == 1 ? " connection attempt" : " connection attempts");
+    if (retry_s && *retry_s > 0) text += ", one every " + significant(*retry_s, 2) + " s";
   }
   text += ".";
   if (const std::string failure = text_at(bus, "failure"); failure != "-") text += " " + failure;
@@ -261,11 +261,11 @@ void add_board(std::vector<std::string>& lines, const Json& status, const ViewSt
 
 void add_machinery(std::vector<std::string>& lines, const Json& status, const ViewStyle& style) {
   const Json& loop = object_at(status, "loop");
-  const auto slips = number_at(loop, "slips");
+  const auto slips = number_at(loop, "slips");  // words-ok: API key
   std::vector<Span> timing{
       {with_decimals(number_at(status, "rate_hz"), 0) + " Hz, ", Tone::plain},
       {with_decimals(number_at(loop, "ticks"), 0) + " ticks, ", Tone::plain},
-      {with_decimals(slips, 0) + " slips, ", slips.value_or(0) > 0 ? Tone::doubtful : Tone::plain},
+      {with_decimals(slips, 0) + " overruns, ", slips.value_or(0) > 0 ? Tone::doubtful : Tone::plain},
       {"wake-up p99 " + with_decimals(number_at(loop, "wake_up_p99_us"), 0) + " us, ", Tone::plain},
       {"max " + with_decimals(number_at(loop, "wake_up_max_us"), 0) + " us", Tone::plain}};
   if (object_at(status, "real_time").value("degraded", false))

@@ -31,7 +31,7 @@ TEST_F(KeyDialogueTest, TheWaysOutAskNothingBack) {
 
 TEST_F(KeyDialogueTest, WhatMovesIsAskedBack) {
   EXPECT_EQ(type("r"), "");
-  EXPECT_NE(dialogue_.question().find("what is held drops"), std::string::npos);
+  EXPECT_NE(dialogue_.question().find("held parts drop"), std::string::npos);
   EXPECT_EQ(type("n"), "");
   EXPECT_TRUE(dialogue_.question().empty());
   EXPECT_EQ(type("y"), "") << "the question is over";

@@ -55,7 +55,7 @@ TEST_F(LastHealth, SaysWhenNothingHas) {
   const auto lines = health_lines(aged(7200, "steady"));
   ASSERT_EQ(lines.size(), 1U);
   EXPECT_TRUE(lines[0].good);
-  EXPECT_EQ(lines[0].text, "nothing has changed at 2 fingers, judged 2 h ago");
+  EXPECT_EQ(lines[0].text, "no change at 2 fingers, checked 2 h ago");
 }
 
 TEST_F(LastHealth, SaysWhatTheRigShares) {
@@ -72,7 +72,7 @@ TEST_F(LastHealth, IsInDoubtWhenItIsLongAgo) {
   const auto lines = health_lines(aged(10 * 86400, "steady"));
   ASSERT_EQ(lines.size(), 2U);
   EXPECT_FALSE(lines[1].good);
-  EXPECT_EQ(lines[1].text, "the fingers were judged 10 days ago");
+  EXPECT_EQ(lines[1].text, "the fingers were last checked 10 days ago");
 }
 
 TEST_F(LastHealth, IsNothingWhereThereIsNoResult) {

@@ -56,7 +56,7 @@ TEST(LiveView, TheKeysAreThereWhateverTheHeight) {
 
 TEST(LiveView, ALowScreenSaysThatItHidesSomething) {
   const Lines lines = screen_of(state(), {80, false, false}, 5);
-  EXPECT_NE(lines[3].find("lines more in a higher window"), std::string::npos) << lines[3];
+  EXPECT_NE(lines[3].find("more lines: enlarge the window"), std::string::npos) << lines[3];
 }
 
 TEST(LiveView, AQuestionStandsAboveTheKeysInThePlaceOfTheLastAnswer) {

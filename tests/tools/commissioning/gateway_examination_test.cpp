@@ -69,7 +69,7 @@ TEST_F(Gateways, WhoShouldAndDoesNotIsAWarning) {
   enable("softgrip-web");
   ASSERT_EQ(found().size(), 1U);
   EXPECT_EQ(found()[0].verdict, Verdict::warn);
-  EXPECT_NE(found()[0].text.find("nobody listens on 127.0.0.1:" + std::to_string(port)), std::string::npos);
+  EXPECT_NE(found()[0].text.find("not listening on 127.0.0.1:" + std::to_string(port)), std::string::npos);
 }
 
 TEST_F(Gateways, AFileThatCannotBeUsedIsAWarning) {
