@@ -107,7 +107,7 @@ class Baseline(bench.BenchTest):
 
     def test_a_contact_in_the_way_ends_it_and_leaves_nothing(self):
         done = self.commissioned(self.folder / "config/rig.yaml", expect=6)
-        self.assertRegex(done.stderr, r"the finger touched something: it stopped at 1[2-5](\.\d)? mm")
+        self.assertRegex(done.stderr, r"the finger touched an object: it stopped at 1[2-5](\.\d)? mm")
         self.check_nothing_is_left()
 
     def test_a_finger_that_does_not_move_ends_it(self):
@@ -160,7 +160,7 @@ class Baseline(bench.BenchTest):
         self.addCleanup(screen.close)
         bench.wait_for("the question", lambda: "Continue? [y/N]" in screen.text())
         self.assertRegex(screen.text(), r"channel 'left' of bench will move, .* up to [\d.]+ kPa, about 17 minutes; "
-                                        "nothing may be in its way")
+                                        "keep its way free")
         screen.type("n\n")
         self.assertEqual(screen.wait(), 1)
         self.assertIn("not allowed to move the rig", screen.text())
@@ -192,7 +192,7 @@ class Baseline(bench.BenchTest):
     def test_a_contact_over_modbus_is_noticed_too(self):
         board = self.emulator("--object", "stone")
         done = self.commissioned(self.rig(board.port), *SHORT, "--rest-s", "1", "--yes", expect=6)
-        self.assertIn("the finger touched something", done.stderr)
+        self.assertIn("the finger touched an object", done.stderr)
         self.assertLess(max(board.pressures_kpa()), 5, "and it is vented")
         self.check_nothing_is_left()
 

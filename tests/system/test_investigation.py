@@ -72,7 +72,7 @@ class Investigation(bench.BenchTest):
     def test_a_finger_that_touches_something_ends_it(self):
         rig = self.simulated("\n        object: {position_mm: 12, yielding: 0.1}")
         self.check(self.investigated("--rig", rig, "--rig-channel", "left"), "contact",
-                   r"the finger touched something: it stopped at 1[2-5](\.\d)? mm, .* mm short of its free motion")
+                   r"the finger touched an object: it stopped at 1[2-5](\.\d)? mm, .* mm short of its free motion")
 
     def test_the_same_finger_with_a_free_way_is_not_stopped(self):
         told = self.investigated("--rig", self.simulated(""), "--rig-channel", "left", expect=None, timeout_s=850)
@@ -82,12 +82,12 @@ class Investigation(bench.BenchTest):
     def test_over_modbus_in_real_time_it_is_noticed_too(self):
         rig = self.emulator("--model", self.folder / FINGER, "--object", "stone")
         self.check(self.investigated("--rig", self.rig(rig.port), "--rig-channel", "left", "--yes"), "contact",
-                   "the finger touched something")
+                   "the finger touched an object")
         self.assertLess(max(rig.pressures_kpa()), 5, "and it is vented")
 
     def test_a_rig_that_plays_something_else_ends_it(self):
         for change, why in (("lambda rows: [(t, min(p, 30.0)) for t, p in rows]",
-                             "the rig did not play what was asked: its command went to 30 instead of 45 kPa"),
+                             "the rig did not play the requested experiment: its command went to 30 instead of 45 kPa"),
                             ("lambda rows: rows[:len(rows) * 2 // 3]", r"it took [\d.]+ instead of [\d.]+ s"),
                             ("lambda rows: [(t, p if t < rows[-1][0] / 2 else 0.0) for t, p in rows]",
                              "its command travelled")):

@@ -43,7 +43,8 @@ sysid::Waveform slow(const char* name, const char* about, double share, int coun
 }
 
 sysid::Waveform gentle(const sysid::RigLimits& limits) {
-  return slow("gentle_motion", "does it move, and how far", gentle_share, 1, limits);
+  return slow("gentle_motion", "gentle motion that measures the reach of the finger", gentle_share, 1,
+              limits);
 }
 
 /// A finger behaves differently when it reaches a displacement for the first time, or for the first time
@@ -119,7 +120,8 @@ class Commissioning {
       return fails(ExitCode::failed, "not allowed to move the rig");
     signals_.emplace();
     const ScratchFolder scratch;
-    if (scratch.path().empty()) return fails(ExitCode::io, "no folder could be made for the recordings");
+    if (scratch.path().empty())
+      return fails(ExitCode::io, "the folder for the recordings could not be created");
     if (const auto begun = begin(scratch.path()); !begun) return Failure(begun.error());
     for (auto* const logs : {&runs_.first, &runs_.second}) {
       const std::string run = logs == &runs_.first ? "run_1" : "run_2";
@@ -142,13 +144,13 @@ class Commissioning {
     return "channel '" + rig_.channel_name() + "' of " + rig_.rig.name +
            " will move, gently once and then through " + std::to_string(waveforms.size()) +
            " experiments, twice: up to " + significant(runs_.limits.pressure_max_kpa, 3) + " kPa, about " +
-           significant(length_s / 60, 2) + " minutes; nothing may be in its way";
+           significant(length_s / 60, 2) + " minutes; keep its way free";
   }
 
   static std::string no_motion(double found, double expected) {
-    return "the finger hardly moved: " + significant(found, 2) + " mm, its model says " +
+    return "the finger hardly moved: " + significant(found, 2) + " mm, its model predicts " +
            significant(expected, 2) +
-           " mm; is there air, and does the sensor look at this finger? (softgrip doctor --move)";
+           " mm; check the air supply and that the sensor measures this finger (softgrip doctor --move)";
   }
 
   /// Plays the gentle motion and derives the limits of the experiments from it.

@@ -178,17 +178,17 @@ std::vector<std::string> ClosedLoopGain::notes() const {
     const bool planned = scheme.feedforward == FeedforwardKind::planned;
     const std::string left_out = scheme.part ? with_commas(scheme.part->left_out) : "";
     notes.push_back(std::string("the ") + which +
-                    (planned ? " model is not undone tick by tick, its feedforward is a plan made ahead: "
+                    (planned ? " model has no causal inverse, so its feedforward is planned before the run: "
                      : left_out.empty()
-                         ? " model gives no feedforward, so its number is the PID alone: "
-                         : " model is not undone as a whole, its feedforward is without " + left_out + ": ") +
+                         ? " model has no feedforward, so its value is that of the PID alone: "
+                         : " model has no inverse as a whole, so its feedforward omits " + left_out + ": ") +
                     scheme.refused);
   };
   refused("recalibrated", recalibrated);
   refused("extended", extended);
-  notes.push_back("simulated: " + std::to_string(rigs) +
-                  " rigs that follow the extended model, every parameter off by up to " +
-                  significant(100 * rig_scatter, 2) + " %; median");
+  notes.push_back("median of " + std::to_string(rigs) +
+                  " simulated rigs: extended model, each parameter perturbed by up to " +
+                  significant(100 * rig_scatter, 2) + " %");
   return notes;
 }
 

@@ -102,16 +102,16 @@ std::string text_of(const Consequences& consequences, const std::string& folder)
   const sysid::NextExperiment& next = consequences.experiment;
   if (next.best) {
     text += "next experiment: " + next.best->waveform.name + ", " + significant(next.best->minutes, 2) +
-            " minutes, tells " + with_commas(next.separates) + " apart by " +
+            " minutes, separates " + with_commas(next.separates) + " by " +
             significant(next.predicted_separation_sigma, 3) +
             " standard deviations: " + (std::filesystem::path(folder) / experiment_file).string() + "\n";
   }
-  for (const std::string& sentence : next.advice) text += "to tell more: " + sentence + "\n";
+  for (const std::string& sentence : next.advice) text += "to separate the causes: " + sentence + "\n";
   if (consequences.closed_loop) {
     const ClosedLoopGain& gain = *consequences.closed_loop;
     const std::string unit = " " + std::string(model::name_of(gain.output_unit));
-    text += "in closed loop, " + gain.reference() + ": recalibrated " +
-            significant(gain.recalibrated.rmse_mm, 3) + unit + ", extended " +
+    text += "in closed loop, " + gain.reference() + ": refitted model " +
+            significant(gain.recalibrated.rmse_mm, 3) + unit + ", extended model " +
             significant(gain.extended.rmse_mm, 3) + unit + ", PID alone " +
             significant(gain.pid_alone.rmse_mm, 3) + unit + "\n";
     for (const std::string& note : gain.notes()) text += "  " + note + "\n";

@@ -53,8 +53,8 @@ std::optional<std::string> broken_promise(const sysid::Waveform& waveform, const
   const Played asked = of_waveform(waveform), played = of_log(log);
   const auto differs = [](double a, double b, double share) { return std::abs(a - b) > share * b; };
   const auto sentence = [](const std::string& what, double got, double wanted, const char* unit) {
-    return "the rig did not play what was asked: " + what + " " + significant(got, 3) + " instead of " +
-           significant(wanted, 3) + " " + unit;
+    return "the rig did not play the requested experiment: " + what + " " + significant(got, 3) +
+           " instead of " + significant(wanted, 3) + " " + unit;
   };
   if (played.length_s < shortest_share * asked.length_s)
     return sentence("it took", played.length_s, asked.length_s, "s");
@@ -88,8 +88,8 @@ std::optional<std::string> touched(const sysid::Validation& predicted, const sys
   // smaller.
   const bool stopped = upper.slope() < 0.5 * lower.slope() && shortfall_mm > 0.1 * highest_mm;
   if (!stopped) return std::nullopt;
-  return "the finger touched something: it stopped at " + significant(stopped_at_mm, 3) + " mm, " +
-         significant(shortfall_mm, 2) + " mm short of its free motion; clear its way and start again";
+  return "the finger touched an object: it stopped at " + significant(stopped_at_mm, 3) + " mm, " +
+         significant(shortfall_mm, 2) + " mm short of its free motion; remove the object and start again";
 }
 
 }  // namespace softgrip::tools

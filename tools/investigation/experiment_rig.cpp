@@ -124,7 +124,7 @@ tl::expected<ExperimentRig, std::string> experiment_rig(rig::RigFile rig, const 
   if (control::resting_kpa(limits) != 0) {
     return tl::unexpected("channel '" + result.channel_name() + "' never " +
                           (limits.pressure_min_kpa > 0 ? "goes down to" : "rests at") +
-                          " 0 kPa: experiments begin and end there");
+                          " 0 kPa, where experiments begin and end");
   }
   result.simulated = std::holds_alternative<simulation::SimulatedBoardSettings>(result.rig.board);
   return result;
@@ -133,7 +133,7 @@ tl::expected<ExperimentRig, std::string> experiment_rig(rig::RigFile rig, const 
 tl::expected<std::string, NotPlayed> run_on(const ExperimentRig& rig, const std::string& name,
                                             const std::string& sequence_yaml, const std::string& folder) {
   auto sequence = daemon::SequenceLoader(rig.rig.settings, "").load_text(name + ".yaml", sequence_yaml);
-  if (!sequence) return failed("the rig does not take the sequence:\n" + sequence.error().format());
+  if (!sequence) return failed("the rig refused the sequence:\n" + sequence.error().format());
   daemon::DaemonOptions options;
   options.virtual_time = rig.simulated;
   options.sequence = std::move(*sequence);

@@ -50,7 +50,7 @@ class Investigator {
       if (!goes_on) return tl::unexpected(goes_on.error());
       if (!*goes_on) return std::move(result_);
     }
-    end(InvestigationEnd::nothing_left, "the menu of experiments is used up");
+    end(InvestigationEnd::nothing_left, "all experiments of the menu were played");
     return std::move(result_);
   }
 
@@ -77,10 +77,10 @@ class Investigator {
         !written)
       return tl::unexpected(NotInvestigated{ExitCode::io, written.error()});
     if (result_.last.verdict == Verdict::unexplained)
-      return end(InvestigationEnd::unexplained, "structure is left that no cause of the library explains");
+      return end(InvestigationEnd::unexplained, "an error remains that no cause of the library explains");
     if (result_.last.verdict == Verdict::partly_explained)
       return end(InvestigationEnd::unexplained,
-                 "beside what is named, structure is left that nothing explains");
+                 "besides the named causes, an error remains that no cause explains");
     if (result_.last.verdict != Verdict::ambiguous) return end(InvestigationEnd::settled, "");
     const auto& gauge_check = consequences.experiment.gauge_check;
     if (!consequences.experiment.best && gauge_check && options_.take_gauge)
@@ -106,9 +106,9 @@ class Investigator {
     unbounded.most_minutes = 1e9;
     if (sysid::design_experiment(result_.last, unbounded).best) {
       return end(InvestigationEnd::budget_spent,
-                 "what would tell them apart takes longer than the minutes left");
+                 "the experiments that separate them exceed the remaining time");
     }
-    std::string why = "no experiment of the menu that was not played yet would tell the alternatives apart";
+    std::string why = "no remaining experiment of the menu separates the alternatives";
     for (const std::string& sentence : none.advice) why += "; " + sentence;
     return end(InvestigationEnd::nothing_left, why);
   }
@@ -116,12 +116,14 @@ class Investigator {
   bool play(const sysid::NextExperiment& experiment, const std::string& folder) {
     InvestigationStep& step = result_.steps.back();
     const sysid::JudgedWaveform& best = *experiment.best;
-    tell("playing " + best.waveform.name + ", " + significant(best.minutes, 2) + " minutes: " +
-         significant(experiment.predicted_separation_sigma, 3) + " standard deviations are predicted");
+    tell("playing " + best.waveform.name + ", " + significant(best.minutes, 2) +
+         " minutes: " + significant(experiment.predicted_separation_sigma, 3) +
+         " standard deviations of separation are predicted");
     auto log = options_.play(experiment, folder);
     if (!log) return end(log.error());
     if (options_.diagnosis.record.drive == sysid::Drive::measured && log->pressure_kpa.empty())
-      return end(InvestigationEnd::failed, "the rig measured no pressure, which drives the model here");
+      return end(InvestigationEnd::failed,
+                 "the rig measured no pressure, but the measured pressure drives the model");
     step.experiment = best.waveform.name;
     step.predicted_separation_sigma = experiment.predicted_separation_sigma;
     step.minutes = best.minutes;
@@ -153,10 +155,9 @@ class Investigator {
   bool check_sensor(const sysid::ProposedGaugeCheck& check, const std::string& folder) {
     if (check.minutes > result_.budget_minutes - result_.spent_minutes) {
       return end(InvestigationEnd::budget_spent,
-                 "the sensor would have to be checked against a gauge, which takes longer than the minutes "
-                 "left");
+                 "the sensor must be checked against a gauge, which exceeds the remaining time");
     }
-    tell("the sensor against a gauge: " + std::to_string(check.positions_mm.size()) + " readings, " +
+    tell("checking the sensor against a gauge: " + std::to_string(check.positions_mm.size()) + " readings, " +
          significant(check.minutes, 2) + " minutes");
     auto gauge = options_.take_gauge(check.positions_mm, folder);
     if (!gauge) return end(gauge.error());

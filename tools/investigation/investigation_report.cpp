@@ -37,13 +37,13 @@ std::string causes_of(const InvestigationStep& step) {
 
 sysid::Table course_of(const Investigation& investigation) {
   sysid::Table table;
-  table.caption = "Each step: what the diagnosis of all logs so far says, and what was played to tell more";
+  table.caption = "Steps: diagnosis of all logs so far, and the experiment that followed";
   table.header = {"step",
                   "verdict",
                   "causes",
-                  "held out, recalibrated [mm]",
-                  "extended",
-                  "played then",
+                  "held-out RMSE, refitted [mm]",
+                  "extended [mm]",
+                  "next experiment",
                   "predicted separation [standard deviations]",
                   "rig time [min]"};
   table.numeric = {false, false, false, true, true, false, true, true};
@@ -68,8 +68,8 @@ std::string investigation_html(const Investigation& investigation, const std::st
   sysid::Page page("Investigation on " + rig, sysid::verdict_sentence(last) + why,
                    tone_of(investigation.end));
   page.provenance(sysid::provenance_of(
-      investigation.logs, {{"recalibrated", &last.recalibrated_model}, {"extended", &last.extended_model}}));
-  page.section("The course");
+      investigation.logs, {{"refitted", &last.recalibrated_model}, {"extended", &last.extended_model}}));
+  page.section("Steps");
   page.paragraph(significant(investigation.spent_minutes, 3) + " of " +
                  significant(investigation.budget_minutes, 3) + " minutes on the rig were used.");
   page.table(course_of(investigation));
@@ -78,22 +78,22 @@ std::string investigation_html(const Investigation& investigation, const std::st
     page.paragraph(step.sentence);
     if (step.answer) {
       page.paragraph("Then " + step.experiment +
-                     " was played. What the rig answered, and what this step's "
-                     "extended model had said of it:");
+                     " was played. Response of the rig, and prediction of this step's "
+                     "extended model:");
       sysid::add_log_figures(page, step.answer->records.front(), step.answer->scores.front());
     } else if (!step.experiment.empty()) {
       page.paragraph("Then the sensor was checked against a gauge: " + step.log);
     }
   }
   if (!closed_loop.empty()) {
-    page.section("In closed loop");
+    page.section("Closed loop");
     page.paragraph(closed_loop);
   }
   if (!last.warnings.empty()) {
-    page.section("What the logs cannot tell");
+    page.section("Limitations of the data");
     page.list(last.warnings);
   }
-  page.section("The extended model");
+  page.section("Extended model");
   page.code(model::to_yaml(last.extended_model));
   return page.to_html();
 }

@@ -60,7 +60,7 @@ tl::expected<double, NotPlayed> rmse_of(const std::string& recording, const std:
     square += std::pow(log.displacement_mm[i] - reference[i], 2);
     ++count;
   }
-  if (count == 0) return tl::unexpected(NotPlayed{false, "nothing was tracked in " + recording});
+  if (count == 0) return tl::unexpected(NotPlayed{false, "no reference was tracked in " + recording});
   return std::sqrt(square / count);
 }
 

@@ -54,7 +54,7 @@ TEST(ClosedLoopGain, AModelWithoutAnInverseIsPlannedForInstead) {
   nlohmann::ordered_json json;
   add_closed_loop(json, gain);
   EXPECT_EQ(json["closed_loop"]["gains"]["extended"]["feedforward"], "planned");
-  EXPECT_NE(json["closed_loop"]["notes"].dump().find("a plan made ahead"), std::string::npos);
+  EXPECT_NE(json["closed_loop"]["notes"].dump().find("is planned before the run"), std::string::npos);
 }
 
 /// A friction that relaxes within a few ticks has no inverse, and a plan is too coarse for it: the rest of
