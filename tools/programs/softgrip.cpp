@@ -16,13 +16,13 @@
 namespace {
 
 int run(int argc, char** argv) {
-  CLI::App program{"Soft pneumatic grippers: run them, and keep their model honest.", "softgrip"};
+  CLI::App program{"Run soft pneumatic grippers and diagnose their models.", "softgrip"};
   program.set_version_flag("--version", std::string{"softgrip "}.append(softgrip::software_version()));
   program.require_subcommand(1);
   program.footer(
       "Exit codes: 0 done, 1 failed, 2 usage, 3 configuration or input refused, 4 I/O,\n"
       "5 refused by the daemon's state, 6 finished but the result is not acceptable.\n"
-      "Ctrl-C and other ending signals: it tidies up, then ends by the same signal.");
+      "Ctrl-C and other ending signals: the program cleans up and then ends by the same signal.");
 
   softgrip::ExitCode outcome = softgrip::ExitCode::done;
 #define SOFTGRIP_ADD(name) softgrip::tools::add_##name(program, outcome);

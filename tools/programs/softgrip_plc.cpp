@@ -30,11 +30,12 @@ struct Options {
 void add_options(CLI::App& program, Options& options) {
   options.config = tools::configuration_path("plc.yaml");
   program.set_version_flag("--version", std::string{"softgrip-plc "}.append(software_version()));
-  program.add_option("--config", options.config, "What is offered to whom, and the register map")
+  program
+      .add_option("--config", options.config, "Configuration file: addresses, access and the register map")
       ->capture_default_str();
-  program.add_option("--socket", options.socket, "The daemon's socket, in the place of the file's");
-  program.add_option("--port", options.port, "In the place of the file's; 0 takes a free one");
-  program.add_flag("--check", options.check, "Read the file, say what is wrong with it, and end");
+  program.add_option("--socket", options.socket, "Socket of the daemon; overrides the file");
+  program.add_option("--port", options.port, "Port; overrides the file; 0 selects a free port");
+  program.add_flag("--check", options.check, "Check the file, report its errors, and exit");
   program.footer("Ready once 'listening on ADDRESS:PORT' is printed.");
 }
 

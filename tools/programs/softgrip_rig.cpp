@@ -27,44 +27,46 @@ namespace {
 
 void add_options(CLI::App& program, Options& options) {
   program.set_version_flag("--version", std::string{"softgrip-rig "}.append(software_version()));
-  program
-      .add_option("--model", options.models, "What the fingers are: a model file for all, or one per channel")
+  program.add_option("--model", options.models, "Model of the fingers: one file for all, or one per channel")
       ->required();
   program
-      .add_option("--board", options.boards,
-                  "Board map: a file, or a name in config/boards; several for several modules")
+      .add_option("--board", options.boards, "Board map: a file, or a name in config/boards; one per module")
       ->capture_default_str();
-  auto* tcp = program.add_option("--tcp", options.port, "Port; 0 takes a free one [1502, or the rig file's]");
+  auto* tcp = program.add_option("--tcp", options.port,
+                                 "TCP port; 0 selects a free port [1502, or that of the rig file]");
   program
       .add_option("--rtu", options.rtu,
                   "Modbus RTU on this serial device; a path that does not exist becomes a pseudo-terminal")
       ->excludes(tcp);
   program.add_flag("--rtu-over-tcp", options.rtu_over_tcp, "Modbus RTU frames on the TCP port");
-  program.add_option("--baud", options.baud, "Of the line [9600, or the rig file's]")
+  program.add_option("--baud", options.baud, "Baud rate of the line [9600, or that of the rig file]")
       ->check(number_between(1200, 1000000));
   program.add_option("--format", options.format,
-                     "Of the line: 8N1, 8E1, 8O1, 8N2, 8E2 [8N1, or the rig file's]");
+                     "Format of the line: 8N1, 8E1, 8O1, 8N2, 8E2 [8N1, or that of the rig file]");
   program
       .add_option("--turnaround-s", options.turnaround_s,
-                  "What a module on the line needs to answer [0, or the rig file's]")
+                  "Response time of a module on the line [0, or that of the rig file]")
       ->check(number_between(0, 10));
   program.add_option("--bind", options.bind, "Numeric address to listen on")->capture_default_str();
-  program.add_flag("--allow-network", options.allow_network, "Listen on an address that others can reach");
-  program.add_option("--unit", options.unit, "Unit id of the first module (default 1, or the rig file's)");
+  program.add_flag("--allow-network", options.allow_network,
+                   "Allow an address that other computers can reach");
+  program.add_option("--unit", options.unit, "Unit id of the first module [1, or that of the rig file]");
   auto* channels =
       program.add_option("--channels", options.channels, "Number of fingers")->capture_default_str();
   program
       .add_option("--rig", options.rig,
-                  "Rig file: board, unit id, channels and their scaling as softgripd has them")
+                  "Rig file with board, unit id, channels and their scaling, as for softgripd")
       ->excludes(channels);
   program.add_option("--object", options.object,
-                     "Between the fingers: stone, screw or POSITION_MM[:YIELDING]");
+                     "Object between the fingers: stone, screw or POSITION_MM[:YIELDING]");
   program
       .add_option("--object-out-at", options.object_out_at_s,
-                  "Pull it out so many seconds after the first command")
+                  "Remove the object this many seconds after the first command")
       ->check(number_between(0, 86400));
-  program.add_option("--faults", options.faults, "What goes wrong, and when (YAML)");
-  program.add_option("--watchdog-s", options.watchdog_s, "The board's communication watchdog; 0: none")
+  program.add_option("--faults", options.faults, "Schedule of faults (YAML)");
+  program
+      .add_option("--watchdog-s", options.watchdog_s,
+                  "Timeout of the board's communication watchdog; 0: no watchdog")
       ->check(number_between(0, 86400));
   program.add_option("--noise-mm", options.noise_mm, "Standard deviation of the displacement sensor")
       ->capture_default_str()
@@ -74,8 +76,8 @@ void add_options(CLI::App& program, Options& options) {
                   "Standard deviation of the pressure monitor")
       ->capture_default_str()
       ->check(number_between(0, 1000));
-  program.add_option("--seed", options.seed, "Of all noise")->capture_default_str();
-  program.add_option("--truth", options.truth, "Write what really happened to this CSV file");
+  program.add_option("--seed", options.seed, "Seed of all noise")->capture_default_str();
+  program.add_option("--truth", options.truth, "Write the true states to this CSV file");
   program.add_option("--truth-rate-hz", options.truth_rate_hz, "Rows per second and channel of --truth")
       ->capture_default_str()
       ->check(number_between(0.1, 1000));
@@ -84,7 +86,7 @@ void add_options(CLI::App& program, Options& options) {
   program.footer(
       "Control commands: status, fault NAME, clear NAME, object out|back|stone|screw|POSITION_MM[:YIELDING], "
       "quit.\n"
-      "SIGUSR1 pulls the object out. Ready once 'listening on ADDRESS:PORT' or 'listening on DEVICE' is "
+      "SIGUSR1 removes the object. Ready once 'listening on ADDRESS:PORT' or 'listening on DEVICE' is "
       "printed.");
 }
 
@@ -163,8 +165,8 @@ ExitCode serve(const Options& options, const Setup& setup, simulation::Emulator&
 
 ExitCode run(const Options& options) {
   if (!modbus::is_loopback(options.bind) && !options.allow_network) {
-    return fail(ExitCode::usage, "others could reach " + options.bind +
-                                     ", and Modbus knows no password: add --allow-network if that is wanted");
+    return fail(ExitCode::usage, "other computers could reach " + options.bind +
+                                     ", and Modbus has no passwords: add --allow-network to allow it");
   }
   auto setup = make_setup(options);
   if (!setup) return setup.error();
@@ -188,8 +190,9 @@ int main(int argc, char** argv) {
   using namespace softgrip;
   using namespace softgrip::tools;
   try {
-    CLI::App program{"A rig in real time behind a Modbus board: valve, fingers, object, watchdog, faults.",
-                     "softgrip-rig"};
+    CLI::App program{
+        "Emulate a rig in real time behind a Modbus board: valves, fingers, object, watchdog, faults.",
+        "softgrip-rig"};
     Options options;
     add_options(program, options);
     try {

@@ -39,7 +39,7 @@ ExitCode no_such_board(const std::string& board, const std::string& path) {
         (board == stem ? near : (std::filesystem::path(path).parent_path() / (near + ".yaml")).string()) +
         "?";
   } else if (!names.empty()) {
-    message += "; there are";
+    message += "; available:";
     for (const std::string& name : names) message += (&name == names.data() ? " " : ", ") + name;
   }
   return fail(ExitCode::io, message);
@@ -97,8 +97,7 @@ tl::expected<Setup, ExitCode> setup_of_rig(const std::string& path) {
   if (!rig) return tl::unexpected{refuse(problems)};
   const auto* modbus = std::get_if<drivers::ModbusSettings>(&rig->board);
   if (modbus == nullptr) {
-    return tl::unexpected{
-        fail(ExitCode::input_refused, path + ": this rig has no Modbus board, there is nothing to emulate")};
+    return tl::unexpected{fail(ExitCode::input_refused, path + ": this rig has no Modbus board to emulate")};
   }
   Setup setup;
   for (const drivers::ModbusModuleSettings& module : modbus->modules) {

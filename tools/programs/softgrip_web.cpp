@@ -40,13 +40,12 @@ struct Options {
 void add_options(CLI::App& program, Options& options) {
   options.config = tools::configuration_path("web.yaml");
   program.set_version_flag("--version", std::string{"softgrip-web "}.append(software_version()));
-  program.add_option("--config", options.config, "What is offered to whom")->capture_default_str();
-  program.add_option("--socket", options.socket, "The daemon's socket, in the place of both of the file's");
-  program.add_option("--port", options.port, "In the place of the file's; 0 takes a free one");
-  program.add_option("--recordings", options.recordings, "Folder of recordings, in the place of the file's");
-  program.add_flag("--operate", options.operate,
-                   "Whoever reaches the page may move the gripper; on loopback only");
-  program.add_flag("--check", options.check, "Read the file, say what is wrong with it, and end");
+  program.add_option("--config", options.config, "Configuration file")->capture_default_str();
+  program.add_option("--socket", options.socket, "Socket of the daemon; overrides both sockets of the file");
+  program.add_option("--port", options.port, "Port; overrides the file; 0 selects a free port");
+  program.add_option("--recordings", options.recordings, "Folder of recordings; overrides the file");
+  program.add_flag("--operate", options.operate, "Allow every client to move the gripper; on loopback only");
+  program.add_flag("--check", options.check, "Check the file, report its errors, and exit");
   program.footer("Ready once 'listening on http://ADDRESS:PORT/' is printed.");
 }
 
@@ -75,7 +74,7 @@ ExitCode run(const Options& options) {
   if (!settings) return tools::refuse(problems);
   put_in_place(options, *settings);
   if (options.operate && !modbus::is_loopback(settings->address))
-    return tools::fail(ExitCode::usage, "--operate is for loopback: beyond it a token is needed");
+    return tools::fail(ExitCode::usage, "--operate is only for loopback: other addresses need a token");
   Tokens tokens;
   if (!settings->tokens.empty()) {
     auto loaded = Tokens::load(settings->tokens);
