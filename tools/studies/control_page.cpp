@@ -33,7 +33,7 @@ std::string gains_in_words(const ControlStudy& study, const std::string& worse, 
 
 std::string verdict(const ControlStudy& study) {
   const double mismatch = study.options.mismatches.front();
-  return "With models off by up to " + significant(100 * mismatch) +
+  return "With model errors of up to " + significant(100 * mismatch) +
          " %, the full inverse of the extended structure tracks better than the best PID alone by a factor "
          "of " +
          gains_in_words(study, "pid", "full_extended", mismatch) +
@@ -74,7 +74,7 @@ sysid::Chart chart_of(const ControlStudy& study, double mismatch) {
 
 sysid::Table table_of(const ControlScheme& scheme) {
   sysid::Table table;
-  table.header = {"f [Hz]",      "± [mm]",  "off by [%]",       "RMSE [mm]",  "90 % of draws",
+  table.header = {"f [Hz]",      "± [mm]",  "model error [%]",  "RMSE [mm]",  "90 % of draws",
                   "% of stroke", "largest", "mean, most [kPa]", "kp, ki, kd", "Ms"};
   table.numeric = {true, true, true, true, true, true, true, true, false, true};
   for (const ControlFigure& f : scheme.figures) {
@@ -101,29 +101,31 @@ sysid::Page control_page(const ControlStudy& study) {
        {"Command", "softgrip study control --draws " + std::to_string(options.draws) + " --seed " +
                        std::to_string(options.seed)},
        {"Reference", significant(options.mean_mm) + " ± " + significant(options.amplitude_mm) +
-                         " mm, less where the finger cannot follow; stroke: twice the amplitude"},
+                         " mm, or less if the finger cannot follow; stroke: twice the amplitude"},
        {"Loop",
         significant(options.rate_hz) + " Hz, noise " + significant(options.noise_mm) + " mm, 0 to 60 kPa"},
-       {"Gains", "one tuner for all: least RMSE on " + std::to_string(options.search_draws) +
+       {"Gains", "the same tuner for all schemes: smallest RMSE on " + std::to_string(options.search_draws) +
                      " other fingers, Ms at most " + significant(options.most_sensitivity)},
-       {"Fingers", std::to_string(options.draws) + " per figure, every parameter off by its own share"},
+       {"Fingers", std::to_string(options.draws) + " per figure, each parameter with its own error"},
        {"Time", significant(study.wall_s, 3) + " s"}});
-  page.section("Scheme by scheme");
+  page.section("Results by scheme");
   for (const double each : options.mismatches) {
-    page.figure({"tracking error by frequency " + significant(100 * each) + " percent off",
-                 "Fingers off by up to " + significant(100 * each) +
+    page.figure({"tracking error by frequency " + significant(100 * each) + " percent error",
+                 "Model errors of up to " + significant(100 * each) +
                      " %: RMSE of the finger itself, not of its noisy reading.",
                  {{chart_of(study, each)}}});
   }
-  page.list({"Full inverse of the extended structure against PID alone, RMSE by a factor of " +
-                 gains_in_words(study, "pid", "full_extended", mismatch) + ".",
-             "Plan on a finger that is the published model, which has no inverse, against its PID alone: " +
-                 gains_in_words(study, "pid_on_published", "planned_on_published", mismatch) + ".",
-             "Plan by the published structure as identified on the twin, against PID alone: " +
-                 gains_in_words(study, "pid", "planned_identified", mismatch) + "."});
-  page.section("What the controllers believe");
+  page.list(
+      {"Full inverse of the extended structure compared with PID alone, reduction of the RMSE by a factor "
+       "of " +
+           gains_in_words(study, "pid", "full_extended", mismatch) + ".",
+       "Plan for a finger that follows the published model, which has no inverse, compared with PID alone: " +
+           gains_in_words(study, "pid_on_published", "planned_on_published", mismatch) + ".",
+       "Plan with the published structure, identified on the twin, compared with PID alone: " +
+           gains_in_words(study, "pid", "planned_identified", mismatch) + "."});
+  page.section("Models of the controllers");
   page.paragraph(
-      "Both structures were identified from the twin's answers to tp1 and sp1 with 0.05 mm of noise. "
+      "Both structures were identified from the twin's responses to tp1 and sp1 with 0.05 mm of noise. "
       "Published structure: RMSE " +
       fixed(study.identified_rmse_mm, 3) + " mm, beta/(alpha + 1/k0) " +
       significant(wrong_way_ratio(study.identified), 3) + ". With valve lag and dead time: RMSE " +

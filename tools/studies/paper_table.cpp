@@ -56,15 +56,16 @@ const std::vector<std::string>& paper_table_remarks() {
   static const std::vector<std::string> remarks{
       "The paper's pressures, rates, spans and data are in figures only; the signals here are this project's "
       "own "
-      "of the same kinds. Columns can be set side by side, not compared digit by digit.",
-      "A finger that is the published model leaves nothing but the noise, on unseen signals too. The paper's "
-      "real finger left several times more, and up to three times more on unseen signals than on its own: "
-      "there "
-      "is something in it that the published structure is not.",
-      "A finger that is an ordinary actuator behind lag and dead time shows the pattern of the paper's "
-      "column, at "
-      "a fraction of its size: the hidden latency explains the published parameters and the kind of the "
-      "residual, not the whole of it. What else there was, the paper's text does not tell."};
+      "of the same kinds. The columns show the same pattern, but their digits cannot be compared.",
+      "For a finger that follows the published model, only the noise remains, also on unseen signals. The "
+      "paper's "
+      "real finger had an error several times larger, and up to three times larger on unseen signals than on "
+      "TP1. "
+      "It has an effect that the published structure lacks.",
+      "An ordinary actuator behind lag and dead time shows the pattern of the paper's "
+      "figures at "
+      "a fraction of their size. The hidden latency explains the published parameters and the shape of the "
+      "residual, but not its size. The paper does not name a further effect."};
   return remarks;
 }
 

@@ -30,7 +30,7 @@ std::string verdict(const PublishedStudy& study) {
   for (const HiddenLatency& row : study.latency) largest = std::max(largest, row.ratio);
   double worst = 0;
   for (const PublishedMatch& row : study.matches) worst = std::max(worst, row.rmse_mm);
-  return "A latency that nobody modelled makes the published structure look non-invertible: an ordinary "
+  return "An unmodelled latency makes the published structure appear non-invertible: an ordinary "
          "actuator is identified with beta/(alpha + 1/k0) of up to " +
          ratio_text(largest) +
          ", and the published response itself is that of an invertible actuator behind lag and delay to " +
@@ -52,7 +52,7 @@ Chart ratio_chart(const PublishedStudy& study) {
   }
   chart.series.push_back(line("six mixed triangles", latency, ratio, Colour::model));
   chart.series.push_back(line("three rising triangles", latency, other, Colour::other));
-  chart.marks.push_back({sysid::Mark::Direction::horizontal, 1, "wrong way first from here on"});
+  chart.marks.push_back({sysid::Mark::Direction::horizontal, 1, "inverse response above this line"});
   chart.marks.push_back({sysid::Mark::Direction::horizontal, study.published_ratio, "published"});
   return chart;
 }
@@ -83,7 +83,7 @@ void latency_section(sysid::Page& page, const PublishedStudy& study) {
       significant(study.options.noise_mm) +
       " mm, identified with the published structure, which has neither lag nor dead time. From 1 on the "
       "fitted "
-      "model moves the wrong way first and has no inverse.");
+      "model has an inverse response and no causal inverse.");
   sysid::Table table;
   table.caption = "Ratio: beta/(alpha + 1/k0). Published: ratio " + fixed(study.published_ratio, 2) +
                   ", tau2 0.60 s, k2 0.020 bar/mm, c2 0.012 bar s/mm; truth: k2 0.04, c2 0.016, tau2 0.4 s.";
@@ -102,12 +102,12 @@ void latency_section(sysid::Page& page, const PublishedStudy& study) {
                "The fitted ratio against the hidden latency.",
                {{ratio_chart(study)}}});
   page.paragraph(
-      "The triangles matter: two choices within the same range differ. The larger the ratio, the smaller "
-      "alpha + 1/k0 in its denominator, until nothing is left of it.");
+      "The choice of triangles matters: two choices within the same range give different ratios. For large "
+      "ratios, the denominator alpha + 1/k0 approaches zero.");
   if (study.latency_log.size() > 0) {
     page.figure(
         {"fit to the longest latency",
-         "The longest latency: the structure without a valve follows it closely. A small error is no "
+         "The longest latency: the structure without a valve fits it closely. A small error is no "
          "evidence for the structure.",
          fit_charts(study.latency_log, study.latency_mm, "actuator behind the valve", "fitted model")});
   }
@@ -116,7 +116,7 @@ void latency_section(sysid::Page& page, const PublishedStudy& study) {
 void match_section(sysid::Page& page, const PublishedStudy& study) {
   page.section("2. The published response from an ordinary actuator");
   page.paragraph(
-      "The published model's own answer to tp1, for several values of eta, which was never published, "
+      "The response of the published model to tp1, for several values of the unpublished parameter eta, is "
       "matched "
       "by an actuator with beta at most 0.8 (alpha + 1/k0) behind lag and delay. The paper's own residual on "
       "its TP1 is 0.194 mm.");
@@ -138,15 +138,15 @@ void match_section(sysid::Page& page, const PublishedStudy& study) {
   }
   page.paragraph(
       "The model of the simulated rig (bench_twin) is such a match; against the published response "
-      "with eta 2 /bar on this tp1 it stands at " +
+      "for eta = 2 /bar on this tp1 its RMSE is " +
       fixed(study.twin_rmse_mm, 4) + " mm. Every parameter but k0 is free in the match.");
 }
 
 void inverse_section(sysid::Page& page, const PublishedStudy& study) {
-  page.section("3. What follows for an inverse");
+  page.section("3. Consequences for an inverse");
   page.paragraph(
-      "The published Bouc-Wen element, its beta varied, is driven by a sine of 0 to 60 kPa; each inverse is "
-      "asked for the pressure behind the displacement that came out. The explicit form p(k) = (y(k) + "
+      "The published Bouc-Wen element with a varied beta is driven by a sine of 0 to 60 kPa. Each inverse "
+      "computes the pressure from the resulting displacement. The explicit form p(k) = (y(k) + "
       "h(k-1))/alpha is a fixed-point iteration whose loop gain is beta/alpha.");
   sysid::Table table;
   table.header = {"beta/alpha",
@@ -179,29 +179,29 @@ void inverse_section(sysid::Page& page, const PublishedStudy& study) {
     charts.push_back(std::move(chart));
   }
   page.figure({"inverses",
-               "Below 1 both find the pressure, the explicit form with an error that grows as the ratio "
-               "nears 1. Above 1 there is nothing to find.",
+               "Below 1, both forms find the pressure. The error of the explicit form grows as the ratio "
+               "approaches 1. Above 1, no inverse exists.",
                sysid::stacked(std::move(charts))});
   page.list(
-      {"Where the inverse stops existing: at beta = alpha for the element alone. The published element has "
+      {"Existence: the element alone has an inverse only for beta < alpha. The published element has "
        "beta/alpha 2.43; on its first loading it falls by " +
            fixed(study.falls_by_mm, 2) + " mm until " + fixed(study.falls_until_kpa, 1) + " kPa" +
            (std::isfinite(study.back_at_kpa)
                 ? " and is back where it began only at " + fixed(study.back_at_kpa, 1) + " kPa."
                 : " and does not come back below 60 kPa."),
-       "What the explicit form does: errors grow by beta/alpha from sample to sample until the bounded "
+       "Explicit form: errors grow by beta/alpha from sample to sample until the bounded "
        "hysteresis state stops them; it ends in an oscillation of tens of kPa.",
-       "What the implicit solve does: up to beta = alpha it returns the pressure to rounding. Beyond, "
+       "Implicit form: up to beta = alpha it returns the pressure to rounding. Beyond, "
        "several "
-       "pressures or none answer; it takes one, jumps, or stays at a bound of 0 to 60 kPa and says so.",
-       "What the controller does: it checks before a start. bouc_wen of the published model: " +
+       "pressures or none fit. It selects one, jumps, or stays at a bound of 0 to 60 kPa and reports this.",
+       "Controller: it checks the model before a start. bouc_wen of the published model: " +
            study.bouc_wen_refusal + ". full_model: " + study.full_model_refusal + "."});
 }
 
 void paper_section(sysid::Page& page, const PublishedStudy& study) {
   page.section("4. The paper's four figures");
   page.paragraph(
-      "The paper's section 4: its structure, identified on TP1, predicts TP2, SP1 and SP2. The same on "
+      "Section 4 of the paper: its structure, identified on TP1, predicts TP2, SP1 and SP2. Repeated with "
       "simulated "
       "logs of two fingers, noise " +
       significant(study.options.noise_mm) + " mm.");
@@ -232,7 +232,8 @@ sysid::Page published_page(const PublishedStudy& study) {
                    {"Searches", std::to_string(study.options.starts) + " per identification"},
                    {"Time", significant(study.wall_s, 3) + " s"}});
   page.paragraph(
-      "This is a fact about the structure and a hypothesis about the paper: its data is not public. Zhang, "
+      "This is a fact about the structure and a hypothesis about the paper, whose data are not public. "
+      "Zhang, "
       "Lu, "
       "Huang, Feng, Actuators 2025, 14(4), 193; pressures read in bar.");
   latency_section(page, study);

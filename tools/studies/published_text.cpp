@@ -67,10 +67,11 @@ std::string published_text(const PublishedStudy& study) {
             cell(fixed(row.lag_s, 3), 10) + cell(fixed(row.delay_s, 3), 12) +
             cell(fixed(row.lag_s + row.delay_s, 3), 18) + cell(fixed(row.ratio, 3), 20) + "\n";
   }
-  text += "   bench_twin against the published response with eta 2 /bar: RMSE " +
+  text += "   bench_twin compared with the published response for eta = 2 /bar: RMSE " +
           fixed(study.twin_rmse_mm, 4) + " mm\n";
   text +=
-      "3. The inverse of the published Bouc-Wen element with other betas, asked for 0 to 60 kPa at 0.1 Hz\n"
+      "3. The inverse of the published Bouc-Wen element with other betas, for a sine of 0 to 60 kPa at 0.1 "
+      "Hz\n"
       "   beta/alpha   explicit: growth/sample   error [kPa]   implicit: error [kPa]   jump [kPa] (true)   "
       "not reached   inverse\n";
   for (const InverseTrial& row : study.inverses) {
