@@ -243,13 +243,14 @@ class Generator {
       text_ += "\nstatic void " + next + "(void *chain, segment in) {\n  " + name_ +
                "_state *s = chain;\n  " + step + ";\n}\n";
     }
-    text_ += model::in_unit(
-                 "\n/* At rest, as if the command had risen from 0 once; returns the displacement [mm]. "
-                 "*/\ndouble ",
-                 model_.output_unit) +
-             name_ + "_reset(" + name_ +
-             "_state *s, double command_kpa) {\n  const double input = command_kpa;\n"
-             "  s->command_kpa = command_kpa;\n";
+    text_ +=
+        model::in_unit(
+            "\n/* Starts at rest, as if the command had risen from 0 once. Returns the displacement [mm]. "
+            "*/\ndouble ",
+            model_.output_unit) +
+        name_ + "_reset(" + name_ +
+        "_state *s, double command_kpa) {\n  const double input = command_kpa;\n"
+        "  s->command_kpa = command_kpa;\n";
     for (const std::size_t i : valve_) {
       std::string reset = numbered(block(i).reset, i);
       if (reset.starts_with("block_")) reset = "s->" + reset;
@@ -257,7 +258,7 @@ class Generator {
     }
     text_ += "  return body_reset(&s->body, input);\n}\n";
     text_ += model::in_unit(
-                 "\n/* One tick of TICK_S on, while the command goes straight to command_kpa; returns the "
+                 "\n/* Advances by TICK_S, with a linear change of the command to command_kpa. Returns the "
                  "displacement [mm]. */\ndouble ",
                  model_.output_unit) +
              name_ + "_step(" + name_ +
@@ -270,7 +271,7 @@ class Generator {
   void add_inverse() {
     const std::string type = name_ + "_inverse_state";
     text_ +=
-        "\n/* The inverse keeps a body of its own. */\ntypedef struct {\n  body body;\n  double "
+        "\n/* The inverse has its own body. */\ntypedef struct {\n  body body;\n  double "
         "pressure_kpa;\n"
         "  double led_kpa[" +
         std::to_string(valve_.size() + 1) + "];\n} " + type + ";\n";
@@ -280,9 +281,9 @@ class Generator {
              std::to_string(valve_.size() + 1) +
              "; ++i) s->led_kpa[i] = pressure_kpa;\n  body_reset(&s->body, pressure_kpa);\n}\n";
     text_ +=
-        "\n/* The command for displacement_mm one tick from now, behind the valve's delay; the pressure at "
-        "the "
-        "actuator\n   stays in [lowest_kpa, highest_kpa] and stands in s->pressure_kpa. */\ndouble " +
+        "\n/* Returns the command for displacement_mm one tick from now, without the delay of the valve. The "
+        "pressure\n   at the actuator is in [lowest_kpa, highest_kpa] and is stored in s->pressure_kpa. "
+        "*/\ndouble " +
         name_ + "_inverse_step(" + type +
         " *s, double displacement_mm, double lowest_kpa, double highest_kpa) {\n"
         "  const double pressure_kpa = body_solve(&s->body, s->pressure_kpa, displacement_mm, lowest_kpa, "
@@ -333,7 +334,7 @@ std::string why_no_inverse(const model::Model& model, double tick_s, double pres
 tl::expected<CSource, std::string> c_source(const model::Model& model, double tick_s, double pressure_max_kpa,
                                             const std::string& software) {
   if (const std::string names = without_c(model); !names.empty())
-    return tl::unexpected("no C is written yet for " + names);
+    return tl::unexpected("there is no C version of " + names);
   CSource source;
   source.name = c_name(model.name);
   source.no_inverse = why_no_inverse(model, tick_s, pressure_max_kpa);

@@ -79,8 +79,8 @@ tl::expected<std::vector<SignalGroup>, ExitCode> read_signals(const std::string&
   problems.add({path,
                 {1, 1},
                 {},
-                "no column 'time_s' with times that rise: neither a log nor a series",
-                "softgrip import makes a log of it"});
+                "no column 'time_s' with rising times: neither a log nor a series",
+                "softgrip import converts the file to a log"});
   return tl::unexpected(refuse(problems));
 }
 

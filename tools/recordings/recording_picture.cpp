@@ -223,7 +223,7 @@ tl::expected<Recording, std::string> part_of(const Recording& recording, const s
     const auto first = std::lower_bound(log.time_s.begin(), log.time_s.end(), from_s);
     const auto last = std::upper_bound(log.time_s.begin(), log.time_s.end(), to_s);
     if (last - first < 2)
-      return tl::unexpected(recording.name + " has nothing from " + significant(from_s) +
+      return tl::unexpected(recording.name + " has no samples from " + significant(from_s) +
                             (std::isfinite(to_s) ? " to " + significant(to_s) + " s" : " s on") +
                             ": it lasts from " + significant(log.time_s.front()) + " to " +
                             significant(log.time_s.back()) + " s");

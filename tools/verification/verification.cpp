@@ -119,13 +119,13 @@ class Verifier {
     }
     if (call_.empty())
       return missing(path +
-                     " does not say how it was made (key call): an older version or an investigation "
+                     " does not contain its call (key call): an older version or an investigation "
                      "wrote it");
     const bool writes_elsewhere = std::any_of(call_.begin(), call_.end(), [](const std::string& word) {
       return word.starts_with("--out") || word.starts_with("--figures");
     });
     if (call_.front() != kind_->command || writes_elsewhere)
-      return missing(path + ": its key call is no call of softgrip " + kind_->command);
+      return missing(path + ": its key call is not a call of softgrip " + kind_->command);
     return true;
   }
 
@@ -169,7 +169,7 @@ class Verifier {
         path = candidate.string();
         return;
       }
-      if (other.empty()) other = candidate.string() + " is another one (" + hash + ")";
+      if (other.empty()) other = candidate.string() + " has another content (" + hash + ")";
     }
     missing(std::string(is_model              ? "model "
                         : option == "--gauge" ? "gauge file "
@@ -187,8 +187,7 @@ class Verifier {
     const auto text = read_file((again / kind_->json).string(), largest_file);
     const Json json = text ? parse_json<Json>(*text) : Json();
     if (!json.is_object()) {
-      missing("softgrip " + std::string(kind_->command) + " computed nothing: exit code " +
-              std::to_string(code));
+      missing("softgrip " + std::string(kind_->command) + " failed: exit code " + std::to_string(code));
       return;
     }
     result_.recomputed_by = text_in(json, "software");

@@ -69,14 +69,14 @@ TEST_F(Verification, AMissingOrAnotherLogIsRefusedWithItsHash) {
   EXPECT_NE(verified(3)["missing"][0].get<std::string>().find("log fit.csv, sha256 " + sha + ": not found"),
             std::string::npos);
   write("fit.csv", read("elsewhere/fit.csv") + "\n");
-  EXPECT_NE(verified(3)["missing"][0].get<std::string>().find("is another one"), std::string::npos);
+  EXPECT_NE(verified(3)["missing"][0].get<std::string>().find("has another content"), std::string::npos);
   std::filesystem::rename(folder_ / "elsewhere/fit.csv", folder_ / "report/fit.csv");
   EXPECT_EQ(verified(0)["same"], true) << "beside the report it is found, whatever stands where it was";
 }
 
 TEST_F(Verification, AFolderThatDoesNotSayHowItWasMadeIsRefused) {
   replace("report/identify.json", "\"call\"", "\"called\"");
-  EXPECT_NE(verified(3)["missing"][0].get<std::string>().find("does not say how it was made"),
+  EXPECT_NE(verified(3)["missing"][0].get<std::string>().find("does not contain its call"),
             std::string::npos);
   EXPECT_EQ(run("report --verify nowhere"), 3);
   EXPECT_EQ(run("report"), 2);
