@@ -1,4 +1,4 @@
-"""From the file of another program to a diagnosis: diagnose_csv.py FILE [REPORT.html]"""
+"""Diagnoses the file of another program: diagnose_csv.py FILE [REPORT.html]"""
 
 import sys
 

@@ -1,4 +1,4 @@
-"""Two things at a time: holds a part, and watches the events for it getting lost.
+"""Holds a part, and watches the events at the same time for its loss.
 
     guard_grip.py [SOCKET] [--sequence pick_stone] [--for-s 2]
 """
@@ -23,7 +23,7 @@ async def grip(path: Optional[str], sequence: str, hold_s: float) -> int:
             await gripper.start(sequence)
             await gripper.wait_until(softgrip.Result.HOLDING, timeout_s=60)
             try:
-                # What is lost in this time ends the wait at once.
+                # The loss of the part during this time ends the wait at once.
                 await gripper.wait_until(softgrip.Result.PART_LOST, timeout_s=hold_s)
                 print("the part is lost")
                 return 1
@@ -36,7 +36,7 @@ async def grip(path: Optional[str], sequence: str, hold_s: float) -> int:
 
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("socket", nargs="?", help="of softgripd; without it $SOFTGRIP_SOCKET")
+    parser.add_argument("socket", nargs="?", help="socket of softgripd [$SOFTGRIP_SOCKET]")
     parser.add_argument("--sequence", default="pick_stone")
     parser.add_argument("--for-s", type=float, default=2.0)
     arguments = parser.parse_args()

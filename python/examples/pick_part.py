@@ -1,4 +1,4 @@
-"""A robot's program: checks a grip, grips, carries the part away, lets go, and does something sensible otherwise.
+"""A robot program: checks a grip, grips, carries the part away and releases it. It handles a failed grip.
 
     pick_part.py [SOCKET] [--sequence hand_over] [--squeeze-kpa 4]
 """
@@ -10,17 +10,17 @@ import softgrip
 
 
 def carry_away() -> None:
-    """Here the robot moves."""
+    """Moves the robot. A placeholder in this example."""
 
 
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("socket", nargs="?", help="of softgripd; without it $SOFTGRIP_SOCKET")
+    parser.add_argument("socket", nargs="?", help="socket of softgripd [$SOFTGRIP_SOCKET]")
     parser.add_argument("--sequence", default="pick_stone")
     parser.add_argument("--squeeze-kpa", type=float, default=4.0)
     arguments = parser.parse_args()
 
-    # Leaving the block stops what it started and what may still run, whatever happens below.
+    # Leaving the block stops the sequences that it started and that may still run, also after an exception.
     with softgrip.Gripper(arguments.socket, name="pick_part") as gripper:
         gripper.check(arguments.sequence, squeeze_kpa=arguments.squeeze_kpa)
         gripper.start(arguments.sequence, squeeze_kpa=arguments.squeeze_kpa)

@@ -1,4 +1,4 @@
-"""What a recorded run shows of each finger: the largest pressure, how far it went, how long its grip held.
+"""Prints for each finger of a recorded run: largest pressure, largest displacement, and holding time of its grip.
 
     read_recording.py RECORDING
 """

@@ -1,8 +1,8 @@
-"""Client of softgripd, the controller of soft pneumatic grippers, reader of its files, and models on arrays.
+"""Client of softgripd, the controller of soft pneumatic grippers; also reads its files and computes models.
 
-`Gripper` blocks, `AsyncGripper` is for asyncio; both speak version 1 of the daemon's socket, and need nothing but Python.
+`Gripper` blocks, and `AsyncGripper` is for asyncio. Both use version 1 of the daemon's socket API and need only Python.
 `Recording` and the `read_*` functions need NumPy. `Model`, `Log`, `identify()`, `validate()` and `diagnose()` need NumPy and
-the shared library; they are loaded at their first use.
+the shared library. They are loaded at their first use.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from .models import Inverse, Log, Model, Parameter as ModelParameter
     from .results import Cause, Change, Diagnosis, Estimate, Identification, Prediction, Validation
 
-# Where a name is that is loaded at its first use: the module, and the name in it.
+# Names that are loaded at their first use: the module of each, and its name in this module.
 _ON_USE = {name: ("analysis", name) for name in ("diagnose", "identify", "validate")}
 _ON_USE |= {name: ("models", name) for name in ("Inverse", "Log", "Model")}
 _ON_USE |= {"ModelParameter": ("models", "Parameter")}

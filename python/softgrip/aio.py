@@ -40,7 +40,7 @@ class AsyncGripper:
             await self.close()
 
     async def connect(self) -> Hello:
-        """Also after a ConnectionLost: no event is missed that the daemon still keeps."""
+        """Connects again, also after a ConnectionLost. It returns every event that the daemon still stores."""
         await self._hang_up()
         reader, self._writer = await self._open()
         self._reading = asyncio.create_task(self._read(reader))
@@ -54,8 +54,8 @@ class AsyncGripper:
         return self.hello
 
     async def close(self) -> None:
-        """Ends the connection. A sequence that runs continues without an owner: leaving the block does not stop it any
-        more."""
+        """Ends the connection. A running sequence continues without an owner. Leaving the block then does not stop
+        it."""
         self._session.starts.clear()
         await self._hang_up()
 
@@ -109,7 +109,7 @@ class AsyncGripper:
         return await self._until(self._session.ended, timeout_s)
 
     async def events(self, *, timeout_s: float) -> AsyncIterator[Event]:
-        """Events as they come, none missed; ends when none has come for `timeout_s`."""
+        """Yields all events in order. Ends if there is no event for `timeout_s`."""
         while True:
             try:
                 event = await self._until(
@@ -119,7 +119,7 @@ class AsyncGripper:
             yield event
 
     async def ask(self, command: str, **keys: Any) -> Mapping[str, Any]:
-        """Any command of the socket API, and its result."""
+        """Sends any command of the socket API and returns its result."""
         if self._writer is None:
             raise ConnectionLost(f"{self.path}: not connected")
         number, line = self._session.request(command, keys)
@@ -131,7 +131,7 @@ class AsyncGripper:
             self._session.forget(number)
 
     async def _stop_own(self) -> None:
-        """As Gripper does it."""
+        """Stops the sequences of this client, as Gripper does."""
         failure: Optional[SoftgripError] = None
         for start_id in tuple(self._session.starts):
             try:
@@ -152,7 +152,7 @@ class AsyncGripper:
                 raise
 
     async def _stop_over_another(self, start_id: str) -> None:
-        """Over a connection of its own."""
+        """Sends the stop over a separate connection."""
         session = Session()
         number, line = session.request("stop", {START_ID: start_id})
         reader, writer = await self._open()
@@ -182,7 +182,7 @@ class AsyncGripper:
             raise ProtocolError(f"a line is longer than {LONGEST_LINE} bytes") from error
 
     async def _until(self, look: Callable[[], Optional[T]], timeout_s: float) -> T:
-        """What look() returns once it returns something."""
+        """Returns the first value of look() that is not None."""
         end = asyncio.get_running_loop().time() + timeout_s
         while True:
             found = look()
@@ -204,10 +204,10 @@ class AsyncGripper:
         except (OSError, SoftgripError) as error:
             self._session.failure = error if isinstance(error, SoftgripError) else ConnectionLost(str(error))
         finally:
-            # Who waits shall look once more, when this task counts as done.
+            # Waiting tasks must check once more after this task counts as done.
             asyncio.get_running_loop().call_soon(self._tell)
 
     def _tell(self) -> None:
-        """Wakes all who wait at present."""
+        """Wakes all tasks that are waiting."""
         self._changed.set()
         self._changed = asyncio.Event()

@@ -1,4 +1,4 @@
-"""Identification, validation and diagnosis of logs. The functions and their numbers are those of the commands."""
+"""Identification, validation and diagnosis of logs. The functions give the same results as the commands."""
 
 from __future__ import annotations
 
@@ -68,8 +68,8 @@ def identify(logs: Logs, structure: str = "start", *, start: Optional[Model] = N
     """Fits a model to logs, as `softgrip identify` does.
 
     structure: "start" (that of `start`, or the base structure with `branches` creep branches), or selected on held-out blocks:
-    "auto", "bouc_wen" or "play". fixed: parameters that keep the value of `start`. free: if given, only these are estimated.
-    starts: searches from as many points. fit_share: first share of each log that is fitted, 0.05 to 1. threads: 0 for one per
+    "auto", "bouc_wen" or "play". fixed: parameters that keep their start value. free: if given, only these are estimated.
+    starts: number of start points. fit_share: first share of each log that is fitted, 0.05 to 1. threads: 0 for one per
     processor. drive: "command" or "measured". begin: "auto", "rest" or "unknown". validation: logs to predict. progress: is
     called with a text about the present stage; its exception ends the call, as Ctrl-C does.
 

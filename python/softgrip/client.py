@@ -1,4 +1,4 @@
-"""The client that blocks."""
+"""The blocking client."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from .wire import Wire
 class Gripper:
     """A connection to softgripd.
 
-    `path`: the daemon's socket; without it $SOFTGRIP_SOCKET, or that of the packaged service. `name`: how it stands in
-    the daemon's events; who has one owns the sequences that it starts: others may then only stop and vent.
-    `answer_s`: how long an answer may take. Not to be shared by threads.
+    `path`: socket of the daemon, by default $SOFTGRIP_SOCKET or that of the packaged service. `name`: name of this
+    client in the daemon's events. A client with a name owns the sequences that it starts: other clients may then only
+    stop and vent. `answer_s`: longest time of a reply [s]. Threads must not share an object.
 
-    As a context manager it stops on exit what it has started and what may still run, and nothing else. StopNotConfirmed
-    if the daemon does not confirm that within `answer_s`.
+    As a context manager, it stops on exit the sequences that it has started and that may still run, and no others.
+    Raises StopNotConfirmed if the daemon does not confirm this within `answer_s`.
     """
 
     def __init__(self, path: Optional[str] = None, *, name: str, answer_s: float = 5.0) -> None:
@@ -43,16 +43,16 @@ class Gripper:
             self.close()
 
     def close(self) -> None:
-        """Ends the connection. A sequence that runs continues without an owner: leaving the block does not stop it any
-        more."""
+        """Ends the connection. A running sequence continues without an owner. Leaving the block then does not stop
+        it."""
         self._session.starts.clear()
         if self._wire:
             self._wire.close()
         self._wire = None
 
     def reconnect(self) -> Hello:
-        """After a ConnectionLost. No event is missed that the daemon still keeps; a grip of a daemon that has gone counts
-        as ended by a fault."""
+        """Connects again after a ConnectionLost. It returns every event that the daemon still stores. If another daemon
+        runs, the last grip counts as ended by a fault."""
         if self._wire:
             self._wire.close()
         self.hello = self._open()
@@ -62,37 +62,37 @@ class Gripper:
         return Status.of(self.ask("status"), "status")
 
     def sequences(self) -> tuple[Sequence, ...]:
-        """What the daemon can be asked to start by name."""
+        """The sequences that the daemon can start by name."""
         return Listing.of(self.ask("sequences"), "sequences").sequences
 
     def start(self, sequence: str, *, text: Optional[str] = None, **parameters: float) -> Grip:
-        """Starts a sequence by its name, or one whose `text` is given. `parameters`: `squeeze_kpa=4`."""
+        """Starts a sequence by its name, or the given `text` of a sequence. `parameters`: `squeeze_kpa=4`."""
         return Grip.of(self.ask("start", **start_keys(sequence, text, parameters)), "start")
 
     def check(self, sequence: str, *, text: Optional[str] = None, **parameters: float) -> Checked:
-        """Everything that a start would check, and no motion; raises what the start would raise."""
+        """Makes all checks of a start without motion. Raises the same exceptions as a start."""
         return Checked.of(self.ask("start", dry_run=True, **start_keys(sequence, text, parameters)), "start")
 
     def stop(self) -> None:
-        """Ends the sequence; the outputs go where the rig file says for the phase."""
+        """Stops the sequence with the rig file's safe action of its phase."""
         self.ask("stop")
 
     def vent(self) -> None:
-        """Everything down. Never refused to who may operate."""
+        """Vents all channels. The daemon never refuses this to a client that may operate."""
         self.ask("vent")
 
     def release(self) -> None:
-        """On with the sequence's release step; or lets down what is still under pressure."""
+        """Continues with the sequence's release step, or vents fingers that are still under pressure."""
         self.ask("release")
 
     def acknowledge(self) -> None:
-        """Clears the latched fault, once its cause is gone; nothing moves."""
+        """Resets the latched fault if its cause is gone. Nothing moves."""
         self.ask("acknowledge")
 
     def wait_until(self, *wanted: Result, timeout_s: float) -> Result:
-        """Waits until all fingers together have come to one of the results since the last start, and returns it. Every
-        result counts once, also one that came and went before this call. GripFailed if it came to NO PART, PART LOST
-        or ERROR instead, or ended."""
+        """Waits until the overall result since the last start is one of `wanted`, and returns it. Each result counts
+        once, also one before this call. Raises GripFailed if the result is NO PART, PART LOST or ERROR instead, or if
+        the sequence ends."""
         end = time.monotonic() + timeout_s
         while True:
             result = self._session.reached(frozenset(wanted))
@@ -110,7 +110,7 @@ class Gripper:
             self._connected().read(self._session, end)
 
     def events(self, *, timeout_s: float) -> Iterator[Event]:
-        """Events as they come, none missed; ends when none has come for `timeout_s`."""
+        """Yields all events in order. Ends if there is no event for `timeout_s`."""
         while True:
             end = time.monotonic() + timeout_s
             try:
@@ -121,7 +121,7 @@ class Gripper:
             yield self._session.events.popleft()
 
     def ask(self, command: str, **keys: Any) -> Mapping[str, Any]:
-        """Any command of the socket API, and its result."""
+        """Sends any command of the socket API and returns its result."""
         return self._connected().ask(self._session, command, keys, time.monotonic() + self.answer_s)
 
     def _open(self) -> Hello:
@@ -142,8 +142,9 @@ class Gripper:
         return self._wire
 
     def _stop_own(self) -> None:
-        """Nothing is asked first: a daemon that is silent at present hears the stop later. The stop names the start, so it
-        ends nothing else, and a start that is still on its way does not begin."""
+        """Stops the starts of this client without a query before it: a daemon that is silent now receives the stop
+        later. The stop names the start, so it ends no other sequence, and a start that the daemon has not received yet
+        does not begin."""
         end = time.monotonic() + self.answer_s
         failure: Optional[SoftgripError] = None
         for start_id in tuple(self._session.starts):
@@ -158,7 +159,7 @@ class Gripper:
         try:
             self._ask_stop(self._connected(), self._session, start_id, end)
         except (ConnectionLost, ProtocolError):
-            # The connection has gone, or an exception has interrupted it in the middle of a line.
+            # The connection was lost, or an exception interrupted a request in the middle of its line.
             wire = Wire(self.path, end)
             try:
                 self._ask_stop(wire, Session(), start_id, end)

@@ -1,5 +1,5 @@
-"""JSON from outside as values: each is checked against the annotations of its class, so that what is malformed is a
-ProtocolError with its place and never an exception of Python's own."""
+"""Converts JSON from outside to values. Each value is checked against the annotations of its class. Malformed JSON
+raises a ProtocolError with its location, and no other exception."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def _no_number(name: str) -> Any:
 
 
 def parsed(line: bytes) -> dict[str, Any]:
-    """The object in a line of JSON; ProtocolError if there is none."""
+    """Returns the object in a line of JSON. Raises ProtocolError if there is none."""
     try:
         value = json.loads(line, parse_constant=_no_number)
     except (ValueError, RecursionError):
@@ -38,8 +38,8 @@ def _hints(cls: Any) -> dict[str, Any]:
 
 
 def fields_of(cls: Any, value: Any, where: str) -> dict[str, Any]:
-    """The fields of a dataclass from a JSON object with their names; a newer daemon may say more. A field with a default
-    may be missing."""
+    """Reads the fields of a dataclass from the equally named members of a JSON object. Further members are ignored,
+    because a newer daemon may send more. A field with a default may be missing."""
     if not isinstance(value, dict):
         raise ProtocolError(f"{where} is no JSON object")
     found = {}
@@ -52,12 +52,12 @@ def fields_of(cls: Any, value: Any, where: str) -> dict[str, Any]:
 
 
 def decoded(cls: type[T], value: Any, where: str) -> T:
-    """An object of a dataclass. `where` stands in the error."""
+    """Creates an object of a dataclass. `where` is used in error messages."""
     return cls(**fields_of(cls, value, where))
 
 
 def checked(kind: Any, value: Any, where: str) -> Any:
-    """The value, if it is of the annotated kind."""
+    """Returns the value if it has the annotated kind."""
     origin, inner = typing.get_origin(kind), typing.get_args(kind)
     if origin is Union:  # an Optional
         return None if value is None else checked(inner[0], value, where)

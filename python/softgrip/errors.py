@@ -1,4 +1,4 @@
-"""What can go wrong, each with what a program may do about it."""
+"""The exceptions of the package, with the possible reactions of a program."""
 
 from __future__ import annotations
 
@@ -9,24 +9,24 @@ if TYPE_CHECKING:
 
 
 class SoftgripError(Exception):
-    """The base of all of them."""
+    """The base class of all exceptions of this package."""
 
 
 class NoDaemon(SoftgripError):
-    """Nobody listens on the socket, or this user may not open it."""
+    """No daemon listens on the socket, or this user has no permission to open it."""
 
 
 class ConnectionLost(SoftgripError):
-    """The daemon has gone. `reconnect()` goes on where the events left off."""
+    """The connection to the daemon was lost. After `reconnect()`, the events continue without a gap."""
 
 
 class NotAnswered(SoftgripError, TimeoutError):
-    """The daemon, or the grip, took longer than the time that was given."""
+    """The daemon or the grip exceeded the given time."""
 
 
 class ProtocolError(SoftgripError):
-    """A line of the daemon is malformed, and the connection is closed; or the daemon does not take the request. `code` is
-    the daemon's word, if it gave one."""
+    """A line of the daemon is malformed, and the connection is closed. Or the daemon does not accept the request.
+    `code` is the code of the daemon, if it sent one."""
 
     def __init__(self, message: str, code: str = "") -> None:
         super().__init__(message)
@@ -34,8 +34,8 @@ class ProtocolError(SoftgripError):
 
 
 class Refused(SoftgripError):
-    """The rig's state does not allow it; the text says why and what to do. `code` is `R01` ..., or the daemon's word
-    (`busy`, `abandoned`, `not_allowed`)."""
+    """The state of the rig does not allow the request. The text gives the reason and the remedy. `code` is `R01` ...,
+    or a code of the daemon (`busy`, `abandoned`, `not_allowed`)."""
 
     def __init__(self, message: str, code: str, name: str) -> None:
         super().__init__(f"{message} ({code})")
@@ -44,7 +44,7 @@ class Refused(SoftgripError):
 
 
 class Owned(Refused):
-    """Another client's sequence runs: it may be stopped and vented, nothing else."""
+    """A sequence of another client runs. Only stop and vent are allowed."""
 
 
 class SequenceRefused(SoftgripError):
@@ -56,7 +56,7 @@ class SequenceRefused(SoftgripError):
 
 
 class GripFailed(SoftgripError):
-    """The grip came to something else than what was waited for."""
+    """The grip ended with another result than the expected one."""
 
     def __init__(self, result: Result, end: Optional[SequenceEnd]) -> None:
         super().__init__(f"the grip's result is {result.value}" +
@@ -66,15 +66,15 @@ class GripFailed(SoftgripError):
 
 
 class StopNotConfirmed(SoftgripError):
-    """Leaving the block sent the stop of what the block had started, and no confirmation came: it may still run. The cause
-    is in `__cause__`, the exception that left the block in `__context__` of that."""
+    """The block was left, and its stops of the started sequences were not confirmed: they may still run. `__cause__` is
+    the cause, and its `__context__` is the exception that left the block."""
 
 
 class MalformedFile(SoftgripError, ValueError):
-    """A recording, a log or a report that is not as softgrip writes it."""
+    """A recording, log or report that softgrip did not write in this form."""
 
 
-# Arguments of the C++ library that have another name here.
+# Arguments of the C++ library that have another name in this package.
 _ARGUMENTS = {"time_s": "t", "pressure_kpa": "pressure", "pressure_command_kpa": "command", "supply_kpa": "supply",
               "temperature_c": "temperature", "pressure_min_kpa": "pressure_min", "pressure_max_kpa": "pressure_max",
               "slew_up_kpa_per_s": "slew_up", "slew_down_kpa_per_s": "slew_down", "start_kpa": "start",
@@ -82,7 +82,7 @@ _ARGUMENTS = {"time_s": "t", "pressure_kpa": "pressure", "pressure_command_kpa":
 
 
 class InvalidArgument(SoftgripError, ValueError):
-    """An argument that no call accepts. The text names the argument, the shape or range that is required, and the unit."""
+    """An invalid argument. The text names the argument, the required shape or range, and the unit."""
 
     def __init__(self, argument: str, message: str) -> None:
         self.argument = _ARGUMENTS.get(argument, argument)
@@ -95,4 +95,4 @@ class InvalidArgument(SoftgripError, ValueError):
 
 
 class NoResult(SoftgripError):
-    """The arguments are valid, but there is no answer: a model without an inverse, logs that cannot be fitted."""
+    """The arguments are valid, but there is no result: a model without an inverse, or logs that cannot be fitted."""

@@ -1,4 +1,4 @@
-"""What the daemon says, as values. Units stand at the end of every name; None is what is not known."""
+"""The messages of the daemon as values. Names end with the unit. None means unknown."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ T = TypeVar("T")
 
 
 class Result(str, enum.Enum):
-    """The answer to a grip, of one finger or of all."""
+    """The result of a grip, of one finger or of all fingers."""
 
     HOLDING = "HOLDING"
     NO_PART = "NO PART"
@@ -40,11 +40,11 @@ class SequenceEnd(str, enum.Enum):
 
 
 class _AsSaid:
-    """Its fields are the keys of the JSON."""
+    """Base class: the fields are the keys of the JSON object."""
 
     @classmethod
     def of(cls: type[T], json: Any, where: str) -> T:
-        """ProtocolError if the JSON is anything else. `where` stands in its text."""
+        """Reads an object from JSON. Raises ProtocolError for any other JSON. `where` is used in the message."""
         return decoded(cls, json, where)
 
 
@@ -52,7 +52,7 @@ class _AsSaid:
 class Hello(_AsSaid):
     api: int
     version: str
-    started_at: str  # of the daemon, UTC; event ids count from there
+    started_at: str  # start time of the daemon, UTC; event ids begin there
     role: str  # "look" or "operate"
     commands: tuple[str, ...]
     capabilities: tuple[str, ...]
@@ -65,12 +65,12 @@ class Fault(_AsSaid):
     meaning: str
     remedy: str
     channel: Optional[str]  # None: the whole rig
-    next: str  # what clears it
+    next: str  # the action that resets the fault
 
 
 @dataclasses.dataclass(frozen=True)
 class Channel(_AsSaid):
-    """One finger."""
+    """The state of one finger."""
 
     name: str
     command_kpa: Optional[float]
@@ -90,7 +90,7 @@ class Channel(_AsSaid):
 
 @dataclasses.dataclass(frozen=True)
 class SequenceState(_AsSaid):
-    """The sequence that runs, or ran last."""
+    """The sequence that runs or ran last."""
 
     name: str
     request: int
@@ -114,14 +114,14 @@ class Status:
     version: str
     rate_hz: float
     time_s: float  # since the daemon's start
-    json: Mapping[str, Any] = dataclasses.field(repr=False, compare=False)  # all that it said
+    json: Mapping[str, Any] = dataclasses.field(repr=False, compare=False)  # the complete status
 
     @classmethod
     def of(cls, json: Mapping[str, Any], where: str) -> Status:
         return cls(**fields_of(cls, {**json, "json": json}, where))
 
     def channel(self, name: str) -> Channel:
-        """The finger of that name; KeyError if there is none."""
+        """Returns the finger with this name. Raises KeyError if there is none."""
         for channel in self.channels:
             if channel.name == name:
                 return channel
@@ -156,7 +156,7 @@ class Parameter(_AsSaid):
 
 @dataclasses.dataclass(frozen=True)
 class Problem(_AsSaid):
-    """What is wrong with a sequence, and where."""
+    """A problem of a sequence, with its location."""
 
     file: str
     line: int
@@ -184,13 +184,13 @@ class Sequence(_AsSaid):
 class Grip(_AsSaid):
     """A sequence that was started."""
 
-    request: int  # under which events and recordings name it
+    request: int  # the number of this start in events and recordings
     warnings: tuple[Problem, ...] = ()
 
 
 @dataclasses.dataclass(frozen=True)
 class WouldStart(_AsSaid):
-    """The daemon's reply to a dry run has it beside the warnings."""
+    """A member of the daemon's reply to a dry run."""
 
     name: str
     parameters: Mapping[str, float]
@@ -205,7 +205,7 @@ class CheckReply(_AsSaid):
 
 @dataclasses.dataclass(frozen=True)
 class Checked:
-    """What a start would have begun."""
+    """The sequence that a start would run."""
 
     name: str
     parameters: Mapping[str, float]
@@ -251,7 +251,7 @@ class Failure(_AsSaid):
 
 @dataclasses.dataclass(frozen=True)
 class Reply(_AsSaid):
-    id: Optional[int]  # of the request; None: the daemon could not read it
+    id: Optional[int]  # id of the request; None: the daemon could not read the request
     ok: bool
     result: Optional[Mapping[str, Any]] = None
     error: Optional[Failure] = None

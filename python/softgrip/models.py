@@ -1,4 +1,4 @@
-"""Models and logs as objects on NumPy arrays. The numbers are those of the `softgrip` commands, bit for bit."""
+"""Models and logs as objects on NumPy arrays. The results are identical to those of the `softgrip` commands."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _EMPTY: Vector = np.empty(0)
 
 
 def _vector(argument: str, values: npt.ArrayLike, unit: str) -> Vector:
-    """A vector of numbers; anything else is an InvalidArgument."""
+    """Converts an argument to a vector of numbers. Raises InvalidArgument for anything else."""
     wanted = f"a vector of numbers in {unit} is required"
     try:
         array = np.asarray(values)
@@ -71,7 +71,7 @@ def _path(argument: str, value: Path) -> str:
 
 @dataclasses.dataclass(frozen=True)
 class Parameter:
-    """A parameter of a model: its name, value and unit, its smallest and largest permitted value, and what it is."""
+    """A parameter of a model: name, value, unit, smallest and largest permitted value, and description."""
 
     name: str
     value: float
@@ -86,7 +86,7 @@ class Inverse:
     """The command of `Model.inverse()`."""
 
     pressure_kpa: Vector  # one per time, held until the next one
-    out_of_reach: npt.NDArray[np.bool_]  # True where the limits keep the command from the reference
+    out_of_reach: npt.NDArray[np.bool_]  # True if the limits prevent the command from following the reference
 
 
 class Model:
@@ -101,7 +101,7 @@ class Model:
     """
 
     def __init__(self, core: _core.Model) -> None:
-        """For the package: use `load()` or `parse()`."""
+        """Only for the package. Use `load()` or `parse()`."""
         if not isinstance(core, _core.Model):
             raise InvalidArgument("core", "core: use Model.load() or Model.parse()")
         self._core = core
@@ -132,7 +132,7 @@ class Model:
 
     @property
     def source(self) -> str:
-        """Where the numbers come from."""
+        """The origin of the parameters."""
         return self._core.source()
 
     @property
@@ -157,11 +157,11 @@ class Model:
     def simulate(self, t: npt.ArrayLike, pressure: npt.ArrayLike, *, held: bool = False, noise: float = 0,
                  seed: int = 1, supply: Optional[npt.ArrayLike] = None,
                  temperature: Optional[npt.ArrayLike] = None) -> Vector:
-        """The reading at each time, in the unit of the model, of a finger that is at rest under the first pressure.
+        """Returns the reading at each time, in the unit of the model. The finger is first at rest under the first pressure.
 
-        t: times [s], increasing. pressure: commanded pressure [kPa], one per time. held: the pressure of a sample is held
-        until the next one, instead of going there in a straight line. noise: standard deviation of white noise, in the unit
-        of the model. seed: of all noise. supply [kPa] and temperature [degrees Celsius]: one per time.
+        t: times [s], increasing. pressure: commanded pressure [kPa], one per time. held: hold the pressure of a sample
+        until the next one instead of interpolating linearly. noise: standard deviation of white noise, in the unit of the
+        model. seed: seed of all noise. supply [kPa] and temperature [degrees Celsius]: one per time.
 
         >>> model = Model.load("config/models/bench_twin.yaml")
         >>> model.simulate([0, 1], [0, 10, 20])
@@ -175,10 +175,10 @@ class Model:
 
     def inverse(self, t: npt.ArrayLike, displacement: npt.ArrayLike, *, pressure_min: float = 0,
                 pressure_max: float = 100, slew_up: float = 300, slew_down: float = 300, start: float = 0) -> Inverse:
-        """The command under which the finger follows a displacement.
+        """Returns the command with which the finger follows a displacement.
 
         t: times [s] with equal steps. displacement: in the unit of the model, one per time. pressure_min, pressure_max:
-        range of the command [kPa]. slew_up, slew_down: its fastest rise and fall [kPa/s]. start: the command under which the
+        range of the command [kPa]. slew_up, slew_down: its largest rise and fall [kPa/s]. start: the command under which the
         finger is at rest at the first time [kPa]. `NoResult` if the model has no inverse.
 
         >>> model = Model.load("config/models/bench_twin.yaml")

@@ -22,7 +22,7 @@ Path = Union[str, os.PathLike[str]]
 Array = npt.NDArray[Any]
 
 
-LARGEST_CSV = 512 << 20  # bytes, as the softgrip commands have it
+LARGEST_CSV = 512 << 20  # bytes, as in the softgrip commands
 LARGEST_JSON = 64 << 20
 
 
@@ -34,8 +34,9 @@ def _check(about: os.stat_result, path: Path, largest: int) -> None:
 
 
 def _text(path: Path, largest: int) -> str:
-    """The text of a regular file. A device, a larger file, and a pipe, which would be waited for, are an OSError."""
-    _check(os.stat(path), path, largest)  # first: the opening alone starts some devices
+    """Returns the text of a regular file. Raises OSError for a device, a pipe (it would block) or a file that is too
+    large."""
+    _check(os.stat(path), path, largest)  # check this first: opening some devices starts them
     with open(os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_NOCTTY | os.O_CLOEXEC), "rb") as file:
         _check(os.fstat(file.fileno()), path, largest)  # another process may have replaced it
         data = file.read(largest)
@@ -57,7 +58,7 @@ def _json_object(path: Path) -> dict[str, Any]:
 
 
 def _column(cells: list[str]) -> Array:
-    """Numbers where all that is there is a number; an empty cell among them is NaN. Text otherwise."""
+    """Returns numbers if every cell is a number or empty (NaN), else texts."""
     try:
         return np.array([float(cell) if cell else np.nan for cell in cells])
     except ValueError:
@@ -65,8 +66,8 @@ def _column(cells: list[str]) -> Array:
 
 
 def read_columns(path: Path) -> dict[str, Array]:
-    """A CSV with a header (run.csv, a log, a series.csv): an array per column. A last line that is not whole, as a run
-    that was killed leaves it, is left out; any other that does not fit is a MalformedFile with its number."""
+    """Reads a CSV file with a header (run.csv, a log, a series.csv) as one array per column. An incomplete last line,
+    as after a killed run, is ignored. Any other malformed line raises MalformedFile with its number."""
     text = _text(path, LARGEST_CSV)
     rows = csv.reader(io.StringIO(text[:text.rfind("\n") + 1], newline=""))
     kept: list[list[str]] = []
@@ -88,7 +89,7 @@ def read_columns(path: Path) -> dict[str, Array]:
 
 
 def read_report(path: Path) -> Mapping[str, Any]:
-    """identify.json, diagnosis.json or run.json; lists of numbers are arrays."""
+    """Reads identify.json, diagnosis.json or run.json. Lists of numbers become arrays."""
     return _with_arrays(_json_object(path))  # type: ignore[no-any-return]
 
 
@@ -107,7 +108,7 @@ class Recording:
     """A recorded run: a folder with run.csv and run.json."""
 
     about: Mapping[str, Any]  # run.json
-    channels: Mapping[str, Mapping[str, Array]]  # by finger: the columns of run.csv, as long as one another
+    channels: Mapping[str, Mapping[str, Array]]  # by finger: the columns of run.csv with equal lengths
 
     @classmethod
     def read(cls, folder: Path) -> Recording:

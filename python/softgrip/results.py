@@ -20,11 +20,11 @@ Vector = npt.NDArray[np.float64]
 
 
 def _pyplot() -> Any:
-    return importlib.import_module("matplotlib.pyplot")  # takes a second: only who plots needs it
+    return importlib.import_module("matplotlib.pyplot")  # takes a second, so it is imported only for plots
 
 
 def two_axes(axes: Any) -> tuple[Any, Any]:
-    """Two matplotlib axes above each other: the given ones, or new ones."""
+    """Returns two matplotlib axes above each other: the given ones, or new ones."""
     if axes is None:
         _, axes = _pyplot().subplots(2, 1, sharex=True, layout="constrained")
     try:
@@ -47,7 +47,8 @@ def _interval(interval: Optional[tuple[float, float]]) -> str:
 
 @dataclasses.dataclass(frozen=True)
 class Estimate:
-    """A number with its 95 % interval, which is None if it is fixed, at a bound, or without effect (see `note`)."""
+    """A number with its 95 % interval. The interval is None if the number is fixed, at a bound, or without effect (see
+    `note`)."""
 
     name: str
     unit: str
@@ -86,7 +87,7 @@ class Prediction:
 
 
 class _Reported:
-    """A result with the JSON and the page of its command."""
+    """A result with the JSON and the report page of its command."""
 
     json: str
     html: str
@@ -187,8 +188,8 @@ def _plotted_causes(causes: Sequence[Cause], axes: Any) -> Any:
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class Diagnosis(_Reported):
-    """The result of `diagnose()`. Errors are root mean squares in `unit`; those of the refitted and of the extended model are
-    of held-out blocks."""
+    """The result of `diagnose()`. Errors are root mean squares in `unit`. Those of the refitted and the extended model
+    apply to held-out blocks."""
 
     verdict: str
     sentence: str

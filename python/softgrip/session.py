@@ -1,4 +1,4 @@
-"""A connection without its socket: what is sent, and what came of it. Both clients are this with a socket."""
+"""A connection without its socket: the requests, and their results. Both clients add a socket to it."""
 
 from __future__ import annotations
 
@@ -15,19 +15,19 @@ from .messages import Event, Failure, Grip, Hello, Reply, Result, SequenceEnd, S
 
 API = 1
 LONGEST_LINE = 16 << 20
-# Grips whose story is kept for who asks late.
+# Number of grips whose results are kept for later calls.
 MOST_GRIPS = 64
-# In the place of a request's number.
+# Replaces the request number of a grip of an earlier daemon.
 OF_ANOTHER_DAEMON = -1
 FAILURES = frozenset({Result.NO_PART, Result.PART_LOST, Result.ERROR})
-# Of the capabilities in a hello: starts have ids, and a stop may name one.
+# A capability in the daemon's hello: starts have ids, and a stop may name one.
 START_ID = "start_id"
-# Of a stop that names a start: it does not run, and will not begin.
+# The refusal of a stop that names a start: the start does not run and will not begin.
 NOT_RUNNING = "named_start_not_running"
 
 
 def default_path() -> str:
-    """Where softgripd listens unless told otherwise."""
+    """The default path of softgripd's socket."""
     return os.environ.get("SOFTGRIP_SOCKET") or "/run/softgrip/softgripd.sock"
 
 
@@ -41,7 +41,7 @@ def start_keys(sequence: str, text: Optional[str], parameters: Mapping[str, floa
 
 
 def error_of(error: Optional[Failure]) -> SoftgripError:
-    """The exception that the error of a reply stands for."""
+    """Returns the exception for the error of a reply."""
     if error is None:
         return ProtocolError("a reply lacks 'error'")
     if error.code == "sequence_refused":
@@ -60,7 +60,7 @@ def error_of(error: Optional[Failure]) -> SoftgripError:
 
 
 class _Story:
-    """What events said of one grip."""
+    """The results of one grip, from its events."""
 
     def __init__(self) -> None:
         self.results: collections.deque[Result] = collections.deque()
@@ -74,9 +74,10 @@ class Session:
         self.events: collections.deque[Event] = collections.deque(maxlen=10_000)
         self.started_at = ""
         self.last_event: Optional[int] = None
-        self.grip = 0  # the request of the last start
-        self.failure: Optional[Exception] = None  # what the daemon said before it hung up
-        # By their ids: starts of this client that may run. What they are in the daemon's events, once that is known.
+        self.grip = 0  # request number of the last start
+        self.failure: Optional[Exception] = None  # the daemon's reason for closing the connection
+        # By start id: the starts of this client that may run, with their request number in the daemon's events once it
+        # is known.
         self.starts: dict[str, Optional[int]] = {}
         self._names_starts = True
         self._last_id = 0
@@ -86,7 +87,7 @@ class Session:
         self._stories: collections.OrderedDict[int, _Story] = collections.OrderedDict()
 
     def raise_unconfirmed(self, failure: Optional[SoftgripError]) -> None:
-        """Of the starts that may still run after an attempt to stop each."""
+        """Raises StopNotConfirmed if starts may still run after an attempt to stop each."""
         if self.starts and failure:
             which = ", ".join("a start without a reply" if request is None else f"request {request}"
                               for request in self.starts.values())
@@ -97,8 +98,8 @@ class Session:
         self._names_starts = START_ID in hello.capabilities
 
     def request(self, command: str, keys: Mapping[str, Any]) -> tuple[int, bytes]:
-        """A line, and the id that its reply will have. A start is remembered before it is sent, under an id of its own: an
-        exception may come at any moment from then on."""
+        """Returns a request line and the id of its reply. A start is stored with a unique id before it is sent, because
+        an exception can occur at any later moment."""
         number = self._last_id + 1
         starts = command == "start" and not keys.get("dry_run")
         if starts:
@@ -119,18 +120,19 @@ class Session:
         return os.urandom(16).hex()
 
     def forget(self, number: int) -> None:
-        """Nobody waits for that reply any more."""
+        """Discards the reply to this request."""
         self._waiting.discard(number)
         self.replies.pop(number, None)
 
     def subscription(self) -> dict[str, Any]:
-        """The keys of a subscribe that goes on where the last connection left off."""
+        """The keys of a subscription that continues after the last received event."""
         if self.last_event is None:
             return {}
         return {"since": self.last_event, "started_at": self.started_at}
 
     def subscribed(self, result: Mapping[str, Any]) -> None:
-        """Another daemon than before counts its requests anew, and what ran has ended with the one before."""
+        """Processes the reply to a subscription. A restarted daemon counts its requests from the beginning, and the
+        sequences of the previous daemon have ended."""
         reply = Subscribed.of(result, "subscribe")
         if self.started_at not in ("", reply.started_at):
             self.starts.clear()
@@ -145,7 +147,7 @@ class Session:
         self.last_event = reply.since
 
     def receive(self, line: bytes) -> None:
-        """A line of the daemon. ProtocolError if it is malformed."""
+        """Processes a line of the daemon. Raises ProtocolError if it is malformed."""
         said = parsed(line)
         if "event" in said:
             self._take(Event.of(said["event"], "event"))
@@ -162,7 +164,8 @@ class Session:
             self.replies[reply.id] = reply
 
     def _take_start(self, number: int, reply: Reply) -> None:
-        """Also if the program does not wait for the reply any more. Only a refusal says that the start will not begin."""
+        """Processes the reply to a start, also if the program no longer waits for it. Only a refusal means that the
+        start will not begin."""
         start_id = self._start_of.pop(number)
         if reply.ok:
             request = Grip.of(reply.result, "start").request
@@ -178,7 +181,7 @@ class Session:
                        if request is None or self._story(request).end is None}
 
     def result_of(self, number: int) -> Mapping[str, Any]:
-        """The result of a reply that has come, once; or the exception that it stands for."""
+        """Returns the result of a received reply once, or raises its exception."""
         reply = self.replies.pop(number)
         if not reply.ok:
             raise error_of(reply.error)
@@ -206,7 +209,8 @@ class Session:
         return story
 
     def reached(self, wanted: frozenset[Result]) -> Optional[Result]:
-        """What the last start has come to, if that is wanted; None if it is still under way. Else GripFailed."""
+        """Returns the result of the last start if it is one of `wanted`, or None if there is no result yet. Raises
+        GripFailed for a failure or the end of the sequence."""
         story = self._story(self.grip)
         while story.results:
             result = story.results.popleft()
@@ -219,5 +223,5 @@ class Session:
         return None
 
     def ended(self) -> Optional[SequenceEnd]:
-        """How the last start has ended; None if it has not."""
+        """Returns the end of the last start, or None if it still runs."""
         return self._story(self.grip).end

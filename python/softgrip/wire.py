@@ -1,4 +1,4 @@
-"""Lines over the daemon's socket, for the client that blocks."""
+"""Lines over the daemon's socket, for the blocking client."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from typing import Any, Optional
 from .errors import ConnectionLost, NoDaemon, NotAnswered, ProtocolError
 from .session import LONGEST_LINE, Session
 
-# Between two attempts to connect while more clients wait than the daemon takes at a time.
+# Time between two attempts to connect if more clients wait than the daemon accepts at a time.
 CONNECT_PAUSE_S = 0.01
 
 
 class Wire:
-    """A connection. An exception of Python's own, as Ctrl-C raises it, may leave a line half sent: `torn`."""
+    """A connection. Any exception, such as that of Ctrl-C, may leave an incomplete line: `torn`."""
 
     def __init__(self, path: str, end: float) -> None:
         self.path = path
@@ -29,7 +29,7 @@ class Wire:
         self._socket = None
 
     def ask(self, session: Session, command: str, keys: Mapping[str, Any], end: float) -> Mapping[str, Any]:
-        """The result of a request."""
+        """Sends a request and returns its result."""
         number, line = session.request(command, keys)
         try:
             self._send(session, line, end)
@@ -40,7 +40,7 @@ class Wire:
             session.forget(number)
 
     def read(self, session: Session, end: float) -> None:
-        """Takes at least one line."""
+        """Receives at least one line."""
         while b"\n" not in self._input:
             self._receive(session, end)
         *lines, self._input = self._input.split(b"\n")
@@ -91,7 +91,8 @@ class Wire:
         return NotAnswered(f"{self.path}: it took too long")
 
     def _lost(self, session: Session, error: Optional[OSError]) -> Exception:
-        """What the daemon said last tells more than that it hung up."""
+        """Returns the exception for a lost connection. The last message of the daemon is more specific than the loss
+        itself."""
         self.close()
         return session.failure or ConnectionLost(f"{self.path}: {error or 'the daemon hung up'}")
 

@@ -183,7 +183,7 @@ void inverse_section(sysid::Page& page, const PublishedStudy& study) {
                "approaches 1. Above 1, no inverse exists.",
                sysid::stacked(std::move(charts))});
   page.list(
-      {"Existence: the element alone has an inverse only for beta < alpha. The published element has "
+      {"Existence: the element alone has an inverse up to beta = alpha. The published element has "
        "beta/alpha 2.43; on its first loading it falls by " +
            fixed(study.falls_by_mm, 2) + " mm until " + fixed(study.falls_until_kpa, 1) + " kPa" +
            (std::isfinite(study.back_at_kpa)
