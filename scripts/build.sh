@@ -1,4 +1,4 @@
-# Sourced: a build that prints its last line, or what failed.
+# To be sourced: builds and prints the last line of the build, or the lines of the failure.
 
 # build PRESET [TARGET ...]
 build() {

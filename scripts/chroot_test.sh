@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Builds a clean clone of HEAD and runs its quick tests in a minimal chroot of a Debian release, as a fresh machine would:
+# Builds a clean clone of HEAD and runs its quick tests in a minimal chroot of a Debian release, as on a new computer:
 #   scripts/chroot_test.sh bookworm|trixie [COMMAND ...]     default: bash scripts/test.sh --quick
-# build/chroot keeps the bare chroot, the packages it has fetched and the folder of the last run (RELEASE.root). Packages
-# come from the archive that this machine's apt uses. Needs root; mounts and processes end with the script.
+# build/chroot keeps the bare chroot, the downloaded packages and the folder of the last run (RELEASE.root). Packages
+# come from the archive of this computer's apt. Needs root. Mounts and processes end with the script.
 set -euo pipefail
 cd "$(dirname "$(realpath "$0")")/.."
 release=${1:-}
@@ -40,10 +40,10 @@ tar -xf "$store/$release.tar" -C "$root" --exclude='./dev/*'
 git clone -q --no-hardlinks . "$root/softgrip"
 git -C "$root/softgrip" remote remove origin
 cp -L /etc/resolv.conf /etc/hosts "$root/etc/"
-# What apt fetches stays for the next run.
+# Keep the packages that apt downloads for the next run.
 echo 'Binary::apt::APT::Keep-Downloaded-Packages "true"; APT::Keep-Downloaded-Packages "true";' \
   >"$root/etc/apt/apt.conf.d/98softgrip"
-echo force-unsafe-io >"$root/etc/dpkg/dpkg.cfg.d/softgrip"  # the folder is made anew each time
+echo force-unsafe-io >"$root/etc/dpkg/dpkg.cfg.d/softgrip"  # the folder is created again in each run
 mount --bind "$store/$release.packages" "$root/var/cache/apt/archives"
 mount -t proc proc "$root/proc"
 mount --rbind /sys "$root/sys"

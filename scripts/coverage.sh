@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Which branches of control/, of the bus and of the loop the tests take: builds them with counters under build/coverage, runs
-# control_test, daemon_test and 100 worlds, and prints branches per file and folder, the least covered first. Every branch
-# that is not taken: build/coverage/branches.txt.
+# Measures the branch coverage of control/, of the bus and of the loop: builds them with counters in build/coverage, runs
+# control_test, daemon_test and 100 worlds, and prints the branches per file and folder, least covered first. The list of
+# all branches that are not taken is build/coverage/branches.txt.
 #   scripts/coverage.sh
 set -euo pipefail
 cd "$(dirname "$(realpath "$0")")/.."
@@ -11,12 +11,12 @@ cmake -S . -B $build -G Ninja -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS="--cove
   -DSOFTGRIP_BENCHMARKS=OFF -DSOFTGRIP_PRECOMPILE=ON >/dev/null
 cmake --build $build --target control_test daemon_test softgrip-world >$build/build.log || { tail -n 30 $build/build.log; exit 1; }
 find $build -name '*.gcda' -delete
-# What counts allocations or system calls does not hold with counters.
+# Tests that count allocations or system calls fail with these counters.
 $build/tests/control_test --gtest_brief=1 >$build/control.log 2>&1 || tail -n 5 $build/control.log
 $build/tests/daemon_test --gtest_brief=1 >$build/daemon.log 2>&1 || tail -n 5 $build/daemon.log
 $build/tests/world/softgrip-world --count 100 | tail -n 2
-# A throw that the compiler adds to a call is no branch of ours, nor is a second copy of a header's function, of which every
-# object that includes it has its own.
+# Branches for exceptions that the compiler adds to a call do not count, and neither do further copies of a header's
+# function in other objects.
 gcovr -r . $build --branches --exclude-throw-branches --exclude-unreachable-branches --sort-percentage \
   --filter 'control/' --filter 'daemon/loop/(bus|loop|heartbeat)' --exclude '.*\.h$' \
   --txt $build/branches.txt --csv $build/branches.csv

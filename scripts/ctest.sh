@@ -1,10 +1,10 @@
-# Sourced: how the tests are run. A second attempt forgives a defect that shows one time in ten, so only tests have one
-# that measure real time, on machines that others use, too (label `realtime`, given in tests/CMakeLists.txt). They wait
-# far more than they compute: three per processor run at a time.
+# To be sourced: runs the tests. A second attempt would hide a defect that occurs in 1 of 10 runs. Therefore only tests that
+# measure real time on a shared computer have one (label `realtime` in tests/CMakeLists.txt). These tests mostly wait, so
+# three per processor run at a time.
 
-# Those that compute run beside them, on what they leave of the processors: a thread of the idle class gives way at once.
+# Tests that compute run at the same time in the idle class: they yield the processor at once.
 
-# start_computing_tests PRESET LABELS [CTEST OPTION ...]: every test without one of LABELS (a|b|c, or nothing)
+# start_computing_tests PRESET LABELS [CTEST OPTION ...]: runs every test without one of LABELS (a|b|c, or empty)
 start_computing_tests() {
   local preset=$1 without=$2
   shift 2
@@ -13,7 +13,7 @@ start_computing_tests() {
   computing=$!
 }
 
-# end_computing_tests PRESET: waits for them and says how they went
+# end_computing_tests PRESET: waits for these tests, prints their results and returns their status
 end_computing_tests() {
   local failed=0
   wait "$computing" || failed=1

@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# Installs what it needs, builds, and tells the project's story on a simulated rig:
+# Installs the required packages, builds, and demonstrates the project on a simulated rig:
 #   scripts/demo.sh [OUTPUT_DIR]      default: demo-output/
 set -euo pipefail
 cd "$(dirname "$(realpath "$0")")/.."
 out=$(realpath -m "${1:-demo-output}")
-# An existing build is brought up to date; otherwise the four programs alone, without debug information.
+# Update an existing build. Otherwise build only the four programs, without debug information.
 build=build/release
 [ -f "$build/CMakeCache.txt" ] || build=build/demo
 
@@ -26,22 +26,22 @@ stop_web() { if [ -n "$web_pid" ]; then kill "$web_pid" 2>/dev/null; wait "$web_
 trap 'stop_web; stop_daemon; stop_rig; rm -rf "$work"' EXIT
 say() { printf '\n== %s\n' "$*"; }
 
-say "The operator's page, as long as the demo runs (softgrip-web)"
+say "Operator page, available while the demo runs (softgrip-web)"
 "$build/tools/softgrip-web" --config config/web.yaml --socket "$work/sock" --recordings "$runs" --operate --port 0 \
   >"$work/web.log" 2>&1 &
 web_pid=$!
 for _ in $(seq 50); do grep -q 'listening on' "$work/web.log" && break; sleep 0.1; done
 sed -n 's/^listening on /   /p' "$work/web.log"
 
-say "1. The rig: two fingers, a stone between them, behind a Modbus TCP board (softgrip-rig)"
+say "1. Start an emulated rig: two fingers and a stone behind a Modbus TCP board (softgrip-rig)"
 start_rig --object stone
 cat "$work/rig.log"
 
-say "2. The daemon at 200 Hz (softgripd), and the pick sequence on both fingers"
+say "2. Start the daemon at 200 Hz (softgripd) and pick the stone with both fingers"
 start_daemon
 sed 's/^/   /' "$work/daemon.log"
 "$softgrip" start --wait pick_stone ||
-  { echo "The pick did not succeed; the lines above say why. On a busy machine, try again." >&2; exit 1; }
+  { echo "The pick did not succeed. The lines above give the reason. On a busy computer, try again." >&2; exit 1; }
 "$softgrip" vent
 "$softgrip" status
 stop_daemon
@@ -49,23 +49,23 @@ stop_rig
 tail -n 1 "$work/daemon.log"
 "$softgrip" plot "$runs"/*pick_stone* --out "$out/pick_stone.svg"
 
-say "3. Tracking over the wire, 6 to 20 mm at 0.2 Hz: the same gains, three feedforwards"
+say "3. Track a sine from 6 to 20 mm at 0.2 Hz over Modbus: equal PID gains, three feedforwards"
 bash scripts/tracking.sh "$build" 0.2 2
 
-say "4. Logs of such a finger, as a researcher would record them"
+say "4. Simulate three logs of the same finger with 0.05 mm of sensor noise"
 for signal in tp1 steps sp2; do
   "$softgrip" simulate --model config/models/bench_twin.yaml --input $signal --out "$out/$signal.csv" \
     --noise-mm 0.05 --seed 3 --rate-hz 100
 done
 
-say "5. The published structure, fitted to them: it looks good"
+say "5. Fit the published model to tp1 and validate it on the other logs: the fit looks good"
 "$softgrip" identify --start config/models/zhang2025.yaml --data "$out/tp1.csv" --validate "$out/steps.csv" "$out/sp2.csv" \
   --out "$out/identified" | sed -n '1,12p'
 
-say "6. What is wrong with it, and why"
+say "6. Diagnose the model: size and cause of its error"
 "$softgrip" diagnose --model config/models/zhang2025.yaml --data "$out/tp1.csv" "$out/steps.csv" "$out/sp2.csv" --out "$out/diagnosis"
 
-say "7. Change since the baseline: a baseline, and a later day on which the gain of the finger drifts"
+say "7. Record a baseline, then detect a drift of the gain in later logs"
 twin=config/models/bench_twin.yaml
 { cat "$twin"; printf '  - ageing:\n      gain_per_h: 1.0\n'; } >"$work/aged.yaml"
 simulate() { "$softgrip" simulate --model "$1" --input "$2" --out "$3" --noise-mm 0.05 --seed "$4" --rate-hz 100 >/dev/null; }
@@ -77,7 +77,7 @@ done
   --check "$out/second_tp2.csv" "$out/second_sp1.csv" --out "$out/baseline"
 "$softgrip" diagnose --baseline "$out/baseline" --data "$out/aged_tp2.csv" "$out/aged_sp1.csv" --out "$out/changed"
 
-say "8. The same at work: 30 grips of two fingers, of which the left one softens by 0.3 % each from the 19th on"
+say "8. Monitor 30 ordinary grips: after grip 18, the left finger softens by 0.3 % per grip"
 for grip in $(seq -w 30); do
   awk -v gain="$(awk -v n="$grip" 'BEGIN { print 1 - 0.003 * (n > 18 ? n - 18 : 0) }')" '
     /_mm_per_kpa:/ { sub(/[0-9.]+$/, $2 * gain) } /_per_mm:/ { sub(/[0-9.]+$/, $2 / gain) } { print }' "$twin" >"$work/worn.yaml"
@@ -86,9 +86,9 @@ for grip in $(seq -w 30); do
   "$softgrip" run config/sequences/pick_stone.yaml --rig "$work/worn_rig.yaml" --virtual-time --seed "$((10#$grip))" \
     --record "$out/grips/grip-$grip" --quiet --no-socket >/dev/null
 done
-"$softgrip" health "$out/grips" --baseline "$out/baseline" --out "$out/health" || [ $? -eq 6 ]  # 6: an alarm stands
+"$softgrip" health "$out/grips" --baseline "$out/baseline" --out "$out/health" || [ $? -eq 6 ]  # 6: an alarm is active
 
-say "Everything is vented and stopped. In $out:"
+say "All fingers are vented and all programs have stopped. Results in $out:"
 (cd "$out" && ls -1d pick_stone.svg runs/*/run.csv identified/report.html diagnosis/* changed/report.html health/*.html)
 echo
 echo "The report: $out/diagnosis/report.html"

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Fails the Nth call of every kind, for every N until a run gets through without: no crash, no hang, an exit code of the
-# contract with a sentence, safe outputs as the emulated board has them, nothing torn, nothing left behind.
+# Makes the Nth call of every kind fail, for every N until a run has no Nth call. No run may crash or hang. Each ends with
+# a documented exit code, a message and safe outputs of the emulated board, and leaves no partial or temporary files.
 #   scripts/fail_nth.sh [CALL ...]     default: all of tests/system/fail_nth.py; takes some minutes
 # Needs a built tree (build/release, or SOFTGRIP_BUILD=...). Exit code 6 if an assertion failed.
 set -euo pipefail

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Every fault of tests/system/fault_matrix.yaml in every phase of a grip, against the real daemon over real sockets:
+# Tests every fault of tests/system/fault_matrix.yaml in every phase of a grip, with the real daemon over real sockets:
 #   scripts/fault_matrix.sh [--page] [--jobs N] [FAULT | FAULT/PHASE | /PHASE ...]
-# --page writes docs/results/fault-matrix.md from what was measured. All of it takes about eight minutes; the processes
-# mostly wait. Exit code 6 if a cell did not come to what the table says.
+# --page writes docs/results/fault-matrix.md from the measurements. All faults take about eight minutes, and the processes
+# mostly wait. Exit code 6 if a result differs from the table.
 # Needs a built tree (build/release, or SOFTGRIP_BUILD=...) and python3-yaml.
 set -euo pipefail
 root=$(dirname "$(dirname "$(realpath "$0")")")

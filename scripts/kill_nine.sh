@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# kill -9 of softgripd at random moments while it records, a hundred times:
+# Kills softgripd 100 times with kill -9 at random moments of a recording:
 #   scripts/kill_nine.sh [TIMES] [--seed N] [--jobs N]
-# Every recording must open, at most one second may be lost, the board must vent. Exit code 6 otherwise.
+# Every recording must be readable with a loss of at most 1 s, and the board must vent. Otherwise the exit code is 6.
 # Needs a built tree (build/release, or SOFTGRIP_BUILD=...).
 set -euo pipefail
 root=$(dirname "$(dirname "$(realpath "$0")")")

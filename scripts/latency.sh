@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Wake-up latency and slips of softgripd at 1 kHz over Modbus TCP on loopback, next to cyclictest with the same
-# priority on the same processor, in turns within the same minutes: latency.sh [ROUNDS [SECONDS_PER_TURN]]
+# Compares the wake-up latency and overruns of softgripd at 1 kHz over Modbus TCP on loopback with cyclictest. Both have
+# the same priority and processor and run alternately: latency.sh [ROUNDS [SECONDS_PER_TURN]]
 # Needs a built tree (build/release, or BUILD=...), cyclictest (rt-tests) and the right to SCHED_FIFO.
 set -euo pipefail
 rounds=${1:-3}
@@ -19,7 +19,7 @@ finish() {
 trap finish EXIT
 command -v cyclictest >/dev/null || { echo "latency.sh: cyclictest is missing (package rt-tests)" >&2; exit 1; }
 
-# The example rig at 1 kHz. An exchange that a busy machine delays is a slip of the bus, not the end of the run.
+# The example rig at 1 kHz. An exchange that a busy computer delays is an overrun of the bus and does not end the run.
 sed -e 's/^rate_hz: .*/rate_hz: 1000/' -e "s|models/|$root/config/models/|; s|boards/|$root/config/boards/|" \
   -e "s|sequence_directory: .*|sequence_directory: $root/config/sequences}|" \
   -e 's/^  bus_down_cycles: .*/  bus_down_cycles: 100/' -e 's/^  invalid_reading_cycles: .*/  invalid_reading_cycles: 100/' \
@@ -38,11 +38,11 @@ port=$(sed -n 's/.*listening on .*:\([0-9]*\).*/\1/p' "$work/emulator.log" | hea
 [ -n "$port" ] || { cat "$work/emulator.log" >&2; exit 1; }
 sed -i "s/^    port: .*/    port: $port/" "$work/rig.yaml"
 
-# Lines "microseconds count" of one histogram of a file of softgripd's.
+# Prints the lines "microseconds count" of one histogram in a file of softgripd.
 bins_of() {
   awk -v title="# Histogram ($2, us)" '$0 == title {inside = 1; next} /^#/ {inside = 0} inside {print $1 + 0, $2 + 0}' "$1"
 }
-# p50, p99, p99.9, max and number of what "microseconds count" lines on the input add up to.
+# Prints p50, p99, p99.9, maximum and number of the sum of "microseconds count" lines on the input.
 quantiles() {
   sort -n | awk '
     {us[NR] = $1; count[NR] = $2; total += $2}

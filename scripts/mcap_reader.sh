@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Installs the reader of MCAP files that tests/system/test_export.py asks into build/mcap, by npm, in the versions and with
-# the hashes of tests/system/mcap/package-lock.json. One that is there already needs no network.
-# A machine may reach Debian's packages and no registry of npm's: that is said, and kept in build/mcap/unreachable for the
-# test, which then leaves this one reader out. Whatever else goes wrong fails.
+# Installs the MCAP reader for tests/system/test_export.py in build/mcap with npm, with the versions and hashes of
+# tests/system/mcap/package-lock.json. An installed reader needs no network.
+# If the computer reaches Debian's packages but no npm registry, the script reports it and writes build/mcap/unreachable.
+# The test then omits this reader. Any other failure is an error.
 set -euo pipefail
 cd "$(dirname "$(realpath "$0")")/.."
 
@@ -13,7 +13,7 @@ if [ -d "$folder/node_modules/@mcap/core" ] && cmp -s "$pinned/package-lock.json
   exit 0
 fi
 rm -rf "$folder/node_modules"
-# node trusts what it brings along; a network with an authority of its own has it among the system's.
+# node uses its own certificates. A network with its own authority has that authority in the system's certificates.
 system_authorities=/etc/ssl/certs/ca-certificates.crt
 [ ! -r $system_authorities ] || export NODE_EXTRA_CA_CERTS=${NODE_EXTRA_CA_CERTS:-$system_authorities}
 cp "$pinned/package.json" "$pinned/package-lock.json" "$folder/"

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Installs the packages of the given sections of packages.txt that are missing: packages.sh build [tests ...]
+# Installs the missing packages of the given sections of packages.txt: packages.sh build [tests ...]
 set -euo pipefail
 here=$(dirname "$(realpath "$0")")
 
@@ -14,7 +14,7 @@ for section in "$@"; do
   wanted+=("${names[@]}")
 done
 
-# Also what another package stands for: node of other archives is npm, too.
+# Include packages that others provide: node of other archives provides npm.
 provided=" $(dpkg-query -W -f='${Status} ${Provides}\n' | sed -n 's/^install ok installed //p' | sed 's/([^)]*)//g' |
   tr ',\n' '  ') "
 missing=()

@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# Does another version give the same numbers? Its build and this one carry out the same work, side by side:
+# Compares the results of another version with those of this one. Both builds carry out the same work at the same time:
 #   same_numbers.sh OTHER_CHECKOUT OTHER_BUILD [BUILD]
-# Two recordings in virtual time and three simulations, byte for byte; the control study, figure for figure; what a
-# diagnosis of three worlds names. The other checkout gives the configuration, since an older rig file still loads.
-# Exits 1 where a recording, a simulation or the study differs; the diagnoses are shown beside each other.
+# Two recordings in virtual time and three simulations must be identical, and so must the figures of the control study and
+# the causes in three diagnoses. The other checkout provides the configuration, because an older rig file still loads.
+# Exit code 1 if a recording, a simulation or the study differs. The diagnoses are only printed next to each other.
 set -euo pipefail
 [ $# -ge 2 ] || { sed -n '2,6s/^# \{0,1\}//p' "$0" >&2; exit 2; }
 root=$(dirname "$(dirname "$(realpath "$0")")")
@@ -44,7 +44,7 @@ for side in other this; do
     "${build[$side]}/tools/softgrip" diagnose --model "$config/models/zhang2025.yaml" --data "${logs[@]}" \
       --out "$hidden" --no-closed-loop --json >"$hidden.json" 2>"$hidden.err" || true
   done
-  # The heading alone was worded anew.
+  # Only the text of the heading has changed.
   "${build[$side]}/bench/tracking_study" | tail -n +2 >study.txt
 done
 

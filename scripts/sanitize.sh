@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
-# Builds tests under the sanitizers and runs them:
-#   scripts/sanitize.sh        what meets bytes from outside under AddressSanitizer and UndefinedBehaviorSanitizer, what
-#                              has threads under ThreadSanitizer: the part of scripts/test.sh
-#   scripts/sanitize.sh all    every test program under the first two, all of the daemon's under the third
-#   scripts/sanitize.sh build  builds what the first form runs, and runs nothing
-# Without the tests that run other programs of the system. What a sanitizer reports is never forgiven, since the reports
-# are files: build/PRESET/reports. What other libraries keep until the process ends is in tests/support/lsan.supp.
+# Builds tests with the sanitizers and runs them:
+#   scripts/sanitize.sh        tests of code that parses external bytes with AddressSanitizer and UndefinedBehaviorSanitizer,
+#                              tests of code with threads with ThreadSanitizer: the part of scripts/test.sh
+#   scripts/sanitize.sh all    every test program with the first two, all tests of the daemon with the third
+#   scripts/sanitize.sh build  builds the programs of the first form without running them
+# Tests that run other programs of the system are omitted. No report of a sanitizer is ignored, because reports are files in
+# build/PRESET/reports. tests/support/lsan.supp lists memory that other libraries keep until the process ends.
 set -euo pipefail
 cd "$(dirname "$(realpath "$0")")/.."
 . scripts/build.sh
@@ -36,7 +36,7 @@ case ${1:-} in
   "" | build)
     [ -z "${1:-}" ] || only_build=true
     sanitized asan-ubsan base_test drivers_test emulator_test
-    sanitized tsan base_test daemon_test daemon_process_test  # the drivers have no threads of their own
+    sanitized tsan base_test daemon_test daemon_process_test  # the drivers start no threads
     ;;
   all)
     sanitized asan-ubsan all

@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# A Slurm of this one machine, for one command: munged, slurmctld and slurmd are started, the command is run, they end.
-#   scripts/slurm_here.sh DIR COMMAND...        DIR takes its state and logs
-# Root is needed: slurmd starts jobs as their users. Nothing of /etc/slurm or of a Slurm that runs here is touched: ports,
-# key and socket are its own. No cgroups, so that it works in a container, too; a job is kept to its
-# cores by its affinity.
+# Runs one command with a Slurm of this computer only: starts munged, slurmctld and slurmd, runs the command, stops them.
+#   scripts/slurm_here.sh DIR COMMAND...        DIR receives state and logs
+# Needs root, because slurmd starts jobs as their users. It does not use /etc/slurm or an existing Slurm: it has its own
+# ports, key and socket. It uses no cgroups, so that it also works in a container. CPU affinity limits a job to its
+# cores.
 set -euo pipefail
 here=$(dirname "$(realpath "$0")")
 [ $# -ge 2 ] || { sed -n '2,5s/^# \{0,1\}//p' "$0" >&2; exit 2; }
@@ -15,14 +15,14 @@ shift
 rm -rf "$dir"
 mkdir -p "$dir/state" "$dir/spool"
 chmod 755 "$dir"
-# munged refuses a key that others can read and a folder that others can write.
+# munged refuses a key that other users can read and a folder that other users can write.
 install -d -o munge -g munge -m 711 "$dir/munge"
 dd if=/dev/urandom of="$dir/munge/key" bs=128 count=1 status=none
 chown munge:munge "$dir/munge/key"
 chmod 400 "$dir/munge/key"
 
 host=$(hostname -s)
-# Two free ports, asked of the kernel.
+# Get two free ports from the kernel.
 read -r ctld_port slurmd_port < <(python3 -c '
 import socket
 held = [socket.create_server(("127.0.0.1", 0)) for _ in range(2)]
@@ -57,7 +57,7 @@ MinJobAge=60
 NodeName=$host NodeAddr=127.0.0.1 CPUs=$cores RealMemory=$memory_mb State=UNKNOWN
 PartitionName=here Nodes=$host Default=YES MaxTime=INFINITE State=UP OverSubscribe=NO
 END
-# Slurm 22.05 (Debian 12) knows no cgroups that are disabled; there version 1 is named, and nothing uses it.
+# Slurm 22.05 (Debian 12) cannot disable cgroups. For it, version 1 is selected but not used.
 case $(slurmd -V) in
   *\ 2[0-2].*) cgroups=cgroup/v1 ;;
   *) cgroups=disabled ;;
@@ -78,7 +78,7 @@ setpriv --reuid munge --regid munge --clear-groups munged --foreground --force -
   2>"$dir/munged.err" &
 started+=($!)
 for _ in $(seq 100); do [ -S "$dir/munge/socket" ] && break; sleep 0.1; done
-[ -S "$dir/munge/socket" ] || failed "munged does not answer"
+[ -S "$dir/munge/socket" ] || failed "munged does not respond"
 slurmctld -D -f "$SLURM_CONF" 2>"$dir/slurmctld.err" &
 started+=($!)
 slurmd -D -f "$SLURM_CONF" -N "$host" 2>"$dir/slurmd.err" &

@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# The system test: builds the package, boots a Debian 12 guest with the PREEMPT_RT kernel under QEMU, installs the
-# package there and works through the service's bad day (tests/system/vm/drive/steps.py says what).
+# The system test: builds the package, boots a Debian 12 guest with the PREEMPT_RT kernel in QEMU, installs the package in
+# it and runs the steps of tests/system/vm/drive/steps.py.
 #   scripts/system_test.sh [--latency] [--seed N] [--work DIR] [--log FILE]
-#   --latency   instead: wake-up latency of softgripd beside cyclictest in a guest whose clock counts instructions
-# DIR (default $SOFTGRIP_GUEST, else build/guest) keeps the guest; its first preparation downloads about 250 MB. Needs
-# root for Debian packages and the guest's root file system, but no KVM. The exit code is 0 if every step passed.
+#   --latency   measures instead the wake-up latency of softgripd and cyclictest in a guest whose clock counts instructions
+# DIR (default $SOFTGRIP_GUEST, else build/guest) keeps the guest. Its first preparation downloads about 250 MB. Needs
+# root for Debian packages and for the guest's root file system, but no KVM. The exit code is 0 if every step passed.
 set -euo pipefail
 cd "$(dirname "$(realpath "$0")")/.."
 work=${SOFTGRIP_GUEST:-build/guest} log= seed= latency=false
@@ -27,7 +27,7 @@ trap 'rm -rf "$drive"' EXIT
 
 bash scripts/packages.sh build package guest
 cp $vm/drive/* "$drive/"
-# Two packages of the same programs; the second one is the upgrade.
+# Two packages of the same programs. The second one is the upgrade.
 for revision in 1 2; do
   bash scripts/package.sh "$work/packages" "$revision" >"$work/package.log" 2>&1 || { cat "$work/package.log" >&2; exit 1; }
   package=$(tail -n 1 "$work/package.log")

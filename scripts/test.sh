@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
-# Installs what the tests need, builds, and runs them: the release build with every test; beside those that compute the
-# Debian package, under AddressSanitizer and UndefinedBehaviorSanitizer what meets bytes from outside, and under
-# ThreadSanitizer what has threads; then clang-tidy over the sources that differ from origin's main.
-#   scripts/test.sh            all of it
-#   scripts/test.sh --quick    the release build and the tests that take no more than a moment each
-#   scripts/test.sh --all      hours: with the tests labelled campaign (more blind worlds) and recipe (the pages that say how
-#                              to add something, carried out in a copy of the sources), every test under the sanitizers,
-#                              every source under clang-tidy
+# Installs the packages of the tests, builds, and runs the tests: the release build with every test. While these compute,
+# it builds the Debian package. AddressSanitizer and UndefinedBehaviorSanitizer check code that parses external bytes, and
+# ThreadSanitizer checks code with threads. clang-tidy checks the sources that differ from the main branch of origin.
+#   scripts/test.sh            all of this
+#   scripts/test.sh --quick    the release build and the tests that take at most a moment each
+#   scripts/test.sh --all      hours: also the tests with the labels campaign (more blind worlds) and recipe (carries out the
+#                              pages that explain how to add a part, in a copy of the sources), every test with the
+#                              sanitizers, and every source with clang-tidy
 set -euo pipefail
 cd "$(dirname "$(realpath "$0")")/.."
 
@@ -25,14 +25,14 @@ $quick || bash scripts/mcap_reader.sh
 . scripts/ctest.sh
 started=$SECONDS
 say() { printf '\n== %s (%d s)\n' "$*" $((SECONDS - started)); }
-# The last words: what was left out stands among them.
+# The last lines of the output, with the omitted tests.
 end() {
   if [ -s build/mcap/unreachable ]; then printf '\nNOT TESTED: MCAP by its own reader, for %s\n' "$(cat build/mcap/unreachable)"; fi
   say "done"
   exit 0
 }
 
-# Other versions read .clang-format otherwise.
+# Other versions interpret .clang-format differently.
 if clang-format --version 2>/dev/null | grep -q 'version 14\.'; then
   say "format"
   git ls-files '*.h' '*.cpp' | xargs clang-format --dry-run --Werror
@@ -49,11 +49,11 @@ if $quick; then
   exit 0
 fi
 
-# Beside the tests, most of which wait, with what they leave of the processors.
+# Runs at the same time as the tests, most of which wait.
 mkdir -p build
 without='recipe|campaign'
 if $all; then without=''; fi
-set -m  # groups of their own, so that they can be ended whole
+set -m  # separate process groups, so that each can be ended completely
 chrt --idle 0 bash scripts/sanitize.sh build </dev/null >build/sanitize.log 2>&1 &
 sanitized=$!
 start_computing_tests release "$without"
@@ -62,7 +62,7 @@ trap 'kill -- -$sanitized -$computing 2>/dev/null || true' EXIT
 say "test: in real time"
 failed=false
 run_real_time_tests release "$without" || failed=true
-# Beside the rest of those that compute.
+# Runs at the same time as the rest of the computing tests.
 say "package"
 bash scripts/package.sh | tail -n 1
 say "sanitizers"

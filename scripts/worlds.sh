@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
-# The whole daemon in seeded worlds: loop, bus, board with its watchdog, clients, recorder, pauses, second masters, in one
-# thread on one simulated clock (tests/world). Says what a seed violates, the fewest incidents that do, and the trace.
+# Runs the whole daemon in seeded worlds: loop, bus, board with watchdog, clients, recorder, pauses and other Modbus clients
+# in one thread on one simulated clock (tests/world). Reports a seed with a violation, its smallest set of incidents, and
+# the trace.
 #   scripts/worlds.sh [SEEDS [SECONDS [FIRST]]]      default: 10000 seeds of 60 s from seed 1
-#   scripts/worlds.sh tools [SEEDS [SECONDS [FIRST]]]   the same with calibrate, doctor, run, baseline, the experiments of
-#                                                    investigate and softgrip-plc in their turn; default: 2000 seeds
-#   scripts/worlds.sh faults [WORD ...]              faults put into the code on purpose: within how many seeds they are found
-# The last works in a copy under build/worlds.
+#   scripts/worlds.sh tools [SEEDS [SECONDS [FIRST]]]   also calibrate, doctor, run, baseline, the experiments of
+#                                                    investigate and softgrip-plc, in turn; default: 2000 seeds
+#   scripts/worlds.sh faults [WORD ...]              seeds until each inserted fault is found, in a copy in build/worlds
 set -euo pipefail
 cd "$(dirname "$(realpath "$0")")/.."
 . scripts/build.sh
