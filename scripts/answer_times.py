@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
-"""How long softgripd's socket takes to answer while others ask much or read nothing: answer_times.py [--seconds S]
+"""Measures the response time of softgripd's socket while other clients load it: answer_times.py [--seconds S]
 
-A daemon on the emulated rig at 1 kHz; beside one client that asks a command every 5 ms stand none, or watchers, floods
-of requests, and subscribers that never read. Printed in milliseconds, with the loop's wake-up latency and the periods
-that it lost, in turns of the same length: alone, beside the others, alone, ... Needs a release build (SOFTGRIP_BUILD).
+A daemon runs on the emulated rig at 1 kHz. One client sends a command every 5 ms. It runs alone, or together with
+watchers, floods of requests, and subscribers that never read. The turns have equal length and alternate: alone, loaded,
+alone, ... The output gives milliseconds, the wake-up latency of the loop and its overruns. Needs a release build
+(SOFTGRIP_BUILD).
 """
 
 import argparse
@@ -23,7 +24,7 @@ COMMANDS = ("status", "events", "vent")
 
 
 class Crowd:
-    """Five who watch, five who never read what they asked for, three who ask as fast as they can."""
+    """Five watchers, five clients that never read their responses, and three that send requests as fast as possible."""
 
     def __init__(self, path):
         self.stop = threading.Event()
@@ -75,7 +76,7 @@ class Crowd:
 
 
 def measured(path, seconds):
-    """Milliseconds per command."""
+    """Returns the response time of each command [ms]."""
     lines = bench.Lines(path)
     times = {command: [] for command in COMMANDS}
     end = time.monotonic() + seconds

@@ -1,13 +1,14 @@
 #!/usr/bin/python3
-"""Hides effects in fresh worlds (tests/blind), lets `softgrip diagnose` find them, counts.
+"""Hides effects in new worlds (tests/blind), diagnoses them with `softgrip diagnose`, and counts the outcomes.
 
     scripts/blind_campaign.py --work DIR [--build build/release] [--seeds 20] [--clean 200] [--outside 60] [--pairs 60]
                               [--strengths 8 2] [--causes ID ...] [--first-seed 1000] [--workers 1]
                               [--variation X] [--closed-loop] [--page docs/results/blind-campaign.md]
 
---variation X lets the runs vary (tests/blind/variation.h); the page states it.
-Resumable: every world's outcome is one line of DIR/results.jsonl, and worlds that stand there are not run again.
---page writes the table, and the pictures beside it.
+--variation X lets the runs vary (tests/blind/variation.h). The page states it.
+The campaign can be resumed: the outcome of every world is one line of DIR/results.jsonl, and worlds in this file are
+not run again.
+--page writes the table, and the pictures next to it.
 """
 import argparse
 import itertools
@@ -26,7 +27,7 @@ import judging  # noqa: E402
 import varying  # noqa: E402
 from ledger import Ledger  # noqa: E402
 
-# Causes that give the same readings whatever the command, or nearly: hidden together, no data could tell them apart.
+# Causes with almost equal readings for every command. If both are hidden, no data can separate them.
 TWINS = [{"valve_lag", "sensor_lag", "transport_delay"}, {"stiffening", "sensor_nonlinearity"},
          {"pressure_saturation", "sensor_saturation", "contact"}, {"thermal_gain", "ageing"}]
 
@@ -37,7 +38,7 @@ def pairs(ids, count, seed):
 
 
 def worlds(args, ids, outside):
-    """Rounds over all kinds, so that a campaign that is cut short still shows all of them."""
+    """Alternates between all kinds, so that an interrupted campaign contains all of them."""
     kinds = []
     for cause, strength in itertools.product(args.causes or ids, args.strengths):
         kinds.append([([cause], strength)] * args.seeds)

@@ -1,13 +1,13 @@
 #!/usr/bin/python3
-"""Lets `softgrip investigate` resolve what is ambiguous, on blind worlds (tests/blind) as the rig.
+"""Resolves ambiguous diagnoses with `softgrip investigate`, with blind worlds (tests/blind) as the rig.
 
     scripts/blind_investigation.py --work DIR [--build build/release] [--campaign DIR] [--seeds 5] [--strengths 8 2]
                                    [--causes ID ...] [--first-seed 3000] [--page docs/results/blind-investigation.md]
 
-The worlds are the ambiguous ones of a campaign (scripts/blind_campaign.py --work DIR) and fresh ones that first write
-one log of triangles alone, where much is ambiguous. Where the diagnosis of the logs lists the truth among rivals, the
-investigation plays the experiments that it proposes on the same world and, where no waveform tells, checks the world's
-sensor against a gauge. Resumable as the campaign is.
+The worlds are the ambiguous ones of a campaign (scripts/blind_campaign.py --work DIR) and new ones that first write
+only one log of triangles, for which many diagnoses are ambiguous. If the diagnosis lists the true cause among its
+alternatives, the investigation plays the proposed experiments on the same world. If no waveform separates the causes,
+it checks the sensor of the world against a gauge. The script can be resumed like the campaign.
 """
 import argparse
 import collections

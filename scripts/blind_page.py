@@ -1,4 +1,4 @@
-"""The blind campaign's page: what was found where, as tables and two pictures (SVG) beside it."""
+"""The page of the blind campaign: what was found at which strength, as tables and two pictures (SVG)."""
 import collections
 import fractions
 import html
@@ -29,7 +29,7 @@ def share(rows, *outcomes):
 
 
 def interval(hits, count):
-    """Wilson's 95 % interval of a share [%]."""
+    """Returns Wilson's 95 % interval of a share [%]."""
     if count == 0:
         return "-"
     p, z = hits / count, 1.96
@@ -39,8 +39,8 @@ def interval(hits, count):
 
 
 def interval_by_seed(hits):
-    """A share [%] of pairs (seed, hit) with its 95 % interval by drawing whole seeds (bootstrap, 4,000 draws): worlds of
-    one seed share their noise and their actuator, and miss together."""
+    """Returns a share [%] of pairs (seed, hit) with its 95 % interval by a bootstrap over seeds (4,000 draws). Worlds
+    of one seed share their noise and actuator, so their errors are correlated."""
     seeds = collections.defaultdict(list)
     for seed, hit in hits:
         seeds[seed].append(bool(hit))
@@ -55,7 +55,7 @@ def interval_by_seed(hits):
 
 
 def summary(results):
-    """Rows (what, target, measured with its interval, number of worlds)."""
+    """Returns rows (measure, target, value with its interval, number of worlds)."""
     singles = [r for r in results if len(r["causes"]) == 1 and not is_outside(r["causes"][0])]
     clean = [r for r in results if not r["causes"]]
     outside = [r for r in results if r["causes"] and is_outside(r["causes"][0])]
@@ -93,7 +93,7 @@ def by_group(results):
 
 
 def bars(results):
-    """Outcomes by hidden cause and strength as stacked bars."""
+    """Draws the outcomes by hidden cause and strength as stacked bars."""
     rows = by_group(results)
     height, left, width = 15, 250, 460
     total = 46 + height * len(rows)
@@ -119,7 +119,8 @@ def bars(results):
 
 
 def confusion(results):
-    """Hidden cause by what was named first, over all strengths; rivals count by their share."""
+    """Draws the hidden cause against the first named cause, over all strengths. Each of several alternatives counts by
+    its share."""
     singles = [r for r in results if len(r["causes"]) == 1]
     hidden = sorted({r["causes"][0] for r in singles}, key=lambda c: (is_outside(c), c)) + ["nothing"]
     named = [c for c in hidden if c != "nothing" and not is_outside(c)] + ["nothing", "unexplained"]
@@ -159,7 +160,7 @@ def confusion(results):
 
 
 def detection_limits(results):
-    """By cause: the share found at each strength, and the smallest strength found nine times in ten."""
+    """Returns by cause the share that was found at each strength, and the smallest strength that was found in 90 %."""
     singles = [r for r in results if len(r["causes"]) == 1 and not is_outside(r["causes"][0])]
     strengths = sorted({r["strength"] for r in singles}, reverse=True)
     lines = ["| cause | " + " | ".join(f"found at {s:g} x noise" for s in strengths) + " | found nine times in ten from |",
@@ -198,7 +199,7 @@ def meaning(rows):
 
 
 def write(path, results, planned, command, variation, version):
-    """`variation`: the sentences on run-to-run variation."""
+    """Writes the page. `variation`: the sentences on run-to-run variation."""
     path = pathlib.Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
     bars_path, confusion_path = (path.with_name(f"{path.stem}-{what}.svg") for what in ("outcomes", "confusion"))

@@ -1,17 +1,17 @@
 #!/usr/bin/python3
-"""Fingers that changed since their healthy logs, and fingers that did not, through `softgrip diagnose --healthy`.
+"""Compares changed and unchanged fingers with their healthy logs by `softgrip diagnose --healthy`.
 
     scripts/changed_campaign.py --work DIR [--build build/release] [--seeds 4] [--unchanged 60] [--strengths 0.15 1]
                                 [--columns pressure command] [--first-seed 1] [--workers 2] [--most-minutes M]
                                 [--variation X] [--closed-loop] [--baseline-runs 3]
                                 [--page docs/results/changed-campaign.md]
 
---seeds counts per family, cause, strength and kind of columns. Worlds of both families (tests/blind, tests/blind/textbook),
-their measured pressure recorded or not. The later day has another input, another zero (up to 0.5 mm) and another
-temperature (up to 4 degrees; where the hidden cause is the temperature, the same). Resumable, and a fair sample whenever it
-is stopped: every world's outcome is one line of DIR/changed.jsonl. --variation X lets the runs vary (tests/blind/variation.h),
---closed-loop records the later logs in closed loop, --baseline-runs 1 3 6 gives the same fingers as many healthy logs; the
-page states them.
+--seeds counts per family, cause, strength and kind of columns. The worlds are from both families (tests/blind,
+tests/blind/textbook), with and without measured pressure. The later day has another input, another zero (up to 0.5 mm)
+and another temperature (up to 4 degrees; the same if the hidden cause is the temperature). The script can be resumed,
+and it can be stopped at any time with a fair sample: the outcome of every world is one line of DIR/changed.jsonl.
+--variation X lets the runs vary (tests/blind/variation.h). --closed-loop records the later logs in closed loop.
+--baseline-runs 1 3 6 gives the same fingers these numbers of healthy logs. The page states these options.
 """
 import argparse
 import collections
@@ -44,7 +44,8 @@ def causes_of(build, family, columns):
 
 
 def worlds(args, build):
-    """All that is planned, in an order in which every part is like the whole. A world is the same whatever else is."""
+    """Returns all planned worlds in an order in which every part is a fair sample. A world does not depend on the other
+    worlds."""
     planned = []
     for family, columns in itertools.product(("textbook", "first"), args.columns):
         kinds = [("none", 0, args.unchanged // 2 // len(args.columns))]
@@ -72,12 +73,12 @@ def table(rows, keys, outcomes):
 
 
 def with_runs(rows):
-    """The rows with the number of their healthy logs."""
+    """Returns the rows with the number of their healthy logs."""
     return [{**row, "baseline runs": row.get("baseline_runs", varying.BASELINE_RUNS)} for row in rows]
 
 
 def smallest_found(changed):
-    """By number of baseline runs: the smallest strength from which on 90 % of the causes are named or listed."""
+    """Returns by number of baseline runs the smallest strength from which 90 % of the causes are named or listed."""
     lines = ["| baseline runs | smallest strength found in 90 % of the worlds |", "|---|---|"]
     for runs in sorted({row["baseline runs"] for row in changed}):
         smallest = "-"

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Counts how large the house is and how its rooms hang together, on any checkout of this project:
+"""Counts the sources, the folders and the includes between them, on any checkout of this project:
 
   scripts/count_house.py [--names] [CHECKOUT]
 
-Prints a table in Markdown; --names adds the places behind the counts. A folder counts as a room, and an include as one
-between rooms where the header lies in another folder. Product lines are those of .h and .cpp outside tests/ and bench/.
-docs/results/house-counts.md shows two versions side by side.
+Prints a table in Markdown. --names adds the places of each count. An include counts as one between folders if the
+header is in another folder. Product lines are those of .h and .cpp files outside tests/ and bench/.
+docs/results/house-counts.md compares two versions.
 """
 
 import argparse
@@ -16,12 +16,12 @@ import subprocess
 
 SMALL, LARGE = 40, 400
 DIAGNOSE = "tools/commands/diagnose.cpp"
-# Where a block may be named: its own file and, since there are such files, those of the causes.
+# Files that may name a block: its own file and, if they exist, those of the causes.
 AT_HOME = ("model/", "sysid/diagnosis/causes/")
 
 
 def product(root):
-    """{path: text} of the product's sources."""
+    """Returns {path: text} of the product's sources."""
     listed = subprocess.run(["git", "-C", root, "ls-files", "--", "*.h", "*.cpp"], check=True, capture_output=True,
                             text=True).stdout.splitlines()
     return {name: (root / name).read_text() for name in listed
@@ -33,13 +33,13 @@ def folder(name):
 
 
 def included(sources):
-    """{path: headers of the project that it includes}"""
+    """Returns {path: included headers of the project}."""
     return {name: [header for header in re.findall(r'^#include "([^"]+)"', text, re.MULTILINE) if header in sources]
             for name, text in sources.items()}
 
 
 def mutual(arrows):
-    """Pairs of folders that include each other, by whatever way round."""
+    """Returns pairs of folders that include each other directly or indirectly."""
     reached = {}
     for start in {one for arrow in arrows for one in arrow}:
         seen, waiting = set(), [start]
@@ -62,14 +62,14 @@ def block_ids(sources):
 
 
 def block_names(sources):
-    """(file, id) where a block's id stands as a string literal away from home."""
+    """Returns (file, id) for each string literal with the id of a block outside the files that may name it."""
     ids = block_ids(sources)
     return sorted((name, one) for name, text in sources.items() if not name.startswith(AT_HOME)
                   for one in re.findall(r'"(\w+)"', re.sub(r"//.*", "", text)) if one in ids)
 
 
 def reached_from(start, sources, includes):
-    """The sources that a program's part stands on: headers by include, and what is written beside each."""
+    """Returns the sources that a program needs: the included headers, and the source file of each header."""
     seen, waiting = set(), [start]
     while waiting:
         name = waiting.pop()
@@ -82,7 +82,7 @@ def reached_from(start, sources, includes):
 
 
 def count(root):
-    """[(what, count, places)]"""
+    """Returns [(measure, count, places)]."""
     sources = product(root)
     lines = {name: text.count("\n") for name, text in sources.items()}
     rooms = collections.Counter(map(folder, sources))

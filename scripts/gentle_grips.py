@@ -1,14 +1,14 @@
 #!/usr/bin/python3
-"""How gently the shipped recipe grips: a table of seeded grips on simulated parts, in virtual time and over the wire.
+"""Measures the gripping pressure of the shipped recipe with seeded grips on simulated parts, in virtual and in real time.
 
     scripts/gentle_grips.py [--build build/release] [--seeds 240] [--wire 0] [--side-by-side 8] [--first-seed 1] [--page PAGE.md]
 
-Each seed draws a part (stone, spring, screw, nut, washer, or none), one finger or two, and where the part is: up to
-8 mm nearer or farther than the recipe expects, and for the second finger up to 1 mm off that. tests/system/gripping.py
-says how the squeeze is judged. A third of the seeds is played again with fingers that move 2 % farther, and 2 % less
-far, than the model that the controller has. The first --wire seeds are played again in real time, softgripd against
-softgrip-rig over Modbus TCP, so many rigs --side-by-side. The exit code is 1 where a grip squeezed by more than its recipe allows, held nothing,
-or missed a part.
+Each seed draws a part (stone, spring, screw, nut, washer, or none), one or two fingers, and the position of the part:
+up to 8 mm nearer or farther than the recipe expects, and for the second finger up to 1 mm different.
+tests/system/gripping.py defines how the gripping pressure is judged. A third of the seeds is repeated with fingers that
+move 2 % more, and 2 % less, than the model of the controller. The first --wire seeds are repeated in real time,
+softgripd with softgrip-rig over Modbus TCP, with --side-by-side rigs in parallel. The exit code is 1 if a gripping
+pressure exceeded that of the recipe, if an empty gripper reported a part, or if a part was missed.
 """
 import argparse
 import concurrent.futures
@@ -113,7 +113,7 @@ Every third seed again, with fingers that move more or less than the controller'
 
 
 def grips(finger, seeds, folder, play=gripping.play, side_by_side=1):
-    """Plays the trials of seeds; returns the judged by group, and what was broken."""
+    """Plays the trials of the seeds. Returns the judged trials by group, and the broken promises."""
     groups, problems = {}, []
     trials = [gripping.drawn(seed) for seed in seeds]
     with concurrent.futures.ThreadPoolExecutor(side_by_side) as pool:

@@ -1,10 +1,11 @@
 #!/usr/bin/python3
-"""How long softgrip takes for large logs: 40,000 rows in `diagnose` and 600,000 rows in `identify --structure auto`.
+"""Measures the duration of softgrip for large logs: 40,000 rows in `diagnose`, 600,000 in `identify --structure auto`.
 
     scripts/large_logs.py [--build build/release] [--threads 2] [--only CASE ...] [--page docs/results/large-logs.md]
 
-The commands are ramps to random pressures (the seeds are in this file), the fingers are models of config/models. The cases run one after
-the other, as a user runs them: reading the files, closed loop and report included. Nothing else should run meanwhile.
+The commands are ramps to random pressures (the seeds are in this file), and the fingers are models of config/models.
+The cases run one after the other with everything that a user gets: reading the files, closed loop and report. Run
+nothing else at the same time.
 """
 import argparse
 import json
@@ -28,7 +29,8 @@ MEDIAN_S = 10
 
 
 def command(length_s, rate_hz, seed):
-    """Times [s] and pressures [kPa]: ramps of 0.1 to 4 s to 0 or 5 to 60 kPa, then 0.5 to 6 s of hold."""
+    """Returns times [s] and pressures [kPa]: ramps of 0.1 to 4 s to 0 or to 5 to 60 kPa, each with a hold of 0.5 to 6
+    s."""
     random = np.random.default_rng(seed)
     knots, at_s = [(0, 0), (2, 0)], 2
     while at_s < length_s - 4:
@@ -62,7 +64,7 @@ class Logs:
         return self.answer(model, *command(length_s, rate_hz, seed), seed)
 
     def measured(self, model, length_s, rate_hz, seed):
-        """The model follows a measured pressure: the command behind a lag of 0.1 s, with 0.05 kPa of noise in its column."""
+        """Makes the model follow a measured pressure: the command with a lag of 0.1 s and 0.05 kPa of noise."""
         time_s, command_kpa = command(length_s, rate_hz, seed)
         pressure_kpa, kept = np.empty_like(command_kpa), np.exp(-1 / (rate_hz * 0.1))
         state = 0.0
@@ -76,7 +78,7 @@ class Logs:
 
 
 def cases(logs):
-    """name: (program, arguments), made when they are asked for."""
+    """Returns {name: (program, arguments)}. Each case is created when it is needed."""
     def diagnose(given, data, healthy=()):
         return "diagnose", ["--model", given, "--data", *data, *(["--healthy", *healthy] if healthy else [])]
 

@@ -1,10 +1,10 @@
 #!/usr/bin/python3
-"""A morning at the bench, command by command: what the screen says when something is wrong, written as a page.
+"""Writes a page with the output of softgrip for common faults of a rig, command by command.
 
     scripts/morning.py [--build build/release] [--page docs/how-to/a-morning.md | --check docs/how-to/a-morning.md]
 
-The emulator takes the place of the board; what goes wrong is done to it. Times of day stand as hh:mm:ss, measured numbers
-are rounded. --check plays the morning again and compares the sentences, whatever their numbers.
+The emulator replaces the board, and the faults are injected into it. Times of day are shown as hh:mm:ss, and measured
+numbers are rounded. --check repeats the page and compares the sentences, regardless of their numbers.
 """
 import argparse
 import difflib
@@ -52,7 +52,7 @@ MENDED = (("sqeeze", "squeeze"), ("5 s", "5"), ("-20", "20"))
 
 
 def rounded(text):
-    """Times of day and ports masked, measured numbers rounded: what differs from one morning to the next."""
+    """Masks times of day and ports and rounds measured numbers, because they differ between runs."""
     text = re.sub(r"\d{4}-\d\d-\d\d \d\d:\d\d:\d\d\.\d{3}", "hh:mm:ss", text)
     text = re.sub(r"127\.0\.0\.1:\d+", "127.0.0.1:1502", text)
     text = re.sub(r"\d+ ms old", "fresh", text)
@@ -62,8 +62,8 @@ def rounded(text):
 
 
 def sentences(page):
-    """What --check compares: numbers are #; where lines break, what is left out, in which part of an exchange a
-    connection broke, which of two guards said so last and how much was seen of a model so far do not count."""
+    """Returns the sentences that --check compares. Numbers become #. It ignores line breaks, omitted lines, the part of
+    an exchange in which a connection broke, which of two watches reported it last, and the model's data so far."""
     text = re.sub(r"-?\d+(\.\d+)?", "#", page.replace("[...]", ""))
     text = re.sub(r"disconnected:[^.]*", "disconnected", " ".join(text.split()))
     text = text.replace("watchdog_tripped: no good exchange for # s: the board's own watchdog acts after # s",
@@ -73,7 +73,7 @@ def sentences(page):
 
 
 def play():
-    """The page's text."""
+    """Returns the text of the page."""
     import bench
 
     class Morning(bench.BenchTest):
@@ -86,7 +86,8 @@ def play():
                 self.page.append(textwrap.fill(paragraph, 118) + "\n")
 
         def show(self, *commands, keep=None, drop=None):
-            """Commands and what they say; of the output only the lines that match `keep`, or not `drop`."""
+            """Adds a command and its output to the page: only the lines that match `keep`, or those that do not match
+            `drop`."""
             shown = []
             for command in commands:
                 done = self.softgrip(*command, expect=None)
@@ -103,12 +104,12 @@ def play():
             self.page.append("```\n" + rounded("\n".join(shown)) + "\n```\n")
 
         def show_status(self):
-            """Without what a morning does not change: loop, recording, bars."""
+            """Adds the status without the parts that never change in this page: loop, recording and bars."""
             self.show(("status",), drop=r"^(loop|recording|  (pressure|displacement) .*|$)|real time degraded")
 
         def show_failures(self, *command):
-            """What failed in the doctor's eyes, and what was not judged because of it; not how punctual a busy
-            machine is."""
+            """Adds the failures of the doctor and the checks that were not judged because of them. Timing on a busy
+            computer is omitted."""
             done = self.softgrip("doctor", *command, expect=6)
             shown, wanted = [f"$ softgrip doctor {' '.join(command)}".rstrip()], False
             for line in done.stdout.splitlines():
@@ -219,7 +220,7 @@ def play():
             self.write("faults.yaml", "faults:\n  - {name: cable, kind: disconnect}\n"
                                       "  - {name: blind, kind: sensor_out_of_range, channel: left}\n")
             port = self.emulate()
-            # Long before the board's watchdog, which else may be the first to be noticed.
+            # Much shorter than the board's watchdog time, so that the watchdog is not detected first.
             rig = self.rig(port, ((r"bus_down_cycles: \d+", "bus_down_cycles: 10"),))
             self.emulated.end()
             self.softgripd = self.daemon(rig)

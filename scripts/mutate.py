@@ -1,12 +1,12 @@
-"""Breaks the code on purpose, one place at a time, and asks whether the tests notice.
+"""Inserts one defect at a time into the code and checks that a test fails.
 
     scripts/mutate.py [--per-file N] [--seed S] [--jobs J] [--out FILE] [--again REPORT] [FILE ...]
 
-Without files: the sources of control/, the bus and the loop. A mutant is a comparison, a sign, a logical connective, a constant or a
-condition that was turned over; places are drawn by the seed. It is built with what is below it in a copy under
-build/mutants, and the fitting tests are run until one fails. Written: the score per folder and every survivor with its
-line. A survivor shows a missing test, or a change without effect (docs/results/mutants-and-branches.md). --again
-judges the survivors of an earlier report only: whether tests that were added since notice them.
+Without files, it uses the sources of control/, the bus and the loop. A mutant inverts a comparison, a sign, a logical
+connective, a constant or a condition. The seed selects the places. The mutant and its dependents are built in a copy in
+build/mutants, and the tests of its folder run until one fails. The output is the score per folder and every survivor
+with its line. A survivor means a missing test or an equivalent change: docs/results/mutants-and-branches.md lists both. --again judges
+only the survivors of an earlier report, with the tests that were added since.
 """
 
 import argparse
@@ -52,7 +52,7 @@ class Mutant:
 
 
 def mutants_of(name):
-    """Every place of a file that an operator can turn over."""
+    """Returns every place of a file that an operator can change."""
     lines = (SOURCE / name).read_text().split("\n")
     found, in_comment = [], False
     for number, line in enumerate(lines, 1):
@@ -75,7 +75,7 @@ def mutants_of(name):
 
 
 def closing(code, begin):
-    """Where the bracket that was open before `begin` closes."""
+    """Returns the position of the bracket that closes the one before `begin`."""
     depth = 1
     for at in range(begin, len(code)):
         depth += {"(": 1, ")": -1}.get(code[at], 0)
@@ -85,7 +85,7 @@ def closing(code, begin):
 
 
 class Copy:
-    """A tree that builds."""
+    """A copy of the sources that is built."""
 
     def __init__(self, number):
         self.root = COPIES / str(number)
@@ -104,7 +104,7 @@ class Copy:
             sys.exit(done.stdout[-3000:] + done.stderr[-3000:])
 
     def judge(self, mutant):
-        """"killed", "survived" or "does not build"."""
+        """Returns "killed", "survived" or "does not build"."""
         path = self.root / mutant.name
         before = path.read_text()
         path.write_text(mutant.text)
@@ -133,7 +133,7 @@ class Copy:
 
 
 def survivors_of(report):
-    """The same places in today's sources; lines may have moved."""
+    """Finds the same places in the present sources, whose line numbers may differ."""
     listed = re.findall(r"^- (\S+?):\d+: `(.*)` -> `(.*)`$", report.read_text(), re.MULTILINE)
     return [next(m for m in mutants_of(name) if (m.old.strip(), m.new.strip()) == (old, new)) for name, old, new in listed]
 

@@ -1,15 +1,14 @@
 #!/usr/bin/python3
-"""Ninety days of a rig at work, in virtual time: what `softgrip health` notices of what happens to its fingers.
+"""Simulates 90 days of work of a rig and checks what `softgrip health` detects.
 
     scripts/ninety_days.py [--build build/release] [--healthy 6] [--seed 1] [--keep DIR] [--page PAGE.md]
 
-Two fingers grip four times a day, three times with one recipe and once with another. In every life the temperature of the
-hall goes with the hour and the weather (which stays for days) and the gain of the fingers with it, parts stand a little
-elsewhere each time, and the fingers wear a little. In the eventful life a leak begins and grows, a sensor is knocked out
-of place, a finger is replaced, another one softens, and a line that both fingers have in common begins to leak; what is
-mended is noted. Every recording is made by `softgrip run` on a rig with a thermometer. Its numbers are judged four times:
-with the temperature and without it, of both fingers together and of each judged alone. The exit code is 1 where
-something that happened was not noticed.
+Two fingers grip four times a day, three times with one recipe and once with another. In every life, the temperature
+varies with the hour and the weather (which persists for days) and changes the gain of the fingers. The parts are at
+slightly different places, and the fingers wear a little. In the eventful life, a leak begins and grows, a sensor is
+displaced, a finger is replaced, another one softens, and a common supply line begins to leak. Repairs are noted.
+`softgrip run` makes every recording on a rig with a thermometer. The recordings are judged four times: with and without
+the temperature, for both fingers together and for each alone. The exit code is 1 if an event was not detected.
 """
 import argparse
 import concurrent.futures
@@ -69,7 +68,7 @@ NOTES = [(45, "left", "tube replaced"), (50, "right", "sensor put back"), (60, "
 
 @dataclasses.dataclass(frozen=True)
 class View:
-    """What `softgrip health` is given of a life."""
+    """The input of `softgrip health` for one life."""
     temperature: bool
     fingers: tuple  # those that are judged together
 
@@ -110,7 +109,7 @@ def finger_of(name, day, eventful):
 
 
 def live(softgrip, folder, seed, eventful):
-    """Makes the recordings of a life, and scores each once."""
+    """Makes the recordings of a life and scores each once."""
     rng = random.Random(seed)
     rig = working_life.Rig(softgrip, folder)
     if not (folder / "baseline/baseline.json").exists():
@@ -135,7 +134,8 @@ def call(softgrip, folder, recordings, out):
 
 
 def health(softgrip, folder, view, notes, until=DAYS):
-    """What is said with all recordings before a day. They are scored already, and the one that is named is not scored again."""
+    """Returns the result for all recordings before a day. They are scored already, and the named recording is not
+    scored again."""
     out = folder / f"{view.name()}-{until}"
     out.mkdir(exist_ok=True)
     noted = "".join(f"  - {{date: {text_of(day)}, finger: {finger}, mended: {what}}}\n" for day, finger, what in notes
@@ -173,7 +173,7 @@ def judged_common(softgrip, folder, view, event):
 
 
 def judged_event(softgrip, folder, view, event):
-    """What is noticed of an event before it is mended: day, numbers, suspect."""
+    """Returns what was detected of an event before its repair: day, indicators, candidate fault."""
     if event.finger == BOTH:
         return judged_common(softgrip, folder, view, event)
     said = finger_in(health(softgrip, folder, view, NOTES, event.mended), event.finger)
@@ -191,7 +191,7 @@ def judged_event(softgrip, folder, view, event):
 
 
 def false_alarms(said, eventful):
-    """Alarms of a number that nothing explains, with their day."""
+    """Returns the alarms without an event that explains them, with their day."""
     found = []
     for finger in said["fingers"]:
         for alarm in finger["alarms"]:
@@ -203,7 +203,7 @@ def false_alarms(said, eventful):
 
 
 def warnings(said):
-    """What is told of the rig and is no alarm."""
+    """Returns the warnings of the rig, which are not alarms."""
     told = [f"shared {one['number']} on day {day_of(one['noticed'])}, {one['change']:+.3g}" for one in said["shared_changes"]]
     for finger in said["fingers"]:
         told += [f"unclear {finger['finger']} {one['number']} on day {day_of(one['noticed'])}" for one in finger["unclear"]]
@@ -216,7 +216,7 @@ TOGETHER = {True: View(True, FINGERS), False: View(False, FINGERS)}
 
 
 def judge_life(softgrip, folder, eventful):
-    """What is said of a life in every view: false alarms, warnings, slopes."""
+    """Returns the results of a life in every view: false alarms, warnings, slopes."""
     notes = NOTES if eventful else []
     told = {}
     for temperature, together in TOGETHER.items():

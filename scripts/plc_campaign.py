@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Grips through softgrip-plc while master, gateway and daemon are killed at random: plc_campaign.py [--grips N] [--seed S]
+"""Grips through softgrip-plc while client, gateway and daemon are killed at random: plc_campaign.py [--grips N] [--seed S]
 
-Every command is counted where it is carried out, in the daemon's events and on the emulated board. Exit code 6 if one was
-carried out twice, or one that was accepted was not carried out, or one that was refused was. Printed: what became of the
-commands, and how long a command takes from the master's write to the output of the board (p50, p99, max).
+Every command is counted where it is executed: in the daemon's events and on the emulated board. Exit code 6 if a
+command was executed twice, if an accepted command was not executed, or if a refused command was executed. The output
+lists the outcomes of the commands and the delay from the client's write to the output of the board (p50, p99, max).
 """
 
 import argparse
@@ -22,7 +22,7 @@ OUTCOMES = {plc.ACCEPTED: "accepted", plc.REFUSED: "refused", plc.UNKNOWN: "unkn
 ERROR = 5
 RESULTS = {plc.HOLDING: "HOLDING", plc.NO_PART: "NO PART", plc.PART_LOST: "PART LOST", ERROR: "ERROR"}
 FREE_STROKE = 4  # the recipe
-# A grip in three is disturbed.
+# The share of disturbed grips: one in three.
 DISTURBED = 1 / 3
 
 
@@ -32,7 +32,7 @@ class Campaign(bench.BenchTest):
     def setUp(self):
         super().setUp()
         self.random = random.Random(self.seed)
-        # A finger that is killed in the midst of its grips would else be at rest, and start, once in a minute or two.
+        # Without this, a finger whose programs were killed during a grip would need one or two minutes to come to rest.
         self.creep_faster()
         self.board = self.emulator("--object", "stone")
         self.rig_path = self.rig(self.board.port)
@@ -60,7 +60,7 @@ class Campaign(bench.BenchTest):
         self.addCleanup(self.master.close)
 
     def disturb(self):
-        """Kills one of the three; whoever it is comes back."""
+        """Kills and restarts one of the three programs."""
         victim = self.random.choice(("master", "gateway", "daemon"))
         self.counts[f"{victim} restarted"] += 1
         if victim == "daemon":
@@ -70,13 +70,12 @@ class Campaign(bench.BenchTest):
             self.gateway.kill()
             self.start_gateway()
         if victim in ("master", "gateway"):
-            # A PLC goes on writing its block every cycle; a program that was restarted begins with a counter without a
-            # command.
+            # A PLC writes its block in every cycle. A restarted program begins with a counter without a command.
             self.start_master(synchronise=victim == "master")
         return victim
 
     def starts(self):
-        """Sequences that were started since this was asked last, in the daemon that runs."""
+        """Returns the sequences that the running daemon has started since the last call."""
         count = len(plc.started(self.softgripd))
         new, self.started_before = count - self.started_before, count
         return new
@@ -91,17 +90,17 @@ class Campaign(bench.BenchTest):
             time.sleep(self.random.choice((0, 0, 0.002, 0.01, 0.05, 0.5, 3)))
             victim = self.disturb()
         if victim in ("master", "gateway"):
-            # Whoever comes back does not repeat a command, and knows its end only if the gateway has stayed.
+            # A restarted client does not repeat a command. It knows the outcome only if the gateway did not restart.
             bench.wait_for("a daemon", lambda: self.master.read("state") != plc.NO_DAEMON_STATE)
         outcome = self.outcome_of(counter, victim)
-        # A sequence that a daemon carried out which is dead now is not to be counted any more.
+        # Sequences of a daemon that was killed must not be counted any more.
         executed = self.starts() if daemon is self.softgripd else None
         self.judge(outcome, executed, victim)
         self.come_to_rest()
 
     def outcome_of(self, counter, victim):
         if victim == "gateway":
-            # The new one cannot know whether the old one carried it out, and must not.
+            # The new gateway cannot know whether the old one executed the command, so it must not execute it.
             for _ in range(5):
                 self.master.write("command_counter", counter, plc.START, 1)
             if self.master.done(counter) != (plc.REFUSED, plc.FIRST_AFTER_START):
@@ -125,7 +124,7 @@ class Campaign(bench.BenchTest):
             self.wrong.append(f"refused and carried out ({victim})")
 
     def wait_for_result(self):
-        """Until the fingers move, the result is that of the grip before; those that do not stand still never do."""
+        """Until the fingers move, the result is that of the previous grip. Fingers that do not rest never move."""
         self.master.wait("state", plc.RESYNCHRONISING, plc.RUNNING)
         self.master.wait("state", plc.RUNNING, plc.IDLE, plc.FAULTED)
         self.master.wait("result", *RESULTS)
@@ -134,14 +133,14 @@ class Campaign(bench.BenchTest):
         return result
 
     def stroke(self):
-        """What a finger remembers of a grip whose daemon was killed, the next daemon learns by this."""
+        """Lets the next daemon learn the state of a finger after a grip whose daemon was killed."""
         self.counts["free strokes"] += 1
         self.master.command(plc.START, recipe=FREE_STROKE)
         self.master.wait("state", plc.RESYNCHRONISING, plc.RUNNING)
         self.master.wait("state", plc.IDLE)
 
     def come_to_rest(self):
-        """A vent, whose way to the board is timed, and the rig idle again."""
+        """Vents, measures the delay to the board, and waits until the rig is idle again."""
         self.master.synchronise()
         bench.wait_for("a daemon", lambda: self.master.read("state") not in (plc.NO_DAEMON_STATE, 1))
         held = min(self.board.commands_kpa())
@@ -158,13 +157,13 @@ class Campaign(bench.BenchTest):
         bench.wait_for("vented outputs", lambda: max(self.board.commands_kpa()) < 0.5)
 
     def check_recordings(self):
-        """Killed daemons leave theirs unfinished."""
+        """Removes the unfinished recordings of killed daemons."""
 
     def runTest(self):
         began = time.monotonic()
         for number in range(self.grips):
             if number % 3:
-                # Some commands find the gripper holding.
+                # Some commands arrive while the gripper holds a part.
                 self.master.command(plc.START, recipe=1)
                 result = self.wait_for_result()
                 self.come_to_rest()

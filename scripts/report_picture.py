@@ -1,10 +1,10 @@
 #!/usr/bin/python3
-"""The first figures of the demo's diagnosis as one picture, in both colour schemes.
+"""Draws the first figures of the demo's diagnosis as one picture, in both colour schemes.
 
     scripts/report_picture.py [--build build/release] [--out docs/pictures/diagnosis.svg]
 
-Simulates the demo's logs, diagnoses the published structure on them (a minute or two), and puts verdict, budget, forest plot,
-block diagram and errors below each other, as they stand in the report.
+Simulates the demo's logs, diagnoses the published structure on them (a minute or two), and puts verdict, error budget,
+forest plot, block diagram and errors below each other, as in the report.
 """
 import argparse
 import html
@@ -24,7 +24,7 @@ def softgrip(build, *arguments):
 
 
 def diagnosed(build, folder):
-    """(verdict, SVG texts of the first figures)"""
+    """Returns (verdict, SVG texts of the first figures)."""
     logs = []
     for signal in ("tp1", "steps", "sp2"):
         logs.append(folder / f"{signal}.csv")

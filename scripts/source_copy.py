@@ -1,4 +1,4 @@
-"""A copy of the sources to build in: what git knows, and what it would know if it were added."""
+"""Copies the sources for a separate build: tracked files, and new files that git does not ignore."""
 
 import pathlib
 import shutil
@@ -8,7 +8,7 @@ SOURCE = pathlib.Path(__file__).resolve().parents[1]
 
 
 def copy_sources(folder):
-    """Into `folder`, which is made."""
+    """Copies the sources into `folder`, which is created."""
     listed = subprocess.run(["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"], cwd=SOURCE, check=True,
                             capture_output=True, text=True).stdout
     for name in filter(None, listed.split("\0")):

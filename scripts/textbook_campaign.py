@@ -1,16 +1,16 @@
 #!/usr/bin/python3
-"""Worlds of textbook physics (tests/blind/textbook) through `softgrip diagnose`, with and without an effect.
+"""Diagnoses worlds of textbook physics (tests/blind/textbook) with and without an effect by `softgrip diagnose`.
 
     scripts/textbook_campaign.py --work DIR [--build build/release] [--clean 100] [--seeds 4] [--pairs 40] [--triples 20]
                                  [--strengths 8 4 2] [--columns pressure command] [--given plain] [--first-seed 1000]
                                  [--workers 2] [--variation X] [--closed-loop]
                                  [--page docs/results/textbook-campaign.md]
 
---seeds counts per cause, strength and kind of columns; --clean, --pairs and --triples per kind of columns. Resumable:
-every world's outcome is one line of DIR/textbook.jsonl, and worlds that stand there are not run again. Whenever it is
-stopped, what has been done is a fair sample of what was planned. --page writes the tables, and the pictures beside them;
---most-minutes 0 writes it from what has been done. --variation X lets the runs vary (tests/blind/variation.h); the page
-states it.
+--seeds counts per cause, strength and kind of columns; --clean, --pairs and --triples count per kind of columns. The
+campaign can be resumed: the outcome of every world is one line of DIR/textbook.jsonl, and worlds in this file are not
+run again. At any time, the finished worlds are a fair sample of the planned ones. --page writes the tables, and the
+pictures next to them; --most-minutes 0 writes it from the finished worlds. --variation X lets the runs vary
+(tests/blind/variation.h). The page states it.
 """
 import argparse
 import itertools
@@ -34,17 +34,18 @@ KEYS = ("causes", "strength", "seed", "make", "columns", "given", *varying.KEYS)
 
 
 def groups_of(ids, size, count, rng):
-    """Sets of causes of which no two give nearly the same readings."""
+    """Returns sets of causes without a pair that gives almost the same readings."""
     possible = [group for group in itertools.combinations(ids, size)
                 if not any(len(twins & {*group}) > 1 for twins in TWINS)]
     return rng.sample(possible, min(count, len(possible)))
 
 
 def worlds(args, ids, makes):
-    """All that is planned, in an order in which every part is like the whole. A world is the same whatever else is."""
+    """Returns all planned worlds in an order in which every part is a fair sample. A world does not depend on the other
+    worlds."""
     planned = []
     for columns in args.columns:
-        # Without the measured pressure a leak is a smaller gain.
+        # Without measured pressure, a leak has the effect of a smaller gain.
         visible = [cause for cause in ids if cause != "leak" or columns == "pressure"]
         kinds = [([], 0, args.clean)]
         kinds += [([cause], strength, args.seeds)

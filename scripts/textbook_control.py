@@ -82,7 +82,7 @@ def write_rig(work, port, gains):
 
 
 def tuned(softgrip, work):
-    """The gains of every scheme, as keys of a rig file's `pid`."""
+    """Returns the gains of every scheme, as keys of `pid` in a rig file."""
     gains = {}
     for name, (model, feedforward, sensitivity) in SCHEMES.items():
         write_rig(work, 1, {name: START})
@@ -97,8 +97,8 @@ def cycles_at(hz):
 
 
 def errors_mm(recording, names, frequencies_hz):
-    """Root mean square of reading minus reference by (frequency, scheme), the first cycle left out. A reading is held
-    against the reference of its own time, which is age_s before the row's."""
+    """Returns the root mean square of reading minus reference by (frequency, scheme), without the first cycle. A
+    reading is compared with the reference of its own time, which is age_s before the time of its row."""
     rows = {}
     with open(recording / "run.csv", encoding="ascii") as file:
         for row in csv.DictReader(file):
@@ -119,7 +119,7 @@ def errors_mm(recording, names, frequencies_hz):
 
 
 def followed(build, work, finger, span_mm, gains, frequencies_hz):
-    """The errors of so many controllers on as many equal fingers, side by side."""
+    """Returns the errors of several controllers on equal fingers that run in parallel."""
     make, seed = finger
     mean_mm, amplitude_mm = 0.45 * span_mm, 0.25 * span_mm
     low = f"  - move: {{displacement_mm: {mean_mm - amplitude_mm:.3f}, speed_mm_per_s: 5, settle_s: 3, on_contact: ignore}}\n"
@@ -145,7 +145,7 @@ def span_of(work):
 
 
 def follow(build, work, finger, frequencies_hz):
-    """One finger from its campaign to its errors."""
+    """Processes one finger, from its campaign to its errors."""
     make, seed = finger
     work.mkdir(parents=True, exist_ok=True)
     run(build / "tests/blind/textbook/textbook-world", "--seed", seed, "--make", make, "--out", work / "logs", "--truth",
@@ -162,7 +162,7 @@ def follow(build, work, finger, frequencies_hz):
 
 
 def beyond_noise(error_mm):
-    """What is left of it without the sensor's noise; a tenth of that noise at least."""
+    """Returns the error without the noise of the sensor, but at least 10 % of this noise."""
     return math.sqrt(max(error_mm**2 - NOISE_MM**2, (NOISE_MM / 10)**2))
 
 

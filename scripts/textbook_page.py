@@ -1,4 +1,5 @@
-"""The textbook campaign's page: found, wrong and left over, by make, cause, strength and columns; two pictures beside it."""
+"""The page of the textbook campaign: found, wrong and missed by make, cause, strength and columns, with two
+pictures."""
 import collections
 import json
 import math
@@ -79,7 +80,7 @@ def columns_text(columns):
 
 
 def clean_table(rows):
-    """Per make and columns: what a world without an effect leaves and what is named there."""
+    """Returns per make and columns the held-out error and the named causes of worlds without an effect."""
     lines = []
     for make in sorted({r["make"] for r in rows}):
         for columns in sorted({r["columns"] for r in rows}, reverse=True):
@@ -97,7 +98,7 @@ def clean_table(rows):
 
 
 def split_table(rows, key, text=str):
-    """Found and wrong of worlds with effects, split by `key` and strength."""
+    """Returns the found and wrong causes of worlds with effects, split by `key` and strength."""
     strengths = sorted({r["strength"] for r in rows if r["causes"]}, reverse=True)
     lines = []
     for value in sorted({r[key] for r in rows}):
@@ -109,7 +110,7 @@ def split_table(rows, key, text=str):
 
 
 def cause_table(rows):
-    """Per cause, hidden alone."""
+    """Returns the outcomes per cause that was hidden alone."""
     singles = [r for r in rows if len(r["causes"]) == 1]
     strengths = sorted({r["strength"] for r in singles}, reverse=True)
     lines = []
@@ -125,7 +126,7 @@ def cause_table(rows):
 
 
 def wrong_table(rows):
-    """Every world in which something wrong is named."""
+    """Lists every world in which a wrong cause is named."""
     lines = [("+".join(r["causes"]) or "nothing", f"{r['strength']:g}", r["make"], columns_text(r["columns"]), r["seed"],
               ", ".join(r["wrong"]), ", ".join(name for name in r["named"] if name not in r["wrong"]), r["verdict"])
              for r in rows if r["wrong"]]
@@ -172,7 +173,7 @@ drives the finger (`--drive measured`), and the valve is judged by it."""
 
 
 def write(path, results, planned, command, variation, version):
-    """`variation`: the sentences on run-to-run variation."""
+    """Writes the page. `variation`: the sentences on run-to-run variation."""
     path = pathlib.Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
     bars_path, confusion_path = (path.with_name(f"{path.stem}-{what}.svg") for what in ("outcomes", "confusion"))
@@ -180,7 +181,7 @@ def write(path, results, planned, command, variation, version):
     rows_path = path.with_suffix(".jsonl")
     rows_path.write_text("".join(sorted(json.dumps(r) + "\n" for r in results)))
     bars_path.write_text(blind_page.bars(rows))
-    # In the picture of names own physics is left out: it is nearly always named, and rightly.
+    # The picture omits the causes of the finger's own physics, because they are almost always named correctly.
     plain = [{**r, "named": [], "rivals": []} for r in rows]
     for r, full in zip(plain, rows):
         for name, rivals in zip(full["named"], full["rivals"]):

@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
-"""clang-tidy (.clang-tidy says what it asks, and why not more) over the sources:
+"""Checks the sources with clang-tidy (.clang-tidy gives the checks and the reasons for the omitted ones):
 
   scripts/tidy.py                    all of them
   scripts/tidy.py daemon tools/rig   these folders or files
 
-What was clean stays clean until the source, a header of the project that it reaches, its compiler command, .clang-tidy
-or clang-tidy's version changes: build/tidy remembers. Where the build compiles the files of a room as one and more than
-a few of them are due, clang-tidy looks at them as one, too, a tenth of the time; that each of them includes what it uses
-is then shown by the compiler, one by one. JOBS and BUILD_DIR (default: all cores, build/release) may be set in the
-environment. Exits 1 on a finding.
+build/tidy remembers the result of a clean source until the source, a header of the project that it includes, its
+compiler command, .clang-tidy or the version of clang-tidy changes. If the build compiles the files of a folder as one
+and more than a few of them are due, clang-tidy also checks them as one, in a tenth of the time. The compiler then
+checks one by one that each file includes the headers that it needs. The environment may set JOBS and BUILD_DIR
+(default: all cores, build/release). Exit code 1 if there are findings.
 """
 
 import concurrent.futures
@@ -26,7 +26,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[1]
 BUILD = ROOT / os.environ.get("BUILD_DIR", "build/release")
 CACHE = ROOT / "build/tidy"
 FEW = 3
-# A test may copy, and sample a curve from 0 to 1 by 0.1.
+# A test may copy objects, and it may sample a curve from 0 to 1 in steps of 0.1.
 OFF_IN_TESTS = "-performance-*", "-clang-analyzer-security.FloatLoopCounter"
 
 
@@ -36,7 +36,8 @@ def sources(places):
 
 
 def commands():
-    """Compiler arguments by source, without what means nothing to clang: precompiled headers and warnings of GCC's."""
+    """Returns the compiler arguments by source, without precompiled headers and GCC warnings, which clang does not
+    know."""
     if not (BUILD / "compile_commands.json").exists():
         subprocess.run(["cmake", "--preset", "release", "-B", BUILD], cwd=ROOT, check=True, stdout=subprocess.DEVNULL)
     found = {}
@@ -52,7 +53,7 @@ def commands():
     for room, files in rooms.items():
         for name in files:
             found[name] = alike(found[room], name)
-    # What only another build has, such as a fuzz target, is compiled like its neighbour.
+    # A source that only another build compiles, such as a fuzz target, gets the arguments of a neighbour.
     for name in sources(["."]):
         if name not in found and not other_library(name, found):
             near = max(found, key=lambda other: len(os.path.commonprefix([name, other])))
@@ -61,13 +62,14 @@ def commands():
 
 
 def other_library(name, found):
-    """Whether this machine's library is another version than the one that the file is written for: its twin is built."""
+    """Returns true if the file is for another version of a library than the installed one. The build then uses its
+    twin."""
     twin = re.sub(r"_([12])\.cpp$", lambda match: f"_{3 - int(match[1])}.cpp", name)
     return name not in found and twin != name and twin in found
 
 
 def files_of(room):
-    """What a file that CMake made of a room's files includes."""
+    """Returns the files that a unity source of CMake includes."""
     included = re.findall(r'^#include "([^"]+)"', (ROOT / room).read_text(), re.MULTILINE)
     return [os.path.relpath(name, ROOT) for name in included]
 
@@ -77,7 +79,7 @@ def alike(entry, name):
 
 
 class Keys:
-    """What a result depends on, as one checksum."""
+    """Returns a checksum of everything on which a result depends."""
 
     def __init__(self, found):
         self.commands = found
@@ -86,7 +88,7 @@ class Keys:
         self.common = version + (ROOT / ".clang-tidy").read_text() + " ".join(OFF_IN_TESTS)
 
     def file(self, name):
-        """(checksum, headers of the project that it includes)"""
+        """Returns (checksum, included headers of the project)."""
         if name not in self.files:
             text = (ROOT / name).read_bytes()
             beside = os.path.dirname(name)
@@ -110,7 +112,7 @@ class Keys:
 
 def run_clang_tidy(source, in_tests, *off):
     off += OFF_IN_TESTS if in_tests else ()
-    # Named, since above a folder outside the sources there is none.
+    # Named explicitly, because clang-tidy does not find it from a folder outside the sources.
     options = [f"--config-file={ROOT / '.clang-tidy'}", *([f"--checks={','.join(off)}"] if off else [])]
     run = subprocess.run(["clang-tidy", "-p", CACHE, "--quiet", *options, source], cwd=ROOT, capture_output=True, text=True)
     return run.returncode == 0, run.stdout + ("" if run.returncode == 0 else run.stderr)
@@ -126,7 +128,7 @@ def is_of_tests(name):
 
 
 def looks(due, found, rooms):
-    """(sources, what shows that they are clean), the longest first."""
+    """Returns (sources, records that they are clean), the longest first."""
     together, alone = [], set(due)
     for room, files in rooms.items():
         of_room = [name for name in files if name in alone]
@@ -169,7 +171,7 @@ def main():
                     due[name].touch()
                 continue
             failed += 1
-            # A finding in a header comes once per source that includes it.
+            # A finding in a header is reported once per source that includes it.
             findings = re.split(r"\n(?=\S+:\d+:\d+: (?:error|warning): )", "\n" + text)
             print("\n".join(one for one in findings if one not in told).strip() or names[0], flush=True)
             told |= set(findings)

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""A day of the vacuum rig, as a picture of its pressures: vacuum_day.py [--out docs/pictures/vacuum_day.svg]
+"""Draws the pressures of the vacuum rig during a day: vacuum_day.py [--out docs/pictures/vacuum_day.svg]
 
-The rig of config/vacuum, from -40 to 60 kPa, on the emulated board: start, grip, vent, stop, faults, a pause beyond the
-board's watchdog, a killed daemon. Every one of them meets a vacuum that is held, and must end at the rest pressure of
-0 kPa without passing it. The exit code is 6 if one does not. Needs a release build (SOFTGRIP_BUILD).
+The rig of config/vacuum, from -40 to 60 kPa, runs on the emulated board: start, grip, vent, stop, faults, a pause
+longer than the board's watchdog time, and a killed daemon. Each event occurs while a vacuum is held and must end at the
+rest pressure of 0 kPa without overshoot. Otherwise the exit code is 6. Needs a release build (SOFTGRIP_BUILD).
 """
 
 import argparse
@@ -28,7 +28,7 @@ WIDTH, HEIGHT, LEFT, TOP, BOTTOM = 1500, 520, 60, 150, 40
 
 class Day(test_vacuum.Vacuum):
     def runTest(self):
-        """Is not run as a test."""
+        """The base class must not run as a test."""
 
     def begin(self):
         self.setUp()
@@ -66,7 +66,7 @@ class Day(test_vacuum.Vacuum):
         self.softgripd.wait_for_event("grip_result", since=since, code="HOLDING", channel="left")
 
     def to_rest(self, what):
-        """From now on the command comes to rest, and never to the other side of it."""
+        """Begins a period in which the command must go to rest and never beyond it."""
         since = time.monotonic() - self.began
         try:
             bench.wait_for("rest", lambda: self.samples and abs(self.samples[-1][1]) <= SETTLED_KPA, 15)
@@ -164,7 +164,7 @@ class Day(test_vacuum.Vacuum):
 
 
 def labels(marks):
-    """One for what comes within a second; starts are to be seen without."""
+    """Keeps one of several labels within a second. Starts have no label, because they are visible."""
     found = []
     for at, text in marks:
         if text == "start" and found:

@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
-"""How long a vent takes under attack: vent_times.py [--times 20] [--page] [--only WORD]
+"""Measures the duration of a vent under attack: vent_times.py [--times 20] [--page] [--only WORD]
 
-Repeats every test of Hearing (tests/system/test_hearing.py) that vents beside an attack, each time with a rig and a daemon of
-its own, and prints the worst and the middle time from the client's line to outputs below 1 kPa. --page writes that into
-docs/results/vents-under-attack.md. Needs a release build (SOFTGRIP_BUILD); the full disk needs the right to mount one.
+Repeats every test of Hearing (tests/system/test_hearing.py) that vents during an attack, each time with its own rig and
+daemon. Prints the longest and the median time from the client's line to outputs below 1 kPa. --page writes the table
+into docs/results/vents-under-attack.md. Needs a release build (SOFTGRIP_BUILD). The test with a full disk needs the right to mount
+one.
 """
 
 import argparse
@@ -35,7 +36,7 @@ ATTACKS = (
 
 
 def repeated(name, times):
-    """Seconds of every vent, and how many runs did not go as the test wants."""
+    """Returns the duration of every vent [s], and the number of runs in which the test failed."""
     waited, wrong = [], 0
     for _ in range(times):
         test_hearing.Hearing.waited_s.clear()

@@ -1,10 +1,10 @@
 #!/usr/bin/python3
-"""Two recordings of `softgrip watch` as pictures: 80 and 60 columns, of a terminal that really was drawn on.
+"""Draws two recordings of `softgrip watch` as pictures, at 80 and 60 columns, from the output on a real terminal.
 
     scripts/watch_pictures.py [--build build/release] [--out docs/pictures]
 
-The emulator takes the place of the board. At 80 columns a part is held; at 60 a sensor loses its cable meanwhile and gets it
-back. What a person would have read is written as SVG, with the colours of the terminal.
+The emulator replaces the board. At 80 columns, a part is held. At 60 columns, a sensor is disconnected and connected
+again meanwhile. The text on the terminal is written as SVG with the colours of the terminal.
 """
 import argparse
 import html
@@ -24,7 +24,7 @@ COLOURS = {"default": INK, "green": "#57c785", "brown": "#e0af4f", "red": "#ff6b
 
 
 def runs(row, columns):
-    """Neighbouring cells of one look: (column, text, colour, bold)."""
+    """Returns neighbouring cells with the same style as (column, text, colour, bold)."""
     found = []
     for column in range(columns):
         cell = row[column]
@@ -48,7 +48,7 @@ def svg(screen, title):
         for column, text, colour, bold in runs(screen.buffer[number], screen.columns):
             kept = text.rstrip()
             x = MARGIN_PX + column * CELL_PX[0]
-            # Every run has its width: a font that is not there must not shift the columns.
+            # Every run of cells has its width, so that a missing font does not shift the columns.
             lines.append(f'<text x="{x:g}" y="{y:g}" fill="{colour}" textLength="{len(kept) * CELL_PX[0]:g}" '
                          f'lengthAdjust="spacingAndGlyphs"{" font-weight=" + chr(34) + "bold" + chr(34) if bold else ""}>'
                          f"{html.escape(kept)}</text>")

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Whether browsers can slow the loop: minutes with a crowd in front of softgrip-web beside minutes without, interleaved.
+"""Checks that browsers do not slow the loop: compares minutes with and without a crowd of clients of softgrip-web.
 
     scripts/web_load.py [--build build/release] [--pairs 5] [--seconds 60] [--rate-hz 1000] [--browsers 30] [--slow 16]
 
-Starts softgripd on the simulated rig of config/rig.yaml at that rate, and softgrip-web in front of it. A loaded minute has
-so many pages that read along and load the page anew every five seconds, and so many sockets that read a stream one byte
-a second, or send a request that slowly. Of every minute it prints the loop's wake-up latency and overruns (out of the
-daemon's own histogram) and what softgrip-web uses. The order within a pair changes from pair to pair.
+Starts softgripd on the simulated rig of config/rig.yaml at the given rate, and softgrip-web. In a loaded minute,
+--browsers pages read the stream and are loaded again every 5 s, and --slow sockets read a stream or send a request at 1
+byte per second. For every minute, it prints the wake-up latency and the overruns of the loop (from the daemon's own
+histogram) and the resources that softgrip-web uses. The order within a pair of minutes alternates.
 """
 
 import argparse
@@ -131,7 +131,7 @@ def quantile(bins, share):
 
 
 def usage_of(pid):
-    """Resident memory in kB, processor time in s."""
+    """Returns the resident memory [kB] and the processor time [s]."""
     fields = pathlib.Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
     return bench.resident_kib(pid), (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 

@@ -1,10 +1,9 @@
 #!/usr/bin/python3
-"""The workflow over many small logs: on the cores of this machine, on a Slurm of this machine, killed and gone on with,
-beside a plain loop.
+"""Runs the workflow on many small logs: on the local cores, on a local Slurm, after a kill, and as a plain loop.
 
     scripts/workflow_campaign.py --work DIR [--rows 1000] [--cores 2] [--batch 25] [--page docs/results/workflow-campaign.md]
 
-Each row is `softgrip identify` of a simulated log of 25 s at 20 Hz, another finger each. Root is needed for Slurm.
+Each row is `softgrip identify` of a simulated log of 25 s at 20 Hz, with a different finger. Slurm needs root.
 """
 import argparse
 import csv
@@ -27,7 +26,7 @@ SAMPLES = 500
 
 
 def make(args, program):
-    """The logs and their table."""
+    """Creates the logs and their table."""
     args.work.mkdir(parents=True, exist_ok=True)
     twin = (ROOT / "config/models/bench_twin.yaml").read_text()
     rng = random.Random(1)
@@ -71,7 +70,8 @@ def rows_of(out):
 
 
 def killed(args, out):
-    """Kills a run in its middle. Returns what it took until then, what the rest took, and how many rows were run twice."""
+    """Kills a run halfway. Returns its duration until then, the duration of the rest, and the number of rows that ran
+    twice."""
     shutil.rmtree(out, ignore_errors=True)
     began = time.monotonic()
     child = subprocess.Popen([str(word) for word in command(args, out)], start_new_session=True, stdout=subprocess.DEVNULL)
@@ -86,7 +86,7 @@ def killed(args, out):
 
 
 def models(folders):
-    """A hash over the models of all rows, and how many there are."""
+    """Returns a hash over the models of all rows, and their number."""
     digest, count = hashlib.sha256(), 0
     for number, folder in enumerate(folders):
         model = folder / "model.yaml"

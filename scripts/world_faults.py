@@ -1,4 +1,4 @@
-"""Puts faults into a copy of the code, one at a time, and counts the seeds until a world finds each."""
+"""Inserts faults into a copy of the code, one at a time, and counts the seeds until a world detects each."""
 
 import os
 import re
@@ -16,8 +16,8 @@ GAP_OF_BUS = ("daemon/loop/bus.cpp", "if (watchdog_ == 0 ||", "if (watchdog_ >= 
 GAP_BY_HAND = ("tools/commissioning/motion_session.cpp", "if (fault == control::FaultCode::board_watchdog_tripped) {",
                "if (fault == control::FaultCode::board_watchdog_tripped) return std::nullopt;\n  if (false) {")
 
-# What is broken, where, and how: text that must be there once, and what stands there instead. Then, where it is not the
-# daemon alone for a minute: how long a world lives [s], and the tool that is in it.
+# Each fault: description, file, the text to replace (which must occur once) and its replacement. Optional: the
+# simulated time of a world [s] and its tool. The default is the daemon alone for 60 s.
 FAULTS = (
     ("the gap of a paused bus is not compared with the board's watchdog", *GAP_OF_BUS),
     ("a loop that was silent is obeyed at once", "daemon/loop/bus.cpp",
@@ -95,7 +95,7 @@ def build():
 
 
 def seeds_until_found(seconds, tool):
-    """The first seed that finds it and what it violates, or None."""
+    """Returns the first seed that detects the fault and the violated property, or None."""
     first, count = 1, 20
     while first <= MOST_SEEDS:
         done = run(["build/release/tests/world/softgrip-world", "--first", first, "--count", count, "--jobs", os.cpu_count(),
@@ -108,7 +108,7 @@ def seeds_until_found(seconds, tool):
 
 
 def main():
-    """Of those faults whose words hold one of the arguments; without: of all."""
+    """Selects the faults whose description contains one of the arguments, or all faults without arguments."""
     chosen = [fault for fault in FAULTS if any(word in fault[0] for word in sys.argv[1:] or [""])]
     for _, name, old, *_ in chosen:
         if (SOURCE / name).read_text().count(old) != 1:
