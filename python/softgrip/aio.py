@@ -160,7 +160,7 @@ class AsyncGripper:
             writer.write(line)
             await asyncio.wait_for(self._take_until(reader, session, number), self.answer_s)
         except asyncio.TimeoutError:
-            raise NotAnswered(f"{self.path}: it took too long") from None
+            raise NotAnswered(f"{self.path}: time limit exceeded") from None
         except OSError as error:
             raise ConnectionLost(f"{self.path}: {error}") from error
         finally:
@@ -171,7 +171,7 @@ class AsyncGripper:
         while number not in session.replies:
             line = await self._line(reader)
             if not line:
-                raise session.failure or ConnectionLost(f"{self.path}: the daemon hung up")
+                raise session.failure or ConnectionLost(f"{self.path}: the daemon closed the connection")
             session.receive(line)
 
     @staticmethod
@@ -189,12 +189,12 @@ class AsyncGripper:
             if found is not None:
                 return found
             if self._reading is None or self._reading.done():
-                raise self._session.failure or ConnectionLost(f"{self.path}: the daemon hung up")
+                raise self._session.failure or ConnectionLost(f"{self.path}: the daemon closed the connection")
             left = end - asyncio.get_running_loop().time()
             try:
                 await asyncio.wait_for(self._changed.wait(), max(left, 0))
             except asyncio.TimeoutError:
-                raise NotAnswered(f"{self.path}: it took too long") from None
+                raise NotAnswered(f"{self.path}: time limit exceeded") from None
 
     async def _read(self, reader: asyncio.StreamReader) -> None:
         try:

@@ -19,16 +19,16 @@ def _columns(argument: str, logs: Logs) -> list[dict[str, Any]]:
     try:
         all_logs = [logs] if isinstance(logs, Log) else list(logs)
     except TypeError as error:
-        raise InvalidArgument(argument, f"{argument}: {logs!r} is no Log and no list of Logs") from error
+        raise InvalidArgument(argument, f"{argument}: {logs!r} is neither a Log nor a list of Logs") from error
     for one in all_logs:
         if not isinstance(one, Log):
-            raise InvalidArgument(argument, f"{argument}: {type(one).__name__} is no Log; use Log(t, command, displacement)")
+            raise InvalidArgument(argument, f"{argument}: {type(one).__name__} is not a Log; use Log(t, command, displacement)")
     return [one._columns() for one in all_logs]
 
 
 def _model(argument: str, model: Model) -> _core.Model:
     if not isinstance(model, Model):
-        raise InvalidArgument(argument, f"{argument}: {type(model).__name__} is no Model; use Model.load()")
+        raise InvalidArgument(argument, f"{argument}: {type(model).__name__} is not a Model; use Model.load()")
     return model._core
 
 

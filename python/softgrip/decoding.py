@@ -18,7 +18,7 @@ T = TypeVar("T")
 
 
 def _no_number(name: str) -> Any:
-    raise ValueError(f"{name} is no number of JSON")
+    raise ValueError(f"{name} is not a JSON number")
 
 
 def parsed(line: bytes) -> dict[str, Any]:
@@ -28,7 +28,7 @@ def parsed(line: bytes) -> dict[str, Any]:
     except (ValueError, RecursionError):
         value = None
     if not isinstance(value, dict):
-        raise ProtocolError("what answers is no softgripd: a line is no JSON object")
+        raise ProtocolError("the program at this socket is not softgripd: a line is not a JSON object")
     return value
 
 
@@ -41,7 +41,7 @@ def fields_of(cls: Any, value: Any, where: str) -> dict[str, Any]:
     """Reads the fields of a dataclass from the equally named members of a JSON object. Further members are ignored,
     because a newer daemon may send more. A field with a default may be missing."""
     if not isinstance(value, dict):
-        raise ProtocolError(f"{where} is no JSON object")
+        raise ProtocolError(f"{where} is not a JSON object")
     found = {}
     for field in dataclasses.fields(cls):
         if field.name in value:
@@ -72,7 +72,7 @@ def checked(kind: Any, value: Any, where: str) -> Any:
     if kind is float:
         return _number(value, where)
     if kind in (bool, int, str):
-        return _is(kind, {bool: "true or false", int: "whole number", str: "text"}[kind], value, where)
+        return _is(kind, {bool: "true or false", int: "a whole number", str: "a text"}[kind], value, where)
     if issubclass(kind, enum.Enum):
         return _choice(kind, value, where)
     return kind.of(value, where)
@@ -80,7 +80,7 @@ def checked(kind: Any, value: Any, where: str) -> Any:
 
 def _is(kind: type[T], name: str, value: Any, where: str) -> T:
     if not isinstance(value, kind) or (kind is int and isinstance(value, bool)):
-        raise ProtocolError(f"{where} is no {name}")
+        raise ProtocolError(f"{where} is not {name}")
     return value
 
 
@@ -92,7 +92,7 @@ def _number(value: Any, where: str) -> float:
             number = math.inf
         if math.isfinite(number):
             return number
-    raise ProtocolError(f"{where} is no finite number")
+    raise ProtocolError(f"{where} is not a finite number")
 
 
 def _choice(kind: type[enum.Enum], value: Any, where: str) -> enum.Enum:
@@ -100,4 +100,4 @@ def _choice(kind: type[enum.Enum], value: Any, where: str) -> enum.Enum:
         for choice in kind:
             if choice.value == value:
                 return choice
-    raise ProtocolError(f"{where} is none of {', '.join(str(choice.value) for choice in kind)}")
+    raise ProtocolError(f"{where} is not one of {', '.join(str(choice.value) for choice in kind)}")

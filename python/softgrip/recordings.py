@@ -43,7 +43,7 @@ def _text(path: Path, largest: int) -> str:
     try:
         return data.decode()
     except UnicodeDecodeError as error:
-        raise MalformedFile(f"{path}: this is no text in UTF-8: {error}") from error
+        raise MalformedFile(f"{path}: the file is not text in UTF-8: {error}") from error
 
 
 def _json_object(path: Path) -> dict[str, Any]:
@@ -51,9 +51,9 @@ def _json_object(path: Path) -> dict[str, Any]:
     try:
         value = json.loads(text)
     except (ValueError, RecursionError) as error:
-        raise MalformedFile(f"{path}: this is no JSON: {error}") from error
+        raise MalformedFile(f"{path}: the file is not JSON: {error}") from error
     if not isinstance(value, dict):
-        raise MalformedFile(f"{path}: this is no JSON object")
+        raise MalformedFile(f"{path}: the file is not a JSON object")
     return value
 
 
@@ -83,7 +83,7 @@ def read_columns(path: Path) -> dict[str, Array]:
     names = kept[0]
     for name in names:
         if names.count(name) > 1:
-            raise MalformedFile(f"{path}: the column '{name}' is there more than once")
+            raise MalformedFile(f"{path}: the column '{name}' exists more than once")
     columns = zip(*kept[1:]) if len(kept) > 1 else ([] for _ in names)
     return {name: _column(list(cells)) for name, cells in zip(names, columns)}
 

@@ -88,13 +88,13 @@ class Wire:
         return self._socket
 
     def _late(self) -> NotAnswered:
-        return NotAnswered(f"{self.path}: it took too long")
+        return NotAnswered(f"{self.path}: time limit exceeded")
 
     def _lost(self, session: Session, error: Optional[OSError]) -> Exception:
         """Returns the exception for a lost connection. The last message of the daemon is more specific than the loss
         itself."""
         self.close()
-        return session.failure or ConnectionLost(f"{self.path}: {error or 'the daemon hung up'}")
+        return session.failure or ConnectionLost(f"{self.path}: {error or 'the daemon closed the connection'}")
 
 
 def _connected(path: str, end: float) -> socket.socket:

@@ -122,9 +122,9 @@ class Malformed(unittest.TestCase):
             self.assertEqual(self.hear("status", said), "malformed", number[:20])
 
     def test_the_error_says_where(self):
-        for path, other, text in ((("channels", 0, "age_s"), "1", "status.channels[0].age_s is no finite number"),
-                                  (("state",), "dancing", "status.state is none of starting, idle"),
-                                  (("sequence", "step"), 1.5, "status.sequence.step is no whole number"),
+        for path, other, text in ((("channels", 0, "age_s"), "1", "status.channels[0].age_s is not a finite number"),
+                                  (("state",), "dancing", "status.state is not one of starting, idle"),
+                                  (("sequence", "step"), 1.5, "status.sequence.step is not a whole number"),
                                   (("fault", "next"), put, "status.fault lacks 'next'")):
             with self.assertRaisesRegex(softgrip.ProtocolError, text.replace("[", r"\[")):
                 Status.of(put(STATUS, path, other), "status")

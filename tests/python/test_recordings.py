@@ -106,7 +106,7 @@ class Recordings(unittest.TestCase):
     def test_a_malformed_csv_is_a_malformed_file(self):
         path = self.folder / "run.csv"
         for content, text in ((b"time_s\n\xff\xfe\n", "no text in UTF-8"), (b"\n", "no header"),
-                              (b"a,b,a\n1,2,3\n", "column 'a' is there more than once"),
+                              (b"a,b,a\n1,2,3\n", "column 'a' exists more than once"),
                               (b"a\n\"" + b"x" * 200_000 + b"\"\n", r"run\.csv:2: field larger"),
                               (b"a,b\n1,2\n\n3,4\n", r"run\.csv:3: 0 cells, the header has 2"),
                               (b"a,b\n1,\xe2\x80\xa82\n3\n", r"run\.csv:3: 1 cells")):
@@ -117,8 +117,8 @@ class Recordings(unittest.TestCase):
     def test_a_malformed_report_is_a_malformed_file(self):
         path = self.folder / "run.json"
         self.write(RUN)
-        for content, text in ((b"", "no JSON"), (b"{", "no JSON"), (b"[" * 200_000, "no JSON"),
-                              (b"\xff", "no text in UTF-8"), (b"[1]", "no JSON object"), (b"7", "no JSON object")):
+        for content, text in ((b"", "not JSON"), (b"{", "not JSON"), (b"[" * 200_000, "not JSON"),
+                              (b"\xff", "not text in UTF-8"), (b"[1]", "not a JSON object"), (b"7", "not a JSON object")):
             path.write_bytes(content)
             for read in (lambda: read_report(path), lambda: Recording.read(self.folder)):
                 with self.subTest(text), self.malformed(text):
