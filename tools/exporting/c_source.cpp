@@ -70,10 +70,8 @@ struct CBlock {
   std::string_view text;
   std::string_view state;  ///< declaration
   std::string_view reset;  ///< an expression: the output at rest
-  std::string_view step;   ///< blocks of the valve: a statement that calls the next block; others: an
-                           ///< expression for the output segment
-  std::string_view
-      lead;  ///< blocks of the valve: the time constant for the inverse; empty: the inverse ignores the block
+  std::string_view step;   ///< valve: a statement that calls the next block; else: the output segment
+  std::string_view lead;   ///< valve: the time constant that the inverse compensates; empty: none
 };
 
 template <template <class> class Block>

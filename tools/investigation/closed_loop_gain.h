@@ -25,8 +25,7 @@ struct ClosedLoopQuestion {
   double span_mm = 0;  ///< span of the logs: the reference is scaled down if 13 ± 7 mm is too large for it
   double pressure_max_kpa = 60;
   double frequency_hz = 0.2;
-  double rig_scatter = 0.02;  ///< relative difference of the rig's parameters from the extended model's,
-                              ///< because no model is exact
+  double rig_scatter = 0.02;  ///< relative error of the rig's parameters, because no model is exact
   std::uint64_t seed = 1;
 };
 

@@ -32,8 +32,7 @@ struct ConsequenceOptions {
 struct DiagnosisSource {
   const std::vector<sysid::Log>& logs;
   const model::Model& given;
-  std::vector<std::string>
-      call;  ///< command line of the diagnosis; empty: not called as a command of its own
+  std::vector<std::string> call;  ///< command line; empty: not called as a command
 };
 
 /// Returns the names of the files that write_diagnosis_folder() writes, replaces or removes.

@@ -28,8 +28,7 @@ enum class Reason : std::uint16_t {
   sequence_refused,
   not_allowed,
   no_answer,
-  not_next,  ///< the counter does not follow the newest one, or this connection has not written the newest
-             ///< one
+  not_next,       ///< the counter does not follow the newest one, or this connection did not write that one
   refusal = 100,  ///< plus the daemon's number: 102 is R02
 };
 

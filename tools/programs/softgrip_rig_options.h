@@ -25,8 +25,7 @@ struct Options {
   std::optional<std::uint16_t> port;  ///< default: the rig file's, or 1502
   std::string rtu;                    ///< serial device instead of the network
   bool rtu_over_tcp = false;          ///< RTU frames on the network
-  std::optional<std::uint32_t>
-      baud;  ///< of the line; the next options default to the rig file's values, or 9600 8N1
+  std::optional<std::uint32_t> baud;  ///< default: the rig file's; without one, 9600 8N1
   std::optional<std::string> format;
   std::optional<double> turnaround_s;
   std::string object;

@@ -18,10 +18,9 @@ inline constexpr std::string_view session_cookie = "softgrip";
 /// The parts of a request that decide about its admission.
 struct Credentials {
   std::string host;
-  std::string origin;  ///< empty if the client sent none
-  std::string
-      fetch_site;      ///< Sec-Fetch-Site: the origin of the request according to the browser; may be empty
-  std::string cookie;  ///< the Cookie header
+  std::string origin;      ///< empty if the client sent none
+  std::string fetch_site;  ///< the Sec-Fetch-Site header; may be empty
+  std::string cookie;      ///< the Cookie header
   std::string authorization;
 };
 
