@@ -105,7 +105,7 @@ class Recordings(unittest.TestCase):
 
     def test_a_malformed_csv_is_a_malformed_file(self):
         path = self.folder / "run.csv"
-        for content, text in ((b"time_s\n\xff\xfe\n", "no text in UTF-8"), (b"\n", "no header"),
+        for content, text in ((b"time_s\n\xff\xfe\n", "not text in UTF-8"), (b"\n", "no header"),
                               (b"a,b,a\n1,2,3\n", "column 'a' exists more than once"),
                               (b"a\n\"" + b"x" * 200_000 + b"\"\n", r"run\.csv:2: field larger"),
                               (b"a,b\n1,2\n\n3,4\n", r"run\.csv:3: 0 cells, the header has 2"),

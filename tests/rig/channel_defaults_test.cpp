@@ -140,7 +140,7 @@ TEST_F(ChannelDefaultsTest, WhatCannotBeSharedThere) {
 }
 
 TEST_F(ChannelDefaultsTest, NoMapAtAll) {
-  change("channel_defaults:                  # what", "channel_defaults: none\nrest_of_it:   # what");
+  change("channel_defaults:                  # shared", "channel_defaults: none\nrest_of_it:   # shared");
   EXPECT_FALSE(read());
   EXPECT_NE(problems.format().find("`channel_defaults` must be a map of keys, found `none`"),
             std::string::npos)

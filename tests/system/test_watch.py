@@ -20,7 +20,7 @@ class Watch(bench.BenchTest):
         program = [bench.SOFTGRIP, "watch", "--socket", self.softgripd.socket_path, *arguments]
         watched = terminal.Terminal(program, self.folder, columns, rows)
         self.addCleanup(watched.close)
-        watched.wait_for("q leave")
+        watched.wait_for("q quit")
         return watched
 
     def test_a_grip_from_its_start_to_its_release_by_keys(self):
@@ -117,7 +117,7 @@ class Watch(bench.BenchTest):
         self.assertTrue(watched.restored())
         watched.child.send_signal(signal.SIGCONT)
         watched.wait_for(lambda text: not watched.restored())
-        watched.wait_for("q leave")
+        watched.wait_for("q quit")
         watched.type("q")
         self.assertEqual(watched.wait(), 0)
         self.assertTrue(watched.restored())

@@ -283,7 +283,7 @@ TEST_F(DoctorTest, ASensorThatIsStuckShowsItselfWhenTheFingerMoves) {
   examine(true);
   expect("valve left", Verdict::ok, "kPa measured");
   expect("finger left", Verdict::fail, "moved 0.00 mm");
-  EXPECT_NE(finding("finger left").advice.find("the pressure is there"), std::string::npos);
+  EXPECT_NE(finding("finger left").advice.find("the pressure is present"), std::string::npos);
 }
 
 TEST_F(DoctorTest, AValveThatDoesNotFollow) {

@@ -131,7 +131,7 @@ TEST_F(RigUpdateTest, AFileThatSomebodyChangedMeanwhileIsLeftAlone) {
   std::ofstream(path_, std::ios::app) << "# by hand\n";
   const auto backup = write_rig(rig_, "name: x\n");
   ASSERT_FALSE(backup);
-  EXPECT_NE(backup.error().find("changed meanwhile"), std::string::npos);
+  EXPECT_NE(backup.error().find("was changed while"), std::string::npos);
   EXPECT_EQ(text_of_file(path_), text_ + "# by hand\n");
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 1);
 }
