@@ -29,7 +29,7 @@ namespace softgrip::tools {
 /// Returns the next signal of the descriptor, or 0 if there is none.
 [[nodiscard]] int next_signal(const Descriptor& signals);
 
-/// Full-screen drawing. The destructor restores screen, cursor and keyboard, and so do the signals of a
+/// Full-screen drawing. The destructor restores screen, cursor and keyboard. Signal handlers do this after a
 /// crash. At most one object may exist at a time.
 class Screen {
  public:

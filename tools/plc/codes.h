@@ -14,7 +14,7 @@ enum class Outcome : std::uint16_t {
   executing,
   accepted,
   refused,  ///< not executed; `reason` gives the cause
-  unknown,  ///< the connection to the daemon was lost before its response; the command is not sent again
+  unknown,  ///< the daemon stopped or fell silent before its response; the command is not sent again
 };
 
 enum class Reason : std::uint16_t {

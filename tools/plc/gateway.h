@@ -49,7 +49,8 @@ class Gateway {
   [[nodiscard]] bool hears_daemon(Nanoseconds now) const noexcept;
   /// Returns the counters of the commands without a response of the daemon, oldest first.
   [[nodiscard]] std::vector<std::uint16_t> unanswered() const;
-  /// Returns true if the reaction to a silence was sent and has no response yet.
+  /// Returns true if the reaction to a silence was sent and has no response yet. reaction_confirms(): its
+  /// response will confirm all silences so far.
   [[nodiscard]] bool reacts() const noexcept { return reaction_.has_value(); }
   [[nodiscard]] bool reaction_confirms() const noexcept { return reaction_ && reaction_confirms_; }
 
