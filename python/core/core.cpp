@@ -1,5 +1,5 @@
-// softgrip._core: the functions of the library for the Python package, on NumPy arrays. The package checks
-// the types of arguments and makes the results typed objects (python/softgrip/models.py).
+// softgrip._core: the functions of the library for the Python package, with NumPy arrays. The package checks
+// the types of arguments and converts the results to typed objects (python/softgrip/models.py).
 
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
@@ -41,7 +41,7 @@ Unit unit_named(const std::string& name) {
   throw InvalidArgument("unit", "'" + name + "' is not 'mm' or 'deg'");
 }
 
-/// One of a few words of an argument.
+/// Converts a word of an argument to its value. Throws InvalidArgument for an unknown word.
 template <class Value>
 Value chosen(const char* argument, const std::string& word,
              std::initializer_list<std::pair<const char*, Value>> words) {

@@ -1,6 +1,6 @@
 #pragma once
-// A long computation that Python can watch and end: progress goes to a callback, and a signal such as Ctrl-C
-// ends it.
+// Runs a long computation that Python can watch and stop. Progress goes to a callback, and a signal such as
+// Ctrl-C stops the computation.
 
 #include <pybind11/pybind11.h>
 
@@ -17,10 +17,10 @@
 
 namespace softgrip::python {
 
-/// How often signals are looked for.
+/// Time between two checks for signals.
 inline constexpr std::chrono::milliseconds signal_check{50};
 
-/// Calls a Python function from any thread. Its exception is kept, and ends the computation.
+/// Calls a Python function from any thread. An exception of the function is stored and stops the computation.
 class Callback {
  public:
   Callback(pybind11::object function, std::stop_source stop)
@@ -36,7 +36,7 @@ class Callback {
       stop_.request_stop();
     }
   }
-  /// Throws the exception of the function, if there was one. The caller holds the GIL.
+  /// Throws the exception of the function, if there was one. The caller must hold the GIL.
   void rethrow() {
     if (failure_) throw pybind11::error_already_set(*failure_);
   }
@@ -47,8 +47,8 @@ class Callback {
   std::unique_ptr<pybind11::error_already_set> failure_;
 };
 
-/// Returns work(), which runs in a thread of its own without the GIL. This thread looks for signals
-/// meanwhile: if Python's handler raises (Ctrl-C), the work is stopped and the exception passes on.
+/// Returns work(), which runs in a separate thread without the GIL. Meanwhile this thread checks for signals:
+/// if Python's handler raises (Ctrl-C), the work is stopped and the exception is passed on.
 /// @param progress  a Python function, or None
 /// @param options   its `progress` and `stop` are set before work() begins
 template <class Options, class Work>
