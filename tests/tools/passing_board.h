@@ -1,5 +1,5 @@
 #pragma once
-// A board that passes everything on to another one: what a test changes, it overrides.
+// A board that forwards every call to another board; a test overrides the calls that it changes.
 
 #include "drivers/board/board.h"
 

@@ -69,7 +69,7 @@ TEST(CommissioningRun, AFingerThatGoesFurtherThanItsModelIsKeptWithinItsRange) {
     model::Model& believed = rig.rig.settings.channels[rig.channel].model;
     for (model::BlockSpec& block : believed.blocks) {
       if (std::string_view(model::catalogue()[block.type].info.id) != "bouc_wen") continue;
-      block.values[0] *= share;  // alpha and beta: what the finger does at once
+      block.values[0] *= share;  // alpha and beta: the immediate response of the finger
       block.values[1] *= share;
     }
     rig.rig.settings.channels[rig.channel].limits.displacement_max_mm = 15;

@@ -5,7 +5,7 @@
 namespace softgrip::tools::key_dialogue_test {
 namespace {
 
-/// What goes to the daemon, or "" / "leave".
+/// Returns the request that is sent to the daemon, "leave" if the dialogue ends, or "" if neither happens.
 std::string asked(const KeyDialogue::Outcome& outcome) {
   if (outcome.leave) return "leave";
   return outcome.request ? outcome.request->dump() : "";

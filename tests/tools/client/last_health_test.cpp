@@ -84,7 +84,7 @@ TEST_F(LastHealth, IsNothingWhereThereIsNoResult) {
   EXPECT_TRUE(health_lines(nullptr).empty());
 }
 
-/// On a reader that waits for a writer this test does not end.
+/// If the reader waited for a writer of the pipe, this test would not end.
 TEST_F(LastHealth, IsNothingWhereThePathIsAPipe) {
   std::filesystem::create_directories(recordings / "health");
   ASSERT_EQ(::mkfifo((recordings / "health/health.json").c_str(), 0600), 0);

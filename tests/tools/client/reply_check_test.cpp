@@ -27,7 +27,7 @@ std::string error_of(const std::string& line) {
   return parsed ? "accepted" : parsed.error();
 }
 
-/// All that the programs of this room read of a line.
+/// Passes the line to every function of tools/client that reads a line of the daemon.
 void read_event(const Json& event) {
   LiveState state;
   static_cast<void>(line_of_event(event));
@@ -72,7 +72,7 @@ TEST(ReplyCheck, AcceptsWhatTheDaemonSends) {
     ASSERT_TRUE(parsed) << parsed.error() << "\n" << line;
     EXPECT_EQ(*parsed, line);
   }
-  // A newer daemon may say more.
+  // A newer daemon may send additional keys.
   EXPECT_TRUE(parse_reply(R"({"id": 1, "ok": true, "more": [], "result": {"more": {"state": 3}}})"));
 }
 
@@ -101,7 +101,8 @@ TEST(ReplyCheck, RefusesWhatNestsTooDeepBeforeItIsParsed) {
   EXPECT_TRUE(parse_reply(R"({"ok":true,"result":{"a":"\"\\)" + brackets + R"("}})")) << "they are text";
 }
 
-/// Every place of every kind of line, with every other kind of value: refused, or nobody minds.
+/// Replaces every value of every kind of line by every other kind of value. The check refuses the line, or
+/// every reader accepts it.
 TEST(ReplyCheck, WhatPassesBreaksNoReader) {
   std::size_t refused = 0;
   std::size_t passed = 0;

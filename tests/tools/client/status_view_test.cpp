@@ -83,7 +83,7 @@ TEST(StatusView, ALimitThatBindsIsALine) {
       << text;
 }
 
-/// Columns that a line takes: escapes none, a UTF-8 character one.
+/// Columns that a line occupies: an escape sequence occupies none, a UTF-8 character one.
 std::size_t columns_of(const std::string& line) {
   std::size_t columns = 0;
   for (std::size_t i = 0; i < line.size(); ++i) {
@@ -183,7 +183,7 @@ TEST(StatusView, ABoardThatNeverAnsweredSaysWhatIsTriedAndHowOften) {
   EXPECT_NE(line_of_status(away).find("board NOT CONNECTED"), std::string::npos);
 }
 
-/// What stands on lines of so many columns, with blanks made one.
+/// Returns the text of a view of `columns` columns, with each run of blanks replaced by one blank.
 std::string words_at(std::size_t columns, const Json& shown) {
   std::string text;
   for (const char c : joined(view_of(shown, {columns, false, false}))) {

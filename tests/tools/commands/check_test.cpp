@@ -1,5 +1,5 @@
-// `softgrip check` as a user runs it: every broken configuration is refused with exit code 3 and says all of
-// what broken/NAME.expected holds.
+// `softgrip check` as a user runs it: every broken configuration is refused with exit code 3, and the output
+// contains every line of broken/NAME.expected.
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -28,7 +28,7 @@ struct Outcome {
   std::string errors;
 };
 
-/// A folder of this process, removed at its end.
+/// Folder of this process; removed when the process ends.
 const std::filesystem::path& scratch() {
   struct Folder {
     std::filesystem::path path =
@@ -59,7 +59,7 @@ std::vector<std::string> names() {
   return result;
 }
 
-/// The file and those that are checked together with it.
+/// Returns the file and the files that are checked together with it, as command-line arguments.
 std::string arguments_of(const std::string& name) {
   std::string arguments = "broken/" + name + ".yaml";
   std::istringstream also(text_of(folder / "broken" / (name + ".also")));

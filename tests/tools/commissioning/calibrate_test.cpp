@@ -1,4 +1,4 @@
-// softgrip calibrate against rigs whose truth is known.
+// softgrip calibrate on simulated rigs whose true scalings are known.
 
 #include <gtest/gtest.h>
 
@@ -109,7 +109,7 @@ TEST(FindDeadZone, DoesNotInventOne) {
   EXPECT_FALSE(find_dead_zone(command, nothing)) << "nothing rises";
 }
 
-/// Reads the gauge where the simulation really is.
+/// An operator who reads the gauge at the true position of the simulated finger.
 class KnowingOperator final : public Operator {
  public:
   explicit KnowingOperator(std::function<std::string()> reading) : reading_(std::move(reading)) {}
@@ -119,7 +119,7 @@ class KnowingOperator final : public Operator {
     waited_ = 0;
   }
   std::optional<std::string> answer() override {
-    // Nobody answers at once, and the board wants to be talked to meanwhile.
+    // An operator needs time to answer. Meanwhile the session must continue to communicate with the board.
     if (++waited_ < 300) return std::nullopt;
     return reading_();
   }
@@ -134,7 +134,7 @@ class KnowingOperator final : public Operator {
   int waited_ = 0;
 };
 
-/// Keeps the highest command.
+/// Records the highest command.
 class WatchedBoard final : public testing::PassingBoard {
  public:
   using PassingBoard::PassingBoard;
@@ -255,7 +255,7 @@ TEST_F(CalibrateTest, NothingRisesWithoutASensorThatTheMotionNeeds) {
                                    }};
   KnowingOperator person([] { return "1"; });
   for (const bool monitor : {false, true}) {
-    // The last two do not read the pressure monitor.
+    // The last two procedures do not read the pressure monitor.
     for (std::size_t i = 0; i < (monitor ? 2 : all.size()); ++i) {
       SCOPED_TRACE(std::to_string(i) + (monitor ? " without the monitor" : " without the sensor"));
       simulation::SimulatedEvent blind;
@@ -327,7 +327,8 @@ TEST_F(CalibrateTest, ByHandNothingMoves) {
   make();
   double place = 2;
   KnowingOperator person([&] {
-    // A target put there by hand: the simulated finger stays, the scaling plays the target.
+    // The operator moves a target by hand: the simulated finger does not move, and the scaling represents the
+    // target.
     return std::to_string(place += 10);
   });
   const auto line = calibrate_sensor(rig_, *session_, person, settings_);
@@ -392,7 +393,7 @@ TEST_F(CalibrateTest, TheSnippetIsReadByTheRigFilesReader) {
   EXPECT_NE(text.find("the signal rises"), std::string::npos);
   EXPECT_NE(text.find("use 60 % of the valve's range\n"), std::string::npos) << text;
 
-  // Its lines in the place of the old ones.
+  // Replaces the old lines of the rig file by the new ones.
   std::string file = daemon::testing::text_of(SOFTGRIP_SOURCE_DIR "/config/rig.yaml");
   for (const std::string key : {"sensor", "valve"}) {
     const auto line_at = [&](const std::string& in, std::size_t from) { return in.find(key + ": {", from); };

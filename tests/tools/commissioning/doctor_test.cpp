@@ -1,4 +1,4 @@
-// softgrip doctor on a healthy rig and on sick ones, simulated in virtual time.
+// softgrip doctor on healthy and on faulty rigs, simulated in virtual time.
 
 #include <gtest/gtest.h>
 
@@ -30,7 +30,7 @@ using simulation::LineFault;
 using simulation::SensorFault;
 using Event = simulation::SimulatedEvent;
 
-/// A board whose left pressure monitor says nothing.
+/// A board whose left pressure monitor gives no readings.
 class BlindMonitor final : public tools::testing::PassingBoard {
  public:
   using PassingBoard::PassingBoard;
@@ -43,7 +43,7 @@ class BlindMonitor final : public tools::testing::PassingBoard {
   }
 };
 
-/// A board that notes the highest pressure of each channel.
+/// A board that records the highest command of each channel.
 class NotingBoard final : public tools::testing::PassingBoard {
  public:
   using PassingBoard::PassingBoard;
@@ -58,7 +58,7 @@ class NotingBoard final : public tools::testing::PassingBoard {
   std::array<double, 2> highest_kpa{};
 };
 
-/// A board with a watchdog, other clients, and a count of them.
+/// A board with a watchdog and other Modbus clients; it counts them.
 class SharedBoard final : public tools::testing::PassingBoard {
  public:
   using PassingBoard::PassingBoard;
@@ -72,7 +72,7 @@ class SharedBoard final : public tools::testing::PassingBoard {
 class DoctorTest : public ::testing::Test {
  protected:
   DoctorTest() {
-    // No stone: a finger that moves a little moves freely.
+    // Remove the stone: a finger that moves only a little moves without contact.
     for (simulation::SimulatedChannel& channel : simulated().channels) channel.plant.object.reset();
   }
   simulation::SimulatedBoardSettings& simulated() {
@@ -179,7 +179,7 @@ TEST_F(DoctorTest, AWatchdogThatIsMissing) {
   expect("watchdog", Verdict::warn, "the outputs keep their last pressure");
 }
 
-/// Requests of any client keep this board from venting; it may count its clients.
+/// Requests of any client keep this board from venting. The board may count its clients.
 TEST_F(DoctorTest, AWatchdogThatReadersFeedIsWarnedOfAndOtherClientsAreFound) {
   rig_.settings.safety.board_vents_when_silent = true;
   board_ = std::make_unique<simulation::SimulatedBoard>(simulated(), time_.clock);
@@ -216,7 +216,7 @@ TEST_F(DoctorTest, ASensorThatSeesNothing) {
   expect("sensor left", Verdict::fail, "out_of_range");
 }
 
-/// A finger without a valid reading could leave its limits unseen: only the others move.
+/// A finger without a valid reading could exceed its limits unnoticed: only the other fingers move.
 TEST_F(DoctorTest, ASensorThatSeesNothingIsOneFailureAndItsFingerIsNotMoved) {
   Event blind;
   blind.kind = Event::Kind::sensor_fault;
@@ -241,7 +241,7 @@ TEST_F(DoctorTest, ASensorThatIsLostOnTheWayEndsTheMotion) {
   blind.kind = Event::Kind::sensor_fault;
   blind.channel = 0;
   blind.sensor.kind = SensorFault::Kind::out_of_range;
-  blind.at_s = 1.5;  // the look at rest takes 1 s, the way up 1 s
+  blind.at_s = 1.5;  // the check at rest takes 1 s, the ramp up another 1 s
   at_once(blind);
   board_ = std::make_unique<simulation::SimulatedBoard>(simulated(), time_.clock);
   NotingBoard board(*board_);
@@ -316,7 +316,7 @@ TEST_F(DoctorTest, AModelOfAnotherFinger) {
   rig_.settings.channels[0].health.model_error_mm = 0.05;
   rig_.settings.channels[0].health.noise_mm = 0.03;
   for (simulation::SimulatedChannel& channel : simulated().channels) {
-    channel.plant.object = simulation::PlantObject{1, 0.5};  // as a finger twice as stiff
+    channel.plant.object = simulation::PlantObject{1, 0.5};  // as for a finger of twice the stiffness
   }
   examine(true);
   expect("model left", Verdict::fail, "unfit above 0.30");
@@ -375,7 +375,7 @@ TEST_F(DoctorTest, ARateBeyondTheBusBudget) {
 }
 
 TEST_F(DoctorTest, StoppedByTheUserTheOutputsAreSafe) {
-  time_.stop_at = 2'500'000'000;  // on the way up
+  time_.stop_at = 2'500'000'000;  // during the ramp up
   examine(true);
   expect("motion left", Verdict::fail, "stopped by the user");
   EXPECT_EQ(output_kpa(0), 0);
@@ -400,7 +400,7 @@ TEST_F(DoctorTest, AFolderThatCannotBeWrittenAndOneThatCan) {
   expect("disk", Verdict::fail, "no folder");
 }
 
-/// What a healthy daemon answers.
+/// Returns the status of a healthy daemon.
 nlohmann::ordered_json healthy_status() {
   return nlohmann::ordered_json::parse(R"({"version": "1", "rig": "bench", "rate_hz": 200, "state": "idle",
     "fault": null, "sequence": null, "bus": {"board": "ADAM", "connected": true},

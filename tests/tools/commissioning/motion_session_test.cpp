@@ -27,10 +27,11 @@ constexpr Nanoseconds watchdog = 500 * ms;
 constexpr Nanoseconds deadline = 50 * ms;
 constexpr double pressure_kpa = 30;
 constexpr double speed_kpa_per_s = 12;
-/// A float's worth.
+/// Tolerance for the rounding of a float.
 constexpr double equal_kpa = 1e-9;
 
-/// Passes only in sleeps. Once, at `pause_at`, a sleep takes `pause` longer: the process was stopped.
+/// A clock that advances only in sleeps. One sleep, at `pause_at`, takes `pause` longer, as if the process
+/// were stopped.
 class StoppableClock final : public Clock {
  public:
   [[nodiscard]] Nanoseconds now() const noexcept override { return now_; }
@@ -49,7 +50,7 @@ class StoppableClock final : public Clock {
   mutable Nanoseconds now_ = ns_per_s;
 };
 
-/// Keeps its outputs. Any request feeds its watchdog; any write ends a trip.
+/// A board that holds its outputs. Any request resets its watchdog timer; any write ends a trip.
 class VentingBoard final : public drivers::Board {
  public:
   explicit VentingBoard(const StoppableClock& clock) : clock_(clock) {}
@@ -83,7 +84,7 @@ class VentingBoard final : public drivers::Board {
   [[nodiscard]] std::chrono::nanoseconds watchdog_time() const noexcept override {
     return std::chrono::nanoseconds(watchdog_ns);
   }
-  /// Lets the watchdog act.
+  /// Vents the outputs if the watchdog time has expired.
   void advance() noexcept {
     if (watchdog_ns == 0 || fed_at_ == 0 || clock_.now() - fed_at_ < watchdog_ns) return;
     std::fill(outputs_kpa.begin(), outputs_kpa.end(), 0.0);
@@ -92,16 +93,17 @@ class VentingBoard final : public drivers::Board {
 
   Nanoseconds watchdog_ns = watchdog;
   BusStatus next_connect = BusStatus::ok;
-  std::function<void()> on_exchange;  ///< before what was sent arrives
-  Nanoseconds lost_from = never;      ///< exchanges fail from here ...
-  Nanoseconds lost_until = never;     ///< ... to here ...
+  std::function<void()> on_exchange;  ///< called before a request arrives at the board
+  Nanoseconds lost_from = never;      ///< exchanges fail from this time
+  Nanoseconds lost_until = never;     ///< and until this time
   BusStatus how = BusStatus::timed_out;
-  bool request_arrives = false;  ///< ... though the requests may arrive
+  bool request_arrives =
+      false;  ///< true: the requests of failed exchanges arrive, only the responses are lost
   model::Validity validity = model::Validity::valid;
   bool monitored = true;  ///< the pressure monitors give readings
 
   std::vector<double> outputs_kpa{0, 0};
-  double largest_rise_kpa = 0;  ///< of one write, over the output before it
+  double largest_rise_kpa = 0;  ///< largest increase of an output by one write
   double highest_after_vent_kpa = 0;
   bool vented = false;
   int sessions = 0;
@@ -125,20 +127,20 @@ class MotionSessionTest : public ::testing::Test {
  protected:
   MotionSessionTest() {
     rig_.loop.exchange_deadline_s = seconds(deadline);
-    // Patient below the watchdog's time, so that the gap alone decides.
+    // The bus fault comes later than the watchdog trip, so that only the duration of the gap decides.
     rig_.settings.faults.bus_down_cycles = 80;
   }
   [[nodiscard]] StopRequest stop() {
     return [this] { return clock_.now() >= stop_at_; };
   }
-  /// Up, a while there, and down again, as calibrate moves.
+  /// Moves up, holds for 1 s and moves down again, like calibrate.
   MotionSession::Expected<void> move(MotionSession& session) {
     if (auto connected = session.connect(); !connected) return connected;
     if (auto up = session.ramp(0, pressure_kpa, speed_kpa_per_s); !up) return up;
     if (auto there = session.sample(1); !there) return tl::unexpected(there.error());
     return session.ramp(0, 0, speed_kpa_per_s);
   }
-  /// The largest step that the limits and the asked speed allow in one cycle.
+  /// The largest step that the limits and the requested speed allow in one cycle.
   [[nodiscard]] double step_kpa() const { return speed_kpa_per_s / rig_.settings.rate_hz + equal_kpa; }
 
   rig::RigFile rig_ = daemon::testing::example_rig("rig.yaml");
@@ -190,7 +192,7 @@ TEST_F(MotionSessionTest, APauseOverAVacuumEndsTheMotionAtRest) {
   EXPECT_EQ(board_.outputs_kpa[0], 0);
 }
 
-/// At any time of the motion, and for any duration from the watchdog's time on.
+/// Tries pauses at many times of the motion, each of at least the watchdog's time.
 TEST_F(MotionSessionTest, APauseAsLongAsTheWatchdogEndsTheMotionAndNothingRisesBehindIt) {
   const Nanoseconds begin = clock_.now();
   for (const Nanoseconds pause : {500 * ms, 501 * ms, 800 * ms, 1200 * ms, 60'000 * ms}) {
@@ -233,7 +235,8 @@ TEST_F(MotionSessionTest, AShorterPauseIsRiddenThroughWithoutALargerStep) {
   }
 }
 
-/// No program can see a pause between its last reading of the clock and its write: it is taken back at once.
+/// No program can detect a pause between its last reading of the clock and its write. The write is reversed
+/// at once.
 TEST_F(MotionSessionTest, APauseInTheMiddleOfAnExchangeIsFoundOutAfterItAndEndsTheMotion) {
   MotionSession session(rig_, board_, clock_, stop());
   ASSERT_TRUE(session.connect());
@@ -274,7 +277,7 @@ TEST_F(MotionSessionTest, RequestsThatAreLostForLongerThanTheWatchdogEndTheMotio
   }
 }
 
-/// The board is fed and holds, but the session cannot know that.
+/// The requests arrive, so the board holds its outputs, but the session cannot know this.
 TEST_F(MotionSessionTest, RepliesThatAreLostForLongerThanTheWatchdogEndTheMotion) {
   board_.lost_from = clock_.now() + 1500 * ms;
   board_.lost_until = board_.lost_from + 700 * ms;
@@ -366,7 +369,7 @@ TEST_F(MotionSessionTest, WhatIsRequiredAndLostOnTheWayEndsTheMotionWithinItsCyc
     StoppableClock clock;
     VentingBoard board(clock);
     const Nanoseconds lost_at = clock.now() + 1500 * ms;
-    double stood_kpa = 0;  // after the last exchange with both sensors
+    double stood_kpa = 0;  // output after the last exchange with both sensors
     bool first_status = true;
     board.on_exchange = [&] {
       if (clock.now() < lost_at) return;

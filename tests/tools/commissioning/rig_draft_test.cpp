@@ -1,4 +1,4 @@
-// The rig file that softgrip init writes is one that the rig file's reader accepts, whatever was answered.
+// The reader of rig files accepts every rig file that softgrip init writes, regardless of the answers.
 
 #include "tools/commissioning/rig_draft.h"
 
@@ -26,7 +26,7 @@ std::string take(RigDraft& draft, const std::string& key, const std::string& wor
   return "there is no fact " + key;
 }
 
-/// A draft of these facts, and of what is usual for the others.
+/// Returns a draft with the given facts and with the default values of all other facts.
 RigDraft draft_of(const std::map<std::string, std::string>& given) {
   RigDraft draft;
   draft.sequences_path = config + "sequences";
@@ -114,7 +114,8 @@ TEST_F(RigDraftTest, EveryShippedBoardAndModel) {
   for (const auto& board : std::filesystem::directory_iterator(config + "boards")) {
     for (const auto& model : std::filesystem::directory_iterator(config + "models")) {
       RigDraft draft;
-      if (!take(draft, "board", board.path().string()).empty()) continue;  // it has no inputs, or no outputs
+      if (!take(draft, "board", board.path().string()).empty())
+        continue;  // a board without inputs or without outputs
       const bool watched = has_watchdog(draft);
       std::map<std::string, std::string> given{{"board", board.path().string()},
                                                {"address", "127.0.0.1"},
@@ -151,7 +152,7 @@ TEST_F(RigDraftTest, AFallingSensorAndAnotherValve) {
 }
 
 TEST(DraftFacts, SayWhatIsWrongWithAnAnswer) {
-  std::filesystem::current_path(SOFTGRIP_SOURCE_DIR);  // where names are looked for
+  std::filesystem::current_path(SOFTGRIP_SOURCE_DIR);  // names are searched in this folder
   RigDraft draft;
   EXPECT_NE(take(draft, "board", "adam-6042").find("did you mean adam-6024?"), std::string::npos)
       << take(draft, "board", "adam-6042");

@@ -1,4 +1,4 @@
-// A calibration's points in the rig file itself: nothing else changes.
+// A calibration writes its points into the rig file itself and changes nothing else there.
 
 #include "tools/commissioning/rig_update.h"
 

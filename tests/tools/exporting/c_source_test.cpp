@@ -6,7 +6,7 @@
 #include "model/file/model_file.h"
 #include "tools/exporting/c_fragments.h"
 
-// What it computes is held against `softgrip simulate` by tests/system/test_export.py.
+// tests/system/test_export.py compares the results of the generated source with `softgrip simulate`.
 namespace softgrip::tools::c_source_test {
 namespace {
 

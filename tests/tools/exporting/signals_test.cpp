@@ -7,7 +7,7 @@
 #include "tools/exporting/mat_file.h"
 #include "tools/exporting/mcap_file.h"
 
-// What other people's programs read of them: tests/system/test_export.py.
+// tests/system/test_export.py checks the exported files with the programs that read them.
 namespace softgrip::tools::signals_test {
 namespace {
 

@@ -24,14 +24,15 @@ class Healthy {
   double mean_, spread_;
 };
 
-// Student's t at its two-sided points, Abramowitz and Stegun 26.10: p = 0.05 and 0.001 are 1.960 and 3.291.
+// Two-sided quantiles of Student's t from Abramowitz and Stegun 26.10: p = 0.05 and 0.001 correspond to the
+// normal values 1.960 and 3.291.
 TEST(ControlChart, WallacesFormulaTurnsStudentsTIntoANormalValue) {
   EXPECT_NEAR(normal_of_t(2.776, 4), 1.960, 0.02);
   EXPECT_NEAR(normal_of_t(2.228, 10), 1.960, 0.01);
   EXPECT_NEAR(normal_of_t(4.587, 10), 3.291, 0.02);
   EXPECT_NEAR(normal_of_t(-3.646, 30), -3.291, 0.01);
   EXPECT_EQ(normal_of_t(0, 5), 0);
-  // Never too sure with next to nothing to compare with.
+  // With one degree of freedom the normal value must be too small rather than too large.
   EXPECT_LT(normal_of_t(12.706, 1), 1.960);
   EXPECT_LT(normal_of_t(636.6, 1), 3.291);
 }
@@ -80,13 +81,14 @@ TEST(ControlChart, AlarmsAsOftenAsStatedWhereNothingIsWrong) {
     double total = 0;
     constexpr int runs = 1500;
     for (int run = 0; run < runs; ++run) total += length_of_run(healthy, limits);
-    // The mean of nearly geometric lengths is known to 2.6 %; Siegmund's and Wallace's formulas, and what
-    // little correlation is found in independent values, give the rest.
+    // The mean of nearly geometric run lengths has a standard error of 2.6 %. The rest of the tolerance
+    // covers Siegmund's and Wallace's approximations and the small correlation that is estimated from
+    // independent values.
     EXPECT_NEAR(total / runs / stated, 1.1, 0.17) << "stated " << stated;
   }
 }
 
-// A chart that has seen little alarms no more often than one that has seen much.
+// A chart with few points must not alarm more often than a chart with many points.
 TEST(ControlChart, AlarmsNoMoreOftenInItsYouth) {
   Healthy healthy(23, 0, 1);
   const ChartLimits limits = ChartLimits::for_run_length(20000);
@@ -100,7 +102,8 @@ TEST(ControlChart, AlarmsNoMoreOftenInItsYouth) {
   EXPECT_LT(alarms / (static_cast<double>(charts) * youth / 20000), 1.6);
 }
 
-/// Values each of which takes after the one before by `persistence`, of unit spread.
+/// A first-order autoregressive process of unit standard deviation; `persistence` is the correlation of
+/// successive values.
 class Weather {
  public:
   Weather(unsigned seed, double persistence) : random_(seed), persistence_(persistence) {
@@ -126,7 +129,8 @@ TEST(ControlChart, FindsHowMuchValuesTakeAfterTheOneBefore) {
   }
 }
 
-// Weather stays for days. Taken for independent days, two thirds of the charts would alarm.
+// Weather persists for days. If the chart treated the days as independent, two thirds of the charts would
+// alarm.
 TEST(ControlChart, WeatherThatStaysIsSeldomAnAlarm) {
   const ChartLimits limits = ChartLimits::for_run_length(30000);
   int alarms = 0;
@@ -147,7 +151,7 @@ TEST(ControlChart, FewerFalseAlarmsNeedWiderLimits) {
   EXPECT_NEAR(std::erfc(seldom.single / std::sqrt(2.0)) * 60000, 1, 1e-6);
 }
 
-/// How many points after a shift by so many spreads it is noticed, the median of many.
+/// Returns the median number of points between a shift by `spreads` standard deviations and its alarm.
 int noticed_after(double spreads, int healthy_points) {
   std::vector<int> delays;
   for (unsigned seed = 0; seed < 101; ++seed) {
@@ -173,8 +177,8 @@ TEST(ControlChart, NoticesWhatIsLargeAtOnceAndWhatStaysSoon) {
   EXPECT_GT(noticed_after(2, 40), noticed_after(4, 40));
 }
 
-/// While a change is in doubt it is not learnt: else eight healthy values would be outvoted by as many
-/// others.
+/// The chart must not learn points of a possible change. Otherwise as many changed values would outweigh the
+/// 8 healthy ones.
 TEST(ControlChart, NoticesAChangeThatComesSoonAfterTheStart) {
   int noticed = 0;
   for (unsigned seed = 0; seed < 100; ++seed) {
@@ -200,7 +204,7 @@ TEST(ControlChart, SaysSinceWhenAndByHowMuch) {
   EXPECT_GT(chart.alarm()->noticed, since);
   for (int i = 0; i < 50; ++i) chart.add({{recipe, healthy() - 0.6}});
   EXPECT_NEAR(chart.alarm()->change, -0.6, 0.1);
-  // What came since is no part of what is usual.
+  // The reference excludes the points since the change.
   double usual = 0;
   for (std::size_t i = 0; i < since; ++i) usual += values[i] / static_cast<double>(since);
   EXPECT_NEAR(chart.references().at(recipe).mean(), usual, 1e-12);
@@ -227,7 +231,7 @@ TEST(ControlChart, TakesSomebodyElsesAlarm) {
   EXPECT_FALSE(chart.alarm());
   chart.take_alarm(42);
   EXPECT_EQ(chart.alarm()->since, 42U);
-  chart.take_alarm(43);  // it has one since before
+  chart.take_alarm(43);  // the present alarm began earlier
   EXPECT_EQ(chart.alarm()->since, 42U);
   chart.take_alarm(40);
   ASSERT_TRUE(chart.alarm());
@@ -264,7 +268,7 @@ TEST(ControlChart, ARecipeIsComparedWithItselfAlone) {
     chart.add({{far > 0 ? "hand_over" : recipe, far + healthy()}});
   }
   EXPECT_FALSE(chart.alarm());
-  // A new recipe far from all others begins its own reference.
+  // A new recipe far from all others starts its own reference.
   for (int i = 0; i < 10; ++i) chart.add({{"new", 7 + healthy()}});
   EXPECT_FALSE(chart.alarm());
 }

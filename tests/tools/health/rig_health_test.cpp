@@ -25,14 +25,15 @@ std::string day_text(int day) {
   return "2026-0" + std::to_string(day / 28 + 1) + "-" + (two.size() < 2 ? "0" : "") + two;
 }
 
-/// Two fingers, three grips a day; weather moves the gain of both by `weather_mm` and stays for days.
+/// Two fingers with three grips per day. Weather that persists for days moves the gain of both fingers by
+/// `weather_mm`.
 struct Rig {
   unsigned seed = 1;
   double weather_mm = 0.12;
   bool thermometer = false;
-  double uneven = 1;  ///< by how much more the last finger follows the weather
+  double uneven = 1;  ///< factor by which the last finger follows the weather
   std::vector<std::string> names{"left", "right"};
-  /// What becomes of a number, in units of it.
+  /// Returns the change of a number on a day, in the unit of the number.
   std::function<double(const std::string& finger, HealthNumber number, int day)> becomes =
       [](const std::string&, HealthNumber, int) { return 0.0; };
 
@@ -69,7 +70,7 @@ struct Rig {
   }
 };
 
-/// `by` of the left finger's gain a day, from a day on.
+/// A rig whose left finger changes its gain by `by` [mm] per day from day `from`.
 Rig softening(unsigned seed, double by, int from) {
   Rig rig;
   rig.seed = seed;
@@ -85,8 +86,8 @@ std::size_t alarms_of(const RigHealth& rig) {
   return alarms;
 }
 
-// Stated are 4.4 alarms: 200 fingers are 16,000 points. Each finger alone takes weather for a change more
-// often.
+// The stated rate is 4.4 alarms: 200 fingers have 16,000 points. A finger that is judged alone attributes
+// weather to a change more often.
 TEST(RigHealth, WeatherIsNoAlarmOfAFinger) {
   std::size_t together = 0, alone = 0, warm = 0;
   for (unsigned seed = 0; seed < 100; ++seed) {
@@ -179,7 +180,7 @@ TEST(RigHealth, WhatAllFingersShareIsToldOfTheRigAndIsNoAlarm) {
   EXPECT_NE(shared_sentence(*told).find("pressure loss while holding +"), std::string::npos);
   EXPECT_NE(shared_sentence(*told).find("not recorded"), std::string::npos);
   EXPECT_EQ(json_of(*told)["number"], "pressure_loss_kpa");
-  // It ends with what was mended.
+  // The shared change ends with the repair.
   for (const SharedChange& shared : rig.judged({{day_text(60), "", "supply line"}}).shared)
     EXPECT_FALSE(shared.stands && shared.since == day_text(50));
 }
@@ -273,7 +274,7 @@ TEST(RigHealth, WhatTheRigSharesIsASignOfWhatCameWithIt) {
   SharedChange loss{HealthNumber::pressure_loss, 1, since, since, {"left", "right"}, false, true};
   EXPECT_EQ(suspicion_of(judged.fingers[0]).suspects.front().id, "ageing");
   EXPECT_EQ(suspicion_of(judged.fingers[0], {loss}).suspects.front().id, "leak");
-  loss.since = "2026-12-01";  // it came later
+  loss.since = "2026-12-01";  // the pressure loss began after the alarm
   EXPECT_EQ(suspicion_of(judged.fingers[0], {loss}).suspects.front().id, "ageing");
   EXPECT_TRUE(suspicion_of(judged.fingers[1], {loss}).suspects.empty());
 }
@@ -288,7 +289,8 @@ TEST(RigHealth, ThePageSaysWhatCouldNotBeAllowedFor) {
 }
 
 TEST(RigHealth, ADifferenceThatHasNoOwnerYetIsNoAlarm) {
-  // The weather is so much larger than the change that the fingers' own numbers do not tell.
+  // The weather is much larger than the change, so the numbers of one finger alone cannot attribute the
+  // change.
   int unclear = 0;
   for (unsigned seed = 0; seed < 20; ++seed) {
     Rig rig;

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double least = 1e-9;
 
-/// A number that follows the temperature by a tenth per degree, with a spread of 0.05.
+/// A number that follows the temperature with a slope of 0.1 per °C and has a standard deviation of 0.05.
 class Warm {
  public:
   explicit Warm(unsigned seed) : random_(seed) {}
@@ -44,7 +44,8 @@ TEST(RunningReference, FindsHowTheNumberFollowsTheTemperature) {
   EXPECT_GT(reference.slope()->highest_c, 22);
 }
 
-// Brown, Durbin and Evans: what a line of all values before leaves is independent and Student's t.
+// Brown, Durbin and Evans: the recursive residuals of a line through all earlier values are independent and
+// have Student's t distribution.
 TEST(RunningReference, HealthyValuesThatFollowTheTemperatureBecomeStandardNormalOnes) {
   double sum = 0, squares = 0, products = 0, count = 0;
   for (unsigned seed = 0; seed < 1500; ++seed) {
@@ -52,7 +53,8 @@ TEST(RunningReference, HealthyValuesThatFollowTheTemperatureBecomeStandardNormal
     RunningReference reference = learnt(warm, 12);
     double before = 0;
     for (int i = 0; i < 20; ++i) {
-      // Inside what was seen: beyond it more is doubted than a line that holds everywhere deserves.
+      // Stay within the observed temperatures: beyond them the reference adds an uncertainty that a truly
+      // linear dependence does not need.
       const double temperature_c = 20 + std::sin(i);
       const double value = warm.at(temperature_c);
       if (reference.slope()) {
@@ -81,7 +83,7 @@ TEST(RunningReference, ASlopeThatMayBeChanceIsNone) {
     for (int i = 0; i < 30; ++i) reference.learn(30 + 0.05 * normal(random), 20 + 2 * normal(random));
     found += reference.slope() ? 1 : 0;
   }
-  EXPECT_LE(found, 12);  // 2.7 are stated
+  EXPECT_LE(found, 12);  // the stated rate is 2.7
 }
 
 TEST(RunningReference, TemperaturesThatHardlyDifferTellNoSlope) {
@@ -101,14 +103,14 @@ TEST(RunningReference, BeyondTheTemperaturesSeenHalfOfWhatTheLineAddsIsDoubted) 
   const double beyond = 10 * reference.slope()->per_c;
   const double z = reference.judge(reference.expected(far_c) + beyond, least, far_c).value_or(0);
   EXPECT_NEAR(z, 2, 0.05);
-  // Where it was seen the same distance is many spreads.
+  // At an observed temperature the same deviation is more than 10 standard deviations.
   EXPECT_GT(reference.judge(reference.expected(20) + beyond, least, 20).value_or(0), 10);
 }
 
 TEST(RunningReference, AValueWithoutATemperatureIsComparedWithAll) {
   Warm warm(13);
   const RunningReference reference = learnt(warm, 50);
-  const double spread = 0.2;  // 2 degrees of a tenth each
+  const double spread = 0.2;  // 2 °C with 0.1 per °C
   const double z = reference.judge(reference.mean() + 3 * spread, least).value_or(0);
   EXPECT_NEAR(z, 3, 0.6);
 }

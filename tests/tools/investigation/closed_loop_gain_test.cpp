@@ -1,4 +1,4 @@
-// The extension's worth in closed loop.
+// The improvement of closed-loop control by the extended model.
 
 #include "tools/investigation/closed_loop_gain.h"
 
@@ -25,7 +25,7 @@ TEST(ClosedLoopGain, TheTwinsExtensionBeatsTheModelThatHidesItsLatency) {
   question.extended = loaded("bench_twin");
   question.span_mm = 27;
   const ClosedLoopGain gain = measure_closed_loop(question);
-#ifndef __SANITIZE_ADDRESS__  // which takes ten times as long
+#ifndef __SANITIZE_ADDRESS__  // the sanitizer takes ten times as long
   EXPECT_LT(gain.wall_s, 5);
 #endif
   EXPECT_FALSE(gain.recalibrated.refused.empty());
@@ -57,8 +57,8 @@ TEST(ClosedLoopGain, AModelWithoutAnInverseIsPlannedForInstead) {
   EXPECT_NE(json["closed_loop"]["notes"].dump().find("is planned before the run"), std::string::npos);
 }
 
-/// A friction that relaxes within a few ticks has no inverse, and a plan is too coarse for it: the rest of
-/// the model still knows most.
+/// Friction that relaxes within a few ticks has no inverse, and a planned feedforward is too coarse for it.
+/// The remaining blocks of the model still predict most of the motion.
 TEST(ClosedLoopGain, WhatOfAModelCanBeUndoneIsItsFeedforward) {
   model::Model finger = model::with_block({}, {model::block_type<model::PrandtlIshlinskii>(),
                                                {0, 0, 0, 0, 0, 0.06, 4, 0.084, 7.3, 0.105, 11.2, 0.108}});

@@ -15,7 +15,7 @@ model::Model loaded(const std::string& path) {
   return model::load_model(path, problems).value();
 }
 
-/// A stale one would be taken for a part of the model that is there now.
+/// A stale file would be mistaken for a part of the current model.
 TEST(DiagnosisFolder, HoldsTheModelOfTheFeedforwardWhereThatIsNotTheWholeOne) {
   const ScratchFolder scratch;
   const std::filesystem::path file = std::filesystem::path(scratch.path()) / "feedforward_model.yaml";

@@ -1,4 +1,4 @@
-// How an experiment's daemon ended, and the exit code that this gives the command.
+// The ending of an experiment's daemon and the resulting exit code of the command.
 
 #include "tools/investigation/experiment_rig.h"
 
@@ -20,7 +20,7 @@ namespace {
 using control::SequenceEnd;
 using daemon::Ending;
 
-/// A rig whose daemon ends as it is told, with a fault on the way.
+/// A rig whose daemon reports a fault and ends with the given outcome.
 ExperimentRig rig_that_ends(const daemon::Outcome& outcome) {
   document::Problems problems;
   rig::RigFile file = rig::load_rig(SOFTGRIP_SOURCE_DIR "/config/rig.yaml", problems).value();

@@ -1,4 +1,5 @@
-// The loop of `softgrip investigate`, on a finger that softens and whose first log cannot tell.
+// The loop of `softgrip investigate` on a finger with stress softening whose first log cannot separate the
+// causes.
 
 #include "tools/investigation/investigation.h"
 
@@ -29,17 +30,18 @@ model::Model loaded(const std::string& name) {
   return model::load_model(SOFTGRIP_SOURCE_DIR "/config/models/" + name + ".yaml", problems).value();
 }
 
-/// The finger that is investigated: softer than the given model after its largest load.
+/// Returns the investigated finger: softer than the given model after its largest load.
 model::Model finger() {
   return model::with_block(loaded("bench_twin"),
                            {sysid::find_cause("stress_softening")->forms.front().type, {0.006, 0}});
 }
 
-/// Two loads, the second larger, and no repetition.
+/// Two loads without a repetition; the second is larger.
 const sysid::Waveform first_load{
     "first", "", {{0, 0}, {1, 0}, {4, 30}, {7, 0}, {9, 0}, {13, 55}, {17, 0}, {20, 0}}};
 
-/// What the finger answers after the first load and a long rest: it remembers the load.
+/// Returns the response of the finger to the waveform, optionally after the first load and a long rest: the
+/// finger retains the softening by that load.
 sysid::Log played(const sysid::Waveform& waveform, bool after_first, std::uint64_t seed) {
   sysid::Log log;
   log.name = log.path = waveform.name;
@@ -192,7 +194,7 @@ TEST(CommandPlayer, CallsTheCommandWithACommandFileAndReadsItsLog) {
   fs::remove_all(folder);
 }
 
-/// A finger that stiffens: no command tells it from a bent scale.
+/// A finger that stiffens. No command can distinguish it from a nonlinear sensor scale.
 class GaugeStepTest : public InvestigationTest {
  protected:
   void SetUp() override {

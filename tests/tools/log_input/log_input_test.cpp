@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t samples = 400;
 
-/// A log that begins as its command was set from 5 to 60 kPa; the pressure follows with a lag of 0.3 s.
+/// A log that starts at a step of the command from 5 to 60 kPa; the pressure follows with a lag of 0.3 s.
 std::string begun_at_a_step(const daemon::testing::TemporaryFolder& folder, bool measured = true) {
   const std::string path = folder.path() + "/step.csv";
   std::ofstream out(path);

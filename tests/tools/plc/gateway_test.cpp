@@ -23,7 +23,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// A gateway, masters and a daemon that answers what it is asked to answer.
+/// A gateway with its masters and a daemon that gives the answers that the test chooses.
 class GatewayTest : public ::testing::Test {
  protected:
   static Settings shipped() {
@@ -42,7 +42,7 @@ class GatewayTest : public ::testing::Test {
     static_cast<void>(gateway_.serve(id, request, now_));
   }
   void write(Name name, std::uint16_t value) { write(plc_, name, {value}); }
-  /// Counter and command in one block.
+  /// Writes counter and command in one block.
   void put(Masters::Id id, std::uint16_t counter, CommandCode command) {
     write(id, Name::command_counter, {counter, static_cast<std::uint16_t>(command), 1});
   }
@@ -55,7 +55,7 @@ class GatewayTest : public ::testing::Test {
     return modbus::word_at(frame, frame.size() - 2);
   }
   std::uint16_t read(Name name) { return read(plc_, name); }
-  /// (outcome, reason) as that connection reads them.
+  /// Returns (outcome, reason) as this connection reads them.
   std::pair<Outcome, Reason> end_of(Masters::Id id) {
     return {static_cast<Outcome>(read(id, Name::outcome)), static_cast<Reason>(read(id, Name::reason))};
   }
@@ -64,7 +64,7 @@ class GatewayTest : public ::testing::Test {
     gateway_.daemon_came(now_);
     EXPECT_EQ(sent(), (std::vector<std::string>{"hello", "watch"}));
   }
-  /// The commands that have gone to the daemon since this was asked last.
+  /// Returns the commands that were sent to the daemon since the last call.
   std::vector<std::string> sent() {
     std::vector<std::string> commands;
     for (const Json& line : gateway_.lines_to_daemon()) {
@@ -82,7 +82,8 @@ class GatewayTest : public ::testing::Test {
       "sequence": null, "channels": []}})"),
                          now_);
   }
-  /// In steps, as the server turns. A daemon that speaks sends its state.
+  /// Advances the time in the steps of the server's loop. If `daemon_speaks`, the daemon sends its state in
+  /// each step.
   void pass(double duration_s, bool daemon_speaks = true) {
     for (const Nanoseconds end = now_ + nanoseconds(duration_s); now_ < end;) {
       now_ += Gateway::longest_pause;
@@ -112,7 +113,7 @@ TEST_F(GatewayTest, RefusesEachCommandOnceWithoutADaemon) {
   EXPECT_EQ(end_of(plc_), std::pair(Outcome::refused, Reason::no_such_command));
 }
 
-/// It aborts where a promise is broken.
+/// The fuzz target aborts if a checked property does not hold.
 TEST(PlcRequests, TheSeedsOfTheFuzzTargetAreAnsweredWholeAndCutOff) {
   std::size_t seeds = 0;
   for (const auto& entry :
@@ -143,7 +144,8 @@ TEST_F(GatewayTest, AnOldBlockFromASecondConnectionStartsNothing) {
   accept();
   put(second, 1, CommandCode::start);
   EXPECT_TRUE(sent().empty());
-  // The reason is for the connection that wrote it; the other one reads the end of its own command.
+  // The connection that wrote the command reads the reason. The other connection reads the end of its own
+  // command.
   EXPECT_EQ(end_of(second), std::pair(Outcome::refused, Reason::not_next));
   EXPECT_EQ(end_of(plc_), std::pair(Outcome::accepted, Reason::none));
   EXPECT_EQ(read(second, Name::done_counter), 2);
@@ -157,7 +159,7 @@ TEST_F(GatewayTest, ACommandThatWasRefusedOnOneConnectionIsNotExecutedOnAnother)
   daemon_comes();
   const Masters::Id second = come();
   put(plc_, 0, CommandCode::none);
-  put(second, 1, CommandCode::start);  // it has not written the newest counter
+  put(second, 1, CommandCode::start);  // this connection has not written the newest counter
   EXPECT_EQ(end_of(second), std::pair(Outcome::refused, Reason::not_next));
   put(plc_, 1, CommandCode::start);
   EXPECT_TRUE(sent().empty());
@@ -172,7 +174,7 @@ TEST_F(GatewayTest, AStartThatIsOlderThanARefusedVentIsNotExecuted) {
   const Masters::Id second = come();
   put(plc_, 0, CommandCode::none);
   put(second, 0, CommandCode::none);
-  put(second, 2, CommandCode::vent);  // the start before it has not arrived yet
+  put(second, 2, CommandCode::vent);  // the start with the previous counter has not arrived yet
   EXPECT_EQ(end_of(second), std::pair(Outcome::refused, Reason::not_next));
   put(plc_, 1, CommandCode::start);
   EXPECT_TRUE(sent().empty());
@@ -185,8 +187,8 @@ TEST_F(GatewayTest, TwoMastersDoNotWriteOneCommandTogether) {
   daemon_comes();
   const Masters::Id second = come("127.0.0.2");
   put(plc_, 0, CommandCode::none);
-  write(Name::command, 3);               // a vent is prepared
-  write(second, Name::command, {1, 1});  // and a start, by the second master
+  write(Name::command, 3);               // the first master prepares a vent
+  write(second, Name::command, {1, 1});  // the second master prepares a start
   EXPECT_EQ(read(Name::command), 3);
   write(Name::command_counter, 1);
   EXPECT_EQ(sent(), std::vector<std::string>{"vent"});
@@ -214,7 +216,7 @@ TEST_F(GatewayTest, TellsAMasterThatBeatsFromOneThatFellSilent) {
   put(plc_, 1, CommandCode::start);
   EXPECT_EQ(end_of(plc_), std::pair(Outcome::refused, Reason::master_silent));
   write(Name::master_heartbeat, 6);
-  EXPECT_EQ(read(Name::master), 2);  // until the daemon has stopped
+  EXPECT_EQ(read(Name::master), 2);  // until the daemon has confirmed the stop
   accept();
   EXPECT_EQ(read(Name::master), 1);
   put(plc_, 2, CommandCode::start);
@@ -238,13 +240,13 @@ TEST_F(GatewayTest, LastValuesOfTwoStoppedMastersAreNoHeartbeat) {
 TEST_F(GatewayTest, KeepsTheReactionUntilADaemonHasConfirmedIt) {
   daemon_comes();
   write(Name::master_heartbeat, 5);
-  gateway_.daemon_went();  // with the master
+  gateway_.daemon_went();  // the daemon and the master disappear together
   pass(settings_.silence_s + 0.1);
   EXPECT_TRUE(sent().empty());
   daemon_comes();
   pass(0.1);
   EXPECT_EQ(sent(), std::vector<std::string>{"stop"});
-  gateway_.daemon_went();  // before it has answered
+  gateway_.daemon_went();  // before the daemon has answered
   pass(1);
   daemon_comes();
   pass(0.1);
@@ -252,7 +254,7 @@ TEST_F(GatewayTest, KeepsTheReactionUntilADaemonHasConfirmedIt) {
   refuse({{"code", "busy"}});
   pass(0.1);
   EXPECT_EQ(sent(), std::vector<std::string>{"stop"});
-  refuse({{"code", "refused"}, {"refusal", {{"code", "R07"}}}});  // nothing to stop: that is an answer
+  refuse({{"code", "refused"}, {"refusal", {{"code", "R07"}}}});  // "nothing to stop" is an answer
   pass(1);
   EXPECT_TRUE(sent().empty());
   EXPECT_FALSE(gateway_.watch().owes());
@@ -265,7 +267,7 @@ TEST_F(GatewayTest, TheAnswerToAnEarlierReactionDoesNotConfirmALaterOne) {
   EXPECT_EQ(sent(), std::vector<std::string>{"stop"});
   write(Name::master_heartbeat, 6);
   pass(settings_.silence_s + 0.1);
-  EXPECT_TRUE(sent().empty());  // one is on its way
+  EXPECT_TRUE(sent().empty());  // an earlier stop has no answer yet
   accept();
   EXPECT_TRUE(gateway_.watch().owes());
   pass(0.1);
@@ -343,7 +345,7 @@ TEST_F(GatewayTest, WhatWaitedForTheCommandBeforeItIsSentAfterIt) {
   EXPECT_EQ(sent(), std::vector<std::string>{"start"});
 }
 
-/// The daemon's loop may still take the command: it is not refused.
+/// The control loop may still execute the command, so the command is not reported as refused.
 TEST_F(GatewayTest, ACommandThatTheLoopDidNotAnswerHasAnUnknownEnd) {
   daemon_comes();
   put(plc_, 0, CommandCode::none);

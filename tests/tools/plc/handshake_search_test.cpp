@@ -1,6 +1,7 @@
-// Every order of what two masters, the gateway and the daemon can do, breadth first, until no new state
-// appears. Each can repeat, delay, send half a request, or die. The gateway is the real one, from the bytes
-// of a request to the line for the daemon; masters and daemon are the least that keeps to their protocols.
+// Searches breadth first through every order of the actions of two masters, the gateway and the daemon, until
+// no new state appears. Each of them can repeat an action, delay it, send half a request, or die. The gateway
+// is the real one, from the bytes of a request to the line for the daemon. Masters and daemon are the
+// smallest programs that follow their protocols.
 
 #include <gtest/gtest.h>
 
@@ -24,14 +25,15 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Time passes in steps of this: two make a master silent, one a connection idle and the daemon silent.
+/// Time passes in steps of this duration. After two steps a master counts as silent, after one step a
+/// connection as idle and the daemon as silent.
 constexpr Nanoseconds step = ns_per_s * 3 / 2;
 constexpr int silent_steps = 2;
 constexpr std::size_t plcs = 2;
 constexpr std::uint16_t start = 1;
 constexpr std::uint16_t vent = 3;
 
-/// How often each thing may happen, so that the search ends.
+/// Limits of the number of actions, so that the search ends.
 struct Budget {
   std::array<int, plcs> commands{};
   std::array<int, plcs> connections{};
@@ -40,24 +42,24 @@ struct Budget {
   int daemon_deaths = 0;
   int pauses = 0;
   int busy = 0;
-  bool impatient = false;  // masters ask for a start though another command is under way
-  bool time = false;       // it passes, and the first master's heartbeat changes
+  bool impatient = false;  // masters request a start although another command is executing
+  bool time = false;       // time passes, and the first master's heartbeat changes
 };
 
 Settings settings_of_the_search() {
   document::Problems problems;
   Settings settings = *load_settings(SOFTGRIP_SOURCE_DIR "/config/plc.yaml", problems);
   settings.max_masters = plcs;
-  settings.idle_s = 1e6;  // nobody may need it
+  settings.idle_s = 1e6;  // no connection is closed because it is idle
   settings.registers.most_fingers = 1;
   return settings;
 }
 
-/// A block that a master has written, on its way.
+/// A block that a master has written and that has not arrived yet.
 struct Frame {
   std::array<std::uint16_t, 7> words{};
-  int command = -1;  // which one of World::commands; -1: none
-  int halts = 0;     // how many stops and vents had been executed when it was written
+  int command = -1;  // index in World::commands; -1: no command
+  int halts = 0;     // stops and vents that had been executed when the block was written
 
   [[nodiscard]] modbus::Bytes bytes() const {
     modbus::Bytes pdu{16, 0, 0, 0, 7, 14};
@@ -66,14 +68,14 @@ struct Frame {
   }
 };
 
-/// A connection. A master sends its next request when the last one is answered.
+/// A connection. A master sends its next request after the response to the last one.
 struct Wire {
   std::size_t plc = 0;
   Masters::Id id = 0;
   modbus::RequestStream stream;
   std::optional<Frame> flying;
-  bool half = false;                       // the first half of it has arrived
-  std::optional<std::uint16_t> heartbeat;  // that has arrived last
+  bool half = false;                       // the first half of the block has arrived
+  std::optional<std::uint16_t> heartbeat;  // the heartbeat that arrived last
 };
 
 enum class Progress { begins, synchronises, ready, waits };
@@ -85,17 +87,19 @@ struct Plc {
   std::uint16_t code = 0;
   int command = -1;
   std::uint16_t heartbeat = 0;
-  std::uint16_t heard = 0;  // its heartbeat that has arrived last
-  // The connection on which its block, as it is now, has been answered. It reads the end of a command there.
+  std::uint16_t heard = 0;  // the heartbeat of this master that arrived last
+  // The connection on which the present block has been answered. The master reads the end of its command
+  // there.
   Masters::Id answered_on = 0;
 };
 
-/// What a master asked, and what became of it.
+/// A command that a master requested, and its present state.
 struct Command {
   std::uint16_t code = 0;
   std::uint16_t counter = 0;
   bool executed = false;
-  // A busy daemon declined it, another command came after it, or the gateway that executed it died.
+  // True after a busy daemon declined the command, after another command, or after the gateway that executed
+  // it died.
   bool over = false;
   bool reported_refused = false;
 };
@@ -103,7 +107,7 @@ struct Command {
 struct Line {
   std::uint64_t id = 0;
   std::string command;
-  int asked = -1;  // which one of World::commands
+  int asked = -1;  // index in World::commands
 };
 
 struct World {
@@ -116,16 +120,16 @@ struct World {
   std::array<Plc, plcs> masters;
   std::vector<Wire> wires;
   std::vector<Command> commands;
-  // The daemon.
+  // State of the daemon.
   bool runs = false;
   bool paused = false;
   std::deque<Line> lines;
   std::deque<Json> answers;
-  // What is kept to judge by.
-  int halts = 0;  // executed: vents of masters, and reactions to a silence
+  // Records for the checks.
+  int halts = 0;  // number of executed halts: vents of masters and reactions to a silent master
   std::optional<Frame> waiting;
   bool watched = false;
-  bool owed = false;  // a silence has begun, and no daemon has stopped since
+  bool owed = false;  // a master has fallen silent, and no daemon has stopped since
   bool stopped_since_beat = false;
   int beat_steps = 0;
   Nanoseconds reacted_at = 0;
@@ -142,7 +146,8 @@ struct World {
     if (!holds && broken.empty()) broken = otherwise;
   }
 
-  /// What the gateway sends leaves at once. `cause`: the block by which it came to that.
+  /// Moves the lines of the gateway to the daemon at once. `cause`: the block that made the gateway send
+  /// them.
   void carry(const std::optional<Frame>& cause) {
     for (const Json& line : gateway->lines_to_daemon()) {
       const std::string command = line["command"];
@@ -178,14 +183,14 @@ struct World {
     std::erase_if(wires, [&](const Wire& wire) { return !gateway->masters().has(wire.id); });
   }
 
-  // A master. Its earlier connections stay open: they may be dead, or only slow.
+  // Actions of a master. Its earlier connections remain open: they may be dead, or only slow.
   bool connect(std::size_t plc) {
     const auto id = gateway->masters().admit(address_of(plc), now);
     drop_closed();
     if (id) wires.push_back({plc, *id, {}, {}, false, {}});
     return id.has_value();
   }
-  /// The block as it is: in every cycle, by a master whose program has stopped, too.
+  /// Sends the present block. A master writes it in every cycle, even if its program has stopped.
   void write(std::size_t plc) { write_on(*wire_of(plc)); }
   void write_on(Wire& wire) {
     Plc& master = masters[wire.plc];
@@ -239,7 +244,7 @@ struct World {
     const modbus::Bytes& frame = reply.pieces.at(0).bytes;
     return {modbus::word_at(frame, 9), modbus::word_at(frame, 11), modbus::word_at(frame, 13)};
   }
-  /// Reads the end of its command, and goes on as docs/reference/plc-map.md says.
+  /// Reads the end of the master's command and continues as docs/reference/plc-map.md specifies.
   void look(std::size_t plc) {
     Plc& master = masters[plc];
     const auto [done, outcome_word, reason_word] = read(wire_of(plc)->id);
@@ -264,7 +269,7 @@ struct World {
     check(!asked.executed || asked.over, "a command is reported as refused that was executed");
     asked.reported_refused = true;
   }
-  /// Two masters that ask for the same thing with the same counter are answered alike.
+  /// If two masters request the same command with the same counter, both receive the same outcome.
   void judge_accepted(const Plc& master) {
     const bool executed = std::any_of(commands.begin(), commands.end(), [&](const Command& asked) {
       return asked.executed && asked.counter == master.counter && asked.code == master.code;
@@ -281,7 +286,7 @@ struct World {
     commands.push_back({code, master.counter, false, false, false});
   }
 
-  // The daemon.
+  // Actions of the daemon.
   void daemon_starts() {
     runs = true;
     gateway->daemon_came(now);
@@ -323,8 +328,8 @@ struct World {
     for (Command& command : commands) command.over = command.over || command.executed;
     wires.clear();
     waiting.reset();
-    answers
-        .clear();  // what the daemon says to the dead one; what that one sent is heard before what comes now
+    answers.clear();  // the dead gateway's answers are lost; its lines reach the daemon before the lines of
+                      // the new gateway
     for (Plc& master : masters) master.heard = 0;
     watched = owed = stopped_since_beat = false;
     beat_steps = 0;
@@ -342,8 +347,8 @@ struct World {
   }
 
   [[nodiscard]] std::string key() const;
-  /// What is broken for good, though nothing more goes wrong: the reaction to a silence is lost, or the first
-  /// master is locked out.
+  /// Returns a lasting defect that remains without further failures, or "": the reaction to a silence is
+  /// lost, or the first master is locked out.
   [[nodiscard]] std::string lost_for_good() const;
 };
 
@@ -365,7 +370,8 @@ class Key {
   std::string text_;
 };
 
-/// Everything that matters for what can still happen. Times are steps ago, ids are places in their order.
+/// Returns everything that decides the possible further actions. Times are counted in steps back from now;
+/// ids are replaced by their rank.
 std::string World::key() const {
   Key key;
   const Handshake& handshake = gateway->handshake();
@@ -433,7 +439,7 @@ std::string World::lost_for_good() const {
   world.paused = false;
   settle();
   if (world.owed || world.gateway->watch().owes()) return "the reaction to a silence is lost";
-  // The programs of all masters stop, and their last blocks are written on.
+  // The programs of all masters stop, and their connections repeat the last blocks.
   for (Plc& master : world.masters) master.alive = false;
   for (int i = 0; i < 2 * silent_steps; ++i) {
     for (std::size_t wire = 0; wire < world.wires.size(); ++wire) {
@@ -473,7 +479,7 @@ struct Step {
   std::function<void(World&)> take;
 };
 
-/// What can happen in a state.
+/// Returns the actions that are possible in a state.
 std::vector<Step> steps_from(World& world) {
   std::vector<Step> steps;
   const auto add = [&](bool possible, std::string name, std::function<void(World&)> take) {

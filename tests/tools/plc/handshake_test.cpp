@@ -58,11 +58,11 @@ TEST(Handshake, OnlyTheNextCounterIsExecuted) {
   for (const int wrong : {0, 1, 4, 5, 40000, 65535}) {
     EXPECT_FALSE(handshake.write(plc, {static_cast<std::uint16_t>(wrong), start})) << wrong;
     EXPECT_TRUE(plc.refused) << wrong;
-    // It is no place to begin from, either.
+    // A wrong counter is no valid first counter, either.
     EXPECT_FALSE(handshake.write(plc, {static_cast<std::uint16_t>(wrong), none})) << wrong;
     EXPECT_TRUE(plc.refused) << wrong;
   }
-  // A refusal changes nothing of the last command, and the next counter is executed.
+  // A refusal does not change the outcome of the last command, and the next counter is executed.
   EXPECT_EQ(handshake.done_counter(), 2);
   EXPECT_EQ(handshake.outcome(), Outcome::accepted);
   EXPECT_TRUE(handshake.write(plc, {3, start}));
@@ -79,7 +79,7 @@ TEST(Handshake, ABlockThatArrivesLateOnAnotherConnectionIsRefused) {
   handshake.finish(1, Outcome::accepted);
   EXPECT_TRUE(handshake.write(second, {2, vent}));
   handshake.finish(2, Outcome::accepted);
-  // The blocks that the first one sent before them, in its order.
+  // The earlier blocks of the first connection arrive late, in their order.
   EXPECT_FALSE(handshake.write(first, {1, start}));
   EXPECT_TRUE(first.refused);
   EXPECT_FALSE(handshake.write(first, {2, start}));
@@ -88,7 +88,7 @@ TEST(Handshake, ABlockThatArrivesLateOnAnotherConnectionIsRefused) {
   EXPECT_TRUE(first.refused);
   EXPECT_FALSE(second.refused);
   EXPECT_EQ(handshake.done_counter(), 2);
-  // After it has written the newest one, it may command again.
+  // After the connection has written the newest counter, it may send commands again.
   EXPECT_FALSE(handshake.write(first, {2, none}));
   EXPECT_FALSE(first.refused);
   EXPECT_TRUE(handshake.write(first, {3, start}));
@@ -106,7 +106,7 @@ TEST(Handshake, OfTwoMastersThatCountToTheSameNumberTheSecondIsRefused) {
   handshake.finish(1, Outcome::accepted);
   EXPECT_FALSE(handshake.write(second, {1, vent}));
   EXPECT_TRUE(second.refused);
-  // A master that connects again writes the same block as before.
+  // A master that connects again repeats its last block.
   Cursor again;
   EXPECT_FALSE(handshake.write(again, {1, start}));
   EXPECT_FALSE(again.refused);
@@ -118,7 +118,7 @@ TEST(Handshake, ANextCommandMayBePreparedBehindTheLastCounter) {
   EXPECT_FALSE(handshake.write(plc, {0, none}));
   EXPECT_TRUE(handshake.write(plc, {1, start}));
   handshake.finish(1, Outcome::accepted);
-  EXPECT_FALSE(handshake.write(plc, {1, vent}));  // the counter is counted up in the next cycle
+  EXPECT_FALSE(handshake.write(plc, {1, vent}));  // the master increments the counter in the next cycle
   EXPECT_FALSE(plc.refused);
   EXPECT_EQ(handshake.outcome(), Outcome::accepted);
   EXPECT_TRUE(handshake.write(plc, {2, vent}));
@@ -132,11 +132,11 @@ TEST(Handshake, OnlyStopAndVentOvertake) {
   EXPECT_FALSE(handshake.write(plc, {2, release}));
   EXPECT_TRUE(handshake.waits());
   EXPECT_FALSE(handshake.take_waiting());
-  EXPECT_FALSE(handshake.write(plc, {3, release}));  // one may wait
+  EXPECT_FALSE(handshake.write(plc, {3, release}));  // one command may wait
   EXPECT_TRUE(plc.refused);
   EXPECT_TRUE(handshake.write(plc, {3, vent}));
   EXPECT_FALSE(handshake.waits());
-  handshake.finish(1, Outcome::accepted);  // overtaken: not reported
+  handshake.finish(1, Outcome::accepted);  // superseded by a later command: not reported
   EXPECT_EQ(handshake.outcome(), Outcome::executing);
   handshake.finish(3, Outcome::accepted);
   EXPECT_EQ(handshake.done_counter(), 3);

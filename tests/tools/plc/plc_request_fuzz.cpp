@@ -1,5 +1,4 @@
-// Fuzz target: what a master may send to softgrip-plc, byte by byte, in pieces of any size, while no daemon
-// is there.
+// Fuzz target: the bytes that a master may send to softgrip-plc, in pieces of any size, without a daemon.
 //
 //   cmake --preset fuzz && cmake --build --preset fuzz --target plc_request_fuzz
 //   build/fuzz/tests/plc_request_fuzz -max_total_time=660 -max_len=1024 NEW_CORPUS
@@ -28,7 +27,7 @@ plc::Settings shipped() {
   return *settings;
 }
 
-/// One frame, whole, to the request that was asked.
+/// Checks that the reply is one complete frame that matches the request.
 void check(const modbus::Request& request, const modbus::Reply& reply) {
   require(reply.pieces.size() == 1 && !reply.disconnect);
   const std::span<const std::uint8_t> frame = reply.pieces.front().bytes;
@@ -39,7 +38,7 @@ void check(const modbus::Request& request, const modbus::Reply& reply) {
   require((frame[header] & 0x7fU) == (request.pdu[0] & 0x7fU));
 }
 
-/// What only the gateway may write, read by a request of its own.
+/// Reads a register that only the gateway may write, with a separate request.
 std::uint16_t read(plc::Gateway& gateway, plc::Masters::Id id, std::uint16_t address, Nanoseconds now) {
   modbus::Request request{0, 1, {3}};
   modbus::append_word(request.pdu, address);
@@ -69,7 +68,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       now += 10'000'000;
       check(*request, gateway.serve(*master, *request, now));
       require(read(gateway, *other, settings.registers.at(Name::map_version), now) == plc::version_of_map);
-      // Without a daemon nothing is ever under way or carried out.
+      // Without a daemon no command is ever executing or accepted.
       for (const auto reader : {*master, *other}) {
         const auto outcome =
             static_cast<plc::Outcome>(read(gateway, reader, settings.registers.at(Name::outcome), now));

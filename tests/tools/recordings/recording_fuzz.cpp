@@ -1,6 +1,5 @@
-// Fuzz target of what is read back from a recording and from the daemon: run.json of a recording's folder,
-// and the same bytes as a status and as an event that came over the socket. Whatever they are, reading ends
-// without harm.
+// Fuzz target of the readers of recordings and of the daemon's lines. The same bytes are read as run.json of
+// a recording, as a status and as an event of the socket. All bytes must be read without a crash.
 //
 //   scripts/fuzz.sh recording_fuzz 30
 
@@ -22,7 +21,7 @@ namespace {
 
 using namespace softgrip;
 
-/// A recording's folder in memory, whose run.json is what the fuzzer says.
+/// Folder of a recording in memory; the fuzzer provides its run.json.
 class Folder {
  public:
   Folder() : path_("/dev/shm/softgrip_recording_fuzz_" + std::to_string(getpid())) {
@@ -46,7 +45,7 @@ class Folder {
 
 void show(const nlohmann::ordered_json& json) {
   if (!json.is_object()) return;
-  // A daemon that says nonsense ends the program with a sentence; it must not do more than that.
+  // Invalid lines of a daemon may end the program with an error message, but must have no other effect.
   try {
     for (const std::string& line : tools::view_of(json, {80, true, true})) {
       if (line.find('\n') != std::string::npos) std::abort();
@@ -69,7 +68,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   std::ofstream(folder.path() + "/run.json", std::ios::binary) << text;
   document::Problems problems;
   const auto recording = tools::read_recording(folder.path(), problems);
-  // The rows are whole, so the recording opens, whatever its story is.
+  // The rows are complete, so the recording opens with any run.json.
   if (!recording || recording->channels.size() != 1 || recording->channels.front().size() != 3) std::abort();
   show(nlohmann::ordered_json::parse(text, nullptr, false));
   return 0;

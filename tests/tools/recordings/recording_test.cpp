@@ -72,7 +72,7 @@ TEST_F(RecordingTest, SplitsChannelsAndKeepsWhatHappened) {
   EXPECT_EQ(picture.find("<b>"), std::string::npos) << "texts are escaped";
 }
 
-// The reference of a grip lies beyond the object: 4 mm short of it on a stone is no tracking error.
+// The reference of a grip is beyond the object. A shortfall of 4 mm at a stone is not a tracking error.
 TEST_F(RecordingTest, WhatTheObjectTakesIsNoTrackingError) {
   write("run.csv",
         "time_s,pressure_command_kpa,displacement_mm,reference_mm,state,step,result\n"
@@ -100,7 +100,7 @@ TEST_F(RecordingTest, WhatTheObjectTakesIsNoTrackingError) {
   EXPECT_NE(picture.find(">gripping<"), std::string::npos);
 }
 
-// An empty grip is free motion to its end.
+// A grip without an object is free motion until its end.
 TEST_F(RecordingTest, AGripThatFoundNothingIsFreeMotion) {
   write("run.csv",
         "time_s,pressure_command_kpa,displacement_mm,reference_mm,state,step,result\n"
@@ -139,7 +139,7 @@ TEST_F(RecordingTest, WhatIsNoRecordingIsRefused) {
   EXPECT_EQ(read().error(), ExitCode::input_refused);
 }
 
-/// On a reader that waits for a writer this test does not end.
+/// If the reader waited for a writer of the pipe, this test would not end.
 TEST_F(RecordingTest, APipeInsteadOfAFileIsNotWaitedFor) {
   write("run.csv", csv);
   ASSERT_EQ(::mkfifo((folder / "run.json").c_str(), 0600), 0);

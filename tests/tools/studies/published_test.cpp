@@ -98,7 +98,8 @@ TEST(PublishedStudy, TheExplicitInverseGrowsByBetaOverAlphaAndTheImplicitOneIsEx
     EXPECT_EQ(row.refused, row.ratio >= 1) << row.ratio;
     if (row.ratio < 1) {
       EXPECT_LT(row.implicit_error_kpa, 1e-8) << row.ratio;
-      // A fixed-point iteration that contracts by the ratio lags a moving target by this at most.
+      // The lag of a contracting fixed-point iteration behind a moving target is at most ratio / (1 - ratio)
+      // jumps.
       EXPECT_LT(row.explicit_error_kpa, row.ratio / (1 - row.ratio) * row.true_jump_kpa) << row.ratio;
     } else if (row.ratio > 1) {
       EXPECT_GT(row.explicit_error_kpa, 20) << row.ratio;

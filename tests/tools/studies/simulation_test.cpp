@@ -36,7 +36,7 @@ TEST(Simulate, DoesNotDependOnTheRate) {
   sysid::Log fine = sampled_signal(model::SignalName::sp1, 500);
   simulate(model, {}, coarse);
   simulate(model, {}, fine);
-  // The command is smooth; straight pieces of 20 ms miss it by far less than this.
+  // The command is smooth: linear interpolation over 20 ms deviates by much less than this tolerance.
   for (std::size_t i = 0; i < coarse.size(); ++i) {
     ASSERT_NEAR(coarse.displacement_mm[i], fine.displacement_mm[10 * i], 0.01)
         << "at " << coarse.time_s[i] << " s";
@@ -83,7 +83,7 @@ TEST(Simulate, UsesTheTimesOfAnIrregularLog) {
   const model::Model model = twin();
   sysid::Log regular = sampled_signal(model::SignalName::tp2, 1000);
   simulate(model, {}, regular);
-  // Keep samples at growing distances while the command stays on its straight pieces in between.
+  // Keep samples at increasing distances; between them the command remains piecewise linear.
   sysid::Log irregular;
   for (std::size_t i = 0; i < regular.size(); i += 1 + i % 3) {
     irregular.time_s.push_back(regular.time_s[i]);

@@ -1,4 +1,4 @@
-// softgrip report --verify on what identify wrote.
+// softgrip report --verify on the files that identify wrote.
 
 #include "tools/verification/verification.h"
 
@@ -87,7 +87,8 @@ TEST_F(Verification, ACallThatWouldWriteElsewhereIsNotMade) {
   EXPECT_NE(verified(3)["missing"][0].get<std::string>().find("key call"), std::string::npos);
 }
 
-/// A report that another program or an attacker wrote: a sentence and exit code 3, whatever is in it.
+/// A report of another program or of an attacker: every malformed report gives an error message and exit
+/// code 3.
 TEST_F(Verification, AMalformedReportIsRefusedWithASentence) {
   const std::string good = read("report/identify.json");
   const auto spoilt = [&](const char* pointer, const nlohmann::ordered_json& value) {
@@ -129,7 +130,7 @@ TEST_F(Verification, AMalformedReportIsRefusedWithASentence) {
     run("report --verify report --json");
     EXPECT_TRUE(nlohmann::json::accept(read("out.txt"))) << read("out.txt").substr(0, 200);
   }
-  // Of another type, but no key that the verification needs.
+  // The value has another type, but the verification does not need this key.
   write("report/identify.json", spoilt("/software", {1}));
   EXPECT_EQ(verified(0)["reported_by"], "");
 }

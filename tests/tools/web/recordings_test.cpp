@@ -31,7 +31,7 @@ class RecordingsTest : public ::testing::Test {
     fs::create_directories(folder_ / recording);
     std::ofstream(folder_ / recording / file) << file;
   }
-  /// A minute later: every time stamp is old enough to be trusted.
+  /// Lists the recordings one minute later, when every time stamp is old enough to be trusted.
   std::string list() { return recordings_.list(wall_time_now() + 60 * ns_per_s).dump(); }
 
   fs::path folder_ = fs::temp_directory_path() / ("recordings_" + std::to_string(::getpid()));

@@ -70,7 +70,7 @@ TEST(RequestFrame, HeadsHaveABound) {
       << "at once, before the head has ended";
 }
 
-/// It aborts where a promise is broken.
+/// The fuzz target aborts if a checked property does not hold.
 TEST(RequestFrame, TheSeedsOfTheFuzzTargetAreServedWholeAndCutOff) {
   std::size_t seeds = 0;
   for (const auto& entry :

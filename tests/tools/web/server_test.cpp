@@ -1,4 +1,4 @@
-// The server on a real socket, without a daemon behind it.
+// The server on a real socket, without a daemon.
 
 #include "tools/web/server.h"
 
@@ -59,7 +59,7 @@ class ServerTest : public ::testing::Test {
 
   Descriptor connect() const {
     Descriptor socket{::socket(AF_INET, SOCK_STREAM, 0)};
-    // One who does not read leaves the most to the server.
+    // A client with a small receive buffer leaves most of the response in the server.
     const int small = 4096;
     ::setsockopt(socket.get(), SOL_SOCKET, SO_RCVBUF, &small, sizeof small);
     sockaddr_in address{};
@@ -86,7 +86,7 @@ class ServerTest : public ::testing::Test {
     say(socket, request);
     return all_from(socket);
   }
-  /// Tries again while there is no place.
+  /// Repeats the request while the server has no free place.
   std::string ask_patiently(const std::string& request) const {
     std::string answer;
     for (int attempt = 0; attempt < 100 && (answer.empty() || answer.starts_with(turned_away)); ++attempt) {
@@ -174,11 +174,11 @@ TEST_F(ServerTest, AFileThatBecomesShorterEndsItsAnswer) {
   EXPECT_TRUE(ask(get_page).starts_with("HTTP/1.1 200"));
 }
 
-/// A daemon that answers when the test wants it.
+/// A daemon that answers when the test requests it.
 class ScriptedDaemon {
  public:
   explicit ScriptedDaemon(const std::string& path) : listener_(std::move(*modbus::listen_unix(path))) {}
-  /// The next command that comes; null if none does.
+  /// Returns the next command, or null if no command arrives.
   nlohmann::json next_command() {
     for (;;) {
       const std::size_t end = text_.find('\n');

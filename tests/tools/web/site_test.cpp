@@ -1,4 +1,4 @@
-// The site as a function from requests to answers.
+// The site as a function from requests to responses.
 
 #include "tools/web/site.h"
 
