@@ -22,26 +22,26 @@ constexpr const char* ends_with_block = "what a block has started ends with it";
 constexpr const char* stops_no_other = "leaving a block stops no other start";
 constexpr std::size_t client_count = 2;
 constexpr std::array block_sequences{"free_stroke", "empty_grip", "pressure_staircase", "hand_over"};
-/// Between two reads of a client.
+/// Pause between two reads of a client.
 constexpr Nanoseconds client_look_pause = ns_per_s / 50;
-/// As long as the client waits for an answer.
+/// Longest time for which a client waits for an answer.
 constexpr Nanoseconds block_patience = 5 * ns_per_s;
-/// From a stop that was sent to the end, of undisturbed time.
+/// Longest undisturbed time from the sending of a stop to the end of the sequence.
 constexpr Nanoseconds block_end_bound = 2 * ns_per_s;
 /// Share of the blocks whose program is killed before it sends a stop.
 constexpr double killed_share = 0.1;
 constexpr std::uint64_t start_line = 1;
 constexpr std::uint64_t stop_line = 2;
 
-/// A start, and what its client did with it.
+/// A start and the later actions of its client.
 struct Started {
   std::string id;
-  std::uint64_t life = 0;                ///< of the daemon
-  std::optional<std::uint32_t> request;  ///< the daemon has accepted it
-  bool left = false;                     ///< a stop of it was sent ...
-  bool confirmed = false;                ///< ... and answered
+  std::uint64_t life = 0;                ///< number of the daemon's life
+  std::optional<std::uint32_t> request;  ///< id of the request that the daemon has accepted
+  bool left = false;                     ///< the client has sent a stop of this start
+  bool confirmed = false;                ///< the daemon has answered the stop
   bool halted = false;                   ///< another client has stopped, vented or released since
-  Nanoseconds waited = 0;                ///< undisturbed, since the stop was sent
+  Nanoseconds waited = 0;                ///< undisturbed time since the stop was sent
 };
 
 class BlocksInWorld final : public Guest {
@@ -121,7 +121,7 @@ class BlocksInWorld final : public Guest {
     if (life == life_ && host_.daemon() != nullptr) host_.daemon()->socket->hang_up(client);
   }
 
-  /// Sends the stop without a question before it.
+  /// Sends the stop at once, without a status query before it.
   void leave(daemon::ClientId client, Started& started, std::uint64_t life) {
     Json line = tools::stop_of(started.id);
     line["id"] = stop_line;
@@ -158,7 +158,7 @@ class BlocksInWorld final : public Guest {
   std::uint64_t seed_;
   std::uint64_t drawn_ = 0;
   std::shared_ptr<const daemon::SequenceLoader> loader_;
-  std::uint64_t life_ = 0;  // of the daemon
+  std::uint64_t life_ = 0;  // number of the daemon's life
   std::deque<Started> started_;
   Nanoseconds seen_ = 0;
 };

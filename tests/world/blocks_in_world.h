@@ -1,6 +1,6 @@
 #pragma once
 // Clients of the daemon that start a sequence in a block and stop this start when they leave the block. The
-// Python client and `softgrip start` have the same protocol.
+// Python client and `softgrip start` follow the same protocol.
 
 #include <memory>
 

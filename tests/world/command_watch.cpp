@@ -22,10 +22,10 @@ constexpr const char* reaction_kept = "the reaction to a silent master is not lo
 
 constexpr auto start_code = static_cast<std::uint16_t>(plc::CommandCode::start);
 constexpr auto vent_code = static_cast<std::uint16_t>(plc::CommandCode::vent);
-/// Undisturbed time from a silence to a daemon's answer to the reaction.
+/// Longest undisturbed time from the beginning of a silence to a daemon's answer to the reaction.
 constexpr Nanoseconds reaction_bound = 2 * ns_per_s;
 
-/// The daemon has answered for good: it has stopped, or there was nothing to stop.
+/// Returns true if the answer is final: the daemon has stopped, or there was nothing to stop.
 bool answers_for_good(const Json& line) {
   if (line.value("ok", false)) return true;
   constexpr int starting = static_cast<int>(plc::Reason::refusal) + 6;
@@ -46,7 +46,7 @@ void CommandWatch::sent(const Json& line, const std::optional<Block>& cause, Nan
   const std::string name = line["command"];
   const auto id = line["id"].get<std::uint64_t>();
   if (name == "hello" || name == "watch") return;
-  // No master commands a stop: it is the reaction.
+  // No master commands a stop, so this stop is the reaction to a silent master.
   if (name == "stop") {
     look(now);
     ++halts_;

@@ -22,32 +22,32 @@ class CommandWatch {
 
   std::function<void(const char* invariant, std::string text)> on_break;
 
-  /// The number of the next command.
+  /// Returns the number of the next command.
   [[nodiscard]] int next_number() const noexcept { return static_cast<int>(commands_.size()); }
   void ask(std::uint16_t code, std::uint16_t counter) { commands_.push_back({code, counter}); }
-  /// A block with a command has arrived.
+  /// Called when a block with a command has arrived.
   void arrived(int command);
-  /// A line leaves for the daemon. `cause`: the block that led to it.
+  /// Called when the gateway sends a line to the daemon. `cause`: the block that made it send the line.
   void sent(const nlohmann::ordered_json& line, const std::optional<Block>& cause, Nanoseconds now);
-  /// A line of the daemon arrives.
+  /// Called when a line of the daemon arrives.
   void answered(const nlohmann::ordered_json& line);
   void daemon_died();
-  /// The next one knows nothing of what was.
+  /// Called when the gateway dies. The next gateway does not know the earlier commands.
   void gateway_died();
   void read_refused(int command);
   void read_accepted(std::uint16_t code, std::uint16_t counter);
 
-  /// A master's heartbeat has changed.
+  /// Called when a master's heartbeat has changed.
   void beat(Nanoseconds now);
   void look(Nanoseconds now);
-  /// Time has passed; `undisturbed`: nothing hinders gateway and daemon.
+  /// Called when time has passed; `undisturbed`: no incident affects gateway or daemon.
   void passed(Nanoseconds now, bool undisturbed);
 
-  /// The number of stops and vents that were executed.
+  /// Returns the number of executed stops and vents.
   [[nodiscard]] std::uint64_t halts() const noexcept { return halts_; }
   [[nodiscard]] std::uint64_t asked() const noexcept { return commands_.size(); }
   [[nodiscard]] std::uint64_t executed() const noexcept { return executed_; }
-  /// The number of silences since the last call.
+  /// Returns the number of silences since the last call.
   [[nodiscard]] std::uint64_t take_silences() noexcept { return std::exchange(silences_, 0); }
 
  private:
@@ -56,14 +56,14 @@ class CommandWatch {
     std::uint16_t counter = 0;
     bool arrived = false;
     bool executed = false;
-    /// The daemon declined it, another command came after it, or the gateway that executed it died.
+    /// The daemon declined the command, another command came after it, or the gateway that executed it died.
     bool over = false;
     bool read_as_refused = false;
   };
-  /// A line that the daemon has not answered.
+  /// A line that the daemon has not answered yet.
   struct Sent {
-    int command = -1;           ///< -1: the reaction to a silence
-    std::uint64_t silence = 0;  ///< the newest one, then
+    int command = -1;           ///< number of the command; -1: the reaction to a silence
+    std::uint64_t silence = 0;  ///< number of the newest silence when the line was sent
   };
   void execute(const std::string& name, const std::optional<Block>& cause, std::uint64_t id);
   void check(bool holds, const char* invariant, const char* otherwise) {
@@ -72,16 +72,16 @@ class CommandWatch {
 
   Nanoseconds silence_;
   std::vector<Command> commands_;
-  std::map<std::uint64_t, Sent> sent_;  // by the line's id
+  std::map<std::uint64_t, Sent> sent_;  // key: id of the line
   std::uint64_t halts_ = 0;
   std::uint64_t executed_ = 0;
   std::uint64_t silences_ = 0;
   std::optional<Nanoseconds> beat_at_;
-  bool silent_ = false;  // and counted
+  bool silent_ = false;  // the present silence has been counted
   std::uint64_t silence_number_ = 0;
   bool owed_ = false;  // no daemon has answered the reaction to the newest silence
   Nanoseconds seen_ = 0;
-  Nanoseconds waited_ = 0;  // undisturbed, while it is owed
+  Nanoseconds waited_ = 0;  // undisturbed time during which the reaction has been due
 };
 
 }  // namespace softgrip::world

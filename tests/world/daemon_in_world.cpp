@@ -17,9 +17,9 @@ using daemon::shutdown_deadline;
 constexpr Nanoseconds look_pause = ns_per_s / 20;
 constexpr Nanoseconds service_pause = ns_per_s / 50;
 constexpr Nanoseconds heartbeat_patience = ns_per_s / 2;
-/// WatchdogSec of the unit.
+/// WatchdogSec of the systemd unit.
 constexpr Nanoseconds manager_patience = 2 * ns_per_s;
-/// How long the rig may take to become idle before the one-shot run is given up.
+/// Longest time for the rig to become idle before the one-shot run is abandoned.
 constexpr Nanoseconds one_shot_patience = 10 * ns_per_s;
 
 daemon::Provenance provenance_of(const rig::RigFile& rig) {
@@ -99,7 +99,7 @@ void DaemonInWorld::main_body() {
   for (const Part part : {Part::service, Part::recorder}) {
     while (!scheduler_.done(actor(part))) clock.sleep_until(clock.now() + ns_per_s / 1000);
   }
-  // A thread that hangs cannot be joined: the process ends without it.
+  // A thread that hangs cannot be joined, so the process ends without it.
   for (const Part part : {Part::loop, Part::bus}) scheduler_.kill(actor(part));
   ended_ = true;
 }
@@ -132,12 +132,12 @@ void DaemonInWorld::serve() {
   service.pump();
   for (auto request = requests_.begin(); request != requests_.end();) {
     const auto id = service.submit(request->kind, request->sequence);
-    if (!id) {  // busy: this client tries again
+    if (!id) {  // busy: the client repeats the request
       ++request;
       continue;
     }
     on_submit(request->kind, *id);
-    // Until then the service answers that it is busy.
+    // While an earlier request waits, the service answers that it is busy.
     unanswered_[*id] = {request->kind, scheduler_.now()};
     request = requests_.erase(request);
   }

@@ -1,6 +1,6 @@
 #pragma once
-// One life of the daemon: the same loop, bus, service and recorder as on a rig, each with the body that its
-// thread has there (daemon/service/real_run.cpp), on the world's clock.
+// One life of the daemon: the same loop, bus, service and recorder as on a rig, on the simulated clock. Each
+// of them runs the same thread body as in daemon/service/real_run.cpp.
 
 #include <functional>
 #include <map>
@@ -26,14 +26,14 @@ namespace softgrip::world {
 enum class Part : std::uint8_t { loop, bus, service, recorder, main };
 inline constexpr std::size_t part_count = 5;
 
-/// What a client asked and has no answer to yet.
+/// A request of a client that has no answer yet.
 struct Asked {
   control::Request::Kind kind = control::Request::Kind::none;
   Nanoseconds at = 0;
 };
 
-/// The loop's clock. No two looks at it show the same time, as on any machine: the row of leaving has its
-/// own.
+/// The loop's clock. No two readings are equal, as on a real machine, so the row at shutdown has a time of
+/// its own.
 class LoopClock final : public WorldClock {
  public:
   using WorldClock::WorldClock;
@@ -47,17 +47,18 @@ class LoopClock final : public WorldClock {
   mutable Nanoseconds last_ = 0;
 };
 
-/// The differences between one life and another.
+/// The properties in which the lives of daemons differ.
 struct Life {
-  std::string folder;         ///< of the recordings
-  std::string record_folder;  ///< if not empty, everything is recorded into this one
-  std::shared_ptr<const daemon::LoadedSequence> sequence;  ///< a one-shot run, after which it ends
-  std::shared_ptr<const daemon::SequenceLoader> loader;    ///< clients come on its socket
+  std::string folder;         ///< folder of the recordings
+  std::string record_folder;  ///< if not empty, all recordings are written to this folder
+  std::shared_ptr<const daemon::LoadedSequence>
+      sequence;  ///< sequence of a one-shot run; the daemon ends after it
+  std::shared_ptr<const daemon::SequenceLoader> loader;  ///< if set, the daemon has a socket and clients
 };
 
 class DaemonInWorld {
  public:
-  /// Begins to run.
+  /// Starts the daemon.
   DaemonInWorld(const rig::RigFile& rig, Scheduler& scheduler, drivers::Board& board, Life life);
   DaemonInWorld(const DaemonInWorld&) = delete;
   DaemonInWorld& operator=(const DaemonInWorld&) = delete;
@@ -65,27 +66,27 @@ class DaemonInWorld {
   DaemonInWorld& operator=(DaemonInWorld&&) = delete;
   ~DaemonInWorld() = default;
 
-  /// As a client does, through the service thread's next turn. `sequence` for a start.
+  /// Sends a request as a client does; the service thread takes it in its next turn. `sequence`: for a start.
   void ask(control::Request::Kind kind, std::shared_ptr<const daemon::LoadedSequence> sequence = nullptr);
-  /// SIGTERM.
+  /// Requests the end of the daemon, like SIGTERM.
   void terminate() noexcept { asked_to_end_ = true; }
-  /// SIGKILL.
+  /// Ends the daemon at once, like SIGKILL.
   void kill();
 
   [[nodiscard]] ActorId actor(Part part) const { return actors_[static_cast<std::size_t>(part)]; }
   [[nodiscard]] bool owns(ActorId id) const;
   [[nodiscard]] bool ended() const noexcept { return ended_; }
   [[nodiscard]] bool safe_state_confirmed() const { return shared.safe_state_confirmed.load(); }
-  /// The outcome of its one-shot run, when it has ended.
+  /// Returns the outcome of the one-shot run after its end.
   [[nodiscard]] daemon::Outcome outcome();
-  /// Its heartbeat has stopped: the service manager kills it.
+  /// Returns true if the heartbeat has stopped: the service manager then kills the daemon.
   [[nodiscard]] bool starved() const noexcept { return starved_; }
   [[nodiscard]] const std::map<std::uint32_t, Asked>& unanswered() const noexcept { return unanswered_; }
 
   rig::RigFile rig;
   WorldClock clock;
-  WorldClock bus_clock;  ///< the bus thread's own
-  LoopClock loop_clock;  ///< the loop's own: looked at when a tick begins and when it ends
+  WorldClock bus_clock;  ///< clock of the bus thread
+  LoopClock loop_clock;  ///< clock of the loop; read at the beginning and the end of a tick
   Nanoseconds origin;
   control::RigController controller;
   daemon::SharedState shared;
@@ -101,7 +102,7 @@ class DaemonInWorld {
   std::optional<daemon::OneShotRun> one_shot_run;
   std::optional<SocketInWorld> socket;
 
-  /// The service has taken a request of a client.
+  /// Called when the service has taken a request of a client.
   std::function<void(control::Request::Kind kind, std::uint32_t id)> on_submit = [](auto, auto) {};
 
  private:

@@ -1,5 +1,5 @@
 #pragma once
-// A body of code with a stack of its own that runs until it gives control back. All in one thread.
+// A function with its own stack that runs until it gives control back. All fibres run in one thread.
 
 #include <ucontext.h>
 
@@ -10,7 +10,8 @@
 
 namespace softgrip::world {
 
-/// An abandoned fibre's stack goes without its objects being destroyed, as those of a killed thread.
+/// The stack of an abandoned fibre is freed without destroying its objects, like the stack of a killed
+/// thread.
 class Fibre {
  public:
   explicit Fibre(std::function<void()> body);
@@ -20,9 +21,9 @@ class Fibre {
   Fibre& operator=(Fibre&&) = delete;
   ~Fibre() = default;
 
-  /// From outside: goes on with the body until give_back() or its end.
+  /// Called from outside: continues the body until give_back() or its end.
   void resume();
-  /// From within.
+  /// Called by the body: returns control to resume().
   void give_back();
   [[nodiscard]] bool done() const noexcept { return done_; }
 

@@ -11,7 +11,7 @@
 
 namespace softgrip::world {
 
-/// The part of a world that a guest sees.
+/// The interface of a world for a guest.
 class Host {
  public:
   Host() = default;
@@ -23,13 +23,13 @@ class Host {
 
   [[nodiscard]] virtual const Library& library() const = 0;
   [[nodiscard]] virtual Surroundings& around() = 0;
-  /// Null: none runs.
+  /// Returns the running daemon, or null.
   [[nodiscard]] virtual DaemonInWorld* daemon() = 0;
-  /// How the last daemon ended; nothing: it was killed.
+  /// Returns the outcome of the last daemon, or nullopt if the daemon was killed.
   [[nodiscard]] virtual const std::optional<daemon::Outcome>& outcome() const = 0;
-  /// The board vented while the sequence of that daemon ran.
+  /// Returns true if the board vented while that daemon's sequence was running.
   [[nodiscard]] virtual bool vented_in_motion() const = 0;
-  /// Starts a daemon. Only for a guest that runs it, and while none runs.
+  /// Starts a daemon. Only a guest that runs the daemon may call it, and only while no daemon runs.
   virtual void boot(Life life) = 0;
 };
 
@@ -42,27 +42,28 @@ class Guest {
   Guest& operator=(Guest&&) = delete;
   virtual ~Guest() = default;
 
-  /// Adds its actors.
+  /// Adds the guest's actors to the scheduler.
   virtual void begin() = 0;
-  /// The daemon runs in its process; else a service manager starts it, and starts it again.
+  /// True: the daemon runs in the guest's process. False: a service manager starts and restarts it.
   [[nodiscard]] virtual bool runs_the_daemon() const { return false; }
-  /// Clients of the socket are heard.
+  /// True: the daemon serves clients of the socket.
   [[nodiscard]] virtual bool listens() const { return true; }
-  /// How much rarer incidents are than with the daemon alone: of what takes minutes some comes to its end.
+  /// Factor of the mean time between incidents. Commands that take minutes need longer intervals to finish
+  /// sometimes.
   [[nodiscard]] virtual double calm() const { return 1; }
-  /// A daemon is to begin.
+  /// Called before a daemon starts.
   virtual void prepare(Life& life) { static_cast<void>(life); }
   virtual void boots(DaemonInWorld& daemon) { static_cast<void>(daemon); }
-  /// Another client asks the daemon for something.
+  /// Called when another client sends a request to the daemon.
   virtual void asked(control::Request::Kind kind) { static_cast<void>(kind); }
-  /// Incidents of its own.
+  /// Begins or ends an incident that concerns only this guest.
   virtual void carry_out(const Incident& incident, bool begins) {
     static_cast<void>(incident);
     static_cast<void>(begins);
   }
-  /// Called once per millisecond. Judges the bounds on time.
+  /// Called once per millisecond; checks the time limits.
   virtual void look(const Excuse& excuse) { static_cast<void>(excuse); }
-  /// It is to come to its end; `busy` until then.
+  /// Requests the end of the guest, which is `busy` until then.
   virtual void end() {}
   [[nodiscard]] virtual bool busy() const { return false; }
 
@@ -72,9 +73,9 @@ class Guest {
   Met met_;
 };
 
-/// Returns null for the daemon alone.
+/// Returns null for Tool::none, the daemon alone.
 [[nodiscard]] std::unique_ptr<Guest> make_guest(Tool tool, Host& host);
-/// The rig for that tool.
+/// Returns the rig for a tool.
 [[nodiscard]] RigShape shape_for(Tool tool, const rig::RigFile& example, std::uint64_t seed,
                                  bool always_habits);
 

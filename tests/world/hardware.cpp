@@ -10,7 +10,7 @@ using drivers::BusStatus;
 
 namespace {
 
-/// As the Modbus driver does: one exchange in so many begins with the reading.
+/// One exchange in 8 begins with a reading, as in the Modbus driver.
 constexpr unsigned looks_first_every = 8;
 
 }  // namespace
@@ -25,7 +25,7 @@ void Hardware::put_out() {
   for (std::size_t i = 0; i < plants_.size(); ++i) plants_[i].command(outputs_kpa_[i]);
 }
 
-/// In whole steps: what is written meanwhile reaches the air with the next.
+/// Advances the plants in whole steps. A value that is written during a step takes effect in the next step.
 void Hardware::advance_plants(Nanoseconds until) {
   const double step_s = seconds(settings_.plant_step);
   for (; plants_at_ + settings_.plant_step <= until; plants_at_ += settings_.plant_step) {
@@ -38,7 +38,7 @@ void Hardware::move_to(Nanoseconds now) {
     begun_ = true;
     plants_at_ = now;
   }
-  // As with boards in the shops, nobody is missed before somebody has been there.
+  // As on commercial boards, the watchdog starts with the first request.
   if (settings_.watchdog > 0 && !tripped_ && fed_at_ > 0 && fed_at_ + settings_.watchdog < now) {
     advance_plants(fed_at_ + settings_.watchdog);
     tripped_ = true;
@@ -120,7 +120,8 @@ void WorldBoard::carry() {
   }
 }
 
-/// Sends it, and sends it again, and waits for the reply. False if none has come; until `end` it may come.
+/// Sends the request, repeats it if necessary, and waits for the response. Returns false if none arrived
+/// until `end`.
 bool WorldBoard::ask(Request request, Nanoseconds end, bool lost) {
   for (;; request.again = true) {
     const Nanoseconds sent = scheduler_.now();
@@ -179,7 +180,7 @@ BusStatus WorldBoard::exchange(std::span<const double> commands_kpa, std::span<m
   bool taken = true;
   bool answered = true;
   bool arrives = !lost || line_.reply_lost;
-  // With a reading apart the last request writes no channel.
+  // With a separate reading, the last request writes no channel.
   const std::size_t requests_end = channels + (habits_.reads_apart ? 1 : 0);
   for (std::size_t first = 0; first < requests_end && arrives;
        first = std::max(first + 1, std::min(first + at_once, channels))) {
@@ -206,7 +207,7 @@ BusStatus WorldBoard::exchange(std::span<const double> commands_kpa, std::span<m
     left_.clear();
     return BusStatus::overwritten;
   }
-  left_.clear();  // known again when this one is confirmed
+  left_.clear();  // known again after the next confirmed exchange
   if (!taken) return BusStatus::watchdog_tripped;
   bool as_written = true;
   for (std::size_t i = 0; i < readings.size(); ++i) {

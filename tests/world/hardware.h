@@ -1,6 +1,6 @@
 #pragma once
-// The board and the fingers behind it, as they are: outputs, a watchdog of its own, slow air. Whoever is
-// connected may write; the line may lose what is said.
+// The true state of the board and its fingers: outputs, the board's own watchdog, and slow pneumatics. Every
+// Modbus client may write, and the line may lose requests and responses.
 
 #include <functional>
 #include <optional>
@@ -15,11 +15,12 @@ namespace softgrip::world {
 
 struct HardwareSettings {
   std::vector<simulation::PlantSettings> plants;
-  std::vector<double> safe_kpa;  ///< one per plant: what the board puts out at first, and its watchdog
-  Nanoseconds watchdog = 0;      ///< outputs go to safe_kpa after so long without a request; 0: none
-  bool trip_latches = true;      ///< writes are refused until the next connection; else the next one is taken
-  Nanoseconds plant_step = 0;    ///< how often outputs reach the air
-  std::function<void()> on_trip;  ///< the watchdog has vented
+  std::vector<double> safe_kpa;  ///< per plant: the output at power-up and after a watchdog trip
+  Nanoseconds watchdog = 0;      ///< outputs go to safe_kpa after this time without a request; 0: none
+  bool trip_latches =
+      true;  ///< true: writes are refused until the next connection; false: the next write is accepted
+  Nanoseconds plant_step = 0;     ///< interval at which outputs take effect
+  std::function<void()> on_trip;  ///< called when the watchdog has vented
 };
 
 class Hardware {
@@ -27,13 +28,13 @@ class Hardware {
   explicit Hardware(HardwareSettings settings);
 
   void move_to(Nanoseconds now);
-  /// A session was opened: a latched trip is over.
+  /// Called when a session is opened; clears a latched trip.
   void greet(Nanoseconds now);
-  /// What is written now does not count: a latched trip refuses it, or the outputs do not follow.
+  /// Returns true if a write has no effect: a latched trip refuses it, or the outputs do not follow.
   [[nodiscard]] bool ignores_writes() const noexcept {
     return refuses_writes || (tripped_ && settings_.trip_latches);
   }
-  /// False while a latched trip refuses it.
+  /// Returns false if a latched trip refuses the write.
   bool write(Nanoseconds now, std::span<const double> outputs_kpa);
   void read(std::size_t channel, Nanoseconds now, model::Reading& reading) const;
 
@@ -42,7 +43,7 @@ class Hardware {
   [[nodiscard]] Nanoseconds watchdog() const noexcept { return settings_.watchdog; }
   [[nodiscard]] simulation::Plant& plant(std::size_t channel) { return plants_[channel]; }
   bool refuses_writes = false;
-  std::uint64_t foreign_writes = 0;  ///< by another master
+  std::uint64_t foreign_writes = 0;  ///< writes by another Modbus client
 
  private:
   void advance_plants(Nanoseconds until);
@@ -69,30 +70,30 @@ struct Habits {
   bool reads_apart = false;          ///< one request writes, and another one reads (no function code 23)
 };
 
-/// What is between daemon and board.
+/// State of the line between daemon and board.
 struct Line {
   drivers::BusStatus status = drivers::BusStatus::ok;
   bool reply_lost = false;  ///< with timed_out: the request arrives, only the reply does not
   Nanoseconds latency = 800'000;
 };
 
-/// The board as a daemon sees it. It waits on the world's clock. What was sent arrives whether the daemon
-/// goes on or stands still: an actor of its own carries it.
+/// The board as a daemon sees it. Exchanges wait on the simulated clock. A separate actor carries requests,
+/// so that a sent request arrives even if the daemon is paused.
 class WorldBoard final : public drivers::Board {
  public:
-  /// Told before a request takes effect: when the exchange began, and what it writes.
+  /// Called before a request takes effect, with the start of the exchange and the written values.
   using OnWrite = std::function<void(Nanoseconds began, std::span<const double> commands_kpa)>;
 
   struct Callbacks {
     OnWrite on_write;
-    std::function<void()> on_exchange;  ///< when an exchange begins
-    std::function<void()> on_hindered;  ///< when a habit has made an exchange fail
-    /// When the daemon has read the outputs as they were after this number of writes of another master.
+    std::function<void()> on_exchange;  ///< called when an exchange begins
+    std::function<void()> on_hindered;  ///< called when a habit of the board has made an exchange fail
+    /// Called when the daemon has read the outputs. The argument counts the earlier writes of another client.
     std::function<void(std::uint64_t foreign_writes)> on_read;
   };
   WorldBoard(Hardware& hardware, Habits habits, Line& line, Scheduler& scheduler, Callbacks callbacks);
 
-  /// Who spoke is gone: what is on its way is lost.
+  /// Called when the connected program is gone: the request under way is lost.
   void hang_up() noexcept { request_.reset(); }
 
   [[nodiscard]] std::size_t channels() const noexcept override { return hardware_.channels(); }
@@ -109,18 +110,18 @@ class WorldBoard final : public drivers::Board {
   }
 
  private:
-  /// What is on its way to the board, and then back.
+  /// The request that is under way to the board, and later its response.
   struct Request {
     Nanoseconds began = 0;
     Nanoseconds arrives = 0;
     std::vector<double> sent;
-    std::size_t first = 0, count = 0;  ///< the channels that it writes
-    bool again = false;                ///< it is sent a second time
+    std::size_t first = 0, count = 0;  ///< the channels that the request writes
+    bool again = false;                ///< the request is a repetition
     bool there = false;
     bool ignored = false;
     bool taken = false;
-    bool overwritten = false;          ///< it read before it wrote, and found what nobody here had written
-    std::uint64_t foreign_writes = 0;  ///< by another master, before it read
+    bool overwritten = false;  ///< the reading before the write found values that this program did not write
+    std::uint64_t foreign_writes = 0;  ///< writes by another Modbus client before this reading
     std::vector<model::Reading> read;
   };
   void pass(Nanoseconds duration) { scheduler_.sleep_until(scheduler_.now() + duration); }
@@ -138,11 +139,11 @@ class WorldBoard final : public drivers::Board {
   Callbacks callbacks_;
   ActorId carrier_;
   std::optional<Request> request_;
-  std::vector<double> found_;  // where the newest reading is not as written, else NaN
-  std::vector<double> left_;   // what the last good exchange of this session left at the outputs
+  std::vector<double> found_;  // newest output that differs from the written one, else NaN
+  std::vector<double> left_;   // outputs after the last good exchange of this session
   unsigned exchanges_ = 0;
   unsigned connections_ = 0, responses_ = 0, answers_ = 0;
-  bool closes_ = false;  // the present connection
+  bool closes_ = false;  // the board closes the present connection at once
   Nanoseconds opened_at_ = 0;
 };
 

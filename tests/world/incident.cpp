@@ -50,7 +50,7 @@ constexpr std::array<const char*, 31> names{"start",
                                             "daemon dies and plc silent"};
 constexpr std::array<const char*, part_count> parts{"loop", "bus", "service", "recorder", "main"};
 
-/// How often each happens, of all that happens.
+/// Relative frequency of a kind of incident.
 struct Share {
   Kind kind;
   double share;
@@ -68,7 +68,7 @@ constexpr std::array shares{
 
 constexpr double mean_time_between_stalls_s = 20;
 
-/// Those of a gateway and its masters.
+/// Incidents of a gateway and its masters.
 constexpr std::array plc_shares{
     Share{Kind::plc_command, 60},   Share{Kind::plc_silent, 8},     Share{Kind::plc_cut, 14},
     Share{Kind::plc_half, 6},       Share{Kind::gateway_paused, 6}, Share{Kind::gateway_dies, 2},
@@ -99,7 +99,7 @@ Kind draw_kind(Drawing& drawing, std::span<const Share> of) {
   return of.front().kind;
 }
 
-/// Below, at and above the watchdog's time; half of them near it.
+/// Draws a pause below, at or above the watchdog's time; half of the pauses are close to it.
 double pause_s(Drawing& drawing, Nanoseconds watchdog) {
   const double limit_s = watchdog > 0 ? seconds(watchdog) : 0.5;
   return drawing.uniform() < 0.5 ? limit_s * (0.9 + 0.4 * drawing.uniform()) : drawing.between(0.002, 3);
@@ -157,7 +157,7 @@ bool lasts(Kind kind) {
   return kind >= Kind::pause && kind != Kind::plc_command && kind != Kind::gateway_dies;
 }
 
-/// Drawn apart from all others, which are the same with and without them.
+/// Draws the stalls with a separate seed, so that all other incidents are the same with and without them.
 void draw_stalls(const Draw& draw, std::vector<Incident>& incidents) {
   Drawing drawing(derived_seed(draw.seed, 3));
   for (double at_s = 1;;) {
@@ -168,7 +168,7 @@ void draw_stalls(const Draw& draw, std::vector<Incident>& incidents) {
   }
 }
 
-/// The first second is for master and gateway to find each other.
+/// Draws incidents after the first second, in which master and gateway connect.
 void draw_plc(const Draw& draw, std::vector<Incident>& incidents) {
   Drawing drawing(derived_seed(draw.seed, 5));
   for (double at_s = 1;;) {
@@ -177,7 +177,8 @@ void draw_plc(const Draw& draw, std::vector<Incident>& incidents) {
     if (one.at >= draw.length) return;
     one.target = drawing.uniform() < 0.75 ? 0 : 1;
     if (one.kind == Kind::plc_command) {
-      // Most of them start; then vent, release, acknowledge. A stop is the reaction to a silence alone.
+      // Most commands are starts; the others are vent, release and acknowledge. Only the reaction to a
+      // silence is a stop.
       constexpr std::array codes{1, 1, 1, 3, 4, 5, 5};
       one.value = codes[drawing.below(codes.size())];
     } else {
@@ -238,7 +239,7 @@ std::string text_of(const Incident& incident) {
 
 std::vector<Incident> draw_incidents(const Draw& draw) {
   Drawing drawing(derived_seed(draw.seed, 1));
-  // From quiet worlds, in which sequences come to their end, to wild ones.
+  // Draw worlds from quiet ones, in which sequences finish, to eventful ones.
   const double mean_pause_s = draw.calm * drawing.between(0.25, 4);
   std::vector<Incident> incidents;
   double at_s = 1 + drawing.uniform();
@@ -248,7 +249,7 @@ std::vector<Incident> draw_incidents(const Draw& draw) {
     const Nanoseconds at = nanoseconds(at_s);
     if (at >= draw.length) break;
     incidents.push_back(draw_one(drawing, draw, at));
-    // Most starts are tried by somebody who has cleared the fault before.
+    // Before most starts a client acknowledges the fault.
     if (incidents.back().kind != Kind::start || drawing.uniform() < 0.3) continue;
     Incident clear;
     clear.at = at - ns_per_s / 10;

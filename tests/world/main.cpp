@@ -1,4 +1,4 @@
-// softgrip-world: whole rigs under seeds.
+// softgrip-world: simulates whole rigs, each determined by a seed.
 
 #include <sys/wait.h>
 #include <unistd.h>
@@ -32,13 +32,13 @@ struct Options {
   bool habits = false;
 };
 
-/// Fewer may miss a rare incident.
+/// With fewer worlds a rare kind of incident may be missing.
 constexpr std::uint64_t enough_worlds = 10;
 
 struct Sum {
   std::uint64_t worlds = 0, failed = 0, ticks = 0, writes = 0, sequences = 0, holdings = 0, faults = 0,
                 trips = 0, rows = 0, incidents = 0;
-  /// The most of all worlds, not their sum.
+  /// Maxima over all worlds, not sums.
   std::uint64_t growth_bytes = 0, descriptors = 0;
   struct Tools {
     std::uint64_t worlds = 0, failed = 0;
@@ -85,17 +85,17 @@ void add(Sum& sum, Tool tool, const WorldResult& result) {
   add(sum, one);
 }
 
-/// The tools of consecutive seeds. Experiments take longest and come once.
+/// The tools of consecutive seeds. Experiments take the longest time and occur once.
 constexpr const char* all_tools = "tools";
 constexpr std::array turns{
     Tool::calibrate, Tool::plc,    Tool::doctor,     Tool::run, Tool::blocks, Tool::plc,
     Tool::calibrate, Tool::doctor, Tool::baseline,   Tool::run, Tool::plc,    Tool::blocks,
     Tool::calibrate, Tool::doctor, Tool::experiment, Tool::run, Tool::plc};
 
-/// Factor of --seconds: experiments take minutes.
+/// Factor of --seconds per tool: experiments take minutes.
 constexpr std::array<double, tool_count> lives{1, 1, 1, 1, 5, 3, 1, 1};
 
-/// The tool of a seed: the requested one, or each in its turn.
+/// Returns the tool of a seed: the requested tool, or the next one in turn.
 Tool tool_of(const Options& options, std::uint64_t seed) {
   const auto found = std::find(tool_names.begin(), tool_names.end(), options.tool);
   if (found != tool_names.end()) return static_cast<Tool>(found - tool_names.begin());
@@ -106,7 +106,8 @@ std::string of_tool(Tool tool) {
   return tool == Tool::none ? "" : fmt::format("{}; ", tool_names[static_cast<std::size_t>(tool)]);
 }
 
-/// What a person needs to understand it: the fewest incidents, and what followed.
+/// Prints what a person needs to understand a violation: the fewest incidents that cause it, and the end of
+/// the trace.
 void explain(const Library& library, std::uint64_t seed, const WorldResult& failed,
              const WorldOptions& options) {
   WorldOptions again = options;
@@ -152,7 +153,7 @@ Sum run_share(const Library& library, const Options& options, unsigned job) {
   return sum;
 }
 
-/// Each job is a process of its own: what one world breaks, it breaks for itself.
+/// Runs each job in a separate process, so that a crash in one world does not affect other jobs.
 Sum run_jobs(const Library& library, const Options& options) {
   if (options.jobs <= 1) return run_share(library, options, 0);
   std::vector<int> ends;
@@ -187,7 +188,7 @@ Sum run_jobs(const Library& library, const Options& options) {
   return all;
 }
 
-/// Prints a line per tool. Returns false if a tool met none of one kind of incident, or had no result.
+/// Prints one line per tool. Returns false if a tool had no result or met no incident of some kind.
 bool tell_tools(const Options& options, const Sum& sum) {
   bool eventful = true;
   for (std::size_t i = 1; i < tool_count; ++i) {

@@ -1,5 +1,5 @@
 #pragma once
-// A master that keeps to docs/reference/plc-map.md, and what it has on its way to softgrip-plc.
+// A master that follows docs/reference/plc-map.md, and its blocks on the way to softgrip-plc.
 
 #include <array>
 #include <cstdint>
@@ -17,30 +17,30 @@ namespace softgrip::world {
 struct Block {
   std::array<std::uint16_t, 7> words{};
   bool only_reads = false;
-  int command = -1;         ///< its number among all that were asked; -1: none
-  std::uint64_t halts = 0;  ///< how many stops and vents had been executed when it was written
+  int command = -1;         ///< number of the command in the order of requests; -1: no command
+  std::uint64_t halts = 0;  ///< stops and vents that had been executed when the block was written
 
   [[nodiscard]] modbus::Bytes bytes() const;
 };
 
-/// The end of a command, as a master reads it after its block was answered.
+/// The end of a command, as a master reads it after the answer to its block.
 struct End {
   std::uint16_t done = 0;
   plc::Outcome outcome = plc::Outcome::none;
   plc::Reason reason = plc::Reason::none;
 };
 
-/// A connection. A master sends its next request when the last one is answered.
+/// A connection. A master sends its next request after the response to the last one.
 struct Wire {
   std::size_t master = 0;
   plc::Masters::Id id = 0;
   modbus::RequestStream stream;
   std::optional<Block> flying;
   Nanoseconds arrives = 0;
-  std::size_t arrived_bytes = 0;  ///< of the block that is on its way
-  bool left = false;              ///< its master has another one
+  std::size_t arrived_bytes = 0;  ///< number of bytes of the block under way that have arrived
+  bool left = false;              ///< the master has opened another connection
   std::optional<End> reply;
-  std::optional<std::uint16_t> heartbeat;  ///< the last that arrived here
+  std::optional<std::uint16_t> heartbeat;  ///< the last heartbeat that arrived on this connection
 };
 
 class MasterInWorld {
@@ -49,21 +49,21 @@ class MasterInWorld {
 
   /// Queues a command. The master sends it when the handshake allows.
   void want(std::uint16_t code);
-  /// Reads the last answer and continues with the handshake. Returns the number of the command that it has
-  /// read as refused, or -1.
+  /// Reads the last answer and continues the handshake. Returns the number of the command that was read as
+  /// refused, or -1.
   struct Read {
     int refused = -1;
     bool accepted = false;
   };
   Read read(const End& end, const Block& of, Nanoseconds now);
-  /// The next command, if there is one: `number` is what it is called from now on.
+  /// Begins the next queued command, if there is one, and assigns it `number`.
   bool next(int number, Nanoseconds now);
-  /// Its block as it is now.
+  /// Returns the present block of the master.
   [[nodiscard]] Block block(std::uint64_t halts);
 
-  bool alive = true;        ///< else its program has stopped, and its last block is written on
-  bool beats = true;        ///< its heartbeat changes
-  std::uint16_t heard = 0;  ///< its heartbeat that has arrived last
+  bool alive = true;        ///< false: the program has stopped, and its last block is repeated
+  bool beats = true;        ///< true: its heartbeat changes
+  std::uint16_t heard = 0;  ///< the heartbeat of this master that arrived last
   [[nodiscard]] std::uint16_t counter() const noexcept { return counter_; }
   [[nodiscard]] std::uint16_t code() const noexcept { return code_; }
 

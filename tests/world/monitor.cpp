@@ -12,21 +12,21 @@ namespace {
 
 using control::State;
 
-/// Of pressures that are the same but for arithmetic [kPa].
+/// Tolerance for pressures that are equal except for rounding [kPa].
 constexpr double equal_kpa = 1e-9;
-/// Vent: from the client's line to commands that fall, beside the slew.
+/// Longest time from a client's vent request until the commands fall, in addition to the slew time.
 constexpr Nanoseconds vent_bound = ns_per_s / 10;
-/// A watchdog that has tripped is a latched fault by then.
+/// Longest time from a watchdog trip until it is a latched fault.
 constexpr Nanoseconds trip_bound = ns_per_s / 2;
-/// So is another master: one exchange in eight begins with a reading, and some of its writes fall between two
-/// of ours.
+/// Longest time until writes of another client are a latched fault. One exchange in 8 begins with a reading,
+/// and some writes of the other client occur between two writes of the daemon.
 constexpr Nanoseconds foreign_bound = ns_per_s / 2;
 
 double rest_of(const control::RigSettings& rig, std::size_t channel) {
   return control::resting_kpa(rig.channels[channel].limits);
 }
 
-/// How far a pressure is on one side of rest: above it, or below it with `side` -1 [kPa].
+/// Returns how far a pressure is above rest, or below rest if `side` is -1 [kPa].
 double away_kpa(double rest_kpa, double kpa, double side) {
   return std::max(0.0, side * (kpa - rest_kpa));
 }
@@ -144,10 +144,10 @@ void Monitor::watch_grips(Nanoseconds now, const control::TickOutput& output) {
     const control::ChannelOutput& channel = output.channels[i];
     const bool new_grip = channel.result == control::GripResult::holding && results_[i] != channel.result;
     results_[i] = channel.result;
-    // The sequence decides on what the tick before saw.
+    // The sequence decides on the readings of the previous tick.
     const Seen seen = std::exchange(seen_by_[i], {now, now - nanoseconds(channel.age_s), channel.validity});
     const bool old = now - seen.at > nanoseconds(rig_.channels[i].plausibility.max_age_s);
-    // Its step is over with the answer: what counts is when that one began.
+    // The result ends its step, so compare with the beginning of this step.
     if (new_grip && channel.evidence == control::GripEvidence::displacement &&
         (seen.validity != model::Validity::valid || old || seen.sampled < step_began_[i]))
       violate(now, "HOLDING rests on readings newer than the grip",
@@ -164,7 +164,7 @@ void Monitor::watch_grips(Nanoseconds now, const control::TickOutput& output) {
 void Monitor::write(Nanoseconds began, Nanoseconds now, std::span<const double> outputs_kpa,
                     std::span<const double> commands_kpa, bool safe_outputs) {
   const double period_s = 1 / rig_.rate_hz;
-  // An exchange may write more than once.
+  // An exchange may write more than once: measure the elapsed time at its first write.
   if (began != last_began_)
     elapsed_s_ = last_began_ == 0 ? period_s : seconds(began - last_began_) + 2 * period_s;
   if (watch_gap(began, now, commands_kpa)) safe_outputs = true;
@@ -189,16 +189,16 @@ void Monitor::write(Nanoseconds began, Nanoseconds now, std::span<const double> 
   foreign_ = false;
 }
 
-/// Returns what the daemon must take for the output: what is there, unless another master has written it and
-/// the daemon has not read it or holds.
+/// Returns the output that the daemon must assume. This is the actual output, except after a write of another
+/// client that the daemon has not read, or while its safe action is to hold.
 double Monitor::known_kpa(std::size_t channel, double output_kpa) const {
   const bool unread = foreign_read_ != foreign_writes_;
   const bool holds = safe_at_entry_[channel] != rest_of(rig_, channel);
   return foreign_left_[channel] && (unread || holds) ? last_kpa_[channel] : output_kpa;
 }
 
-/// After a gap in which the board has or may have vented, the daemon writes the rest pressures. Returns true
-/// if it does that. It looks at its clock after it wakes up and before the exchange begins.
+/// After a gap in which the board has or may have vented, the daemon must write the rest pressures. Returns
+/// true if it does. The daemon reads its clock after it wakes up and before the exchange begins.
 bool Monitor::watch_gap(Nanoseconds began, Nanoseconds now, std::span<const double> commands_kpa) {
   if (watchdog_ == 0 || last_began_ == 0 || woke_ == 0) return false;
   bool rested = true;
@@ -211,12 +211,12 @@ bool Monitor::watch_gap(Nanoseconds began, Nanoseconds now, std::span<const doub
   return rested && began - last_woke_ >= longest;
 }
 
-/// On either side of rest, and from one to the other, a channel moves within the slew limits.
+/// Checks the slew limits of a channel on both sides of rest and when it crosses rest.
 void Monitor::watch_way(Nanoseconds now, std::size_t channel, double output_kpa, double command_kpa,
                         double elapsed_s, bool safe_outputs) {
   const control::LimitSettings& limits = rig_.channels[channel].limits;
   const double rest_kpa = rest_of(rig_, channel);
-  // From what was written last: a board that refuses writes stays behind.
+  // Start from the last written value: a board that refuses writes does not follow.
   const double last_kpa = last_kpa_[channel];
   const double slew = command_kpa > last_kpa ? limits.slew_up_kpa_per_s : limits.slew_down_kpa_per_s;
   const bool crosses = (command_kpa - rest_kpa) * (last_kpa - rest_kpa) < 0;
@@ -238,9 +238,9 @@ void Monitor::watch_way(Nanoseconds now, std::size_t channel, double output_kpa,
 
 void Monitor::tripped(bool has_spoken) {
   armed_ = armed_at_entry_ = false;
-  // What is written next begins there.
+  // The next write starts from the rest pressures.
   for (std::size_t i = 0; i < last_kpa_.size(); ++i) last_kpa_[i] = rest_of(rig_, i);
-  // A daemon that has never spoken with the board cannot know.
+  // A daemon without a good exchange cannot know of the trip.
   if (!trip_untold_ && has_spoken) trip_untold_ = 0;
 }
 
@@ -298,7 +298,8 @@ void Monitor::foreign_wrote(std::span<const double> outputs_kpa) noexcept {
 
 void Monitor::watch_foreign(Nanoseconds now, const Excuse& excuse, Nanoseconds duration) {
   if (!foreign_unseen_ || excuse.paused || excuse.line_but_for_foreign) return;
-  // Who is faulted already, or has not begun, writes the rest pressures, and so may the other.
+  // A daemon that is already faulted or still starting writes the rest pressures and ignores the other
+  // client.
   const bool answered = state_ == State::faulted || state_ == State::starting;
   foreign_unseen_ = answered ? 0 : *foreign_unseen_ + duration;
   if (*foreign_unseen_ > foreign_bound)

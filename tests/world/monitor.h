@@ -1,6 +1,6 @@
 #pragma once
-// The invariants, each stated once, and judged wherever it could break: at every write that reaches the board
-// and after every tick.
+// The invariants. Each is stated once and checked wherever it can be violated: at every write that reaches
+// the board and after every tick.
 
 #include <array>
 #include <cstdint>
@@ -18,60 +18,64 @@ namespace softgrip::world {
 
 struct Violation {
   Nanoseconds at = 0;
-  std::string invariant;  ///< its name
+  std::string invariant;  ///< name of the invariant
   std::string text;
 };
 
-/// What the daemon and its surroundings were spared of, up to now: bounds count such time only.
+/// Present disturbances of the daemon and its surroundings. Time limits count only time without them.
 struct Excuse {
-  bool paused = false;   ///< a thread or the whole process stands still
-  bool no_line = false;  ///< something on the line or the board hinders exchanges, or none was good since
-  bool line_but_for_foreign = false;  ///< the same, where another master does not count
+  bool paused = false;                ///< a thread or the whole process is paused
+  bool no_line = false;               ///< line or board hinder exchanges, or none was good since
+  bool line_but_for_foreign = false;  ///< like no_line, but ignoring another client
   bool no_daemon = false;
 };
 
 class Monitor {
  public:
-  /// `margin`: that of rig::watchdog_margin().
+  /// `margin`: the result of rig::watchdog_margin().
   Monitor(const control::RigSettings& rig, Nanoseconds watchdog, Nanoseconds margin);
 
-  /// After a tick of the loop; `now` by the daemon's clock.
+  /// Called after a tick of the loop; `now` is the time on the daemon's clock.
   void ticked(Nanoseconds now, const control::TickOutput& output);
-  /// Before a write of the daemon reaches the board, whose outputs are as given. `began`: its exchange.
+  /// Called before a write of the daemon reaches the board with the given outputs. `began`: start of the
+  /// exchange.
   void write(Nanoseconds began, Nanoseconds now, std::span<const double> outputs_kpa,
              std::span<const double> commands_kpa, bool safe_outputs);
-  /// The daemon looked at its permission to move when this exchange began, now. `woke`: when its bus thread
-  /// looked at its clock before, and so at the gap since the last exchange; 0: not known.
+  /// Called when an exchange begins at `now`; the daemon has just read its permission to move. `woke`: when
+  /// its bus thread last read the clock and thus measured the gap since the last exchange; 0: unknown.
   void exchange_begins(Nanoseconds now = 0, Nanoseconds woke = 0) noexcept {
     armed_at_entry_ = armed_;
     safe_at_entry_ = safe_kpa_;
     before_ = std::exchange(exchange_, now);
     woke_ = woke;
   }
-  /// For a program without a loop: it may move pressures away from rest, or may not any more.
+  /// For a program without a loop: it may move pressures away from rest (true), or may no longer do so
+  /// (false).
   void may_rise(bool allowed) noexcept { armed_ = allowed; }
-  /// Another master has written these. Outputs that the daemon has not read since may move again up to what
-  /// it wrote itself, within the slew limits. So may those that it has read, if its safe action is to hold.
+  /// Called when another client has written these outputs. Outputs that the daemon has not read since may
+  /// move again, within the slew limits, up to the daemon's own last command. Outputs that it has read may do
+  /// so if its safe action is to hold.
   void foreign_wrote(std::span<const double> outputs_kpa) noexcept;
   void foreign_ended() noexcept { foreign_unseen_.reset(); }
-  /// The daemon has read the outputs as they were after this number of writes of another master.
+  /// Called when the daemon has read the outputs, after this number of writes of another client.
   void outputs_read(std::uint64_t foreign_writes) noexcept { foreign_read_ = foreign_writes; }
-  /// The board's watchdog has vented. `has_spoken`: the daemon has had a good exchange, so it can know.
+  /// Called when the board's watchdog has vented. `has_spoken`: the daemon has had a good exchange, so it can
+  /// know.
   void tripped(bool has_spoken);
   void asked(control::Request::Kind kind);
   void submitted(control::Request::Kind kind, std::uint32_t id);
-  /// Time has passed, with these outputs.
+  /// Called when time has passed with these outputs.
   void passed(Nanoseconds now, const Excuse& excuse, std::span<const double> outputs_kpa);
-  /// A daemon begins to run: nothing of the last one's counts.
+  /// Called when a daemon starts: forgets the state of the previous daemon.
   void boots();
-  /// It ended by itself, having written its safe outputs.
+  /// Called when the daemon has ended by itself after writing its safe outputs.
   void left(Nanoseconds now, std::span<const double> outputs_kpa);
   void answer_is_late(Nanoseconds now, Nanoseconds asked_at);
-  /// The board has vented, and the user hears of something else.
+  /// Reports that the board has vented but the user receives another message, `otherwise`.
   void told_nobody(Nanoseconds now, const char* otherwise) {
     violate(now, "a watchdog that has tripped is a fault", otherwise);
   }
-  /// A command or an exit code breaks an invariant.
+  /// Reports that a command or an exit code violates an invariant.
   void command_breaks(Nanoseconds now, const char* invariant, std::string text) {
     violate(now, invariant, std::move(text));
   }
@@ -79,7 +83,7 @@ class Monitor {
   void leaks(const std::string& text) { violate(0, "nothing leaks", text); }
 
   [[nodiscard]] const std::optional<Violation>& violation() const noexcept { return violation_; }
-  /// What the last tick would leave behind.
+  /// Returns the safe outputs of the last tick.
   [[nodiscard]] const std::vector<double>& safe_kpa() const noexcept { return safe_kpa_; }
 
  private:
@@ -96,26 +100,26 @@ class Monitor {
   Nanoseconds watchdog_;
   Nanoseconds margin_;
   std::optional<Violation> violation_;
-  bool armed_ = false;  // a start was accepted, and nothing since forbids to leave rest
+  bool armed_ = false;  // a start was accepted, and no later event forbids leaving rest
   bool armed_at_entry_ = false;
   [[nodiscard]] double known_kpa(std::size_t channel, double output_kpa) const;
-  bool foreign_ = false;              // another master has written since our last write
-  std::uint64_t foreign_writes_ = 0;  // by another master
-  std::uint64_t foreign_read_ = 0;    // of them, before the daemon's newest reading of the outputs
-  std::vector<bool> foreign_left_;    // the output is still that of another master
-  Nanoseconds last_began_ = 0;        // an exchange
-  double elapsed_s_ = 0;              // at its first write, since the one before it
-  Nanoseconds exchange_ = 0;          // when the newest one began, whether it writes or not, ...
-  Nanoseconds before_ = 0;            // and the one before it
+  bool foreign_ = false;              // another client has written since the daemon's last write
+  std::uint64_t foreign_writes_ = 0;  // number of writes by another client
+  std::uint64_t foreign_read_ = 0;    // number of them before the daemon's newest reading of the outputs
+  std::vector<bool> foreign_left_;    // per channel: the output is still the one that another client wrote
+  Nanoseconds last_began_ = 0;        // start of the last exchange that wrote
+  double elapsed_s_ = 0;              // time from the previous writing exchange to this one
+  Nanoseconds exchange_ = 0;          // start of the newest exchange, with or without a write
+  Nanoseconds before_ = 0;            // start of the exchange before it
   Nanoseconds woke_ = 0;
-  Nanoseconds last_woke_ = 0;  // for the exchange of last_began_
+  Nanoseconds last_woke_ = 0;  // value of woke_ for the exchange of last_began_
   Nanoseconds seen_ = 0;
-  std::uint32_t halted_by_ = 0;  // the newest request to stop or to vent
+  std::uint32_t halted_by_ = 0;  // id of the newest stop or vent request
   control::State state_ = control::State::starting;
   std::vector<double> safe_kpa_;
   std::vector<double> safe_at_entry_;
-  std::vector<double> last_kpa_;  // as written
-  struct Seen {                   // by the tick before
+  std::vector<double> last_kpa_;  // the last written commands
+  struct Seen {                   // reading of the previous tick
     Nanoseconds at = 0;
     Nanoseconds sampled = 0;
     model::Validity validity = model::Validity::none_yet;
@@ -124,10 +128,10 @@ class Monitor {
   std::array<control::GripResult, control::max_channels> results_{};
   std::array<std::uint16_t, control::max_channels> steps_{};
   std::array<Nanoseconds, control::max_channels> step_began_{};
-  std::optional<Nanoseconds> vent_waits_;  // unexcused time since it was asked
+  std::optional<Nanoseconds> vent_waits_;  // undisturbed time since the vent was requested
   std::optional<Nanoseconds>
-      foreign_unseen_;  // unexcused time in which another master has written something else
-  std::optional<Nanoseconds> trip_untold_;  // unexcused time since the board vented
+      foreign_unseen_;  // undisturbed time during which another client has changed the outputs
+  std::optional<Nanoseconds> trip_untold_;  // undisturbed time since the board vented
   std::optional<Nanoseconds> dead_;         // time without a daemon
 };
 

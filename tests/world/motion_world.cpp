@@ -19,13 +19,14 @@ namespace {
 
 using Kind = Incident::Kind;
 
-/// Between the end of a command and the next one.
+/// Pause between the end of a command and the next one.
 constexpr Nanoseconds call_pause = ns_per_s;
 constexpr double longest_answer_s = 1.5;
-/// Writes of ours that find the value of another master at the outputs. The board compares one in 8.
+/// Largest number of own writes that replace another client's values. The board compares them in 1 of 8
+/// exchanges.
 constexpr unsigned most_overwritten = 32;
 
-/// Reads the gauge and the manometer as they are, after a while.
+/// An operator who reads the true values of gauge and manometer after a delay.
 class PersonInWorld final : public tools::calibrate::Operator {
  public:
   PersonInWorld(Surroundings& around, std::size_t channel, std::uint64_t seed)
@@ -67,7 +68,7 @@ class MotionWorld {
       wrote(began, commands);
     };
     around_.on_exchange = [this] {
-      // The exchange before this one has ended, and it was good.
+      // The previous exchange has ended; `good_` states whether it was good.
       spoke_ = spoke_ || good_;
       good_ = around_.line.status == drivers::BusStatus::ok;
       spoke_since_trip_ = true;
@@ -100,7 +101,7 @@ class MotionWorld {
  private:
   [[nodiscard]] double drawn() { return uniform_at(seed_, ++drawn_); }
 
-  /// The command is called, and again when it has ended.
+  /// Calls the command, and calls it again after its end.
   void call() {
     actor_ = around_.scheduler.add("tool", [this] {
       for (;;) {
@@ -125,7 +126,7 @@ class MotionWorld {
     around_.monitor.may_rise(true);
   }
 
-  /// The command calls it before every exchange.
+  /// Stop request of the command, which calls it before every exchange.
   [[nodiscard]] bool stops() {
     if (interrupted_) around_.monitor.may_rise(false);
     return interrupted_;
@@ -148,7 +149,7 @@ class MotionWorld {
     if (session.leave()) left();
   }
 
-  /// One of the procedures; why there is no result, or nothing.
+  /// Runs one of the procedures. Returns the reason for a missing result, or "".
   [[nodiscard]] std::string measure(tools::MotionSession& session, PersonInWorld& person,
                                     const tools::calibrate::Settings& settings) {
     const rig::RigFile& rig = around_.shape.rig;
@@ -187,7 +188,7 @@ class MotionWorld {
                                      "the command ended with a result");
   }
 
-  /// The command reports that the board has confirmed the rest pressures.
+  /// Called when the command reports that the board has confirmed the rest pressures.
   void left() { around_.monitor.left(around_.scheduler.now(), around_.hardware.outputs_kpa()); }
 
   void tripped() {
@@ -208,7 +209,7 @@ class MotionWorld {
     up_ = false;
     for (std::size_t i = 0; i < commands.size(); ++i)
       up_ = up_ || commands[i] != control::resting_kpa(around_.shape.rig.settings.channels[i].limits);
-    // After a lost exchange or a gap the pressure may fall in one step.
+    // After a lost exchange or a gap the pressure may fall in a single step.
     const bool safe_outputs = !up_ || around_.excuse().no_line;
     around_.monitor.write(began, around_.scheduler.now(), outputs, commands, safe_outputs);
     around_.note_write(outputs, commands);
@@ -221,7 +222,7 @@ class MotionWorld {
     }
     if (!begins || !alive_) return;
     const Nanoseconds until = around_.scheduler.now() + incident.duration;
-    // On a board that clears a trip with any write no program can know such a gap.
+    // If the board clears a trip with any write, no program can notice a pause at this place.
     const bool may_be_late = around_.shape.may_pause_late();
     switch (incident.kind) {
       case Kind::stop:
@@ -283,15 +284,15 @@ class MotionWorld {
   Surroundings around_;
   WorldClock clock_;
   ActorId actor_ = 0;
-  bool alive_ = false;             // the command runs
-  bool interrupted_ = false;       // by Ctrl-C
-  bool up_ = false;                // its last write has left pressure on
-  bool vented_ = false;            // the board has taken that pressure away
-  bool good_ = false;              // nothing hindered its last exchange
+  bool alive_ = false;             // the command is running
+  bool interrupted_ = false;       // Ctrl-C was pressed
+  bool up_ = false;                // its last write applied pressure
+  bool vented_ = false;            // the board has vented that pressure
+  bool good_ = false;              // no incident has hindered the present exchange
   bool spoke_ = false;             // it has had a good exchange, so it can know of a gap
-  bool spoke_since_trip_ = false;  // so the command can know
+  bool spoke_since_trip_ = false;  // an exchange has begun since the trip, so it can know of the trip
   std::vector<double> written_;    // its last write that has arrived
-  unsigned overwritten_ = 0;       // writes that found the values of another master
+  unsigned overwritten_ = 0;       // number of writes that replaced another client's values
   std::uint64_t foreign_writes_ = 0;
   Nanoseconds again_at_ = 0;
 };

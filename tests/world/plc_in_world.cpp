@@ -30,7 +30,7 @@ constexpr std::array master_addresses{"10.0.0.1", "10.0.0.2"};
 constexpr Nanoseconds master_period = ns_per_s / 20;
 constexpr Nanoseconds wire_latency = ns_per_s / 500;
 constexpr Nanoseconds gateway_pause = ns_per_s;
-/// As the gateway's connection with the daemon: tools/plc/daemon_line.cpp.
+/// Pause between connection attempts, as in tools/plc/daemon_line.cpp.
 constexpr Nanoseconds retry_pause = ns_per_s / 4;
 constexpr const char* config_folder = SOFTGRIP_SOURCE_DIR "/config/";
 
@@ -51,7 +51,7 @@ class PlcInWorld final : public Guest {
         clock_(around_.scheduler),
         loader_(std::make_shared<const daemon::SequenceLoader>(around_.shape.rig.settings,
                                                                std::string(config_folder) + "sequences")) {
-    // A heartbeat that never changes is not watched.
+    // The gateway does not watch a heartbeat that never changes.
     masters_[1].beats = false;
     watch_.on_break = [this](const char* invariant, std::string text) {
       around_.monitor.command_breaks(around_.scheduler.now(), invariant, std::move(text));
@@ -117,7 +117,7 @@ class PlcInWorld final : public Guest {
   }
 
  private:
-  // softgrip-plc, in the order of tools/plc/server.cpp.
+  // softgrip-plc: the same steps in the same order as in tools/plc/server.cpp.
   void start_gateway() {
     around_.trace("softgrip-plc starts");
     gateway_.emplace(settings_);
@@ -184,7 +184,7 @@ class PlcInWorld final : public Guest {
     if (!gateway_->handshake().waits()) waiting_.reset();
     answered_[wire.id] = block;
     wire.reply = read_end(wire.id, now);
-    // A master that has another connection closes this one.
+    // A master with a newer connection closes this one.
     if (wire.left) gateway_->masters().leave(wire.id);
   }
 
@@ -198,7 +198,7 @@ class PlcInWorld final : public Guest {
             static_cast<plc::Reason>(modbus::word_at(frame, 13))};
   }
 
-  // Its connection with the daemon.
+  // The gateway's connection with the daemon.
   void receive(Nanoseconds now) {
     if (!client_ && host_.daemon() != nullptr && (tried_at_ == 0 || now - tried_at_ >= retry_pause)) {
       tried_at_ = now;
@@ -226,7 +226,7 @@ class PlcInWorld final : public Guest {
     watch_.daemon_died();
   }
 
-  /// Sends the lines of the gateway at once. `cause`: the block that led to them.
+  /// Sends the lines of the gateway at once. `cause`: the block that made the gateway send them.
   void send(Nanoseconds now, const std::optional<Block>& cause) {
     for (const Json& line : gateway_->lines_to_daemon()) {
       around_.trace("softgrip-plc to the daemon: {}", line.dump());
@@ -238,7 +238,7 @@ class PlcInWorld final : public Guest {
     }
   }
 
-  // The masters.
+  // The masters and their connections.
   [[nodiscard]] Wire* wire_of(std::size_t master) {
     const auto found = std::find_if(wires_.begin(), wires_.end(), [master](const Wire& wire) {
       return wire.master == master && !wire.left;
@@ -254,7 +254,7 @@ class PlcInWorld final : public Guest {
     wires_.push_back({master, *id, {}, {}, 0, 0, false, {}, {}});
     return &wires_.back();
   }
-  /// The clock, for an actor that does not sleep by it.
+  /// Returns the daemon's clock for an actor that sleeps by the true time.
   [[nodiscard]] Nanoseconds clock_seen() const { return around_.scheduler.shown(); }
 
   void cycle(std::size_t index) {
@@ -285,7 +285,7 @@ class PlcInWorld final : public Guest {
     around_.scheduler.wake(actor_);
   }
 
-  /// The master has another connection. Its last block arrives late on the old one.
+  /// The master opens another connection. Its last block arrives late on the old connection.
   void cut(const Incident& incident) {
     const std::size_t index = incident.target % master_count;
     Wire* const wire = wire_of(index);
@@ -310,7 +310,7 @@ class PlcInWorld final : public Guest {
   std::shared_ptr<const daemon::SequenceLoader> loader_;
   std::optional<Gateway> gateway_;
   ActorId actor_ = 0;
-  Nanoseconds again_at_ = 0;  // it starts
+  Nanoseconds again_at_ = 0;  // time of the next start of the gateway
   std::optional<daemon::ClientId> client_;
   Nanoseconds tried_at_ = 0;
   std::array<MasterInWorld, master_count> masters_;

@@ -1,5 +1,5 @@
 #pragma once
-// softgrip-plc and the daemon in one world: the gateway, two masters, and the blocks on their way.
+// softgrip-plc and the daemon in one world: the gateway, two masters, and their blocks under way.
 
 #include <memory>
 

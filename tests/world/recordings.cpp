@@ -11,7 +11,7 @@
 namespace softgrip::world {
 namespace {
 
-/// The first column of every row, as nanoseconds.
+/// Returns the first column of every row in nanoseconds.
 std::vector<Nanoseconds> times_of(const std::filesystem::path& file) {
   std::vector<Nanoseconds> times;
   std::ifstream in(file);
@@ -32,13 +32,13 @@ RecordingsRead check_recordings(const std::string& folder, const std::vector<Nan
     const std::vector<Nanoseconds> times = times_of(entry.path());
     read.rows += times.size();
     if (times.empty()) continue;
-    // The recording's time 0 is its first row; only distances can be compared.
+    // Time 0 of the recording is its first row, so only time differences can be compared.
     bool found = false;
     for (std::size_t first = 0; first < ticks.size() && !found; ++first) {
       bool all = true;
       for (std::size_t row = 0; row < times.size() && all; row += channels) {
         const std::size_t tick = first + row / channels;
-        // The row of leaving is no tick.
+        // The row that is written at shutdown belongs to no tick.
         if (tick >= ticks.size()) {
           all = row + channels >= times.size();
           break;

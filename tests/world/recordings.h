@@ -1,5 +1,5 @@
 #pragma once
-// Whether the recordings of a daemon hold every tick that they should.
+// Checks that the recordings of a daemon contain a row for every tick.
 
 #include <cstddef>
 #include <cstdint>
@@ -12,11 +12,11 @@ namespace softgrip::world {
 
 struct RecordingsRead {
   std::uint64_t rows = 0;
-  std::string lack;  ///< what is not there; empty: nothing
+  std::string lack;  ///< the missing rows; empty if none are missing
 };
 
-/// `ticks`: when the loop ticked, since the daemon's origin, in order. Every recording in `folder` must hold
-/// a row per channel of each tick between its first and its last.
+/// `ticks`: the times of the loop's ticks since the daemon's origin, in order. Every recording in `folder`
+/// must contain one row per channel for each tick between its first and its last row.
 [[nodiscard]] RecordingsRead check_recordings(const std::string& folder,
                                               const std::vector<Nanoseconds>& ticks, std::size_t channels);
 

@@ -28,7 +28,7 @@ RigShape draw_shape(const rig::RigFile& example, std::uint64_t seed) {
       one_of(control::SafeAction::hold, control::SafeAction::vent);
   settings.safety.on_emergency_stop =
       one_of(control::SafeAction::vent, control::SafeAction::vent, control::SafeAction::hold);
-  // As patient as a rig file may be: below the board's watchdog.
+  // The longest delay of the bus fault that a rig file allows: it must be below the board's watchdog time.
   const double most_cycles = watchdog_s > 0 ? 0.8 * watchdog_s * settings.rate_hz : 200;
   settings.faults.bus_down_cycles =
       static_cast<std::uint32_t>(std::clamp(one_of(2.0, 5.0, 30.0, most_cycles), 1.0, most_cycles));
@@ -69,7 +69,7 @@ void draw_habits(RigShape& shape, bool always) {
   Habits& habits = shape.habits;
   const double deaf_s = one_of(0.0, 0.05, 0.15, 0.4);
   habits.deaf = nanoseconds(deaf_s);
-  // A rig file without `settle_s` is one in four.
+  // One rig file in 4 has no `settle_s`.
   habits.settle = nanoseconds(one_of(1.0, 1.0, 1.0, 0.0) * (deaf_s + 0.02));
   habits.repeat_after = nanoseconds(one_of(0.0, 0.2, 0.4) * shape.rig.loop.exchange_deadline_s);
   habits.channels_at_once = static_cast<std::size_t>(one_of(0, 1));

@@ -1,5 +1,5 @@
 #pragma once
-// The rigs of the worlds: the example rig with other rates, patience, slew and watchdogs.
+// The rigs of the worlds: the example rig with other rates, fault delays, slew limits and watchdogs.
 
 #include <cstdint>
 #include <string>
@@ -17,15 +17,16 @@ struct RigShape {
   Habits habits;
   std::string text;
 
-  /// After a settle time, the next look of the bus at the clock is behind its last commands. If it pauses
-  /// there, it writes them late, which is not promised.
+  /// Returns true if the bus thread may be paused after it has read the clock. With a settle time, it reads
+  /// the clock again only after its commands are fixed. A pause there writes them late, which the project
+  /// does not rule out.
   [[nodiscard]] bool may_pause_late() const noexcept {
     return (trip_latches || watchdog == 0) && habits.settle == 0;
   }
 };
 
 [[nodiscard]] RigShape draw_shape(const rig::RigFile& example, std::uint64_t seed);
-/// One seed in five has a board with habits, or each (`always`).
+/// Gives one seed in 5 a board with habits, or every seed (`always`).
 void draw_habits(RigShape& shape, bool always);
 
 }  // namespace softgrip::world

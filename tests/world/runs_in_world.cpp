@@ -16,12 +16,12 @@
 namespace softgrip::world {
 namespace {
 
-/// Between the end of a command and the next one.
+/// Pause between the end of a command and the next one.
 constexpr Nanoseconds run_pause = ns_per_s;
-/// Between two checks of the daemon that runs.
+/// Interval between two checks of the running daemon.
 constexpr Nanoseconds daemon_look_pause = ns_per_s / 100;
 
-/// Calls a command again and again.
+/// A guest that calls a command again and again.
 class Caller : public Guest {
  public:
   Caller(Host& host, const char* name) : host_(host), name_(name) {}
@@ -47,11 +47,11 @@ class Caller : public Guest {
   [[nodiscard]] bool busy() const override { return calls_; }
 
  protected:
-  /// True: the command has ended with a result.
+  /// Runs the command once. Returns true if it ended with a result.
   virtual bool call() = 0;
   [[nodiscard]] bool ending() const noexcept { return ending_; }
 
-  /// From the actor of the command: runs a daemon to its end. Nothing: it was killed.
+  /// Called by the command's actor: runs a daemon to its end. Returns nullopt if the daemon was killed.
   [[nodiscard]] std::optional<daemon::Outcome> play(Life life) {
     Scheduler& scheduler = host_.around().scheduler;
     host_.boot(std::move(life));
@@ -83,14 +83,14 @@ class Caller : public Guest {
 class Run final : public Caller {
  public:
   explicit Run(Host& host) : Caller(host, "softgrip run"), seed_(derived_seed(host.around().shape.seed, 6)) {}
-  /// Every other one is called with --no-socket.
+  /// Every other run is called with --no-socket.
   [[nodiscard]] bool listens() const override { return host_.around().shape.seed % 2 == 0; }
   [[nodiscard]] double calm() const override { return 4; }
 
  private:
   bool call() override {
     const auto& sequences = host_.library().sequences;
-    // Every second one picks the part that is there, so that some come to their end.
+    // Every other run picks the sequence with the present part, so that some runs finish.
     const double drawn = std::max(0.0, 2 * uniform_at(seed_, met().calls) - 1);
     Life life;
     life.sequence = sequences[static_cast<std::size_t>(drawn * static_cast<double>(sequences.size()))];
@@ -101,7 +101,7 @@ class Run final : public Caller {
   std::uint64_t seed_;
 };
 
-/// A command that plays experiments, with the world as its rig.
+/// A command that plays experiments on the simulated rig.
 class Experiments : public Caller {
  public:
   using Caller::Caller;
@@ -114,7 +114,7 @@ class Experiments : public Caller {
     rig.simulated = false;
     rig.run = [this](const rig::RigFile&,
                      const daemon::DaemonOptions& options) -> tl::expected<daemon::Outcome, std::string> {
-      // Without Ctrl-C between two daemons: signals belong to the process of the worlds.
+      // No Ctrl-C between two daemons: signals would concern the whole process of the worlds.
       if (ending()) return tl::unexpected(std::string("the world ends"));
       Life life;
       life.sequence = options.sequence;

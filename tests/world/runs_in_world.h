@@ -1,5 +1,5 @@
 #pragma once
-// Commands that run the daemon in their own process for one sequence after the other.
+// Commands that run the daemon in their own process, for one sequence after another.
 
 #include <memory>
 
@@ -7,12 +7,12 @@
 
 namespace softgrip::world {
 
-/// `softgrip run`, again and again.
+/// Returns a guest that calls `softgrip run` repeatedly.
 [[nodiscard]] std::unique_ptr<Guest> make_run(Host& host);
-/// `softgrip baseline`, of one experiment and without the rests before it.
+/// Returns a guest that calls `softgrip baseline` with one experiment and without the rests before it.
 [[nodiscard]] std::unique_ptr<Guest> make_baseline(Host& host);
-/// One experiment after the other, as `softgrip investigate` plays them. The diagnosis
-/// moves nothing and is left out.
+/// Returns a guest that plays one experiment after another, as `softgrip investigate` does. The diagnosis
+/// moves no finger and is omitted.
 [[nodiscard]] std::unique_ptr<Guest> make_experiment(Host& host);
 
 }  // namespace softgrip::world

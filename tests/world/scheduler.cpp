@@ -8,7 +8,7 @@
 namespace softgrip::world {
 namespace {
 
-/// Sleeps end late by up to this, mostly by much less.
+/// Upper limit of the delay at the end of a sleep [ns]; most delays are much shorter.
 constexpr double latest_wake_ns = 300'000;
 
 }  // namespace
@@ -60,7 +60,7 @@ void Scheduler::run_until(Nanoseconds end, const std::function<void(ActorId)>& a
     inside_ = true;
     actor->fibre->resume();
     inside_ = false;
-    // The vector may have grown meanwhile.
+    // The vector may have grown during the call, so look the actor up again.
     Actor& ran = actors_[running_];
     if (ran.fibre->done()) ran.over = true;
     after(running_);

@@ -1,6 +1,6 @@
 #pragma once
-// The threads of a daemon as fibres on one simulated clock: one of them runs at a time, which one follows
-// from the seed alone. Any can be paused while it sleeps, or right after it has looked at the clock.
+// The threads of a daemon as fibres on one simulated clock. One fibre runs at a time, in an order that
+// depends on the seed alone. A fibre can be paused while it sleeps, or right after it has read the clock.
 
 #include <cstddef>
 #include <cstdint>
@@ -21,39 +21,41 @@ class Scheduler {
  public:
   explicit Scheduler(std::uint64_t seed, Nanoseconds begin) : seed_(seed), now_(begin) {}
 
-  /// A thread that begins now.
+  /// Adds a thread that starts now.
   ActorId add(std::string name, std::function<void()> body);
-  /// It never goes on.
+  /// The actor never runs again.
   void kill(ActorId actor);
   [[nodiscard]] bool done(ActorId actor) const { return actors_[actor].over; }
 
-  /// It does not go on before `until`.
+  /// The actor does not run before `until`.
   void pause(ActorId actor, Nanoseconds until);
-  /// It stands still for `duration` after it has looked at the clock the next time: what it knows is old.
+  /// After its next reading of the clock the actor is paused for `duration`, so that its reading is out of
+  /// date.
   void pause_after_look(ActorId actor, Nanoseconds duration) { actors_[actor].pause_after_look = duration; }
   [[nodiscard]] bool paused(ActorId actor) const;
-  /// What it waits for has come.
+  /// Ends the sleep of an actor because the awaited event has occurred.
   void wake(ActorId actor);
 
-  /// Runs whoever is due, up to and with `end`. `after` is told who ran, whenever one sleeps again.
+  /// Runs all due actors up to and including `end`. Calls `after` with the id of an actor each time it goes
+  /// to sleep.
   void run_until(Nanoseconds end, const std::function<void(ActorId)>& after);
   void stop() noexcept { stopped_ = true; }
 
   [[nodiscard]] Nanoseconds now() const noexcept { return now_; }
 
-  /// The daemon's clock stands still for `duration`, then it catches up. Who sleeps by it sleeps on, and who
-  /// is paused does not go on before: by a clock that stands a long pause looks short, and of a board that
-  /// clears its tripped watchdog with any write nobody could know better. Another stall meanwhile is none.
+  /// The daemon's clock stands still for `duration` and then catches up. Actors that sleep by it continue to
+  /// sleep, and paused actors remain paused. Otherwise a long pause would look short, and a board that clears
+  /// its watchdog trip with any write could not reveal it. A stall during another stall has no effect.
   void stall_clock(Nanoseconds duration);
   [[nodiscard]] bool clock_stalled() const noexcept { return now_ < stall_ends_; }
-  /// What that clock shows.
+  /// Returns the time that the daemon's clock shows.
   [[nodiscard]] Nanoseconds shown() const noexcept { return clock_stalled() ? stall_shows_ : now_; }
-  /// From within an actor: until that clock shows `due`.
+  /// Called by an actor: sleeps until the daemon's clock shows `due`.
   void sleep_until_shown(Nanoseconds due);
 
-  /// From within an actor. A sleep ends a little late, as the kernel's do.
+  /// Called by an actor: sleeps until `due` and a little longer, like a sleep of the kernel.
   void sleep_until(Nanoseconds due);
-  /// From within an actor, which has just looked at the clock.
+  /// Called by an actor that has just read the clock.
   void looked();
 
  private:
@@ -83,7 +85,7 @@ class Scheduler {
   bool stopped_ = false;
 };
 
-/// The clock of the daemon in the world.
+/// The daemon's clock in the simulated world.
 class WorldClock : public Clock {
  public:
   explicit WorldClock(Scheduler& scheduler) : scheduler_(scheduler) {}
@@ -97,7 +99,7 @@ class WorldClock : public Clock {
     scheduler_.sleep_until_shown(due);
     slept_ = true;
   }
-  /// What it showed at the first look after the last sleep.
+  /// Returns the first reading after the last sleep.
   [[nodiscard]] Nanoseconds woke() const noexcept { return woke_; }
 
  private:

@@ -44,7 +44,7 @@ void SocketInWorld::take(const Arrival& arrival, Nanoseconds now) {
   if (!arrival.line) return api_.on_closed(arrival.client);
   on_line(*arrival.line);
   api_.on_line(arrival.client, arrival.line->dump(), now);
-  // The loader has a real thread. No simulated time passes until it is done.
+  // The loader has a real thread. Simulated time stands still until the loader is done.
   while (api_.loads()) {
     std::this_thread::sleep_for(std::chrono::microseconds(20));
     api_.on_time(now);
@@ -52,7 +52,7 @@ void SocketInWorld::take(const Arrival& arrival, Nanoseconds now) {
 }
 
 void SocketInWorld::serve(Nanoseconds now) {
-  // Due lines go out first: then the number of calls in take() does not matter.
+  // Send due lines first, so that the number of calls in take() does not matter.
   api_.on_time(now);
   api_.on_time(now);
   while (!arrivals_.empty()) {

@@ -1,5 +1,5 @@
 #pragma once
-// The daemon's socket without a socket: lines in, lines out, through the daemon's own API.
+// The daemon's socket API without a socket: the test passes lines in and reads lines back.
 
 #include <deque>
 #include <functional>
@@ -20,23 +20,23 @@ class SocketInWorld {
   SocketInWorld(daemon::StatusSources sources, rig::SocketSettings settings,
                 std::shared_ptr<const daemon::SequenceLoader> loader, const daemon::EventLog& events);
 
-  /// A client. Its lines arrive at the service thread's next turn.
+  /// Adds a client. Its lines arrive in the next turn of the service thread.
   [[nodiscard]] daemon::ClientId connect();
   void hang_up(daemon::ClientId client);
   void say(daemon::ClientId client, const nlohmann::ordered_json& line);
-  /// The lines of the daemon to it since the last call, the oldest first.
+  /// Returns the daemon's lines to this client since the last call, oldest first.
   [[nodiscard]] std::vector<nlohmann::ordered_json> hear(daemon::ClientId client);
 
-  /// A turn of the service thread.
+  /// Runs one turn of the service thread.
   void serve(Nanoseconds now);
 
-  /// The service thread takes a line of a client.
+  /// Called when the service thread takes a line of a client.
   std::function<void(const nlohmann::ordered_json& line)> on_line = [](const auto&) {};
 
  private:
   struct Arrival {
     daemon::ClientId client = 0;
-    std::optional<nlohmann::ordered_json> line;  // nothing: it has hung up
+    std::optional<nlohmann::ordered_json> line;  // nullopt: the client has closed its connection
   };
   void take(const Arrival& arrival, Nanoseconds now);
 

@@ -1,6 +1,6 @@
 #pragma once
-// The surroundings of a program that drives a rig: board, line, fingers, a second master, the clock, and the
-// invariants that are judged there.
+// The surroundings of a program that drives a rig: board, line, fingers, a second Modbus client, the clock,
+// and the invariants that are checked there.
 
 #include <functional>
 #include <span>
@@ -20,7 +20,7 @@ namespace softgrip::world {
 
 class Surroundings {
  public:
-  /// `tracing`: everything that happens is kept in words.
+  /// `tracing`: records all events as text.
   Surroundings(RigShape rig_shape, bool tracing);
   Surroundings(const Surroundings&) = delete;
   Surroundings& operator=(const Surroundings&) = delete;
@@ -28,20 +28,20 @@ class Surroundings {
   Surroundings& operator=(Surroundings&&) = delete;
   ~Surroundings() = default;
 
-  /// Adds an actor that begins and ends these incidents when they are due. They outlive it.
+  /// Adds an actor that begins and ends these incidents at their times. The incidents must outlive the actor.
   void let_happen(const std::vector<Incident>& incidents,
                   std::function<void(const Incident& incident, bool begins)> carry_out);
-  /// Incidents of the clock, the line, the board and the fingers.
+  /// Begins or ends an incident of the clock, the line, the board or the fingers.
   void carry_out(const Incident& incident, bool begins);
   [[nodiscard]] static bool concerns(Incident::Kind kind) noexcept {
     return kind == Incident::Kind::clock_stalls ||
            (kind >= Incident::Kind::line && kind <= Incident::Kind::part_gone);
   }
-  /// A write has reached the board, whose outputs were as given.
+  /// Called when a write has reached the board, with the outputs before it.
   void note_write(std::span<const double> outputs_kpa, std::span<const double> commands_kpa);
-  /// A program begins that has not had a good exchange.
+  /// Called when a program starts, which has not had a good exchange yet.
   void nobody_spoke() noexcept { good_since_ = false; }
-  /// The excuses by the line and the second master.
+  /// Returns the present disturbances by the line and by the second Modbus client.
   [[nodiscard]] Excuse excuse() const noexcept;
 
   template <class... Values>
@@ -51,11 +51,11 @@ class Surroundings {
                      fmt::format(text, std::forward<Values>(values)...));
   }
 
-  /// Before a request takes effect.
+  /// Called before a request takes effect.
   WorldBoard::OnWrite on_write = [](auto, auto) {};
   std::function<void()> on_exchange = [] {};
   std::function<void()> on_trip = [] {};
-  std::function<void()> on_hindered = [] {};  ///< a habit of the board has made an exchange fail
+  std::function<void()> on_hindered = [] {};  ///< called when a habit of the board has made an exchange fail
 
   RigShape shape;
   bool tracing;
@@ -66,7 +66,7 @@ class Surroundings {
   Hardware hardware;
   WorldBoard board;
   Monitor monitor;
-  std::uint64_t fingerprint = 0;  ///< of all writes with their times
+  std::uint64_t fingerprint = 0;  ///< hash of all writes and their times
   std::uint64_t writes = 0;
   std::uint64_t trips = 0;
 
@@ -76,7 +76,7 @@ class Surroundings {
   void to_fingers(const Incident& incident, bool begins);
   void write_as_another(const Incident& incident);
 
-  int hindered_ = 0;  // number of incidents
+  int hindered_ = 0;  // number of present incidents that hinder the line
   bool good_since_ = false;
   const Incident* foreign_ = nullptr;
 };

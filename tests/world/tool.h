@@ -1,5 +1,5 @@
 #pragma once
-// The programs around the daemon that a world may contain, and what they meet there.
+// The programs in a world in addition to the daemon, and the counts of incidents during their use.
 
 #include <array>
 #include <cstdint>
@@ -7,28 +7,28 @@
 namespace softgrip::world {
 
 enum class Tool : std::uint8_t {
-  none,        ///< the daemon and its clients alone
-  calibrate,   ///< by hand, again and again; all of its procedures
-  doctor,      ///< with --move
-  run,         ///< `softgrip run`: the daemon in its own process, ended by its sequence
-  baseline,    ///< of one experiment
-  experiment,  ///< as `softgrip investigate` plays one
+  none,        ///< only the daemon and its clients
+  calibrate,   ///< `softgrip calibrate` by hand, repeatedly, with all of its procedures
+  doctor,      ///< `softgrip doctor --move`
+  run,         ///< `softgrip run`: the daemon in the command's process, ended by its sequence
+  baseline,    ///< `softgrip baseline` with one experiment
+  experiment,  ///< one experiment as `softgrip investigate` plays it
   plc,         ///< softgrip-plc and two masters, with the daemon
-  blocks,      ///< clients that stop what they have started, as the Python client does
+  blocks,      ///< clients that stop the sequences that they have started, like the Python client
 };
 inline constexpr std::array tool_names{"daemon",   "calibrate",  "doctor", "run",
                                        "baseline", "experiment", "plc",    "blocks"};
 inline constexpr std::size_t tool_count = tool_names.size();
 
-/// How often a tool was used, and how often the world came in its way meanwhile.
+/// Number of uses of a tool, and of disturbances during them.
 struct Met {
-  std::uint64_t calls = 0;  ///< of the command; of softgrip-plc: commands of masters; of blocks: starts
+  std::uint64_t calls = 0;  ///< calls of the command; for plc: commands of masters; for blocks: starts
   std::uint64_t results =
-      0;  ///< that ended well; of softgrip-plc: commands that were executed; of blocks: left
-  std::uint64_t pauses = 0;  ///< of one thread, of the process or of the clock
-  /// Times in which the board's watchdog vented; of softgrip-plc: of a master's silence, too.
+      0;                     ///< calls with a result; for plc: executed commands; for blocks: confirmed stops
+  std::uint64_t pauses = 0;  ///< pauses of a thread, of the process or of the clock
+  /// Trips of the board's watchdog; for plc also silences of a master.
   std::uint64_t gaps = 0;
-  std::uint64_t faults = 0;  ///< of line, board, second masters, fingers, processes
+  std::uint64_t faults = 0;  ///< incidents of line, board, other clients, fingers and processes
 
   Met& operator+=(const Met& other) noexcept {
     calls += other.calls;
@@ -38,7 +38,7 @@ struct Met {
     faults += other.faults;
     return *this;
   }
-  /// Nothing of it is 0.
+  /// Returns true if no count is 0.
   [[nodiscard]] bool whole() const noexcept {
     return calls > 0 && results > 0 && pauses > 0 && gaps > 0 && faults > 0;
   }

@@ -26,20 +26,20 @@ namespace {
 using Kind = Incident::Kind;
 using control::Request;
 
-/// Between the end of a daemon and the next one.
+/// Pause between the end of a daemon and the next start.
 constexpr Nanoseconds restart_pause = ns_per_s;
 constexpr Nanoseconds longest_answer = 2 * ns_per_s;
-/// Of a guest that is asked to.
+/// Longest time for a guest to end after the request.
 constexpr Nanoseconds longest_end = 60 * ns_per_s;
-/// Of a loop that ticks as it should.
+/// Longest interval between ticks of an undisturbed loop.
 constexpr Nanoseconds longest_tick_gap = ns_per_s / 20;
 constexpr Nanoseconds memory_looked_at_every = ns_per_s;
-/// When a daemon has what it needs.
+/// Time after which a daemon has allocated its resources.
 constexpr Nanoseconds settling = 5 * ns_per_s;
-/// The event log and a recording each keep ten thousand events of half a KiB, and run.json is made of them:
-/// the one thing that may grow.
+/// The event log and a recording each store 10,000 events of 0.5 KiB, from which run.json is built. Nothing
+/// else may grow.
 constexpr std::size_t allowed_growth_bytes = std::size_t{12} << 20;
-/// A recording and the file of a sequence.
+/// Descriptors of a recording and of a sequence's file.
 constexpr std::size_t allowed_descriptors = 8;
 
 std::size_t open_descriptors() {
@@ -55,7 +55,7 @@ std::size_t allocated_bytes() {
   return heap.uordblks + heap.hblkhd;
 }
 
-/// While it is true, no file of this process grows: as on a full disk.
+/// While `full` is true, no file of this process can grow, as on a full disk.
 void fill_disk(bool full) {
   std::signal(SIGXFSZ, SIG_IGN);
   rlimit limit{};
@@ -109,7 +109,7 @@ class World final : public Host {
     return std::move(result_);
   }
 
-  // Of Host.
+  // The interface Host.
   [[nodiscard]] const Library& library() const override { return library_; }
   [[nodiscard]] Surroundings& around() override { return around_; }
   [[nodiscard]] DaemonInWorld* daemon() override { return daemon_.get(); }
@@ -133,17 +133,17 @@ class World final : public Host {
     daemon_->on_submit = [this](Request::Kind kind, std::uint32_t id) { monitor_.submitted(kind, id); };
     if (guest_) guest_->boots(*daemon_);
     recorded_.clear();
-    ticked_ = 0;  // one that died at its first tick does not hide the next one's
+    ticked_ = 0;  // a daemon that died at its first tick must not hide the first tick of the next one
   }
 
  private:
-  /// A service manager starts the daemon, and starts it again.
+  /// True: a service manager starts and restarts the daemon.
   [[nodiscard]] bool managed() const { return !guest_ || !guest_->runs_the_daemon(); }
 
   void run_until(Nanoseconds end) {
     scheduler_.run_until(end, [this](ActorId id) { after(id); });
   }
-  /// What a program that is left alone would leave in this process.
+  /// Requests the end of the guest and waits for it, so that no program of this world remains in the process.
   void end_guest() {
     guest_->end();
     const Nanoseconds give_up = scheduler_.now() + longest_end;
@@ -168,7 +168,7 @@ class World final : public Host {
     vented_in_motion_ = vented_in_motion_ || runs;
   }
 
-  /// What a daemon leaves behind, when it has ended.
+  /// Called after the end of a daemon: checks its recordings and removes them.
   void bury() {
     if (!daemon_) return;
     around_.board.hang_up();
@@ -196,7 +196,7 @@ class World final : public Host {
     boots_at_ = scheduler_.now() + restart_pause;
   }
 
-  /// Looks at everything once a millisecond: bounds on time, ends, restarts.
+  /// Checks everything once per millisecond: time limits, ends and restarts.
   void outside_body() {
     for (;;) {
       scheduler_.sleep_until(scheduler_.now() + ns_per_s / 1000);
@@ -222,7 +222,7 @@ class World final : public Host {
       } else {
         if (managed()) look_at_memory(now);
         for (const auto& [id, asked] : daemon_->unanswered()) {
-          // Who is asked while it ends hangs up instead.
+          // A daemon that is ending closes the connection instead of answering.
           if (!is_paused() && !daemon_->shared.shutdown_requested.load() &&
               now - std::max(asked.at, undisturbed_since_) > longest_answer)
             monitor_.answer_is_late(now, asked.at);
@@ -231,12 +231,13 @@ class World final : public Host {
     }
   }
 
-  /// Once a second, while a daemon lives: what it has allocated and opened since it settled.
+  /// Checks, once per second while a daemon lives, the memory and descriptors that it has acquired since it
+  /// settled.
   void look_at_memory(Nanoseconds now) {
     const bool due = now - memory_looked_at_ >= memory_looked_at_every && now - booted_at_ >= settling;
     if (!due || options_.trace) return;
     memory_looked_at_ = now;
-    // What the world keeps of every tick is not the daemon's; neither is a trace.
+    // Exclude the world's own list of ticks. With a trace the growth is not checked.
     const std::size_t bytes = allocated_bytes() - recorded_.capacity() * sizeof(Nanoseconds);
     if (settled_bytes_ == 0) settled_bytes_ = bytes;
     const std::size_t growth = bytes > settled_bytes_ ? bytes - settled_bytes_ : 0;
@@ -290,8 +291,8 @@ class World final : public Host {
   void wrote(Nanoseconds began, std::span<const double> commands) {
     const Nanoseconds now = scheduler_.now();
     const auto outputs = hardware_.outputs_kpa();
-    // Without a loop nobody shapes a ramp.
-    // Nor where it is not known what stands there: the lower of what may.
+    // No loop shapes a ramp if the loop is stalled. After a failed exchange the outputs are unknown, and the
+    // daemon writes the lower of the possible values.
     const std::uint64_t failures = daemon_->bus_statistics.failures.value();
     const bool unconfirmed = std::exchange(failures_, failures) != failures;
     const bool safe_outputs = unconfirmed || daemon_->shared.shutdown_requested.load() ||
@@ -313,20 +314,20 @@ class World final : public Host {
   std::unique_ptr<Guest> guest_;
   std::unique_ptr<DaemonInWorld> daemon_;
   std::vector<std::unique_ptr<DaemonInWorld>> buried_;
-  std::vector<Nanoseconds> recorded_;  // when it ticked, since its origin
+  std::vector<Nanoseconds> recorded_;  // times of the ticks since the daemon's origin
   unsigned lives_ = 0;
-  std::optional<daemon::Outcome> outcome_;  // of the last daemon, unless it was killed
+  std::optional<daemon::Outcome> outcome_;  // outcome of the last daemon, unless it was killed
   bool vented_in_motion_ = false;
-  bool alone_ = true;  // its recordings are of the rig file's folder
+  bool alone_ = true;  // its recordings are in the folder of the rig file
   bool killed_ = false;
   bool disk_full_ = false;
   bool disk_was_full_ = false;
-  std::size_t descriptors_ = 0;  // before the first daemon
+  std::size_t descriptors_ = 0;  // open descriptors before the first daemon
   std::size_t settled_bytes_ = 0;
   Nanoseconds booted_at_ = 0;
   Nanoseconds memory_looked_at_ = 0;
   std::uint64_t ticked_ = 0;
-  std::uint64_t failures_ = 0;  // of the bus, when it wrote last
+  std::uint64_t failures_ = 0;  // failures of the bus at its last write
   Nanoseconds boots_at_ = 0;
   Nanoseconds last_tick_ = 0;
   Nanoseconds last_tick_gap_end_ = 0;
@@ -353,7 +354,7 @@ void World::carry_out(const Incident& incident, bool begins) {
   }
 }
 
-/// What a guest and its daemon have met.
+/// Counts the pauses and faults that a guest and its daemon have met.
 void World::count(const Incident& incident) {
   if (!daemon_) return;
   Met& met = guest_->met();
@@ -421,7 +422,7 @@ void World::pause(const Incident& incident) {
   }
 }
 
-/// The rig of a seed. Experiments begin and end at 0 kPa, so those have a rig that rests there.
+/// Returns the rig of a seed. Experiments begin and end at 0 kPa, so they need a rig that rests at 0 kPa.
 const Library& library_for(const Library& library, std::uint64_t seed, Tool tool) {
   const Library& drawn = library.of(seed);
   const bool experiments = tool == Tool::baseline || tool == Tool::experiment;
@@ -447,7 +448,7 @@ std::vector<Incident> shrink(const Library& library, std::uint64_t seed, const W
     const WorldResult result = run_world(library, seed, again);
     return result.violation && result.violation->invariant == failed.violation->invariant;
   };
-  // Half of them, a quarter ... single ones are left out, as long as that leaves the violation.
+  // Leave out half of the incidents, then a quarter, down to single ones, while the violation remains.
   for (std::size_t part = std::max<std::size_t>(best.size() / 2, 1);; part /= 2) {
     for (std::size_t begin = 0; begin < best.size();) {
       std::vector<Incident> fewer = best;

@@ -1,6 +1,6 @@
 #pragma once
-// A whole rig under one seed: daemon, board, line, fingers, clients, a second master, disk, pauses of every
-// thread. The same seed gives the same run, bit for bit.
+// A whole rig that is determined by one seed: daemon, board, line, fingers, clients, a second Modbus client,
+// disk, and pauses of every thread. Runs with the same seed are identical, bit for bit.
 
 #include <cstdint>
 #include <memory>
@@ -16,46 +16,46 @@
 
 namespace softgrip::world {
 
-/// What is the same in all worlds: read once.
+/// The data that all worlds share; read once.
 struct Library {
   rig::RigFile rig;
   std::vector<std::shared_ptr<const daemon::LoadedSequence>> sequences;
-  std::vector<Library> others;  ///< rigs that go to both sides of their rest pressure
+  std::vector<Library> others;  ///< rigs whose pressures go to both sides of their rest pressure
 
-  /// One seed in four has such a rig.
+  /// Returns the library of a seed: one seed in four has a rig of `others`.
   [[nodiscard]] const Library& of(std::uint64_t seed) const {
     return seed % 4 == 3 && !others.empty() ? others[seed / 4 % others.size()] : *this;
   }
 };
-/// From the project's own example files. Throws std::runtime_error if these are refused.
+/// Reads the project's own example files. Throws std::runtime_error if a file is refused.
 [[nodiscard]] Library load_library();
 
 struct WorldOptions {
   Tool tool = Tool::none;
   Nanoseconds length = 60 * ns_per_s;
-  /// Instead of those that the seed draws.
+  /// If set, these incidents replace the incidents that the seed draws.
   std::optional<std::vector<Incident>> incidents;
-  /// Every write, tick with an event and incident, in words.
+  /// Record every incident, every write and every tick with an event as text.
   bool trace = false;
   bool record = true;
-  bool always_habits = false;  ///< else one seed in five has a board with habits
+  bool always_habits = false;  ///< false: one seed in five has a board with habits
 };
 
 struct WorldResult {
   std::optional<Violation> violation;
   std::vector<Incident> incidents;
-  std::string shape;  ///< of the rig, in a line
+  std::string shape;  ///< description of the rig in one line
   std::vector<std::string> trace;
-  std::uint64_t fingerprint = 0;  ///< of all writes with their times
+  std::uint64_t fingerprint = 0;  ///< hash of all writes and their times
   std::uint64_t ticks = 0, writes = 0, sequences = 0, holdings = 0, faults = 0, trips = 0, rows = 0;
-  std::uint64_t growth_bytes = 0;  ///< the most that a daemon's heap grew after it had settled
-  std::uint64_t descriptors = 0;   ///< the most that one had open
-  Met met;                         ///< of the tool
+  std::uint64_t growth_bytes = 0;  ///< largest growth of a daemon's heap after it had settled
+  std::uint64_t descriptors = 0;   ///< largest number of open descriptors of a daemon
+  Met met;                         ///< counts of the tool
 };
 
 [[nodiscard]] WorldResult run_world(const Library& library, std::uint64_t seed, const WorldOptions& options);
 
-/// Fewer and shorter incidents with the same violation.
+/// Returns fewer incidents with the same violation.
 [[nodiscard]] std::vector<Incident> shrink(const Library& library, std::uint64_t seed,
                                            const WorldResult& failed, const WorldOptions& options);
 
