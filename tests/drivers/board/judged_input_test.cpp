@@ -10,8 +10,8 @@ namespace {
 
 using model::Validity;
 
-/// 4-20 mA on a 16 bit board that says -32768 when nothing is connected; an HG-C1100-like laser, highest at
-/// the near end, that says 3.75 mA when it cannot measure.
+/// A 4-20 mA input of a 16-bit board that reads -32768 if nothing is connected. Its sensor resembles a laser
+/// HG-C1100: the current is highest at the near end, and 3.75 mA mean that it cannot measure.
 class JudgedInputTest : public testing::Test {
  protected:
   JudgedInputTest() {
@@ -68,7 +68,7 @@ TEST_F(JudgedInputTest, StatusRegister) {
   EXPECT_EQ(judged(12000, std::uint16_t{1}).validity, Validity::out_of_range);
   EXPECT_EQ(judged(12000, std::uint16_t{2}).validity, Validity::out_of_range);
   EXPECT_EQ(judged(12000, std::uint16_t{3}).validity, Validity::sensor_error);
-  // The status speaks of the board's range; the sensor's own limits still hold.
+  // The status describes the board's range; the sensor's own limits still apply.
   EXPECT_EQ(judged(1000, std::uint16_t{0}).validity, Validity::out_of_range);
   EXPECT_EQ(judged(3750, std::uint16_t{0}).validity, Validity::sensor_error);
   EXPECT_EQ(judged(3750, std::uint16_t{2}).validity, Validity::sensor_error);

@@ -1,7 +1,7 @@
 #pragma once
 // GPIO chips without a kernel: the functions of libgpiod that the driver calls, for the API of the installed
-// library (fake_gpio_1.cpp, fake_gpio_2.cpp), over the chips that stand here. They take the place of the
-// library's own when a test program is linked.
+// library (fake_gpio_1.cpp, fake_gpio_2.cpp). They operate on the chips of fake_chips(), and replace the
+// library's own functions when a test program is linked.
 
 #include <cstdint>
 #include <deque>
@@ -20,10 +20,10 @@ struct FakeEdge {
 
 struct FakeLine {
   std::string name;
-  bool used = false;  ///< by the driver, too, while it holds the line
+  bool used = false;  ///< also true while the driver holds the line
   std::string consumer;
   bool output = false;
-  bool high = false;        ///< what a voltmeter shows
+  bool high = false;        ///< the physical level
   bool edges_seen = false;  ///< requested with edge detection
   bool active_low = false;
   FakeBias bias = FakeBias::as_is;
@@ -32,31 +32,31 @@ struct FakeLine {
   std::deque<FakeEdge> edges;
 
   [[nodiscard]] bool active() const { return high != active_low; }
-  /// The level changes, and the kernel says so to who asked for edges.
+  /// Changes the level. If edges were requested, the program receives an edge.
   void change(bool to_high, std::int64_t at_ns);
-  /// What a request does. 0, or its errno.
+  /// Requests the line. Returns 0 or an errno.
   int request(const std::string& by, bool as_output, bool with_edges, bool inverted, FakeBias resistor);
   void release();
-  /// Takes the next edge that waits.
+  /// Returns the next waiting edge and removes it.
   FakeEdge take_edge();
 };
 
 struct FakeChip {
   std::string name;  ///< "gpiochip0"
   std::string label;
-  int open_error = 0;      ///< errno of opening it
-  bool interrupts = true;  ///< without them a request with edges fails with ENXIO
+  int open_error = 0;      ///< errno when the chip is opened; 0: success
+  bool interrupts = true;  ///< false: a request with edge detection fails with ENXIO
   std::vector<FakeLine> lines;
 };
 
-/// Whoever changes levels in another thread than the driver's holds this meanwhile; the library's functions
-/// do.
+/// Locks all lines. A test that changes levels in another thread than the driver's holds the lock meanwhile,
+/// as the library's functions do.
 [[nodiscard]] std::unique_lock<std::recursive_mutex> hold_fake_lines();
-/// The machine's chips. Emptied by the tests.
+/// The machine's chips; the tests clear them.
 std::vector<FakeChip>& fake_chips();
-/// The chip whose file is opened; nullptr, and errno, if that fails.
+/// Returns the chip at this path, or nullptr with errno set.
 FakeChip* open_fake_chip(const char* path);
-/// Of the line's chip.
+/// Returns true if the line's chip supports interrupts.
 bool has_interrupts(const FakeLine& line);
 
 }  // namespace softgrip::drivers::testing

@@ -1,4 +1,4 @@
-// The API of libgpiod 1.6 over the chips of fake_gpio.h.
+// Implements the API of libgpiod 1.6 on the chips of fake_gpio.h.
 
 #include <gpiod.h>
 

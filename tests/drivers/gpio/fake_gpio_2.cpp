@@ -1,4 +1,4 @@
-// The API of libgpiod 2.x over the chips of fake_gpio.h.
+// Implements the API of libgpiod 2.x on the chips of fake_gpio.h.
 
 #include <gpiod.h>
 
@@ -14,7 +14,7 @@ using softgrip::drivers::testing::FakeEdge;
 using softgrip::drivers::testing::FakeLine;
 using softgrip::drivers::testing::hold_fake_lines;
 
-// What the library keeps opaque.
+// The types that the library declares as opaque.
 struct gpiod_chip {
   FakeChip* chip;
 };

@@ -1,4 +1,4 @@
-// The lines of a rig through the API of the installed libgpiod, over chips without a kernel.
+// The lines of a rig through the API of the installed libgpiod, on chips without a kernel.
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -55,7 +55,7 @@ class Libgpiod : public ::testing::Test {
   }
 
   std::filesystem::path devices_;
-  std::filesystem::path sys_;  // none
+  std::filesystem::path sys_;  // empty: no such folder
 };
 
 TEST_F(Libgpiod, RequestsEachLineAsDescribed) {

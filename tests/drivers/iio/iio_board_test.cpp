@@ -1,4 +1,4 @@
-// Converters of this computer, played by plain files in the places where sysfs has them.
+// Converters of this computer, simulated by plain files with the paths that sysfs uses.
 
 #include "drivers/iio/iio_board.h"
 
@@ -22,7 +22,8 @@ class IioBoardTest : public testing::Test {
  protected:
   IioBoardTest() {
     fs::create_directories(root_);
-    // An ADS1115-like converter with a scale per channel, a DAC with one scale for all and an offset.
+    // A converter like the ADS1115 with a scale per channel, and a DAC with one scale for all channels and an
+    // offset.
     put("iio:device0/name", "ads1115");
     for (const char* channel : {"voltage0", "voltage1"}) {
       put(std::string("iio:device0/in_") + channel + "_raw", "8000");
@@ -53,7 +54,7 @@ class IioBoardTest : public testing::Test {
 
   void put(const std::string& file, const std::string& text) const {
     fs::create_directories((root_ / file).parent_path());
-    // In place: the board has the file open, as it has the attribute.
+    // Overwrite the file in place, because the board keeps it open like an attribute of sysfs.
     std::ofstream(root_ / file) << text << "\n";
   }
   [[nodiscard]] std::string get(const std::string& file) const {
@@ -203,7 +204,8 @@ TEST_F(IioBoardTest, APowerdownThatCannotBeReadOrWrittenIsRefusedBeforeAnythingI
   EXPECT_NE(refusal().find("out_voltage1_powerdown: no number"), std::string::npos) << refusal();
   const fs::path powerdown = root_ / "iio:device1/out_voltage1_powerdown";
   fs::remove(powerdown);
-  fs::create_symlink("/proc/sys/kernel/ngroups_max", powerdown);  // above 0, and no user may write it
+  fs::create_symlink("/proc/sys/kernel/ngroups_max",
+                     powerdown);  // its value is above 0, and no user may write it
   EXPECT_NE(refusal().find("out_voltage1_powerdown is 1 and cannot be cleared: Permission denied"),
             std::string::npos)
       << refusal();
@@ -212,7 +214,7 @@ TEST_F(IioBoardTest, APowerdownThatCannotBeReadOrWrittenIsRefusedBeforeAnythingI
 
 TEST_F(IioBoardTest, APowerdownThatStaysEndsTheSessionAndTheNextIsRefused) {
   const fs::path powerdown = root_ / "iio:device1/out_voltage1_powerdown";
-  // The kernel takes any number there and keeps its own, which is above 0.
+  // The kernel accepts any number in this file and keeps its own value, which is above 0.
   const std::string keeps_its_number = "/proc/sys/kernel/random/urandom_min_reseed_secs";
   if (::access(keeps_its_number.c_str(), W_OK) != 0) GTEST_SKIP() << "needs root: " << keeps_its_number;
   fs::create_symlink(keeps_its_number, powerdown);
@@ -244,7 +246,7 @@ TEST_F(IioBoardTest, AnOutputWithoutAChannelStaysSwitchedOff) {
 
 TEST_F(IioBoardTest, APressureIsReadInKilopascals) {
   put("iio:device2/name", "bmp280");
-  put("iio:device2/in_pressure_input", "121.3");  // processed: no number and no scale
+  put("iio:device2/in_pressure_input", "121.3");  // a processed value without a channel number and a scale
   put("iio:device3/name", "mpl115");
   put("iio:device3/in_pressure0_raw", "400");
   put("iio:device3/in_pressure_scale", "0.25");
@@ -303,7 +305,7 @@ TEST_F(IioBoardTest, OneChannelUnderTwoWordsIsRefused) {
   EXPECT_NE(refusal().find("both are "), std::string::npos) << refusal();
 }
 
-/// Converters on a bus, which come and go under the kernel's next number.
+/// Converters on a bus that disappear and return with the kernel's next device number.
 class IioBusTest : public IioBoardTest {
  protected:
   IioBusTest() {
@@ -324,7 +326,7 @@ class IioBusTest : public IioBoardTest {
     fs::remove(root_ / node);
     fs::remove_all(root_ / "hardware" / address);
   }
-  /// The session ends as with a converter that is gone.
+  /// Ends the session as if the converter had disappeared.
   void lose(IioBoard& board) {
     put("iio:device0/in_voltage0_raw", "no");
     EXPECT_EQ(exchange(board, 10, 10), BusStatus::disconnected);

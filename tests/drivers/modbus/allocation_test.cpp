@@ -1,5 +1,5 @@
-// No allocation in exchange(), whatever comes of it: counted in operator new and, where no sanitizer has its
-// own allocator, in malloc itself.
+// exchange() never allocates memory, regardless of its result. The test counts calls of operator new and,
+// unless a sanitizer has its own allocator, of malloc.
 
 #include <gtest/gtest.h>
 
@@ -28,7 +28,7 @@ using softgrip::test::allocations_of;
 using test::RegisterServer;
 
 TEST(Allocation, TheCounterCounts) {
-  static std::vector<std::string> kept;  // outlives the call: no compiler may leave the allocation out
+  static std::vector<std::string> kept;  // static, so that the compiler cannot remove the allocation
   EXPECT_GT(allocations_of([] { kept.emplace_back(100, 'x'); }), 0U);
   EXPECT_EQ(allocations_of([] {}), 0U);
 }
@@ -45,7 +45,7 @@ class ModbusAllocation : public testing::Test {
     });
   }
 
-  /// One exchange that must end with `expected` and allocate nothing.
+  /// Performs one exchange that must end with `expected` and must not allocate.
   void expect(BusStatus expected, std::array<double, 2> commands, std::chrono::nanoseconds deadline = 5s) {
     BusStatus status = BusStatus::ok;
     const std::size_t made =
@@ -75,7 +75,7 @@ TEST_F(ModbusAllocation, EveryWayAnExchangeCanFail) {
   expect(BusStatus::write_refused, {10, 1234.5678});
   expect(BusStatus::write_refused, {10, std::numeric_limits<double>::quiet_NaN()});
   server_.ignore_writes(true);
-  expect(BusStatus::ok, {90, 90});  // its read-back may lag one exchange
+  expect(BusStatus::ok, {90, 90});  // the map allows a lag of one exchange
   expect(BusStatus::write_refused, {90, 90});
   server_.ignore_writes(false);
   for (const std::uint8_t code : {std::uint8_t{2}, std::uint8_t{9}, std::uint8_t{200}}) {

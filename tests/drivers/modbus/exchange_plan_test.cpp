@@ -7,7 +7,8 @@
 namespace softgrip::drivers::exchange_plan_test {
 namespace {
 
-/// 8 inputs from holding 0, their status from 8, 4 outputs from 100, read back from 20.
+/// A map with 8 inputs from holding register 0, their status from 8, and 4 outputs from 100, read back
+/// from 20.
 BoardMap plain_map() {
   BoardMap map;
   map.inputs.registers = {.function = 3, .address = 0, .count = 8, .kind = RegisterKind::uint16};
@@ -42,7 +43,7 @@ TEST(ExchangePlan, NeighbouringBlocksAreReadTogether) {
   map.input_status =
       StatusBlock{.registers = {3, 8, 8, RegisterKind::uint16}, .ok = {0}, .over = {}, .under = {}};
   const ExchangePlan plan = plan_exchange(map, test::two_fingers(false));
-  // Inputs 2-7 lie between: they are the board's own, so they can be read.
+  // Inputs 2-7 are between them: they are registers of the board, so they can be read.
   EXPECT_EQ(plan.reads, (std::vector<ReadStep>{{3, 0, 10}}));
   EXPECT_EQ(plan.channels[1].displacement_status, (Slot{0, 9}));
 }
@@ -54,7 +55,7 @@ TEST(ExchangePlan, GapsAreReadOnlyAsFarAsTheMapAllows) {
             (std::vector<ReadStep>{{3, 0, 2}, {3, 20, 2}}));
   map.readable_gap = 11;
   EXPECT_EQ(plan_exchange(map, test::two_fingers(false)).reads.size(), 2U);
-  map.readable_gap = 12;  // registers 8-19 belong to nothing
+  map.readable_gap = 12;  // registers 8-19 have no function
   const ExchangePlan plan = plan_exchange(map, test::two_fingers(false));
   EXPECT_EQ(plan.reads, (std::vector<ReadStep>{{3, 0, 22}}));
   EXPECT_EQ(plan.channels[0].read_back, (Slot{0, 20}));

@@ -1,5 +1,5 @@
-// The board's driver against libmodbus' server: the implementation that most real boards' users have tried
-// their boards with.
+// The board's driver against the server of libmodbus, the implementation with which users of most real boards
+// have tried them.
 
 #include <gtest/gtest.h>
 #include <modbus/modbus.h>
@@ -21,7 +21,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// Serves one session after the other until the test ends it.
+/// Serves one session after another until the test ends.
 class LibmodbusServer {
  public:
   LibmodbusServer()
@@ -47,7 +47,7 @@ class LibmodbusServer {
   }
 
   [[nodiscard]] std::uint16_t port() const { return port_; }
-  /// Only between exchanges: the server then waits for a request.
+  /// Use only between exchanges, while the server waits for a request.
   [[nodiscard]] modbus_mapping_t& mapping() { return *mapping_; }
 
  private:

@@ -14,7 +14,7 @@ using State = ModbusReply::State;
 constexpr std::uint16_t transaction = 0x0102;
 constexpr std::uint8_t unit = 17;
 
-/// A question and a right answer to it, data at the end.
+/// A request and a correct response; the data are at its end.
 struct Case {
   ModbusRequest request;
   Bytes pdu;
@@ -95,9 +95,9 @@ TEST(ModbusReply, EveryByteBehindAnAnswerIsADefect) {
   }
 }
 
-// No change of one bit in header, function, byte count or echo may pass. (The function's highest bit makes an
-// exception of it, with a length that no exception has; data carry no check, TCP's checksum is all they
-// have.)
+// No change of one bit in header, function code, byte count or echo may be accepted. The highest bit of the
+// function code makes the response an exception, but its length does not fit. Only the checksum of TCP
+// protects the data.
 TEST(ModbusReply, NoBitOutsideTheDataMayFlip) {
   for (const Case& one : cases()) {
     const Bytes right = frame(one.pdu);

@@ -1,4 +1,5 @@
-// Frames against the byte sequences of the examples in the Modbus application protocol, V1.1b3, section 6.
+// Compares frames with the byte sequences of the examples in the Modbus application protocol V1.1b3,
+// section 6.
 
 #include "drivers/modbus/mbap.h"
 

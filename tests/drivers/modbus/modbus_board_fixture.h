@@ -1,6 +1,5 @@
 #pragma once
-// The board's driver on a server on real sockets, as the tests of its exchanges, its read-back and its
-// watchdog use it.
+// The board's driver with a server on real sockets, for the tests of exchanges, read-back and watchdog.
 
 #include <gtest/gtest.h>
 
@@ -31,7 +30,7 @@ inline BoardMap shipped(const std::string& name) {
   return *map;
 }
 
-/// ADAM-6024 input register for a voltage.
+/// Returns the input register of an ADAM-6024 for a voltage.
 inline std::uint16_t adam_raw(double volt) {
   return static_cast<std::uint16_t>(std::lround((volt + 10) / 20 * 65535));
 }
@@ -40,7 +39,7 @@ class ModbusBoardTest : public testing::Test {
  protected:
   ModbusBoardTest() {
     for (std::uint16_t input = 0; input < 6; ++input) server_.set_input(input, adam_raw(5));
-    // The outputs read back as input registers 10 and 11 on an ADAM-6024.
+    // An ADAM-6024 reads its outputs back as input registers 10 and 11.
     server_.on_request([](RegisterServer& server, const RegisterServer::Request&) {
       server.input_[10] = server.holding_[10];
       server.input_[11] = server.holding_[11];
@@ -49,7 +48,7 @@ class ModbusBoardTest : public testing::Test {
 
   ModbusSettings settings(const BoardMap& map) const { return on_tcp(server_.port(), map, wiring_, 0); }
 
-  /// Makes and connects the board; the requests of connecting are forgotten.
+  /// Creates and connects the board, and discards the requests of the connection.
   void connect(const BoardMap& map) {
     board_ = std::make_unique<ModbusBoard>(settings(map));
     ASSERT_EQ(board_->connect(generous), BusStatus::ok) << board_->detail();

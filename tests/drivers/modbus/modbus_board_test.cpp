@@ -1,4 +1,4 @@
-// The board's driver against a server on real sockets: right registers, right numbers, right status.
+// The board's driver against a server on real sockets: correct registers, values and status.
 
 #include "drivers/modbus/modbus_board.h"
 
@@ -35,7 +35,8 @@ TEST_F(ModbusBoardTest, AdamWritesAndReadsTheRegistersOfItsManual) {
   const Requests expected{
       {16, 10, 0, 10, {1638, 4095}}, {4, 0, 6, 0, {}}, {4, 10, 2, 0, {}}, {4, 20, 6, 0, {}}};
   EXPECT_EQ(server_.take_requests(), expected);
-  // Half a step of 16 bits over 20 V is 0.15 mV, of 12 bits over 10 V 1.2 mV; 5 mm/V and 10 kPa/V.
+  // Half a step is 0.15 mV for 16 bits over 20 V, and 1.2 mV for 12 bits over 10 V. The scales are 5 mm/V and
+  // 10 kPa/V.
   EXPECT_NEAR(readings_[0].displacement_mm, 10, 0.001);
   EXPECT_NEAR(readings_[1].displacement_mm, 30, 0.001);
   EXPECT_NEAR(readings_[0].pressure_kpa, 10, 0.002);
@@ -90,7 +91,7 @@ TEST_F(ModbusBoardTest, OneTransactionWithFunction23) {
   });
   ASSERT_EQ(exchange(12.5, 50), BusStatus::ok) << board_->detail();
   const Requests requests = server_.take_requests();
-  // After a new session the watchdog's state is asked for once, to clear it if it tripped.
+  // After a new session the driver reads the watchdog's state once, to clear a trip.
   ASSERT_EQ(requests.size(), 2U);
   EXPECT_EQ(requests[0].function, 23);
   EXPECT_EQ(requests[0].write_address, 256);
@@ -117,7 +118,7 @@ TEST_F(ModbusBoardTest, LowWordFirst) {
   EXPECT_EQ(server_.holding(257), 0x3fa0);
 }
 
-// On a bipolar board raw 0 is -10 V: an output that nobody wired must never be written.
+// On a bipolar board raw 0 is -10 V, so an output without wiring must never be written.
 TEST_F(ModbusBoardTest, OnlyWiredOutputsAreWritten) {
   BoardMap map = shipped("softgrip-sim.yaml");
   map.has_fc23 = false;
@@ -154,15 +155,15 @@ TEST_F(ModbusBoardTest, ChannelsMayBeWiredInAnyOrder) {
 TEST_F(ModbusBoardTest, ValidityOfReadings) {
   connect(shipped("adam-6024.yaml"));
   server_.set_input(0, adam_raw(0.05));  // below the electrical range
-  server_.set_input(1, adam_raw(9.95));  // the sensor's error code
+  server_.set_input(1, adam_raw(9.95));  // the error code of the sensor
   ASSERT_EQ(exchange(0, 0), BusStatus::ok);
   EXPECT_EQ(readings_[0].validity, Validity::out_of_range);
   EXPECT_EQ(readings_[1].validity, Validity::sensor_error);
   server_.set_input(0, adam_raw(5));
   server_.set_input(1, adam_raw(5));
-  server_.set_input(20, 1);  // over
-  server_.set_input(21, 7);  // a number that the manual does not know
-  server_.set_input(24, 2);  // the left pressure input is under its range
+  server_.set_input(20, 1);  // status: above the range
+  server_.set_input(21, 7);  // a status that the manual does not list
+  server_.set_input(24, 2);  // status: the left pressure input is below its range
   ASSERT_EQ(exchange(0, 0), BusStatus::ok);
   EXPECT_EQ(readings_[0].validity, Validity::out_of_range);
   EXPECT_EQ(readings_[1].validity, Validity::sensor_error);
@@ -210,7 +211,7 @@ TEST_F(ModbusBoardTest, ExceptionsAreToldAndTheSessionStands) {
 
 TEST_F(ModbusBoardTest, TheDeadlineSpansTheWholeExchange) {
   connect(shipped("adam-6024.yaml"));
-  server_.delay(30ms);  // each of four round trips within the deadline, together beyond it
+  server_.delay(30ms);  // each of the four round trips is shorter than the deadline, their sum is longer
   const Nanoseconds before = MonotonicClock().now();
   EXPECT_EQ(exchange(10, 10, 50ms), BusStatus::timed_out);
   EXPECT_LT(MonotonicClock().now() - before, 50'000'000 + 400'000'000);
@@ -304,8 +305,8 @@ TEST_F(ModbusBoardTest, SaysHowManyClientsTheBoardCounts) {
   EXPECT_FALSE(board_->fed_by_readers());
 }
 
-/// A board with a latching watchdog: tripped shows in coil 32, writing 1 to coil 33 clears it, and while it
-/// is tripped writes are confirmed but the outputs (holding 256...) stay at 0.
+/// A board with a latching watchdog. Coil 32 is set after a trip; writing 1 to coil 33 clears it. During a
+/// trip the board confirms writes, but its outputs (holding 10 and 11) remain 0.
 class WatchdogTest : public ModbusBoardTest {
  protected:
   WatchdogTest() {
@@ -393,7 +394,7 @@ TEST_F(WatchdogTest, AHeartbeatChangesWithEveryExchangeAndIsRepeatedUntilItIsCon
   EXPECT_EQ(server_.holding(4099), 9);
 }
 
-/// The board refuses writes with an exception while its watchdog holds the outputs, as some couplers do.
+/// During a trip the board refuses writes with an exception, as some couplers do.
 TEST_F(WatchdogTest, ABoardThatRefusesWritesWhileTrippedIsToldByItsFlag) {
   map_.setup = {{6, 500, 7}};
   connect(map_);

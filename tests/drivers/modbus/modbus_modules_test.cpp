@@ -1,4 +1,4 @@
-// Several modules as one board.
+// Several Modbus modules that form one board.
 
 #include "drivers/modbus/modbus_board.h"
 
@@ -18,7 +18,7 @@ using test::RegisterServer;
 using test::Requests;
 using test::shipped;
 
-/// Outputs and inputs are two devices at two addresses.
+/// Outputs and inputs belong to two devices with two addresses.
 class TwoModules : public ModbusBoardTest {
  protected:
   TwoModules() {

@@ -1,4 +1,4 @@
-// What the board's driver concludes from what a board says of its outputs.
+// The conclusions of the board's driver from the outputs that a board reads back.
 
 #include "drivers/modbus/modbus_board.h"
 
@@ -31,7 +31,7 @@ TEST_F(ModbusBoardTest, AnOutputThatDoesNotFollowIsRefused) {
   EXPECT_EQ(exchange(50, 10), BusStatus::ok);
 }
 
-// Another master writes to one output between the write and the reading of one exchange.
+// Another Modbus client writes to one output between the write and the reading of one exchange.
 TEST_F(ModbusBoardTest, ARefusedExchangeNamesTheOutputsThatItHasFound) {
   BoardMap map = shipped("adam-6024.yaml");
   map.read_back->lag_exchanges = 0;
@@ -70,7 +70,8 @@ TEST_F(ModbusBoardTest, WhatSomebodyElseWritesIsNoticedWithinEightExchanges) {
   EXPECT_EQ(exchange(0, 0), BusStatus::ok);
 }
 
-// An output that never took what was written differs from it at the next look, too: nobody else was there.
+// An output that never accepted a write also differs from it at the next reading, although no other client
+// has written.
 TEST_F(ModbusBoardTest, AnOutputThatDoesNotFollowIsNotTakenForSomebodyElsesWriting) {
   BoardMap map = shipped("adam-6024.yaml");
   map.read_back->lag_exchanges = 0;
@@ -142,12 +143,13 @@ TEST_F(ModbusBoardTest, AnotherMasterIsNoticedThoughOneFunctionReadsAndWrites) {
   EXPECT_EQ(status, BusStatus::overwritten) << board_->detail();
 }
 
-// Some boards show in the read-back what they were told one exchange ago, all the more with function 23.
+// Some boards read back the command of the previous exchange, in particular with function code 23.
 TEST_F(ModbusBoardTest, AReadBackMayLagAsFarAsTheMapAllows) {
   BoardMap map = shipped("adam-6024.yaml");
   map.read_back->lag_exchanges = 1;
   server_.on_request([](RegisterServer& server, const RegisterServer::Request& request) {
-    if (request.function != 16) return;  // called before the write is carried out: shows the one before
+    if (request.function != 16)
+      return;  // called before the write is executed, so it shows the previous write
     server.input_[10] = server.holding_[10];
     server.input_[11] = server.holding_[11];
   });

@@ -1,5 +1,5 @@
-// Fuzz target: arbitrary bytes as the answer of a board, all the way to a reading. The first bytes choose the
-// question and the kind of register, the rest is what comes over the wire.
+// Fuzz target: arbitrary bytes as the response of a board, up to the reading. The first bytes choose the
+// request and the kind of register; the remaining bytes are the response.
 //
 //   cmake --preset fuzz && cmake --build --preset fuzz --target modbus_reply_fuzz
 //   build/fuzz/tests/drivers/modbus_reply_fuzz -max_total_time=660 -max_len=512
@@ -27,7 +27,7 @@ void require(bool holds) {
   if (!holds) std::abort();
 }
 
-/// Takes bytes off the front; 0 when there are none left.
+/// Removes bytes from the front; returns 0 if no bytes remain.
 class Choices {
  public:
   explicit Choices(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
@@ -44,7 +44,7 @@ class Choices {
   std::span<const std::uint8_t> bytes_;
 };
 
-/// What a complete answer may be: inside the bytes, and of the size that was asked for.
+/// Checks that the data of a complete response are inside the bytes and have the requested size.
 void check_complete(const ModbusReply& reply, const ModbusRequest& request,
                     std::span<const std::uint8_t> bytes) {
   require(reply.data.empty() || (reply.data.data() >= bytes.data() &&
@@ -56,7 +56,7 @@ void check_complete(const ModbusReply& reply, const ModbusRequest& request,
   require(reply.data.size() == expected);
 }
 
-/// The numbers in the registers, scaled and judged.
+/// Decodes, scales and judges the numbers in the registers.
 void judge_all(std::span<const std::uint8_t> data, Choices& choices) {
   std::vector<std::uint16_t> words;
   for (std::size_t i = 0; i + 1 < data.size(); i += 2) words.push_back(word_at(data, i));
@@ -95,8 +95,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::uint8_t unit = choices.byte();
   const std::span<const std::uint8_t> bytes = choices.rest();
 
-  // Byte by byte, as a dripping board would send them: once a verdict has fallen, more bytes change it only
-  // from an answer to a defect.
+  // Parse byte by byte, as a slow board sends them. After a verdict, more bytes can change it only to
+  // "defective".
   State last = State::incomplete;
   for (std::size_t have = 0; have <= bytes.size(); ++have) {
     const ModbusReply reply = parse_reply(bytes.first(have), request, transaction, unit);

@@ -1,5 +1,5 @@
-// The serial link against a module that does everything it must not do. Every case says what it must be
-// called and how long it may take; afterwards a new session must get the right numbers.
+// The serial link against a module with every possible fault. Each case states the expected status and the
+// longest duration. Afterwards a new session must read the correct values.
 
 #include "drivers/modbus/modbus_rtu_link.h"
 
@@ -25,8 +25,8 @@ using test::Bytes;
 using test::checked;
 using test::ScriptedLine;
 
-// How much later than its deadline a call may return on a loaded machine; far below what a dripped or late
-// reply takes in these tests.
+// How much later than its deadline a call may return on a loaded machine. This is much less than the duration
+// of a drip-fed or late response in these tests.
 constexpr Nanoseconds slack = 400'000'000;
 constexpr Nanoseconds deadline = 100'000'000;
 constexpr Nanoseconds generous = 10'000'000'000;
@@ -43,13 +43,13 @@ SerialLine line_at(const std::string& device, std::uint32_t baud = 115200) {
   return line;
 }
 
-/// After a fault the next session listens for as long as the longest frame takes: a quarter of a second at
-/// 9600 baud, far more than a loaded machine delays a byte by; 22 ms at 115200 are not.
+/// After a fault the next session first listens for the duration of the longest frame. At 9600 baud this is
+/// 0.25 s, much longer than a loaded machine delays a byte. The 22 ms at 115200 baud would be too short.
 SerialLine listening_long() {
   return line_at("", 9600);
 }
 
-/// Input register N holds 1000 + N.
+/// Returns a response in which input register N contains 1000 + N.
 Bytes good_reply(const Bytes& request) {
   const std::size_t first = request[3];
   const std::size_t count = request[5];
@@ -73,7 +73,7 @@ struct Outcome {
   std::string detail;
 };
 
-/// One question whose answer is given by `misbehave`; then a session that behaves.
+/// Sends one request, to which `misbehave` responds, and then opens a session with a correct module.
 Outcome ask_once(const std::function<void(ScriptedLine&, const Bytes&)>& misbehave,
                  SerialLine settings = line_at("")) {
   ScriptedLine line([&](ScriptedLine& self, const Bytes& request, std::size_t index) {
@@ -130,7 +130,7 @@ TEST(ModbusRtuLink, ADripFedReplyDoesNotExtendTheDeadline) {
       ask_once(
           [](ScriptedLine& line, const Bytes& request) {
             Bytes reply = good_reply(request);
-            reply.resize(3);  // the last byte comes after the deadline, into the next session's listening
+            reply.resize(3);  // the last byte arrives after the deadline, while the next session listens
             line.drip(reply, 55ms);
           },
           listening_long()),
@@ -148,7 +148,7 @@ TEST(ModbusRtuLink, ALateReplyIsNeverTakenForALaterAnswer) {
                  [](ScriptedLine& line, const Bytes& request) {
                    line.wait(110ms);
                    Bytes late = good_reply(request);
-                   late[4] = 9;  // not what the next question is answered with
+                   late[4] = 9;  // differs from the response to the next request
                    late.resize(late.size() - 2);
                    line.send(checked(late));
                  },
@@ -193,7 +193,7 @@ TEST(ModbusRtuLink, WhatIsNotTheAnswer) {
              BusStatus::bad_reply, "checksum");
   expect_end(ask_once([](ScriptedLine& line, const Bytes& request) {
                Bytes reply = good_reply(request);
-               reply.resize(reply.size() + 5);  // as many as the shortest answer has
+               reply.resize(reply.size() + 5);  // the length of the shortest response
                line.send(reply);
              }),
              BusStatus::bad_reply, "bytes follow");
@@ -201,7 +201,7 @@ TEST(ModbusRtuLink, WhatIsNotTheAnswer) {
              BusStatus::bad_reply, "returns what is sent");
 }
 
-// Fewer bytes than any answer has cannot be one to another question: they are noise.
+// Fewer bytes than the shortest response cannot be the response to another request, so they are noise.
 TEST(ModbusRtuLink, StrayBytesAreThrownAway) {
   for (const std::uint8_t stray : std::initializer_list<std::uint8_t>{0x00, 0xff, 0x01, 0x04}) {
     for (const auto& [before, behind] :
@@ -249,7 +249,8 @@ TEST(ModbusRtuLink, ALostRequestIsRepeatedAndASecondAnswerIsNotBelieved) {
   for (const bool lost : {true, false}) {
     ScriptedLine line([lost](ScriptedLine& self, const Bytes& request, std::size_t index) {
       if (index == 0 && lost) return;
-      if (index == 0) self.wait(130ms);  // as if it had been late; what is asked meanwhile is answered, too
+      if (index == 0)
+        self.wait(130ms);  // a late module, which also answers the requests that arrive meanwhile
       const std::size_t one = 8;
       for (std::size_t at = 0; at + one <= request.size(); at += one) {
         const auto first = request.begin() + static_cast<std::ptrdiff_t>(at);
@@ -269,7 +270,7 @@ TEST(ModbusRtuLink, ALostRequestIsRepeatedAndASecondAnswerIsNotBelieved) {
   }
 }
 
-// The greeting of a module that starts is no answer.
+// The greeting of a starting module is not a response.
 TEST(ModbusRtuLink, NothingIsSentBeforeTheSettleTimeIsOver) {
   std::atomic<Nanoseconds> first_request{0};
   ScriptedLine line([&](ScriptedLine& self, const Bytes& request, std::size_t index) {
@@ -376,9 +377,9 @@ TEST(ModbusRtuLink, ALineHasOneMaster) {
   EXPECT_EQ(second.open(now() + generous), BusStatus::ok) << second.detail();
 }
 
-/// The sums of the bus guide: read and write of one register each are 31 bytes.
+/// The sums of the bus guide: reading and writing one register each takes 31 bytes.
 TEST(ModbusRtuLink, TheCostAddsUp) {
-  const std::vector<TransactionSize> pair{{5, 5}, {5, 4}};  // FC6, and FC3 of one register
+  const std::vector<TransactionSize> pair{{5, 5}, {5, 4}};  // FC6 and FC3, each for one register
   const auto cost_ms = [&](std::uint32_t baud) {
     return 1e3 * ModbusRtuLink(line_at("/dev/x", baud)).cost(pair, "plan").exchange_s;
   };

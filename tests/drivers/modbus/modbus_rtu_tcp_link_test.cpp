@@ -1,5 +1,5 @@
-// RTU frames on a TCP connection, against a server that ends connections. The contents of frames are tested
-// with the emulator (tests/simulation/emulator/board_habits_test.cpp) and on a line
+// RTU frames on a TCP connection to a server that closes connections. Two other tests check the contents of
+// frames: with the emulator (tests/simulation/emulator/board_habits_test.cpp) and on a serial line
 // (modbus_rtu_link_test.cpp).
 
 #include "drivers/modbus/modbus_rtu_tcp_link.h"
@@ -24,8 +24,8 @@ TcpAddress rtu_at(std::uint16_t port) {
 }
 
 TEST(ModbusRtuTcpLink, AConnectionThatIsClosedBeforeItsFirstAnswerIsNamed) {
-  // The request is shorter than a header and the length that it is taken for: the server waits for more, and
-  // ends.
+  // The server reads the RTU frame as a TCP frame whose length is larger than the request. It waits for more
+  // bytes until it is stopped.
   auto server = std::make_unique<test::ScriptedServer>([](test::Peer&, const test::Bytes&, std::size_t) {});
   ModbusRtuTcpLink link(rtu_at(server->port()));
   ASSERT_EQ(link.open(monotonic_now() + generous), BusStatus::ok) << link.detail();

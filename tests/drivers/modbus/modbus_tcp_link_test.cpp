@@ -1,5 +1,5 @@
-// The session against a peer that does everything a board must not do. Every case says what it must be called
-// and how long it may take.
+// The session against a server with every possible fault. Each case states the expected status and the
+// longest duration.
 
 #include "drivers/modbus/modbus_tcp_link.h"
 
@@ -31,8 +31,8 @@ using test::Bytes;
 using test::Peer;
 using test::ScriptedServer;
 
-// How much later than its deadline a call may return on a loaded machine. Far below what a drip-fed or a
-// late reply takes in these tests, so that following either would fail them.
+// How much later than its deadline a call may return on a loaded machine. This is much less than the duration
+// of a drip-fed or late response, so a call that waits for such a response fails the test.
 constexpr Nanoseconds slack = 400'000'000;
 constexpr Nanoseconds deadline = 50'000'000;
 constexpr Nanoseconds generous = 5'000'000'000;
@@ -51,7 +51,7 @@ void answer_well(Peer& peer, const Bytes& request) {
   peer.send(test::registers_reply(request, register_value));
 }
 
-/// True if the session's data are the registers that `request` asked for.
+/// Returns success if the session's data are the registers that `request` reads.
 testing::AssertionResult is_answer(const ModbusTcpLink& session, const ModbusRequest& request) {
   if (session.data().size() != 2U * request.count) {
     return testing::AssertionFailure() << session.data().size() << " bytes for " << request.count;
@@ -74,8 +74,8 @@ struct Outcome {
   std::string detail;
 };
 
-/// One question to a server whose first answer is given by `misbehave`; afterwards it behaves. Checks that a
-/// new session then gets the right numbers.
+/// Sends one request to a server whose first response is given by `misbehave`; its later responses are
+/// correct. Checks that a new session then reads the correct values.
 Outcome ask_once(const std::function<void(Peer&, const Bytes&)>& misbehave,
                  const ModbusRequest& request = read_four, Nanoseconds within = deadline) {
   ScriptedServer server([&](Peer& peer, const Bytes& asked, std::size_t index) {
@@ -103,7 +103,7 @@ Outcome ask_once(const std::function<void(Peer&, const Bytes&)>& misbehave,
   return outcome;
 }
 
-/// The same with a well-formed reply changed by `spoil`.
+/// Calls ask_once() with a well-formed response that `spoil` changes.
 Outcome ask_spoiled(const std::function<void(Bytes&)>& spoil) {
   return ask_once([&](Peer& peer, const Bytes& request) {
     Bytes reply = test::registers_reply(request, register_value);
@@ -138,7 +138,7 @@ TEST(ModbusTcpLink, DripFedReplyDoesNotExtendTheDeadline) {
   const ModbusRequest large{.function = 3, .address = 0, .count = 125};
   const Outcome outcome = ask_once(
       [](Peer& peer, const Bytes& request) {
-        peer.drip(test::registers_reply(request, register_value), 10ms);  // 2.6 s in all
+        peer.drip(test::registers_reply(request, register_value), 10ms);  // takes 2.6 s in total
       },
       large);
   expect_poisoned(outcome, BusStatus::timed_out, deadline + slack);
@@ -187,7 +187,8 @@ TEST(ModbusTcpLink, ByteCountContradictsTheLength) {
   expect_poisoned(ask_spoiled([](Bytes& reply) { reply[8] = 6; }), BusStatus::bad_reply, slack);
 }
 
-// libmodbus waits for as many bytes as the reply announces. What came is judged when the deadline ends that.
+// The session waits for the announced number of bytes, as libmodbus does. At the deadline it judges the bytes
+// received.
 TEST(ModbusTcpLink, ByteCountOfMoreThanThereIs) {
   const Outcome outcome = ask_spoiled([](Bytes& reply) { reply[8] = 200; });
   expect_poisoned(outcome, BusStatus::bad_reply, deadline + slack);
@@ -268,7 +269,7 @@ TEST(ModbusTcpLink, AnEndBehindAnAnswerIsNoConnectionThatWasClosedAtOnce) {
   EXPECT_EQ(session.ask(1, read_four, now() + generous), BusStatus::closed_at_once) << "a new connection";
 }
 
-/// A listener on a free port of this machine.
+/// Returns a listening socket on a free port of this machine.
 int listening(int backlog, std::uint16_t& port) {
   const int listener = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
   sockaddr_in address{};
@@ -282,7 +283,7 @@ int listening(int backlog, std::uint16_t& port) {
   return listener;
 }
 
-/// A server that takes a connection, sends `greeting`, and closes it if `closes`.
+/// A server that accepts a connection, sends `greeting`, and closes the connection if `closes`.
 class Greeter {
  public:
   Greeter(const std::string& greeting, bool closes) {
@@ -405,8 +406,9 @@ TEST(ModbusTcpLink, WriteConfirmedForAnotherAddress) {
   expect_poisoned(outcome, BusStatus::bad_reply, slack);
 }
 
-// One duplicated reply leaves a careless client off by one for ever. Here replies are duplicated, at once or
-// later, at random; every question asks for other registers; no answer may be that of another question.
+// After one duplicated response a careless client assigns every later response to the wrong request. This
+// server duplicates responses at random, at once or later. Every request reads other registers, so a wrong
+// assignment is detected.
 TEST(ModbusTcpLink, DuplicatedRepliesNeverMoveTheAnswers) {
   const unsigned seed = 20250411;
   std::mt19937 random(seed);
@@ -459,7 +461,8 @@ TEST(ModbusTcpLink, NamesAreNotResolved) {
   EXPECT_NE(std::string(session.detail()).find("numeric"), std::string::npos) << session.detail();
 }
 
-// A listener whose queue is full drops the first packet of every further connection: nothing ever answers.
+// A listener with a full queue drops the first packet of every further connection, so the client receives no
+// response.
 TEST(ModbusTcpLink, ConnectingIsBoundedWhenNobodyAnswers) {
   std::uint16_t port = 0;
   const int listener = listening(0, port);
@@ -480,7 +483,8 @@ TEST(ModbusTcpLink, ConnectingIsBoundedWhenNobodyAnswers) {
 
 TEST(ModbusTcpLink, AHalfOpenSessionTimesOut) {
   ScriptedServer server([](Peer& peer, const Bytes& request, std::size_t index) {
-    if (index == 0) answer_well(peer, request);  // then it is there and says nothing any more
+    if (index == 0)
+      answer_well(peer, request);  // later requests receive no response, but the connection remains open
   });
   ModbusTcpLink session(TcpAddress{"127.0.0.1", server.port()});
   ASSERT_EQ(session.open(now() + generous), BusStatus::ok);
@@ -495,7 +499,7 @@ TcpAddress repeating(std::uint16_t port, bool numbered = true) {
   return {.host = "127.0.0.1", .port = port, .habits = {.repeat_after_s = 0.05}, .numbered = numbered};
 }
 
-// The repeated request is the same frame, so it writes the same output values.
+// The repetition is an identical frame, so it writes the same output values.
 TEST(ModbusTcpLink, ALostRequestIsRepeatedBeforeTheSessionIsGivenUp) {
   std::vector<Bytes> asked;
   ScriptedServer server([&](Peer& peer, const Bytes& request, std::size_t index) {
@@ -511,7 +515,7 @@ TEST(ModbusTcpLink, ALostRequestIsRepeatedBeforeTheSessionIsGivenUp) {
   EXPECT_EQ(server.sessions(), 1U);
 }
 
-// The next session, which writes the safe outputs, begins no later than without the repetition.
+// The next session, which writes the safe outputs, must begin no later than without the repetition.
 TEST(ModbusTcpLink, RepeatingDoesNotExtendTheDeadline) {
   std::atomic<std::size_t> asked{0};
   ScriptedServer server([&](Peer&, const Bytes&, std::size_t) { ++asked; });
@@ -524,7 +528,7 @@ TEST(ModbusTcpLink, RepeatingDoesNotExtendTheDeadline) {
   EXPECT_GE(asked, 2U);
 }
 
-/// A board that is slow once: its answers to the request and to its repetitions all come.
+/// A board that is slow once and responds to the request and to each repetition.
 void answer_late_once(Peer& peer, const Bytes& request, std::size_t index, bool numbered) {
   if (index == 0) peer.wait(130ms);
   Bytes reply = test::registers_reply(request, register_value);
@@ -580,8 +584,9 @@ TEST(ModbusTcpLink, ADeadlineInThePastFailsAtOnce) {
   EXPECT_EQ(session.ask(1, read_four, now() - 1), BusStatus::timed_out);
 }
 
-// Descriptors of 1024 and above do not fit the fd_set with which libmodbus waits. A link that was made while
-// there were others works on, whatever the program opens later, through any number of sessions.
+// Descriptors of 1024 and above do not fit into an fd_set, with which libmodbus waits. A link that received a
+// lower descriptor continues to work through any number of sessions, even if the program opens many more
+// files later.
 TEST(ModbusTcpLink, DescriptorsAboveTheFdSet) {
   rlimit limit{};
   ASSERT_EQ(::getrlimit(RLIMIT_NOFILE, &limit), 0);
@@ -610,7 +615,7 @@ TEST(ModbusTcpLink, DescriptorsAboveTheFdSet) {
   ::setrlimit(RLIMIT_NOFILE, &before);
 }
 
-// A timer that interrupts every wait must neither end it early nor start it anew.
+// A timer that interrupts every wait must neither end the wait early nor restart it.
 TEST(ModbusTcpLink, SignalsDoNotMoveTheDeadline) {
   struct sigaction handler {};
   struct sigaction old {};

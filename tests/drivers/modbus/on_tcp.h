@@ -1,5 +1,5 @@
 #pragma once
-// Settings of a board that is one module on this machine.
+// Settings of a board that consists of one module on this machine.
 
 #include <utility>
 

@@ -1,5 +1,5 @@
-// The board's driver against a Modbus server that shares nothing with it: pymodbus with the registers of an
-// ADAM-6024. What the driver wrote and read is checked from the server's side.
+// The board's driver against an independent Modbus server: pymodbus with the registers of an ADAM-6024. The
+// server's side checks the written and the read values.
 
 #include <gtest/gtest.h>
 #include <poll.h>
@@ -25,10 +25,10 @@ using Json = nlohmann::json;
 
 constexpr auto generous = 10s;
 
-/// The Python process; speaks JSON lines.
+/// The Python process of the server, which exchanges lines of JSON with the test.
 class PymodbusBoard {
  public:
-  /// `how`: empty, or "serial".
+  /// `how`: nullptr for TCP, or "serial".
   explicit PymodbusBoard(const char* how = nullptr) {
     std::array<int, 2> to{};
     std::array<int, 2> from{};
@@ -71,7 +71,7 @@ class PymodbusBoard {
   void set(const std::string& table, int address, const std::vector<int>& values) {
     ask({{"set", {table, address, values}}});
   }
-  /// Table, address and values of every write since the last call.
+  /// Returns table, address and values of every write since the last call.
   Json writes() { return ask({{"writes", true}})["writes"]; }
 
   void kill() {
@@ -129,14 +129,15 @@ class PymodbusTest : public testing::Test {
 };
 
 TEST_F(PymodbusTest, AdamRegistersAreWrittenAndRead) {
-  settings_.modules[0].map.read_back.reset();  // pymodbus keeps the tables apart; an ADAM mirrors its outputs
+  settings_.modules[0]
+      .map.read_back.reset();  // an ADAM mirrors its outputs as inputs, but pymodbus separates the tables
   ModbusBoard board(settings_);
   ASSERT_EQ(board.connect(generous), BusStatus::ok) << board.detail();
   EXPECT_EQ(server_.writes(), Json::array()) << "connecting writes nothing";
 
   server_.set("input", 0, {adam_raw(3), adam_raw(7), 0, 0, adam_raw(2.5), adam_raw(9)});
   ASSERT_EQ(board.exchange(std::array{25.0, 75.0}, readings_, generous), BusStatus::ok) << board.detail();
-  // 40011 and 40012 are addresses 10 and 11: 2.5 V and 7.5 V of 10 V over 4095.
+  // 40011 and 40012 are addresses 10 and 11. The values are 2.5 V and 7.5 V of 10 V in 4095 steps.
   EXPECT_EQ(server_.writes(), (Json{{"holding", 10, {1024, 3071}}}));
   EXPECT_EQ(server_.ask({{"get", {"holding", 9, 4}}})["values"], (Json{0, 1024, 3071, 0}));
   EXPECT_NEAR(readings_[0].displacement_mm, -5 + 3 * 5, 0.001);
@@ -212,7 +213,7 @@ TEST_F(PymodbusTest, AServerThatDies) {
   EXPECT_EQ(board.connect(1s), BusStatus::disconnected);
 }
 
-/// Two modules on a line that pymodbus serves.
+/// Two modules on a serial line that pymodbus serves.
 TEST(PymodbusOnALine, TwoModulesAreWrittenAndRead) {
   PymodbusBoard server("serial");
   ASSERT_NE(server.device(), "");

@@ -1,6 +1,6 @@
 #pragma once
-// A well-behaved Modbus server on real sockets that remembers what it was asked: the board in tests of the
-// board's driver. Independent of drivers/.
+// A correct Modbus server on real sockets that records its requests: the board in tests of the board's
+// driver. It does not use any code of drivers/.
 
 #include <cstdint>
 #include <map>
@@ -14,12 +14,13 @@ namespace softgrip::drivers::test {
 
 class RegisterServer {
  public:
-  /// One request as it came: function, address as in the first two data bytes, registers or value written.
+  /// One received request: function code, address from the first two data bytes, and the registers or value
+  /// written.
   struct Request {
     std::uint8_t function = 0;
     std::uint16_t address = 0;
-    std::uint16_t count = 0;          ///< read; 0 for pure writes
-    std::uint16_t write_address = 0;  ///< of 5, 6, 16, 23
+    std::uint16_t count = 0;          ///< number of registers to read; 0 for pure writes
+    std::uint16_t write_address = 0;  ///< for function codes 5, 6, 16 and 23
     std::vector<std::uint16_t> written;
 
     bool operator==(const Request&) const = default;
@@ -30,26 +31,27 @@ class RegisterServer {
   [[nodiscard]] std::uint16_t port() const { return server_.port(); }
   [[nodiscard]] std::size_t sessions() const { return server_.sessions(); }
 
-  /// Registers by table; what was never set reads as 0.
+  /// Sets a register of a table; a register that was never set reads as 0.
   void set_holding(std::uint16_t address, std::uint16_t value);
   void set_input(std::uint16_t address, std::uint16_t value);
   void set_coil(std::uint16_t address, std::uint16_t value);
   [[nodiscard]] std::uint16_t holding(std::uint16_t address);
   [[nodiscard]] std::uint16_t coil(std::uint16_t address);
-  /// Reads of input registers give the holding registers, as many boards do.
+  /// If true, reads of input registers return the holding registers, as on many boards.
   void mirror_inputs(bool mirrored);
-  /// Requests with this function are answered with that exception from now on; nothing: as usual.
+  /// Answers requests with this function code with the exception `code`; nullopt: normal responses.
   void refuse(std::optional<std::uint8_t> function, std::uint8_t code = 2);
-  /// Writes are confirmed and forgotten.
+  /// If true, writes are confirmed but have no effect.
   void ignore_writes(bool ignored);
-  /// Called with every request before it is carried out, under the lock: may change registers.
+  /// Sets a hook that is called under the lock before each request is executed. The hook may change
+  /// registers.
   void on_request(std::function<void(RegisterServer&, const Request&)> hook);
-  /// Answers late by so much.
+  /// Delays every response by `duration`.
   void delay(std::chrono::milliseconds duration);
-  /// All requests since the last call.
+  /// Returns all requests since the last call.
   [[nodiscard]] std::vector<Request> take_requests();
 
-  // For hooks, which already hold the lock.
+  // Public for hooks, which already hold the lock.
   std::map<std::uint16_t, std::uint16_t> holding_;
   std::map<std::uint16_t, std::uint16_t> input_;
   std::map<std::uint16_t, std::uint16_t> coils_;
@@ -68,7 +70,7 @@ class RegisterServer {
   bool mirrored_ = false;
   std::chrono::milliseconds delay_{0};
   std::function<void(RegisterServer&, const Request&)> hook_;
-  ScriptedServer server_;  // last: its thread uses everything above
+  ScriptedServer server_;  // declared last, because its thread uses all other members
 };
 
 }  // namespace softgrip::drivers::test

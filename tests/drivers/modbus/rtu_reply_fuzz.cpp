@@ -1,5 +1,5 @@
-// What comes back on a serial line, byte by byte: never an answer without a right checksum, never read
-// beyond.
+// Fuzz target: arbitrary bytes as the response on a serial line, byte by byte. The parser must not accept a
+// response without a correct checksum and must not read beyond the bytes.
 
 #include <array>
 #include <cstdint>

@@ -1,6 +1,6 @@
 #pragma once
-// A module on a pseudo-terminal that does with each request whatever a test wants. Nothing of drivers/ in it,
-// so that an error there cannot cancel itself out here.
+// A module on a pseudo-terminal that responds to each request as a test specifies. It does not use any code
+// of drivers/, so that an error there cannot cancel itself out.
 
 #include <atomic>
 #include <chrono>
@@ -19,16 +19,16 @@ using Bytes = std::vector<std::uint8_t>;
 
 class ScriptedLine {
  public:
-  /// `index` counts the requests from 0; `request` is all that came until the line was quiet for 3 ms.
+  /// `index` counts the requests from 0; `request` contains all bytes until the line was quiet for 3 ms.
   using Handler = std::function<void(ScriptedLine& line, const Bytes& request, std::size_t index)>;
 
-  /// `name` becomes a link to the new pseudo-terminal; empty: there is none, see device().
+  /// `name` becomes a link to the new pseudo-terminal; if it is empty, no link is created (see device()).
   explicit ScriptedLine(Handler handler, std::string name = "");
   ScriptedLine(const ScriptedLine&) = delete;
   ScriptedLine& operator=(const ScriptedLine&) = delete;
   ScriptedLine(ScriptedLine&&) = delete;
   ScriptedLine& operator=(ScriptedLine&&) = delete;
-  /// Hangs up: as an adapter that is pulled out.
+  /// Closes the line, as if the adapter were unplugged.
   ~ScriptedLine();
 
   [[nodiscard]] const std::string& device() const { return device_; }

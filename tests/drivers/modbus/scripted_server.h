@@ -1,6 +1,6 @@
 #pragma once
-// A TCP server that does with each request whatever a test wants: the hostile peer. Plain sockets, nothing of
-// drivers/ in it, so that an error there cannot cancel itself out here.
+// A TCP server that responds to each request as a test specifies, for example with faults. It uses plain
+// sockets and no code of drivers/, so that an error there cannot cancel itself out.
 
 #include <sys/types.h>
 
@@ -18,18 +18,19 @@ namespace softgrip::drivers::test {
 
 using Bytes = std::vector<std::uint8_t>;
 
-/// The server's end of a session.
+/// The server's side of a session.
 class Peer {
  public:
   Peer(int socket, class ScriptedServer& server) : socket_(socket), server_(server) {}
   void send(const Bytes& bytes);
-  /// One byte every `pause`, until all are out, the client hung up or the server is stopped.
+  /// Sends one byte every `pause`, until all are sent, the client closes the connection or the server is
+  /// stopped.
   void drip(const Bytes& bytes, std::chrono::milliseconds pause);
-  /// Pauses; ends early when the server is stopped.
+  /// Waits for `duration`, or until the server is stopped.
   void wait(std::chrono::milliseconds duration);
-  /// Ends the session in order.
+  /// Closes the session regularly.
   void hang_up();
-  /// Ends it with RST.
+  /// Ends the session with RST.
   void reset();
   [[nodiscard]] bool is_open() const { return open_; }
 
@@ -41,10 +42,10 @@ class Peer {
 
 class ScriptedServer {
  public:
-  /// `index` counts the requests of all sessions from 0; `request` is one whole frame.
+  /// `index` counts the requests of all sessions from 0; `request` is one complete frame.
   using Handler = std::function<void(Peer& peer, const Bytes& request, std::size_t index)>;
 
-  /// Listens on a free port of 127.0.0.1 and serves one session after the other.
+  /// Listens on a free port of 127.0.0.1 and serves one session after another.
   explicit ScriptedServer(Handler handler);
   ScriptedServer(const ScriptedServer&) = delete;
   ScriptedServer& operator=(const ScriptedServer&) = delete;
@@ -73,13 +74,13 @@ class ScriptedServer {
   std::thread thread_;
 };
 
-/// The word at `at`, high byte first.
+/// Returns the word at `at`, high byte first.
 [[nodiscard]] std::uint16_t word(const Bytes& bytes, std::size_t at);
 void set_word(Bytes& bytes, std::size_t at, std::uint16_t value);
 
-/// A correct frame that answers `request` (its transaction and unit) with the given PDU.
+/// Returns a correct frame with the given PDU and with the transaction and unit of `request`.
 [[nodiscard]] Bytes frame_for(const Bytes& request, const Bytes& pdu);
-/// A correct answer to a read of registers: register `address` holds value_of(address).
+/// Returns a correct response to a read of registers: register `address` contains value_of(address).
 [[nodiscard]] Bytes registers_reply(const Bytes& request,
                                     const std::function<std::uint16_t(std::uint16_t)>& value_of);
 [[nodiscard]] Bytes exception_reply(const Bytes& request, std::uint8_t code);

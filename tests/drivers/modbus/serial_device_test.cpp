@@ -13,7 +13,7 @@ namespace fs = std::filesystem;
 
 const std::string by_id = "/dev/serial/by-id/usb-1a86_USB_Serial-if00-port0";
 
-/// A tree with /dev and /run as udev makes them.
+/// Folders /dev and /run with the contents that udev creates.
 class SerialDevice : public testing::Test {
  protected:
   void plug(const std::string& node, const std::string& number, const std::string& port,
@@ -35,7 +35,7 @@ class SerialDevice : public testing::Test {
   void make_folder_of(const std::string& path) const { fs::create_directories(at(path).parent_path()); }
   void place_link(const std::string& path, const std::string& target) const {
     make_folder_of(path);
-    fs::remove(at(path));  // the last one wins, as with udev
+    fs::remove(at(path));  // the last device takes over the link, as with udev
     fs::create_symlink(target, at(path));
   }
 

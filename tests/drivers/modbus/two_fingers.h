@@ -1,5 +1,5 @@
 #pragma once
-// Two fingers on the first terminals of a board, as most tests wire them.
+// Two fingers on the first terminals of a board, the wiring of most tests.
 
 #include <string>
 #include <vector>
@@ -10,7 +10,7 @@
 namespace softgrip::drivers::test {
 
 /// Valves on outputs 0 and 1: 0-10 V are 0-100 kPa. Sensors on inputs 0 and 1: 0-10 V are -5-45 mm, valid
-/// from 0.1 to 9.9 V, 9.95 V is an error code. Pressure monitors, if wanted, on inputs 4 and 5: 0-10 V, 0-100
+/// from 0.1 to 9.9 V; 9.95 V is an error code. Optional pressure monitors on inputs 4 and 5: 0-10 V are 0-100
 /// kPa.
 inline std::vector<ChannelWiring> two_fingers(bool with_pressure = true) {
   std::vector<ChannelWiring> wiring;
@@ -37,7 +37,7 @@ inline std::vector<ChannelWiring> two_fingers(bool with_pressure = true) {
   return wiring;
 }
 
-/// The same with a thermometer that both share, on input 2: 0-10 V are 0-100 degrees, valid from 0.5 V on.
+/// Adds to two_fingers() a shared thermometer on input 2: 0-10 V are 0-100 °C, valid from 0.5 V on.
 inline std::vector<ChannelWiring> two_fingers_and_a_thermometer() {
   std::vector<ChannelWiring> wiring = two_fingers();
   for (ChannelWiring& channel : wiring) {

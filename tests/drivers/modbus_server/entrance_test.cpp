@@ -37,13 +37,14 @@ class EntranceTest : public ::testing::Test {
     ASSERT_EQ(::connect(socket.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
     clients_.push_back(std::move(socket));
   }
-  /// From now on the process gets no new descriptor.
+  /// From now on the process cannot open any further descriptor.
   void take_all_descriptors() {
     rlimit none = usual_;
-    none.rlim_cur = 1;  // with 0, poll() refuses to watch anything
+    none.rlim_cur = 1;  // with 0, poll() refuses to watch any descriptor
     ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &none), 0);
   }
-  /// The process can have as many as it has, and the spare ones that it gives up.
+  /// Limits the process to its present number of descriptors, including the spare ones that the entrance can
+  /// close.
   void leave_the_spare_descriptors() {
     rlimit limit = usual_;
     limit.rlim_cur = static_cast<rlim_t>(::dup(0));
