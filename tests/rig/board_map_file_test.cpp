@@ -11,7 +11,7 @@ using namespace drivers;
 
 const std::string boards = SOFTGRIP_SOURCE_DIR "/config/boards/";
 
-/// A small valid board; the tests change one line of it.
+/// A small valid board map; each test changes one line of it.
 const std::string valid = R"(name: test
 source: a test
 address_base: 1
@@ -125,7 +125,7 @@ struct Mistake {
   std::string from;
   std::string to;
   std::string message;
-  std::string line;  ///< part of the line that must be pointed at
+  std::string line;  ///< part of the line to which the message must point
 };
 
 void expect_one_problem(const Mistake& mistake) {
@@ -221,7 +221,7 @@ TEST(BoardMapFile, AModuleMayHaveOneDirectionOnly) {
   EXPECT_TRUE(inputs.map->has_inputs());
   EXPECT_FALSE(inputs.map->has_outputs());
 
-  // What belongs to a direction needs it, and a module without any is none.
+  // The keys of a direction require this direction, and a module needs at least one direction.
   EXPECT_NE(
       read(without(valid, "inputs:", "outputs:")).problems.format().find("`input_status` needs `inputs`"),
       std::string::npos);
@@ -288,8 +288,8 @@ TEST(BoardMapFile, AHeartbeatHasTwoValuesThatDiffer) {
       << "only a heartbeat alternates";
 }
 
-/// The trap of couplers whose watchdog is fed by the functions of a mask: the mask is made of what the file
-/// promises, and what the file promises is checked against the function that writes.
+/// Some couplers reset their watchdog only for function codes in a mask. The reader computes the mask from
+/// the function codes in the file, and checks that they include the function that writes.
 TEST(BoardMapFile, AMaskOfFunctionsIsMadeOfThem) {
   std::string text = valid;
   text.replace(text.find("functions: [16]"), 15, "functions: [3, 16, 23]");

@@ -1,4 +1,4 @@
-// What all channels share is written once: `channel_defaults` of a rig file.
+// `channel_defaults` of a rig file contains the settings that all channels share.
 
 #include "rig/channel_defaults.h"
 
@@ -34,7 +34,7 @@ class ChannelDefaultsTest : public ::testing::Test {
     problems = {};
     return read_rig(document::parse(path, text, problems), problems);
   }
-  /// The line of the text in which `words` stand first.
+  /// Returns the number of the first line that contains `words`.
   [[nodiscard]] int line_of(const std::string& words) const {
     return 1 + static_cast<int>(std::count(
                    text.begin(), text.begin() + static_cast<std::ptrdiff_t>(text.find(words)), '\n'));

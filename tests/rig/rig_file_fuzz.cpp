@@ -1,5 +1,5 @@
-// Fuzz target of the rig file: any bytes are a rig that keeps every promise of RigFile, or a refusal with a
-// place. Files that it names are looked for beside config/rig.yaml.
+// Fuzz target of the rig file: any bytes give a rig with all properties that RigFile guarantees, or a refusal
+// with a location. Files that the rig names are searched in the folder of config/rig.yaml.
 //
 //   scripts/fuzz.sh rig_file_fuzz 30
 
