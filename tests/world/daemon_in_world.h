@@ -51,9 +51,8 @@ class LoopClock final : public WorldClock {
 struct Life {
   std::string folder;         ///< folder of the recordings
   std::string record_folder;  ///< if not empty, all recordings are written to this folder
-  std::shared_ptr<const daemon::LoadedSequence>
-      sequence;  ///< sequence of a one-shot run; the daemon ends after it
-  std::shared_ptr<const daemon::SequenceLoader> loader;  ///< if set, the daemon has a socket and clients
+  std::shared_ptr<const daemon::LoadedSequence> sequence;  ///< a one-shot run, which ends the daemon
+  std::shared_ptr<const daemon::SequenceLoader> loader;    ///< if set, the daemon has a socket and clients
 };
 
 class DaemonInWorld {

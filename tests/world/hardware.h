@@ -15,10 +15,9 @@ namespace softgrip::world {
 
 struct HardwareSettings {
   std::vector<simulation::PlantSettings> plants;
-  std::vector<double> safe_kpa;  ///< per plant: the output at power-up and after a watchdog trip
-  Nanoseconds watchdog = 0;      ///< outputs go to safe_kpa after this time without a request; 0: none
-  bool trip_latches =
-      true;  ///< true: writes are refused until the next connection; false: the next write is accepted
+  std::vector<double> safe_kpa;   ///< per plant: the output at power-up and after a watchdog trip
+  Nanoseconds watchdog = 0;       ///< outputs go to safe_kpa after this time without a request; 0: none
+  bool trip_latches = true;       ///< a trip refuses writes until the next connection
   Nanoseconds plant_step = 0;     ///< interval at which outputs take effect
   std::function<void()> on_trip;  ///< called when the watchdog has vented
 };

@@ -204,8 +204,7 @@ TEST_F(IioBoardTest, APowerdownThatCannotBeReadOrWrittenIsRefusedBeforeAnythingI
   EXPECT_NE(refusal().find("out_voltage1_powerdown: no number"), std::string::npos) << refusal();
   const fs::path powerdown = root_ / "iio:device1/out_voltage1_powerdown";
   fs::remove(powerdown);
-  fs::create_symlink("/proc/sys/kernel/ngroups_max",
-                     powerdown);  // its value is above 0, and no user may write it
+  fs::create_symlink("/proc/sys/kernel/ngroups_max", powerdown);  // a read-only value above 0
   EXPECT_NE(refusal().find("out_voltage1_powerdown is 1 and cannot be cleared: Permission denied"),
             std::string::npos)
       << refusal();

@@ -148,8 +148,7 @@ TEST_F(ModbusBoardTest, AReadBackMayLagAsFarAsTheMapAllows) {
   BoardMap map = shipped("adam-6024.yaml");
   map.read_back->lag_exchanges = 1;
   server_.on_request([](RegisterServer& server, const RegisterServer::Request& request) {
-    if (request.function != 16)
-      return;  // called before the write is executed, so it shows the previous write
+    if (request.function != 16) return;  // the write is not executed yet: shows the previous one
     server.input_[10] = server.holding_[10];
     server.input_[11] = server.holding_[11];
   });

@@ -249,8 +249,7 @@ TEST(ModbusRtuLink, ALostRequestIsRepeatedAndASecondAnswerIsNotBelieved) {
   for (const bool lost : {true, false}) {
     ScriptedLine line([lost](ScriptedLine& self, const Bytes& request, std::size_t index) {
       if (index == 0 && lost) return;
-      if (index == 0)
-        self.wait(130ms);  // a late module, which also answers the requests that arrive meanwhile
+      if (index == 0) self.wait(130ms);  // late; later requests are answered, too
       const std::size_t one = 8;
       for (std::size_t at = 0; at + one <= request.size(); at += one) {
         const auto first = request.begin() + static_cast<std::ptrdiff_t>(at);

@@ -483,8 +483,7 @@ TEST(ModbusTcpLink, ConnectingIsBoundedWhenNobodyAnswers) {
 
 TEST(ModbusTcpLink, AHalfOpenSessionTimesOut) {
   ScriptedServer server([](Peer& peer, const Bytes& request, std::size_t index) {
-    if (index == 0)
-      answer_well(peer, request);  // later requests receive no response, but the connection remains open
+    if (index == 0) answer_well(peer, request);  // then silent on an open connection
   });
   ModbusTcpLink session(TcpAddress{"127.0.0.1", server.port()});
   ASSERT_EQ(session.open(now() + generous), BusStatus::ok);

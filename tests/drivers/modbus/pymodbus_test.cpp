@@ -129,8 +129,7 @@ class PymodbusTest : public testing::Test {
 };
 
 TEST_F(PymodbusTest, AdamRegistersAreWrittenAndRead) {
-  settings_.modules[0]
-      .map.read_back.reset();  // an ADAM mirrors its outputs as inputs, but pymodbus separates the tables
+  settings_.modules[0].map.read_back.reset();  // unlike an ADAM, pymodbus separates the tables
   ModbusBoard board(settings_);
   ASSERT_EQ(board.connect(generous), BusStatus::ok) << board.detail();
   EXPECT_EQ(server_.writes(), Json::array()) << "connecting writes nothing";

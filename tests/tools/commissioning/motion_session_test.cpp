@@ -97,8 +97,7 @@ class VentingBoard final : public drivers::Board {
   Nanoseconds lost_from = never;      ///< exchanges fail from this time
   Nanoseconds lost_until = never;     ///< and until this time
   BusStatus how = BusStatus::timed_out;
-  bool request_arrives =
-      false;  ///< true: the requests of failed exchanges arrive, only the responses are lost
+  bool request_arrives = false;  ///< true: failed exchanges lose only the response
   model::Validity validity = model::Validity::valid;
   bool monitored = true;  ///< the pressure monitors give readings
 

@@ -114,8 +114,7 @@ TEST_F(RigDraftTest, EveryShippedBoardAndModel) {
   for (const auto& board : std::filesystem::directory_iterator(config + "boards")) {
     for (const auto& model : std::filesystem::directory_iterator(config + "models")) {
       RigDraft draft;
-      if (!take(draft, "board", board.path().string()).empty())
-        continue;  // a board without inputs or without outputs
+      if (!take(draft, "board", board.path().string()).empty()) continue;  // no inputs, or no outputs
       const bool watched = has_watchdog(draft);
       std::map<std::string, std::string> given{{"board", board.path().string()},
                                                {"address", "127.0.0.1"},

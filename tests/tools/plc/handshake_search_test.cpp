@@ -328,8 +328,8 @@ struct World {
     for (Command& command : commands) command.over = command.over || command.executed;
     wires.clear();
     waiting.reset();
-    answers.clear();  // the dead gateway's answers are lost; its lines reach the daemon before the lines of
-                      // the new gateway
+    // The lines of the dead gateway reach the daemon before those of the new one; its answers are lost.
+    answers.clear();
     for (Plc& master : masters) master.heard = 0;
     watched = owed = stopped_since_beat = false;
     beat_steps = 0;

@@ -1,4 +1,4 @@
-// Fuzz target of the readers of recordings and of the daemon's lines. The same bytes are read as run.json of
+// Fuzz target of the readers of recordings and of the daemon's lines. The bytes are read as run.json of
 // a recording, as a status and as an event of the socket. All bytes must be read without a crash.
 //
 //   scripts/fuzz.sh recording_fuzz 30
