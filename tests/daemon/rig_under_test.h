@@ -1,5 +1,5 @@
 #pragma once
-// The example rig and sequences of the project, loaded for tests.
+// Loads the example rigs and sequences of the project for tests.
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 
 namespace softgrip::daemon::testing {
 
-/// config/NAME; a failure of the test if it is refused.
+/// Returns the rig config/NAME; if it is refused, the test fails.
 [[nodiscard]] inline rig::RigFile example_rig(const std::string& name) {
   document::Problems problems;
   auto rig = rig::load_rig(std::string(SOFTGRIP_SOURCE_DIR "/config/") + name, problems);
@@ -20,7 +20,7 @@ namespace softgrip::daemon::testing {
   return rig ? std::move(*rig) : rig::RigFile{};
 }
 
-/// config/sequences/NAME fitted to a rig, or nullptr and a failure of the test.
+/// Returns config/sequences/NAME for a rig; if it is refused, the test fails and the result is nullptr.
 [[nodiscard]] inline std::shared_ptr<const LoadedSequence> example_sequence(const rig::RigFile& rig,
                                                                             const std::string& name) {
   auto sequence = SequenceLoader(rig.settings, "")

@@ -18,15 +18,15 @@ class ScriptedBoard final : public drivers::Board {
 
   drivers::BusStatus next_connect = drivers::BusStatus::ok;
   drivers::BusStatus next_exchange = drivers::BusStatus::ok;
-  std::vector<std::vector<double>> written;  ///< by good exchanges
+  std::vector<std::vector<double>> written;  ///< values written by good exchanges
   std::chrono::nanoseconds watchdog{0};
   bool readers_feed = false;
   unsigned counted_clients = 0;
   const char* said = "scripted";
-  double found = std::numeric_limits<double>::quiet_NaN();  ///< by a refused exchange, at every output
-  std::function<void()> on_connect;                         ///< while it connects
-  std::function<void()> on_exchange;                        ///< before what was sent arrives
-  std::vector<Nanoseconds> connect_attempts;                ///< when
+  double found = std::numeric_limits<double>::quiet_NaN();  ///< output values after a refused write
+  std::function<void()> on_connect;                         ///< called during connect()
+  std::function<void()> on_exchange;                        ///< called before a request arrives at the board
+  std::vector<Nanoseconds> connect_attempts;                ///< times of the calls of connect()
 
   [[nodiscard]] std::size_t channels() const noexcept override { return channels_; }
   [[nodiscard]] drivers::BusStatus connect(std::chrono::nanoseconds) noexcept override {

@@ -1,5 +1,5 @@
 #pragma once
-// Digital lines that a test holds in its hands.
+// Digital lines that a test controls.
 
 #include <array>
 #include <atomic>
@@ -17,10 +17,10 @@
 
 namespace softgrip::daemon::testing {
 
-/// The levels at the terminals; outlives the lines, which the panel owns. Thread-safe.
+/// The levels at the terminals. They outlive the lines, which the panel owns. Thread-safe.
 class Terminals {
  public:
-  /// The logical level of an input; an edge is reported if it changes.
+  /// Sets the logical level of an input. If the level changes and `with_edge` is true, an edge is reported.
   void set(drivers::GpioRole role, bool active, bool with_edge = true) {
     const std::scoped_lock lock(mutex_);
     bool& level = levels_[index(role)];
@@ -28,7 +28,7 @@ class Terminals {
     level = active;
     changed_.notify_all();
   }
-  /// The chip goes away.
+  /// Removes the chip: all later calls fail.
   void fail() {
     const std::scoped_lock lock(mutex_);
     failed_ = true;
@@ -38,7 +38,7 @@ class Terminals {
     const std::scoped_lock lock(mutex_);
     return levels_[index(role)];
   }
-  /// Everything that was written to an output, in order.
+  /// Returns all values that were written to an output, in order.
   [[nodiscard]] std::vector<bool> written(drivers::GpioRole role) const {
     const std::scoped_lock lock(mutex_);
     return written_[index(role)];

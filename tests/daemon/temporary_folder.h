@@ -1,5 +1,5 @@
 #pragma once
-// A folder of one test's own, gone afterwards.
+// A folder of one test; removed at the end of the test.
 
 #include <cstdlib>
 #include <filesystem>
@@ -28,7 +28,7 @@ class TemporaryFolder {
   std::string path_;
 };
 
-/// The whole content of a file; empty if there is none.
+/// Returns the whole content of a file, or "" if there is no file.
 [[nodiscard]] inline std::string text_of(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};

@@ -15,7 +15,7 @@
 namespace softgrip::daemon::broadcast_test {
 namespace {
 
-/// All words are equal in one that was copied in one piece.
+/// All words are equal unless the copy was interrupted.
 struct Item {
   std::array<std::uint64_t, 6> words{};
   [[nodiscard]] bool whole() const {
@@ -62,7 +62,7 @@ TEST(Broadcast, WhoLagsLosesTheOldestAndNobodyElseDoes) {
   EXPECT_EQ(eager.lost(), 0U);
 }
 
-/// An action of another thread at the worst moment: once, in the middle of the next copy.
+/// Runs an action once, in the middle of the next copy, as another thread could do at the worst moment.
 struct AtTheWorstMoment {
   static inline std::function<void()> action;
   static void halfway() noexcept {
@@ -92,7 +92,7 @@ TEST(Broadcast, AnItemIsThereOnlyWhenAllOfItIsThere) {
   events.push(item(1));
   EXPECT_FALSE(taken);
   for (std::uint64_t n = 2; n <= 4; ++n) events.push(item(n));
-  // The fifth takes the place of the first, which no reader has taken yet.
+  // The fifth item replaces the first, which the reader has not taken yet.
   AtTheWorstMoment::action = [&] { taken = reader.pop(seen); };
   events.push(item(5));
   EXPECT_TRUE(taken);

@@ -1,4 +1,4 @@
-// The hand-over between loop, bus and the board's watchdog: every order of the possible steps, up to a
+// The interaction of loop, bus and the board's watchdog: tries every order of the possible steps, up to a
 // given depth.
 
 #include <gtest/gtest.h>
@@ -21,13 +21,13 @@ using drivers::BusStatus;
 constexpr Nanoseconds period = 5'000'000;
 constexpr Nanoseconds watchdog = 100'000'000;
 
-/// A board with one output and a watchdog that any write clears: the worst kind.
+/// A board with one output and a watchdog trip that any write clears, which is the most difficult kind.
 class OneOutput final : public drivers::Board {
  public:
   explicit OneOutput(const VirtualClock& clock) : clock_(clock) {}
   double output_kpa = 0;
   BusStatus next = BusStatus::ok;
-  std::function<void()> on_exchange;  ///< once, while it is under way
+  std::function<void()> on_exchange;  ///< called once during the next exchange
 
   void look() {
     if (fed_at_ < 0 || clock_.now() - fed_at_ < watchdog || output_kpa <= 0) return;
@@ -46,7 +46,7 @@ class OneOutput final : public drivers::Board {
     next = BusStatus::ok;
     if (status == BusStatus::disconnected) return status;
     fed_at_ = clock_.now();
-    // With a lost reply it takes what it does not confirm.
+    // If the response is lost, the board has accepted the write without a confirmation.
     if (status != BusStatus::write_refused && status != BusStatus::overwritten) output_kpa = commands_kpa[0];
     if (status == BusStatus::overwritten) output_kpa = 0;
     return status;
@@ -63,13 +63,13 @@ class OneOutput final : public drivers::Board {
   Nanoseconds fed_at_ = -1;
 };
 
-/// The least that a controller does: rises while it runs, latches what the bus says, forgets what is not
-/// there, and starts again when asked.
+/// A minimal controller: its command rises while it runs. It stops when the bus reports a fault, does not
+/// repeat values that are no longer at the outputs, and runs again after a start.
 class LeastLoop {
  public:
   explicit LeastLoop(SharedState& shared) : shared_(shared) {}
   bool runs = true;
-  std::uint32_t heard = 0;  ///< the newest inhibition that came with its reason
+  std::uint32_t heard = 0;  ///< number of the newest inhibition whose reason was received
 
   void tick() {
     shared_.bus.fetch();
@@ -89,7 +89,7 @@ class LeastLoop {
     commands.last = false;
     shared_.commands.publish();
   }
-  /// Only a loop that has latched nothing is started.
+  /// Starts the loop unless the bus reports a fault.
   bool start() {
     shared_.bus.fetch();
     const control::BusHealth& health = shared_.bus.value().health;
@@ -131,7 +131,7 @@ std::string follow(std::span<const Step> path) {
   Bus bus(board, rig, loop, reconnect, clock, shared, statistics);
   LeastLoop controller(shared);
 
-  bool may_rise = true;  // nothing has happened since the last start that forbids it
+  bool may_rise = true;  // no event since the last start forbids a rise
   const auto exchange = [&]() -> std::string {
     board.look();
     const int trips = board.trips;
@@ -163,7 +163,7 @@ std::string follow(std::span<const Step> path) {
     if (!controller.runs) may_rise = false;
     if (const std::string broken = exchange(); !broken.empty()) return broken;
   }
-  // Left alone, everybody agrees in a few steps.
+  // Without further incidents, all parts agree after a few steps.
   for (int i = 0; i < 6; ++i) {
     controller.tick();
     if (!controller.runs) may_rise = false;
@@ -177,7 +177,7 @@ std::string follow(std::span<const Step> path) {
 
 TEST(BusSearch, NoOrderOfEventsMakesAnOutputRise) {
 #if defined(__SANITIZE_THREAD__) || defined(__SANITIZE_ADDRESS__)
-  constexpr std::size_t depth = 4;  // 100 times slower, with one thread as well
+  constexpr std::size_t depth = 4;  // sanitizers are 100 times slower, even with one thread
 #else
   constexpr std::size_t depth = 6;
 #endif

@@ -80,13 +80,13 @@ TEST_F(BusTest, ASilentLoopMeansSafeOutputsUntilATickThatKnowsCommandsNoMoreThan
   EXPECT_EQ(last_written(), 3);
   EXPECT_EQ(fault(), FaultCode::cycles_lost);
   EXPECT_EQ(shared_.bus.value().outputs_kpa[0], 3);
-  command(14, 3, true);  // the loop is back in the middle of its motion, from where the board no longer is
+  command(14, 3, true);  // the loop continues its motion, although the outputs have changed
   step();
   EXPECT_EQ(last_written(), 3);
-  command(4, 3, false);  // it ended its motion, but not because it knew
+  command(4, 3, false);  // the loop ended its motion, but for another reason
   step();
   EXPECT_EQ(last_written(), 3);
-  command(4, 3, false, shared_.bus.value().health.inhibit);  // it knows, and wants to rise nevertheless
+  command(4, 3, false, shared_.bus.value().health.inhibit);  // it knows the reason, but would rise
   step();
   EXPECT_EQ(last_written(), 3);
   EXPECT_EQ(fault(), FaultCode::cycles_lost);
@@ -135,7 +135,7 @@ TEST_F(WatchedBusTest, AGapThatReachesTheWatchdogIsAFaultAndNothingRisesBehindIt
   EXPECT_EQ(last_written(), 1);
   EXPECT_EQ(fault(), FaultCode::board_watchdog_tripped);
   EXPECT_EQ(shared_.bus.value().outputs_kpa[1], 1);
-  command(35, 35, false);  // it latched something else: it does not know of this
+  command(35, 35, false);  // the loop latched another fault and does not know this one
   step(bus);
   EXPECT_EQ(last_written(), 1);
   command(1, 1, false, shared_.bus.value().health.inhibit);
@@ -209,7 +209,7 @@ TEST_F(WatchedBusTest, AnExchangeThatWasStoppedOnItsWayIsFoundOutAfterwards) {
   EXPECT_EQ(last_written(), 1);
 }
 
-/// From -40 to 60 kPa, at rest at 0 kPa.
+/// Pressure range from -40 to 60 kPa with a rest pressure of 0 kPa.
 class VacuumBusTest : public WatchedBusTest {
  protected:
   VacuumBusTest() {
@@ -225,13 +225,13 @@ TEST_F(VacuumBusTest, OutputsLeaveRestOnEitherSideOnlyWhileASequenceRuns) {
   command(-12, 0, true);
   step(bus);
   EXPECT_EQ(last_written(), -12);
-  command(-13, 0, false);  // it was on its way when the sequence ended
+  command(-13, 0, false);  // the command was under way when the sequence ended
   step(bus);
   EXPECT_EQ(last_written(), -12);
   command(-11, 0, false);
   step(bus);
   EXPECT_EQ(last_written(), -11);
-  command(5, 0, false);  // the other side is further from rest, too
+  command(5, 0, false);  // a pressure on the other side is further from rest, too
   step(bus);
   EXPECT_EQ(last_written(), 0);
 }
@@ -246,7 +246,7 @@ TEST_F(VacuumBusTest, AWatchdogThatHasActedLeavesRestAndNotFullVacuum) {
     step(bus);
     EXPECT_EQ(last_written(), 0);
     EXPECT_EQ(fault(), FaultCode::board_watchdog_tripped);
-    command(-1, -1, false, shared_.bus.value().health.inhibit);  // it knows, and is not at rest
+    command(-1, -1, false, shared_.bus.value().health.inhibit);  // it knows the reason, but is not at rest
     step(bus);
     EXPECT_EQ(last_written(), 0);
     EXPECT_EQ(fault(), FaultCode::board_watchdog_tripped);
@@ -272,7 +272,7 @@ TEST_F(VacuumBusTest, OutputsThatTheBoardDidNotConfirmAreTheNearerToRest) {
   EXPECT_EQ(shared_.bus.value().outputs_kpa[0], 0) << "on two sides of rest: nothing else is safe";
 }
 
-/// A client that comes and goes does not fill the log.
+/// A board that fails repeatedly for the same reason must not fill the log.
 TEST_F(BusTest, ThatNoSessionCanBeOpenedAgainIsToldOnceIfItIsForAnotherReason) {
   const auto failures = [this] {
     std::vector<std::string> texts;
@@ -314,7 +314,7 @@ TEST_F(BusTest, ThatNoSessionCanBeOpenedAgainIsToldOnceIfItIsForAnotherReason) {
   }
 }
 
-/// A board that takes connections and closes them is no board that has answered.
+/// A board that accepts connections and closes them has not responded.
 TEST_F(BusTest, ASessionIsToldOfOnceTheBoardHasAnsweredInIt) {
   const auto told = [this] {
     std::vector<std::pair<BusEvent::Kind, BusStatus>> list;
@@ -382,7 +382,7 @@ TEST_F(BusTest, AnotherClientThatFeedsTheWatchdogIsToldOnceASession) {
 TEST_F(BusTest, OutputsRiseOnlyWhileASequenceRuns) {
   command(12, 0, true);
   step();
-  command(13, 0, false);  // it was on its way when the sequence ended
+  command(13, 0, false);  // the command was under way when the sequence ended
   step();
   EXPECT_EQ(last_written(), 12);
   command(11, 0, false);
@@ -479,7 +479,7 @@ TEST_F(BusTest, SessionsThatFailAtTheirFirstExchangeAreAsRareAsFailedAttempts) {
     EXPECT_NEAR(static_cast<double>(attempts[i + 1] - attempts[i]), static_cast<double>(pauses_ms[i]) * 1e6,
                 static_cast<double>(period));
   }
-  // A good exchange makes the next loss an ordinary one: the session is rebuilt at once.
+  // After a good exchange, the bus opens a new session at once when the next exchange is lost.
   board_.next_exchange = BusStatus::ok;
   for (int i = 0; i < 100; ++i) step();
   board_.next_exchange = BusStatus::timed_out;
@@ -511,7 +511,7 @@ TEST_F(BusTest, AnAnswerThatRefusesKeepsTheSession) {
   EXPECT_EQ(board_.connect_attempts.size(), 1U);
 }
 
-// Between the write and the reading of one exchange another master has written 5 kPa.
+// Another Modbus client has written 5 kPa between the write and the reading of one exchange.
 TEST_F(BusTest, OutputsFoundNearerToRestAreNotWrittenBack) {
   command(12, 0, true);
   step();
@@ -543,7 +543,7 @@ TEST_F(BusTest, OutputsFoundFurtherFromRestOrNotAtAllDoNotRaiseTheCommands) {
   }
 }
 
-// A gateway that repeats an old reading says the same, and what is held must not be dropped for it.
+// A gateway that repeats an old reading looks the same, and a held part must not be dropped because of it.
 TEST_F(BusTest, AHoldIsNotDroppedForOutputsFoundNearerToRest) {
   command(12, 12, true);
   step();

@@ -27,8 +27,8 @@ TEST(Heartbeat, StopsWhenOneStandsStillLongerThanItMay) {
   }
 }
 
-// A bus that was busy connecting for an hour is thousands of steps behind the loop. When the loop then hangs,
-// the bus has much to catch up, and must not speak for it.
+// A bus that tried to connect for one hour is thousands of steps behind the loop. If the loop then stalls,
+// the bus continues to count up. These steps must not hide that the loop stalls.
 TEST(Heartbeat, ACountThatIsBehindDoesNotSpeakForTheOther) {
   Heartbeat heartbeat({10, 10});
   EXPECT_TRUE(heartbeat.beats(0, {1'000'000, 10}));

@@ -1,5 +1,5 @@
-// The loop's thread must not allocate, page-fault or make other system calls than those for the clock and the
-// sleep.
+// The loop's thread must not allocate memory, cause page faults or make system calls other than those for
+// clock and sleep.
 
 #include <gtest/gtest.h>
 #include <linux/filter.h>
@@ -48,7 +48,7 @@ void count_allocation() noexcept {
 
 }  // namespace
 
-// The C library's own functions behind counters: operator new ends here too.
+// Replaces the functions of the C library by counting ones; operator new calls them, too.
 extern "C" {
 // NOLINTBEGIN(bugprone-reserved-identifier): the C library's names
 void* __libc_malloc(size_t);
@@ -103,12 +103,13 @@ std::unique_ptr<DaemonParts> make_parts(bool virtual_time) {
   return std::make_unique<DaemonParts>(std::move(rig), std::move(options));
 }
 
-/// Ticks in virtual time with everything beside the loop called in between, the loop alone under watch.
+/// Ticks in virtual time with calls of all other parts in between. Allocations are counted in the loop's tick
+/// only.
 class WatchedTicks {
  public:
   explicit WatchedTicks(DaemonParts& parts) : parts_(parts), due_(parts.origin) {}
 
-  /// Ticks until the state is reached, or 60 s have passed.
+  /// Ticks until the state is reached or 60 s have passed.
   bool until(State state) {
     for (const Nanoseconds end = due_ + 60 * ns_per_s; due_ < end;) {
       tick();
@@ -137,7 +138,7 @@ TEST(LoopRules, TheHookSeesAnAllocation) {
   if (SOFTGRIP_SANITIZED) GTEST_SKIP() << "sanitizers bring an allocator of their own";
   allocations.store(0);
   armed = true;
-  // Volatile: the pair of calls must not be optimised away.
+  // Volatile, so that the compiler does not remove the pair of calls.
   void* volatile memory = std::malloc(16);
   std::free(memory);
   armed = false;
@@ -170,15 +171,15 @@ TEST(LoopRules, NoTickAllocates) {
   EXPECT_EQ(allocations.load(), 0U);
 }
 
-/// The calls around the loop.
+/// Functions that are called before and after the loop runs.
 struct Around {
-  std::function<void()> before = [] {};  ///< in the loop's thread, when all is prepared
-  std::function<void()> after = [] {};   ///< there, when the loop has ended
-  std::function<void()> last = [] {};    ///< there, when the end was announced
-  std::function<void()> ended = [] {};   ///< in the calling thread, when the end was announced
+  std::function<void()> before = [] {};  ///< in the loop's thread, after its preparation
+  std::function<void()> after = [] {};   ///< in the loop's thread, after the end of the loop
+  std::function<void()> last = [] {};    ///< in the loop's thread, after it has announced its end
+  std::function<void()> ended = [] {};   ///< in the calling thread, after the loop has announced its end
 };
 
-/// The real loop and bus, each in its thread as in the daemon, for `duration`.
+/// Runs the real loop and bus for `duration`, each in its own thread as in the daemon.
 void run_threads(DaemonParts& parts, Nanoseconds duration, const Around& around) {
   RealTimeReport report;
   const ProcessorLatencyRequest latency = prepare_process(parts.rig.real_time, report);
@@ -225,8 +226,8 @@ TEST(LoopRules, NoTickPageFaults) {
   around.after = [&] { getrusage(RUSAGE_THREAD, &after); };
   run_threads(*parts, 3 * ns_per_s, around);
   EXPECT_GT(parts->loop_statistics.ticks.value(), 100U);
-  // Locked memory is what prevents them; without the right to lock, pages of the rings are touched as they
-  // fill.
+  // Locked memory prevents page faults. Without the right to lock memory, the rings cause page faults when
+  // they are first filled.
   EXPECT_EQ(after.ru_majflt, before.ru_majflt);
   EXPECT_EQ(after.ru_minflt, before.ru_minflt);
 }
@@ -238,8 +239,8 @@ void on_forbidden_call(int, siginfo_t* info, void*) {
   forbidden_call.compare_exchange_strong(expected, info->si_syscall);
 }
 
-/// From here on the calling thread may sleep, read the clock and return from signal handlers. Anything else
-/// is noted and fails. There is no way back, so this runs in a process of its own.
+/// From now on the calling thread may only sleep, read the clock and return from signal handlers. Any other
+/// system call is recorded and fails. The filter cannot be removed, so the test runs in its own process.
 void allow_only_clock_and_sleep() {
   const std::array<sock_filter, 8> program{{
       BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, nr)),
@@ -264,7 +265,7 @@ constexpr int no_filter = 100;
 constexpr int no_ticks = 101;
 constexpr int forbidden = 102;
 
-/// Runs `body` in a process of its own; its exit code: `clean`, or what went wrong.
+/// Runs `body` in its own process and returns the exit code: `clean`, or a code for the failure.
 int in_child(const std::function<int()>& body) {
   const pid_t child = fork();
   if (child == 0) {
@@ -311,7 +312,7 @@ TEST(LoopRules, NoTickCallsTheSystemButForClockAndSleep) {
     const auto parts = make_parts(false);
     Around around;
     around.before = allow_only_clock_and_sleep;
-    // The thread cannot end any more: that takes system calls.
+    // The thread cannot end, because ending needs other system calls.
     around.last = [] {
       for (;;) sleep_until(INT64_MAX);
     };

@@ -1,5 +1,6 @@
 #pragma once
-// A value whose copying is interrupted half-way, so that tests of lock-free cells do not depend on luck.
+// A value whose copying can be interrupted half-way, so that tests of lock-free buffers do not depend on
+// chance.
 
 #include <array>
 #include <cstddef>
@@ -10,11 +11,10 @@
 
 namespace softgrip::daemon::testing {
 
-/// All words are equal in a value that was copied in one piece.
+/// All words are equal unless the copy was interrupted.
 class TornValue {
  public:
-  /// Called once, in the middle of the next copy of this thread: what another thread could do at the worst
-  /// moment.
+  /// Called once, in the middle of this thread's next copy: the action of another thread at the worst moment.
   static inline thread_local std::function<void()> halfway;
 
   TornValue() = default;

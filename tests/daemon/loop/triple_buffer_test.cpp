@@ -13,8 +13,8 @@ namespace {
 
 using testing::TornValue;
 
-/// A plausible but wrong buffer: two slots, the reader reads the one that the writer is not filling now. A
-/// writer that publishes twice while the reader copies fills the slot that is being read.
+/// A plausible but wrong buffer with two slots: the reader reads the slot that the writer is not filling now.
+/// If the writer publishes twice while the reader copies, it overwrites the slot that is being read.
 template <class T>
 class TwoSlots {
  public:
@@ -40,8 +40,8 @@ struct Seen {
   std::uint64_t last_written = 0;
 };
 
-/// One thread writes 1, 2, …, the other looks on until it has seen the last one: `count` more than the writer
-/// had written when the reader was first seen, for a reader whose processor is busy may begin late.
+/// One thread writes 1, 2, …, while the other reads until the writer is done. The writer counts `count`
+/// values only after the reader's first reading, because the reader may start late on a busy processor.
 template <class Cell>
 Seen race(Cell& cell, std::uint64_t count) {
   std::atomic<bool> reader_began{false};
@@ -66,7 +66,7 @@ Seen race(Cell& cell, std::uint64_t count) {
   }
   writer.join();
   seen.last_written = written;
-  if (cell.fetch()) seen.last = cell.value().number();  // the newest is not lost
+  if (cell.fetch()) seen.last = cell.value().number();  // the newest value must not be lost
   return seen;
 }
 
@@ -99,8 +99,8 @@ TEST(TripleBuffer, KeepsTheHeldValueWhileTheWriterGoesOn) {
   }
 }
 
-/// A reader is interrupted in the middle of its copy by `publishes` publishes; returns whether its copy is
-/// whole.
+/// Interrupts a reader in the middle of its copy with `publishes` publishes. Returns true if its copy is not
+/// torn.
 template <class Cell>
 bool whole_when_interrupted(int publishes) {
   Cell cell;

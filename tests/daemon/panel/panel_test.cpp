@@ -1,4 +1,4 @@
-// The digital lines in front of a daemon that really runs, on a simulated board.
+// The digital lines of a running daemon with a simulated board.
 
 #include "daemon/panel/panel.h"
 
@@ -53,14 +53,14 @@ bool eventually(const std::function<bool()>& condition, double timeout_s = 5) {
   return true;
 }
 
-/// The panel alone, between terminals and a loop that the test plays.
+/// The panel alone; the test simulates the terminals and the loop.
 class PanelTest : public ::testing::Test {
  protected:
   void make(const rig::GpioSettings& settings) {
     settings_ = settings;
     panel_.emplace(terminals_.lines(), settings_, clock_, shared_, statistics_);
   }
-  /// Steps for this duration, with a loop that ticks.
+  /// Runs the panel for this duration; `loop_ticks`: the loop ticks meanwhile.
   void run(double duration_s, bool loop_ticks = true) {
     const Nanoseconds end = clock_.now() + nanoseconds(duration_s);
     while (clock_.now() < end) {
@@ -68,7 +68,8 @@ class PanelTest : public ::testing::Test {
       panel_->step();
     }
   }
-  /// As after the start: the loop has latched, the stop is released, an operator acknowledged.
+  /// Simulates the start: the fault is latched, the emergency stop is released, and an operator resets the
+  /// fault.
   void make_ready() {
     shared_.state.store(control::State::faulted);
     run(0.03);
@@ -205,7 +206,7 @@ TEST_F(PanelTest, AFaultDropsTheEnableOnlyIfTheRigSaysSo) {
     shared_.state.store(control::State::faulted);
     run(0.02);
     EXPECT_EQ(is_on(GpioRole::enable), !drops);
-    shared_.state.store(control::State::starting);  // acknowledged
+    shared_.state.store(control::State::starting);  // the operator has reset the fault
     run(0.02);
     EXPECT_EQ(is_on(GpioRole::enable), !drops);
   }
@@ -265,7 +266,7 @@ TEST_F(PanelTest, WhatWasDroppedStaysDropped) {
   EXPECT_FALSE(is_on(GpioRole::ready_lamp));
 }
 
-/// The enable output is a byte of shared memory here: the child crashes, the parent looks.
+/// Writes the enable output as a byte into a pipe: the child process crashes, the parent reads the byte.
 class PipeLines final : public drivers::GpioLines {
  public:
   explicit PipeLines(int descriptor) : descriptor_(descriptor) {}
@@ -307,10 +308,10 @@ TEST(PanelGuard, ACrashDropsTheEnableAndStillIsACrash) {
   }
 }
 
-/// The whole daemon, its lines in the test's hands, spoken to over its socket.
+/// The whole daemon; the test controls its lines and communicates over its socket.
 class PanelOfDaemon : public ::testing::Test {
  protected:
-  /// end() signals this process: only the daemon may take it.
+  /// end() sends SIGTERM to this process. Only the daemon may receive it.
   PanelOfDaemon() {
     sigset_t term;
     sigemptyset(&term);
@@ -346,7 +347,7 @@ class PanelOfDaemon : public ::testing::Test {
   }
   void end() {
     if (!thread_.joinable()) return;
-    ::kill(::getpid(), SIGTERM);  // the daemon has it blocked in all threads and waits for it
+    ::kill(::getpid(), SIGTERM);  // blocked in all threads; the daemon waits for it
     thread_.join();
   }
   nlohmann::json status() { return client_->ask({{"command", "status"}})["result"]; }
@@ -405,7 +406,7 @@ TEST_F(PanelOfDaemon, StartsFaultedAndMovesOnlyAfterReleaseAndAcknowledgement) {
 TEST_F(PanelOfDaemon, APartThatIsAwayRefusesAStart) {
   start([](rig::RigFile& rig) {
     auto& lines = rig.gpio->lines;
-    lines.erase(lines.begin());  // no emergency stop here: starts without a fault
+    lines.erase(lines.begin());  // without an emergency stop the daemon starts without a fault
   });
   ASSERT_TRUE(until_state("idle"));
   const auto refused = client_->ask({{"command", "start"}, {"sequence", "pick_stone"}});

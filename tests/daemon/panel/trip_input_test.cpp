@@ -13,7 +13,7 @@ namespace {
 constexpr Nanoseconds ms = 1'000'000;
 constexpr Nanoseconds debounce = 5 * ms;
 
-/// Cleared: steadily released since 0, looked at until 10 ms.
+/// Returns an input that is not tripped: it was continuously released from 0 to 10 ms.
 TripInput cleared() {
   TripInput input(debounce);
   input.level(false, 0);
@@ -101,15 +101,15 @@ TEST(TripInput, AnEdgeThatTheLevelToldAlreadyChangesNothing) {
 
 TEST(TripInput, AnEdgeWithoutItsPartnerIsSuspect) {
   TripInput input = cleared();
-  input.edge(false, 20 * ms);  // there must have been one to pressed before
+  input.edge(false, 20 * ms);  // the earlier edge to "pressed" was lost
   EXPECT_FALSE(input.tripped());
   input.level(false, 25 * ms);
   EXPECT_FALSE(input.tripped());
   EXPECT_GT(input.due(), 1'000'000 * ms);
 }
 
-/// Against the words of the header, on random contacts: no disturbance below the debounce time that is
-/// followed by quiet trips, everything that does not become quiet trips in time.
+/// Checks the guarantees of the header on random contacts. A disturbance below the debounce time that is
+/// followed by quiet never trips. A contact that does not become quiet trips in time.
 TEST(TripInput, KeepsItsBoundsOnRandomContacts) {
   constexpr std::uint64_t seed = 20261120;
   std::mt19937_64 random(seed);
@@ -120,7 +120,7 @@ TEST(TripInput, KeepsItsBoundsOnRandomContacts) {
     const Nanoseconds begin = 20 * ms;
     bool pressed = false;
     Nanoseconds at = begin;
-    Nanoseconds quiet_since = 0;  // released since
+    Nanoseconds quiet_since = 0;  // time of the last release
     Nanoseconds pressed_since = 0;
     bool must_have_tripped = false;
     bool may_have_tripped = false;

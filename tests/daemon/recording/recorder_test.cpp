@@ -25,7 +25,7 @@ using testing::text_of;
 
 constexpr Nanoseconds period = 10'000'000;
 
-/// A recorder that is fed tick by tick.
+/// A recorder that the test feeds tick by tick.
 class RecorderTest : public ::testing::Test {
  protected:
   RecorderTest() {
@@ -74,7 +74,7 @@ class RecorderTest : public ::testing::Test {
     }
   }
 
-  /// Names of the run folders, sorted.
+  /// Returns the names of the run folders, sorted.
   std::vector<std::string> folders() const {
     std::vector<std::string> names;
     for (const auto& entry : std::filesystem::directory_iterator(temporary_.path())) {
@@ -200,7 +200,7 @@ TEST_F(RecorderTest, DroppedRowsAreCounted) {
 }
 
 TEST_F(RecorderTest, ADiskThatFillsUpEndsTheRecordingAndIsTold) {
-  provenance_.virtual_time = false;  // every drain is written then
+  provenance_.virtual_time = false;  // so that every drain() writes to the file
   void (*handler)(int) = std::signal(SIGXFSZ, SIG_IGN);
   rlimit before{};
   getrlimit(RLIMIT_FSIZE, &before);

@@ -16,7 +16,7 @@ namespace {
 using testing::TemporaryFolder;
 using testing::text_of;
 
-/// A disk that is full beyond `bytes` per file.
+/// A disk on which no file can grow beyond `bytes`.
 class SmallDisk {
  public:
   explicit SmallDisk(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {

@@ -89,7 +89,7 @@ TEST(BoardLock, AConverterIsOneBoardUnderAllItsWords) {
   EXPECT_TRUE(BoardLock::take(rig_with("iio:device1")));
 }
 
-/// A process that does `body` and then waits for its end.
+/// A process that runs `body` and then waits until the test ends it.
 class Holder {
  public:
   explicit Holder(const std::function<bool()>& body) {
@@ -132,7 +132,7 @@ std::function<bool()> a_program_on(const rig::RigFile& rig) {
   };
 }
 
-/// Every user of the machine can do this.
+/// Every user of the machine can do this: listens on the board's lock address as another user.
 std::function<bool()> another_user_on(const std::string& board, int backlog) {
   return [board, backlog] {
     constexpr uid_t nobody = 65534;

@@ -16,7 +16,7 @@
 namespace softgrip::daemon::daemon_answers_test {
 namespace {
 
-/// Accepts one client, reads what it asks and replies with a text; then the connection ends.
+/// Accepts one client, reads its request, replies with a text and closes the connection.
 class Replying {
  public:
   Replying(const std::string& path, const std::string& reply) : listener_(open(path)), reply_(reply) {
@@ -76,7 +76,7 @@ TEST_F(DaemonAnswers, AnotherProgramIsNoDaemon) {
 TEST_F(DaemonAnswers, WhoAcceptsAndStaysSilentIsNoDaemon) {
   rig::SocketFile file;
   file.path = path_;
-  const auto listener = Listener::open(file);  // the kernel accepts
+  const auto listener = Listener::open(file);  // the kernel accepts connections for it
   ASSERT_TRUE(listener);
   EXPECT_FALSE(daemon_answers(path_));
 }

@@ -11,7 +11,7 @@
 namespace softgrip::daemon::signals_test {
 namespace {
 
-/// How a child that does `body` ended: a signal is a matter of the whole process.
+/// Returns the status with which a child process that runs `body` ended. Signals concern the whole process.
 int status_of(const std::function<bool()>& body) {
   const pid_t child = ::fork();
   if (child == 0) ::_exit(body() ? 0 : 1);

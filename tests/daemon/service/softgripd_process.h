@@ -1,5 +1,5 @@
 #pragma once
-// softgripd as a process of its own, spoken to as users do: arguments, signals, its socket.
+// softgripd as a separate process, used as a user does: with arguments, signals and its socket.
 
 #include <sys/types.h>
 
@@ -16,18 +16,18 @@
 
 namespace softgrip::daemon::testing {
 
-/// A connection to the socket API.
+/// A connection to the socket API of a daemon.
 class ApiClient {
  public:
-  /// Tries for five seconds. Not open() if the daemon did not answer.
+  /// Tries to connect for 5 s. open() is false if the daemon did not answer.
   explicit ApiClient(const std::string& socket_path);
 
   [[nodiscard]] bool open() const noexcept { return static_cast<bool>(socket_); }
   [[nodiscard]] int number() const noexcept { return socket_.get(); }
   bool send(std::string_view text);
-  /// The next line, as JSON; null after five seconds of silence or the end of the connection.
+  /// Returns the next line as JSON, or null after 5 s without a line or after the end of the connection.
   [[nodiscard]] nlohmann::json receive();
-  /// A request and its reply.
+  /// Sends a request and returns its reply.
   nlohmann::json ask(const nlohmann::json& request);
 
  private:
@@ -39,24 +39,25 @@ class SoftgripdProcess {
  public:
   struct Start {
     std::vector<std::string> arguments;
-    std::vector<std::string> environment{};  ///< NAME=value, besides the test's own
-    std::function<void()> in_child{};        ///< between fork and exec
+    std::vector<std::string> environment{};  ///< NAME=value, in addition to the test's environment
+    std::function<void()> in_child{};        ///< called in the child process between fork and exec
   };
 
-  /// `folder`: where its output goes.
+  /// `folder`: folder of its output.
   SoftgripdProcess(const std::string& folder, const Start& start);
   SoftgripdProcess(const SoftgripdProcess&) = delete;
   SoftgripdProcess& operator=(const SoftgripdProcess&) = delete;
   SoftgripdProcess(SoftgripdProcess&&) = delete;
   SoftgripdProcess& operator=(SoftgripdProcess&&) = delete;
-  /// Kills it if it still runs.
+  /// Kills the process if it is still running.
   ~SoftgripdProcess();
 
   [[nodiscard]] pid_t pid() const noexcept { return pid_; }
   void signal(int number) const;
-  /// Its exit code, 128 + the signal that ended it, or nothing if it still runs after `timeout_s`.
+  /// Returns the exit code, or 128 + the signal that ended the process, or nullopt if it is still running
+  /// after `timeout_s`.
   std::optional<int> wait(double timeout_s = 20);
-  /// Returns the text that it has printed so far.
+  /// Returns the text that the process has printed until now.
   [[nodiscard]] std::string output() const;
 
  private:
@@ -64,8 +65,8 @@ class SoftgripdProcess {
   std::string output_path_;
 };
 
-/// config/rig.yaml for a test: its socket and recordings in `folder`, no processor requested; each pair of
-/// `changes` replaces a text that must be there. Returns the path of the file.
+/// Writes config/rig.yaml for a test, with its socket and recordings in `folder` and without a requested
+/// processor. Each pair of `changes` replaces a text, which must exist. Returns the path of the file.
 std::string make_rig(const std::string& folder,
                      const std::vector<std::pair<std::string, std::string>>& changes = {});
 

@@ -1,4 +1,5 @@
-// softgripd as a process: runs, repeats itself, stops, is killed, runs out of disk.
+// softgripd as a process: it runs, gives the same results again, stops, is killed, and runs out of disk
+// space.
 
 #include <gtest/gtest.h>
 #include <sys/mount.h>
@@ -37,7 +38,7 @@ using testing::text_of;
 const std::string sequences = SOFTGRIP_SOURCE_DIR "/config/sequences/";
 constexpr double rate_hz = 200;
 
-/// run.csv, split.
+/// The cells of a run.csv.
 struct Csv {
   std::vector<std::vector<std::string>> rows;  ///< without the header
   std::vector<std::string> header;
@@ -55,7 +56,7 @@ struct Csv {
       }
       if (header.empty()) {
         header = cells;
-      } else if (cells.size() == header.size()) {  // a kill may leave half a line
+      } else if (cells.size() == header.size()) {  // after a kill the last line may be incomplete
         rows.push_back(cells);
       }
     }
@@ -71,7 +72,7 @@ class SoftgripdTest : public ::testing::Test {
  protected:
   std::string socket() const { return folder_.path() + "/socket"; }
   json run_json(const std::string& folder) const { return json::parse(text_of(folder + "/run.json")); }
-  /// The only run folder in the rig's directory.
+  /// Returns the only run folder in the rig's folder.
   std::string only_run() const {
     std::vector<std::string> folders;
     for (const auto& entry : std::filesystem::directory_iterator(folder_.path() + "/runs")) {
@@ -180,7 +181,7 @@ TEST_F(SoftgripdTest, ASecondDaemonOnTheSameSocketIsRefused) {
 }
 
 TEST_F(SoftgripdTest, AFullDiskEndsTheRecordingAndNotTheGrip) {
-  // A real full disk where mounting is allowed; elsewhere a limit on the size of a file.
+  // Uses a real full disk if mounting is allowed, otherwise a limit of the file size.
   const std::string disk = folder_.path() + "/disk";
   std::filesystem::create_directory(disk);
   const bool mounted = mount("none", disk.c_str(), "tmpfs", 0, "size=64k") == 0;
@@ -294,7 +295,7 @@ TEST_F(SoftgripdTest, RealTimeThatIsRequiredAndNotThereIsARefusal) {
   EXPECT_NE(process.output().find("confirmed the safe outputs"), std::string::npos);
 }
 
-/// The service manager's end of sd_notify.
+/// The service manager's side of sd_notify.
 class NotifySocket {
  public:
   explicit NotifySocket(const std::string& path) : socket_(::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0)) {
@@ -305,7 +306,7 @@ class NotifySocket {
     const timeval patience{3, 0};
     setsockopt(socket_.get(), SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
   }
-  /// Messages up to the one that begins with `start`; empty if it did not come.
+  /// Returns the messages up to the one that begins with `start`, or an empty list if it did not arrive.
   std::vector<std::string> until(const std::string& start) {
     std::vector<std::string> messages;
     for (;;) {

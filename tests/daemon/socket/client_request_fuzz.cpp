@@ -1,4 +1,4 @@
-// Fuzz target of the socket's line parser: any bytes are a request or a refusal with a sentence.
+// Fuzz target of the socket's line parser: any bytes give a request, or a refusal with a message.
 //
 //   cmake --preset fuzz && cmake --build --preset fuzz --target client_request_fuzz
 //   build/fuzz/tests/daemon/client_request_fuzz -max_total_time=660 -max_len=1024
@@ -18,7 +18,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (request.error().message.empty()) std::abort();
     return 0;
   }
-  // An accepted request keeps the bounds that the other code relies on.
+  // An accepted request is within the bounds on which other code relies.
   if (!(request->rate_hz >= 0.1 && request->rate_hz <= 50)) std::abort();
   if (request->limit < 1 || request->limit > 1000) std::abort();
   if (request->id.value_or(0) > (std::uint64_t{1} << 53)) std::abort();

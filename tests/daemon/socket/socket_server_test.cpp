@@ -61,7 +61,7 @@ class SocketServerTest : public ::testing::Test {
     }
     return *server_;
   }
-  /// Lets the server see what there is; time passes by `step` at each look.
+  /// Runs the server `looks` times; the time advances by `step` before each run.
   void turn(int looks = 5, Nanoseconds step = 0) {
     for (int i = 0; i < looks; ++i) {
       now_ += step;
@@ -72,7 +72,7 @@ class SocketServerTest : public ::testing::Test {
     ASSERT_EQ(::send(socket.get(), text.data(), text.size(), MSG_NOSIGNAL),
               static_cast<ssize_t>(text.size()));
   }
-  /// Returns the data that have arrived; empty if the peer closed.
+  /// Returns the data that have arrived; empty if the peer has closed the connection.
   static std::optional<std::string> received(const Descriptor& socket) {
     std::string text(1 << 20, '\0');
     const ssize_t count = ::recv(socket.get(), text.data(), text.size(), 0);
@@ -113,7 +113,7 @@ TEST_F(SocketServerTest, RemovesItsFileAndReplacesThatOfADaemonThatIsGone) {
   server_.reset();
   EXPECT_FALSE(std::filesystem::exists(settings_.path));
   {
-    // A daemon that was killed leaves its file behind.
+    // Simulates a killed daemon, whose socket file remains.
     Descriptor socket(::socket(AF_UNIX, SOCK_STREAM, 0));
     sockaddr_un address{};
     address.sun_family = AF_UNIX;
@@ -454,7 +454,7 @@ TEST_F(SocketServerTest, AnUrgentLineOfAClientThatHasGoneIsHeard) {
       send_text(client, "hello\n");
       turn();
       if (unread > 0) server().send(sender, std::string(unread, 'a'), false);
-      // The server does not look meanwhile, as a process that is paused.
+      // The server does not run meanwhile, like a paused process.
       send_text(client, "move\nurgent: down\nmove\n");
       lines_.clear();
     }
