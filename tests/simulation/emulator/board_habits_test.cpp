@@ -1,5 +1,5 @@
-// Boards and gateways with habits, over real sockets and lines. The emulator has the habit, and the driver
-// reaches it only with the key for the habit.
+// Boards and gateways with habits, on real sockets and serial lines. The emulator has the habit, and the
+// driver can communicate with it only with the corresponding key.
 
 #include <gtest/gtest.h>
 
@@ -33,7 +33,7 @@ RunningRigSettings rig_with(FaultSpec habit) {
   habit.name = "habit";
   RunningRigSettings settings;
   settings.maps = {shipped("softgrip-sim.yaml")};
-  settings.maps[0].watchdog.timeout_s = 60;  // a busy machine pauses
+  settings.maps[0].watchdog.timeout_s = 60;  // long enough for the pauses of a busy machine
   settings.maps[0].setup.clear();
   settings.names = {"sim"};
   settings.habits = {std::move(habit)};
@@ -55,8 +55,8 @@ struct Client {
   std::vector<model::Reading> readings;
 };
 
-/// The board ignores requests in the first 0.4 s of a connection. The settle time delays no safe value: the
-/// board would ignore every write in that time, and each new connection starts the 0.4 s again.
+/// The board ignores requests during the first 0.4 s of a connection. The settle time delays no safe value:
+/// the board would ignore every write in this time, and each new connection restarts the 0.4 s.
 TEST(BoardHabits, ABoardThatIgnoresWhatComesFirstIsReachedBehindItsSettleTime) {
   RunningRig rig(rig_with(settling(0.4)));
   ModbusSettings settings = rig.board();
@@ -70,7 +70,7 @@ TEST(BoardHabits, ABoardThatIgnoresWhatComesFirstIsReachedBehindItsSettleTime) {
   }
   std::get<drivers::TcpAddress>(settings.links[0]).habits.settle_s = 0.4;
   Client settled(settings);
-  for (int session = 0; session < 2; ++session) {  // the first session, and one that is opened again
+  for (int session = 0; session < 2; ++session) {  // the first session, and a reopened one
     ASSERT_EQ(settled.board.connect(generous), BusStatus::ok) << settled.board.detail();
     ASSERT_EQ(settled.exchange(10 + session), BusStatus::ok) << settled.board.detail();
   }
@@ -152,7 +152,7 @@ TEST(BoardHabits, RtuFramesThatAreRepeatedOrWrongEndTheSession) {
   }
 }
 
-/// On a serial line, and behind a serial server.
+/// Tests a serial line, and a serial server on the network.
 TEST(BoardHabits, StrayBytesAreThrownAway) {
   FaultSpec habit = fault_of(FaultKind::stray_bytes);
   habit.before = 1;
@@ -168,8 +168,8 @@ TEST(BoardHabits, StrayBytesAreThrownAway) {
   }
 }
 
-/// Sixteen registers of inputs and four of outputs, four at a time: no number torn, no reading of another
-/// input.
+/// 16 input and 4 output registers, read and written 4 at a time: no number is torn, and no input is read as
+/// another one.
 TEST(BoardHabits, ABoardThatTakesFewRegistersGetsSeveralRequests) {
   FaultSpec habit = fault_of(FaultKind::few_registers);
   habit.most = 4;

@@ -1,4 +1,4 @@
-// Fuzz target: what a client may send to the emulator, byte by byte, in pieces of any size.
+// Fuzz target: the bytes that a client may send to the emulator, in pieces of any size.
 //
 //   cmake --preset fuzz && cmake --build --preset fuzz --target emulator_fuzz
 //   build/fuzz/tests/tools/emulator_fuzz -max_total_time=660 -max_len=1024

@@ -21,7 +21,7 @@ FaultSpec fault(std::string name, FaultKind kind) {
   return spec;
 }
 
-/// Two noiseless fingers of the bench twin on an ADAM-6024, and a client that counts its transactions.
+/// Two bench twins without noise on an ADAM-6024, and a client that counts its transactions.
 class EmulatorTest : public testing::Test {
  protected:
   static EmulatorSettings settings(std::vector<FaultSpec> faults = {}) {
@@ -41,7 +41,7 @@ class EmulatorTest : public testing::Test {
   static Reply ask(Emulator& emulator, Nanoseconds now, Bytes pdu, std::uint8_t unit = 1) {
     return emulator.serve(now, {7, unit, std::move(pdu)});
   }
-  /// Both valves to the same pressure; true if the board answered.
+  /// Commands the same pressure for both valves. Returns true if the board responded.
   static bool command(Emulator& emulator, Nanoseconds now, double pressure_kpa) {
     const auto raw = static_cast<std::uint16_t>(pressure_kpa / 100 * 4095);
     Bytes pdu{0x10, 0, 10, 0, 2, 4};
@@ -55,7 +55,7 @@ class EmulatorTest : public testing::Test {
     const double volts = word_at(reply.pieces.at(0).bytes, 9) * 20.0 / 65535 - 10;
     return volts / 10 * 50 - 5;
   }
-  /// Feeds the watchdog until `until`, a second at most between requests.
+  /// Resets the watchdog with requests until `until`, at most 0.1 s apart.
   static void keep_alive(Emulator& emulator, Nanoseconds until) {
     while (emulator.now() < until) {
       (void)ask(emulator, std::min(until, emulator.now() + second / 10), {0x04, 0, 0, 0, 1});

@@ -1,5 +1,5 @@
-// Fuzz target of the emulator's faults file: any bytes are faults within their bounds, or a refusal with a
-// place; and whatever was accepted can be scheduled.
+// Fuzz target of the emulator's faults file: any bytes give faults within their bounds, or a refusal with a
+// location. All accepted faults can be scheduled.
 //
 //   scripts/fuzz.sh faults_file_fuzz 30
 

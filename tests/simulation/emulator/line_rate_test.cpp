@@ -1,9 +1,9 @@
-// Exchanges over a pseudo-terminal whose other end takes the time that bytes would take: the rate that is
-// achieved against the budget that is printed before anything is connected. Both ends run as daemon and
-// emulator do where they may, at real-time priority and on one processor: else a busy machine would be
-// measured, not a line. The kernel hands a pseudo-terminal's bytes over by a thread of its own, which on a
-// busy machine costs up to 0.7 ms per transaction (seen): the fastest line is tried with modules that take
-// their time, as they do.
+// Compares the achieved rate of exchanges with the budget that is printed before connecting. The exchanges
+// use a pseudo-terminal whose other end takes the time of a real line. If permitted, both ends run at
+// real-time priority on one processor, as daemon and emulator do; otherwise the test would measure the load
+// of the machine. A kernel thread transfers the bytes of a pseudo-terminal, which takes up to 0.7 ms per
+// transaction on a busy machine (measured). So the fastest line is tested with modules that have a response
+// time, like real ones.
 
 #include <gtest/gtest.h>
 #include <sched.h>
@@ -27,7 +27,7 @@ struct Rate {
   int exchanges;
 };
 
-/// This thread, and those that it starts, at real-time priority for as long as this lives.
+/// While an object of this class exists, this thread and the threads that it starts have real-time priority.
 class RealTime {
  public:
   RealTime() {
@@ -84,7 +84,7 @@ TEST_P(LineRate, IsWithinATenthOfTheBudget) {
     ASSERT_EQ(board.exchange(commands, readings, 10s), BusStatus::ok) << board.detail();
     took_s.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count());
   }
-  // The median: an exchange that the busy machine delayed says nothing of the line.
+  // Use the median, because a delay by the busy machine is not a property of the line.
   std::nth_element(took_s.begin(), took_s.begin() + static_cast<std::ptrdiff_t>(took_s.size() / 2),
                    took_s.end());
   const double median_s = took_s[took_s.size() / 2];

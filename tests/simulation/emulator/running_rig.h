@@ -1,6 +1,6 @@
 #pragma once
-// The emulator in a thread of the test, on free ports or on a pseudo-terminal, and the board that talks to
-// it.
+// The emulator in a thread of the test, on free ports or on a pseudo-terminal, and the settings of a board
+// that connects to it.
 
 #include <string>
 #include <thread>
@@ -13,16 +13,16 @@ namespace softgrip::simulation::test {
 
 struct RunningRigSettings {
   std::vector<drivers::BoardMap> maps;  ///< one per module
-  std::vector<std::string> names;       ///< of the modules
-  Wire wire = Wire::tcp;                ///< on a network every module is a host of its own
-  drivers::SerialLine line;             ///< of a serial line; the device is made up
+  std::vector<std::string> names;       ///< names of the modules
+  Wire wire = Wire::tcp;                ///< on a network every module is a separate host
+  drivers::SerialLine line;             ///< settings of a serial line; its device is created
   std::size_t channels = 2;
-  std::vector<FaultSpec> habits{};  ///< faults that are there from the start
-  bool rtu_over_tcp = false;        ///< on a network: RTU frames
+  std::vector<FaultSpec> habits{};  ///< faults that are present from the start
+  bool rtu_over_tcp = false;        ///< on a network: use RTU frames
 };
 
-/// Fingers of the bench twin without noise, as default_wiring() wires them. On a serial line the modules have
-/// the units 1, 2, ...
+/// Bench twins without noise, wired as by default_wiring(). On a serial line the modules have the units 1, 2,
+/// ...
 class RunningRig {
  public:
   explicit RunningRig(const RunningRigSettings& settings);
@@ -32,9 +32,9 @@ class RunningRig {
   RunningRig& operator=(RunningRig&&) = delete;
   ~RunningRig();
 
-  /// What leads to it.
+  /// Returns the settings with which a driver connects to the emulator.
   [[nodiscard]] const drivers::ModbusSettings& board() const noexcept { return board_; }
-  /// Ends the emulator; only then may it be looked at.
+  /// Ends the emulator and returns it. It may be inspected only after its end.
   const Emulator& stop();
 
  private:

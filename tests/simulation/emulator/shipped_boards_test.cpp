@@ -1,6 +1,6 @@
-// Every board map that is shipped, behind the driver and before the emulator, on real sockets and
-// pseudo-terminals: a pressure that is written moves the finger that is read, a watchdog that trips is seen,
-// and stays until somebody acknowledges it by a new session.
+// Every shipped board map, used by the driver and by the emulator, on real sockets and pseudo-terminals. A
+// written pressure moves the finger whose reading is checked. A watchdog trip is detected, and remains until
+// a new session resets it.
 
 #include <gtest/gtest.h>
 
@@ -23,7 +23,7 @@ constexpr double test_timeout_s = 0.4;
 const std::filesystem::path folder = std::filesystem::path(SOFTGRIP_SOURCE_DIR) / "config/boards";
 
 struct Combination {
-  std::vector<std::string> boards;  // files without .yaml
+  std::vector<std::string> boards;  // file names without .yaml
   Wire wire = Wire::tcp;
   std::size_t channels = 2;
 };
@@ -66,7 +66,7 @@ class ShippedBoard : public testing::TestWithParam<Combination> {
     const std::vector<double> commands(GetParam().channels, pressure_kpa);
     return board_->exchange(commands, readings_, generous);
   }
-  /// Exchanges for so long; false once one fails.
+  /// Exchanges for `duration`. Returns false if an exchange fails.
   bool hold(double pressure_kpa, std::chrono::milliseconds duration) {
     const auto end = std::chrono::steady_clock::now() + duration;
     while (std::chrono::steady_clock::now() < end) {
@@ -91,7 +91,7 @@ TEST_P(ShippedBoard, APressureThatIsWrittenMovesTheFingerThatIsRead) {
     const simulation::Plant& plant = truth.fingers()[i].plant();
     EXPECT_EQ(last[i].validity, model::Validity::valid);
     EXPECT_GT(last[i].displacement_mm, at_rest_mm + 5) << "the finger moves";
-    // Half a step of the coarsest input, 12 bits over 50 mm, and what it moved since it was read.
+    // Half a step of the coarsest input (12 bits over 50 mm), plus the motion since the reading.
     EXPECT_NEAR(last[i].displacement_mm, plant.displacement_mm(), 0.05);
     EXPECT_NEAR(plant.held_command_kpa(), 40, 0.02) << "half a step of 12 bits over 100 kPa";
     if (rig_->board().wiring[i].pressure.has_value()) {

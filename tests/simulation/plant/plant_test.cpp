@@ -31,7 +31,7 @@ void settle(Plant& plant, double command_kpa, double seconds) {
   for (int i = 0; i < static_cast<int>(seconds / 0.005); ++i) plant.advance(0.005);
 }
 
-// The place for an object must not change what a plant without one does, not in the last bit.
+// A plant without an object must give exactly the results of its model, bit for bit.
 TEST(Plant, WithoutObjectItIsItsModelBitForBit) {
   const unsigned seed = 5;
   std::mt19937 random(seed);
@@ -50,7 +50,7 @@ TEST(Plant, WithoutObjectItIsItsModelBitForBit) {
   EXPECT_GT(plant.displacement_mm(), 1);
 }
 
-// Time does not pass in steps: a held command gives the same finger however finely it is advanced.
+// The result of a held command does not depend on the size of the steps in which time advances.
 TEST(Plant, AdvancingInPiecesIsTheSame) {
   Plant coarse(settings_of(twin()));
   Plant fine(settings_of(twin()));
@@ -73,7 +73,7 @@ TEST(Plant, AnObjectStopsTheFingerAndLetsItGoAgain) {
   const double way = free.displacement_mm();
   ASSERT_GT(way, 6);
   EXPECT_NEAR(held.displacement_mm(), 5 + (way - 5) * 0.1, 1e-9);
-  held.set_object(std::nullopt);  // pulled out
+  held.set_object(std::nullopt);  // the object is pulled out
   held.advance(1e-6);
   EXPECT_NEAR(held.displacement_mm(), way, 1e-5);
   held.set_object(PlantObject{.position_mm = 2, .yielding = 0});
@@ -152,7 +152,7 @@ TEST(Plant, NoiseHasItsSizeAndComesFromItsSeed) {
     square += first.reading_mm() * first.reading_mm();
     pressure_square += first.measured_pressure_kpa() * first.measured_pressure_kpa();
   }
-  // The standard error of an rms of 20000 numbers is half a per cent.
+  // The standard error of the RMS of 20,000 numbers is 0.5 %.
   EXPECT_NEAR(std::sqrt(square / count), 0.03, 0.03 * 0.02);
   EXPECT_NEAR(std::sqrt(pressure_square / count), 0.2, 0.2 * 0.02);
   EXPECT_EQ(differing, count);

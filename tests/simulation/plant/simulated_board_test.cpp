@@ -50,7 +50,7 @@ class Rig {
     clock.advance(period);
     return status;
   }
-  /// Exchanges for so long; the last status.
+  /// Exchanges for `seconds`. Returns the last status.
   BusStatus run(double seconds, double left, double right) {
     BusStatus status = BusStatus::ok;
     for (int i = 0; i < static_cast<int>(std::lround(seconds * 200)); ++i) status = exchange(left, right);
@@ -111,8 +111,8 @@ TEST(SimulatedBoard, MovesWhatItIsToldAndReadsItBack) {
   EXPECT_EQ(rig.readings[0].sampled_at, rig.clock.now() - period);
 }
 
-// A reading is taken before the commands of its exchange take effect: even a finger without any latency moves
-// only in the next one.
+// A reading is taken before the commands of its exchange take effect. So even a finger without latency moves
+// only in the next exchange.
 TEST(SimulatedBoard, AReadingDoesNotKnowTheCommandOfItsOwnExchange) {
   SimulatedBoardSettings settings = two_twins();
   for (SimulatedChannel& channel : settings.channels) {
@@ -172,7 +172,7 @@ TEST(SimulatedBoard, AnObjectIsPulledOutAtItsTime) {
   EXPECT_NEAR(rig.readings[0].displacement_mm, rig.readings[1].displacement_mm, 1e-9);
 }
 
-// When an exchange sees an event must not decide when it happened.
+// The time of an exchange must not influence the time of an event.
 TEST(SimulatedBoard, EventsHappenAtTheirOwnTimeNotAtTheNextExchange) {
   SimulatedBoardSettings settings = two_twins();
   settings.events.push_back(
@@ -230,7 +230,7 @@ TEST(SimulatedBoard, TheWatchdogVentsAtItsTimeAndHoldsUntilConnect) {
   Rig rig(settings);
   EXPECT_TRUE(rig.board.has_watchdog());
   ASSERT_EQ(rig.run(2, 40, 40), BusStatus::ok);
-  rig.clock.advance(3'000'000'000);  // nobody talks
+  rig.clock.advance(3'000'000'000);  // no requests for 3 s
   EXPECT_EQ(rig.exchange(40, 40), BusStatus::watchdog_tripped);
   EXPECT_NEAR(rig.board.plant(0).pressure_kpa(), 0, 1e-6);
   EXPECT_EQ(rig.run(1, 40, 40), BusStatus::watchdog_tripped);
