@@ -1,16 +1,15 @@
 // Fails the Nth call of one function, for every program that it is preloaded into (LD_PRELOAD):
 //
-//   FAIL_CALL=open FAIL_NTH=3 FAIL_TOLD=/tmp/told LD_PRELOAD=.../libfail_nth.so softgripd ...
+//   FAIL_CALL=open FAIL_NTH=3 FAIL_TOLD=/tmp/failed LD_PRELOAD=.../libfail_nth.so softgripd ...
 //
-// FAIL_CALL is a name of the table below; several functions that do one thing count together (open, openat,
-// fopen). FAIL_FROM=1 fails every call from the Nth on, as a full disk does. When a call was failed,
-// FAIL_TOLD is created; as long as that file appears, there is an Nth call, and a test goes on with N+1 until
-// it does not, as SQLite's do.
+// FAIL_CALL is a name of the table below; several functions with the same purpose count together (open,
+// openat, fopen). FAIL_FROM=1 fails every call from the Nth on, like a full disk. When a call fails,
+// FAIL_TOLD is created. A test increments N until this file is no longer created, as the tests of SQLite do.
 //
 // FAIL_CREATED=FILE appends the path of every file that a call may create to FILE, a line each.
 //
-// FAIL_HANG=NAME never returns from opening a file whose path ends in NAME, as a mount without its server
-// does. FAIL_TOLD is created then, too.
+// FAIL_HANG=NAME: opening a file whose path ends in NAME never returns, as on a mount without its server.
+// FAIL_TOLD is created then, too.
 
 #undef _FORTIFY_SOURCE  // its wrappers of recv and others would be second definitions
 
@@ -35,7 +34,7 @@
 
 namespace {
 
-/// What is asked for, read from the environment once.
+/// The request from the environment; read once.
 struct Order {
   const char* call = std::getenv("FAIL_CALL");
   const char* told = std::getenv("FAIL_TOLD");
@@ -68,7 +67,7 @@ Function real(const char* name) noexcept {
   return reinterpret_cast<Function>(dlsym(RTLD_NEXT, name));
 }
 
-/// Creates the file that says so, by calls that are not counted.
+/// Creates the file FAIL_TOLD by calls that are not counted.
 void tell() noexcept {
   if (order().told == nullptr) return;
   using Open = int (*)(const char*, int, ...);
@@ -77,7 +76,7 @@ void tell() noexcept {
   if (descriptor >= 0) ::close(descriptor);
 }
 
-/// True if this call, of a function that belongs to `call`, is to fail with `error`.
+/// Returns true if this call of a function of the group `call` must fail with `error`.
 bool fails(const char* call, int error) noexcept {
   if (order().call == nullptr || std::strcmp(order().call, call) != 0) return false;
   const long number = ++calls;
@@ -87,7 +86,7 @@ bool fails(const char* call, int error) noexcept {
   return true;
 }
 
-/// Notes the path if this call may create a file, by calls that are not counted.
+/// Records the path if this call may create a file. Its own calls are not counted.
 void note_created(const char* path, bool creates) noexcept {
   if (!creates || order().created == nullptr) return;
   using Open = int (*)(const char*, int, ...);
@@ -101,7 +100,7 @@ void note_created(const char* path, bool creates) noexcept {
   if (noted <= 0) std::abort();
 }
 
-/// Does not return if the file of this path is to hang.
+/// Does not return if opening this path must hang.
 void hang_at(const char* path) noexcept {
   if (order().hang == nullptr) return;
   const std::size_t end = std::strlen(order().hang);
@@ -113,8 +112,8 @@ void hang_at(const char* path) noexcept {
 
 }  // namespace
 
-// Allocations of C++ code, of all threads, from main() on: before, nobody could say anything, nor has
-// anything been commanded. Those that a program aligns itself are not counted.
+// Counts the allocations of C++ code in all threads from main() on. Before main() the program cannot report
+// an error and has not commanded anything. Allocations with a special alignment are not counted.
 void* operator new(std::size_t size) {
   void* const memory = in_main && fails("allocation", ENOMEM) ? nullptr : std::malloc(size > 0 ? size : 1);
   if (memory == nullptr) throw std::bad_alloc();
@@ -182,7 +181,7 @@ int openat(int folder, const char* path, int flags, ...) {
   return next(folder, path, flags, mode);
 }
 
-// What open() and openat() of a hardened program become where the flags are no constant.
+// A hardened program calls these functions instead of open() and openat() if the flags are not constant.
 int __open_2(const char* path, int flags) {
   hang_at(path);
   if (fails("open", EMFILE)) return -1;
@@ -216,7 +215,7 @@ FILE* fopen64(const char* path, const char* mode) {
 ssize_t write(int descriptor, const void* data, size_t size) {
   if (fails("write", ENOSPC)) return -1;
   static const auto next = real<ssize_t (*)(int, const void*, size_t)>("write");
-  // Half of it now and the rest refused at the next call: what a disk does that becomes full.
+  // Write one half and refuse the rest at the next call, like a disk that becomes full.
   if (size > 1 && fails("short_write", ENOSPC)) return next(descriptor, data, size / 2);
   return next(descriptor, data, size);
 }
@@ -224,7 +223,7 @@ ssize_t write(int descriptor, const void* data, size_t size) {
 ssize_t writev(int descriptor, const iovec* parts, int count) {
   if (fails("write", ENOSPC)) return -1;
   static const auto next = real<ssize_t (*)(int, const iovec*, int)>("writev");
-  // Half of the first part that is not empty: no more than a short write.
+  // Write half of the first part that is not empty: a short write.
   int first = 0;
   while (first < count && parts[first].iov_len == 0) ++first;
   if (first < count && parts[first].iov_len > 1 && fails("short_write", ENOSPC)) {

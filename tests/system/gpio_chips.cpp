@@ -1,20 +1,20 @@
-// A GPIO chip without a kernel for a whole softgripd (LD_PRELOAD), which somebody outside presses and looks
-// at:
+// A GPIO chip without a kernel for a whole softgripd (LD_PRELOAD). A test outside the process sets and reads
+// its lines:
 //
 //   GPIO_CHIPS=/tmp/folder LD_PRELOAD=.../libgpio_chips.so softgripd ...
 //
-// libgpiod's functions give way to tests/drivers/gpio/fake_gpio_1.cpp or _2.cpp. The folder takes the place
-// of /dev where chips are looked for; its socket `lines` takes one line per request, for one client at a
-// time:
+// tests/drivers/gpio/fake_gpio_1.cpp or _2.cpp replace libgpiod's functions. The folder replaces /dev in the
+// search for chips. Its socket `lines` accepts one request per line, from one client at a time:
 //
-//   high NAME AT_NS   the level changes, and the kernel saw it then (CLOCK_MONOTONIC). `low` the same
-//   gone              the chip was pulled out
-//   levels            answers with the names of all lines that are high
+//   high NAME AT_NS   the level changes to high; the kernel's time of the edge is AT_NS (CLOCK_MONOTONIC)
+//   low NAME AT_NS    the level changes to low
+//   gone              the chip is removed
+//   levels            returns the names of all lines that are high
 //
 // With GPIO_TWIN there is a second chip with the label of the first.
 //
-// The answer is "ok" or the names. While the process stands still nothing is answered; what was asked
-// for meanwhile comes with its own time when it goes on, as from the kernel's queue.
+// The answer is "ok" or the names. While the process is paused, it answers nothing. When it continues, it
+// executes the waiting requests with their own times, like the kernel's queue of edges.
 
 #include <dlfcn.h>
 #include <fcntl.h>
@@ -101,7 +101,7 @@ void serve(int listening) {
     std::perror("gpio_chips");
     std::abort();
   }
-  // No signal that is meant for softgripd may choose this thread.
+  // This thread must not receive the signals for softgripd.
   sigset_t all;
   sigset_t before;
   sigfillset(&all);
@@ -112,7 +112,7 @@ void serve(int listening) {
 
 }  // namespace
 
-/// std::filesystem lists folders by this. The folder stands in /dev's place.
+/// std::filesystem lists folders with openat(). The folder GPIO_CHIPS replaces /dev.
 extern "C" int openat(int at, const char* path, int flags, ...) {
   using Openat = int (*)(int, const char*, int, ...);
   static const auto real = reinterpret_cast<Openat>(dlsym(RTLD_NEXT, "openat"));

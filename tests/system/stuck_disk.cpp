@@ -1,9 +1,11 @@
-// A disk that does not answer, for every program that this is preloaded into (LD_PRELOAD):
+// Simulates a disk that does not respond, for every program into which this library is preloaded
+// (LD_PRELOAD):
 //
 //   STUCK_FOLDER=/tmp/runs STUCK_WHILE=/tmp/stuck LD_PRELOAD=.../libstuck_disk.so softgrip-web ...
 //
 // While the file STUCK_WHILE exists, a call that reads a folder or a regular file below STUCK_FOLDER waits.
-// The first such call creates STUCK_WHILE.waits, so that a test knows that the disk is asked.
+// The first such call creates STUCK_WHILE.waits, so that a test knows that the program is waiting for the
+// disk.
 
 #undef _FORTIFY_SOURCE  // its wrapper of read would be a second definition
 
