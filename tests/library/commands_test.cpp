@@ -1,5 +1,5 @@
-// The library and the command line compute the same bits: each result of `softgrip` is compared with that of
-// the library for the same logs.
+// The library and the command line give identical results, bit for bit: each result of `softgrip` is compared
+// with the library's result for the same logs.
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -20,7 +20,7 @@
 #include "library/include/softgrip/validate.h"
 #include "tests/library/finger.h"
 
-// GCC 12 takes a new std::stop_source for one that is not initialised.
+// GCC 12 warns wrongly that a new std::stop_source is not initialised.
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
 
 namespace softgrip::commands_test {
@@ -28,7 +28,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// Logs of the bench twin and of one with another gain, written by `softgrip simulate`.
+/// Logs of the bench twin and of a twin with another gain, written by `softgrip simulate`.
 class LibraryAndCommand : public testing::Test {
  protected:
   LibraryAndCommand() {
@@ -53,7 +53,7 @@ class LibraryAndCommand : public testing::Test {
     EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << text_of(path("errors"));
     return text_of(output);
   }
-  /// JSON without what differs from call to call.
+  /// Returns the JSON without the keys whose values differ from call to call.
   static Json plain(const std::string& text, std::initializer_list<const char*> without) {
     Json json = Json::parse(text);
     for (const char* key : without) json.erase(key);
@@ -151,7 +151,8 @@ TEST_F(LibraryAndCommand, DiagnoseAChange) {
   EXPECT_NE(found.verdict, "unchanged");
 }
 
-/// The time from a stop after `after` to the exception [s]; a result instead of it fails the test.
+/// Returns the time from a stop request, sent after `after`, to the exception [s]. If the work returns, the
+/// test fails.
 template <class Work>
 double time_to_stop_s(std::chrono::milliseconds after, Work work) {
   std::stop_source stop;

@@ -15,13 +15,13 @@ namespace softgrip {
   return Model::load(std::string(SOFTGRIP_SOURCE_DIR) + "/config/models/bench_twin.yaml");
 }
 
-/// A signal.
+/// A sampled signal.
 struct Course {
   std::vector<double> time_s;
   std::vector<double> value;
 };
 
-/// Begins at `low`, goes to `high` and back.
+/// Returns a periodic signal that begins at `low`, rises to `high` and returns.
 [[nodiscard]] inline Course sine(double low, double high, double frequency_hz, std::size_t samples,
                                  double step_s) {
   Course course;

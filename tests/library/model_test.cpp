@@ -17,7 +17,7 @@ namespace {
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// The argument that a call refuses; empty if it refuses none.
+/// Returns the name of the argument that a call refuses, or "" if it refuses none.
 template <class Call>
 std::string refused_argument(Call call) {
   try {
@@ -69,7 +69,7 @@ TEST(LibraryModel, SimulatesStepByStepAsAtOnce) {
     const double duration_s = i == 0 ? 0 : course.time_s[i] - course.time_s[i - 1];
     worst = std::max(worst, std::abs(simulator.step(duration_s, course.value[i]) - at_once[i]));
   }
-  // The measured sample time of the array differs from 0.01 s by its rounding.
+  // The measured sample time of the array differs from 0.01 s by rounding errors.
   EXPECT_LT(worst, 1e-10);
   EXPECT_GT(*std::max_element(at_once.begin(), at_once.end()), 5);
 }

@@ -1,18 +1,18 @@
 #pragma once
-// Counts what a thread allocates. Linked into a test program it replaces operator new and, where no sanitizer
-// has its own allocator, malloc. A translation unit of its own, so that the compiler does not look through
+// Counts the allocations of a thread. In a test program it replaces operator new and, unless a sanitizer has
+// its own allocator, malloc. It is a separate translation unit, so that the compiler cannot optimise across
 // it.
 
 #include <cstddef>
 
 namespace softgrip::test {
 
-/// Whether this thread's allocations are counted from now on; at first they are not.
+/// Starts or stops counting this thread's allocations; initially they are not counted.
 void count_allocations(bool on) noexcept;
-/// How many were counted in this thread so far.
+/// Returns the number of counted allocations of this thread.
 [[nodiscard]] std::size_t allocations() noexcept;
 
-/// How many allocations `work` makes in this thread.
+/// Returns the number of allocations that `work` makes in this thread.
 template <class Work>
 std::size_t allocations_of(const Work& work) {
   const std::size_t before = allocations();
