@@ -1,5 +1,5 @@
-// What one channel costs per tick: the whole controller and its parts. The budget is 1 us of CPU for a tick
-// of two fingers with everything, so about 350 ns for a channel here.
+// CPU time of one channel per tick: the whole controller and its parts. The budget is 1 us of CPU for a tick
+// of two fingers with all functions, so about 350 ns per channel here.
 
 #include <benchmark/benchmark.h>
 
@@ -44,7 +44,8 @@ control::ChannelSettings settings_for(control::FeedforwardKind kind) {
   return settings;
 }
 
-/// A finger that is the model, recorded once, so that the benchmark measures the controller alone.
+/// A run of a finger that equals its model, recorded once, so that the benchmark measures the controller
+/// alone.
 struct Tape {
   explicit Tape(const control::ChannelSettings& settings) {
     reference.start(0, 0);
@@ -104,7 +105,8 @@ void channel(benchmark::State& state) {
 }
 BENCHMARK(channel)->ArgName("feedforward")->Arg(0)->Arg(1)->Arg(2);
 
-// Behind a dead band and a regulator in the place of the lag: what the command alone shows of such a valve.
+// A channel whose valve model is a dead band and a regulator instead of a lag, as identified from the command
+// alone.
 void channel_behind_a_regulator(benchmark::State& state) {
   control::ChannelSettings settings = settings_for(control::FeedforwardKind::full_model);
   model::Model& model = settings.model;
@@ -120,7 +122,7 @@ void channel_behind_a_regulator(benchmark::State& state) {
 }
 BENCHMARK(channel_behind_a_regulator);
 
-// Each tick of two fingers by itself, for the percentiles.
+// Times each tick of two fingers separately, for the percentiles.
 void two_channels_percentiles(benchmark::State& state) {
   const auto settings = settings_for(control::FeedforwardKind::full_model);
   Tape tape(settings);

@@ -1,5 +1,5 @@
-// How long an exchange over loopback takes, next to libmodbus' own client asking the same server the same
-// questions. Both are run in turn, block by block, in the same seconds, and compared by percentile.
+// Duration of an exchange over loopback, compared with libmodbus' client and the same requests to the same
+// server. The two clients alternate block by block within the same seconds, and are compared by percentile.
 //
 //   build/release/bench/exchange_bench [exchanges, default 20000]
 
@@ -28,7 +28,7 @@ using drivers::ModbusBoard;
 
 constexpr std::size_t block = 100;
 
-/// libmodbus' server in a thread; one session at a time per server.
+/// libmodbus' server in a thread; each server handles one session at a time.
 class Server {
  public:
   Server() : context_(::modbus_new_tcp("127.0.0.1", 0)), mapping_(::modbus_mapping_new(64, 64, 512, 64)) {
@@ -71,7 +71,8 @@ class Server {
   std::thread thread_;
 };
 
-/// Two outputs from 256 and two inputs from 0, whole numbers: what both clients ask for.
+/// Map of the values that both clients exchange: two outputs from register 256 and two inputs from register
+/// 0, integers.
 drivers::BoardMap map_with(bool fc23) {
   drivers::BoardMap map;
   map.name = "bench";

@@ -1,10 +1,11 @@
-// What a whole tick of the loop's thread costs: readings taken, two fingers on full_model and PID, limits,
-// supervisor, commands and snapshot published, rows pushed to the recorder. Only Loop::tick is timed; board
-// and recorder work in between. Two runs of the same ticks: by the processor's time of the thread, which
-// interruptions do not touch but which takes a system call to read, and by the monotonic clock, which is
-// cheap to read and sees everything.
+// Duration of a whole tick of the loop's thread: it takes readings, controls two fingers with full_model and
+// PID, checks limits, runs the supervisor, publishes commands and snapshot, and passes rows to the recorder.
+// Only Loop::tick is timed; board and recorder run between the ticks. Each series of ticks runs twice. The
+// first run measures the CPU time of the thread, which excludes interruptions but needs a system call. The
+// second run uses the monotonic clock, which is fast to read but includes interruptions.
 //
-// Then how much faster than real time the whole daemon is in virtual time: board, loop, bus, recorder, disk.
+// Then the program measures how much faster than real time the whole daemon runs in virtual time: board,
+// loop, bus, recorder and disk.
 //
 //   loop_tick [TICKS]
 
@@ -39,7 +40,7 @@ Value or_exit(std::optional<Value> value, const document::Problems& problems) {
   return std::move(*value);
 }
 
-/// The example rig at another rate.
+/// Returns the example rig with another rate.
 rig::RigFile rig_at(double rate_hz) {
   document::Problems problems;
   document::Document document = document::parse_file(SOFTGRIP_SOURCE_DIR "/config/rig.yaml", problems);
@@ -63,7 +64,7 @@ struct Times {
   }
 };
 
-/// What reading the clock twice costs by itself.
+/// Measures the duration of two successive readings of the clock.
 Times time_nothing(clockid_t clock) {
   Times times;
   for (int i = 0; i < 100'000; ++i) {
@@ -84,7 +85,7 @@ std::shared_ptr<const daemon::LoadedSequence> track_sine(const control::RigSetti
   return *sequence;
 }
 
-/// Ticks of a sequence that follows a sine, again and again.
+/// Times the ticks of a sequence that follows a sine; the sequence is repeated.
 Times time_ticks(double rate_hz, clockid_t clock, std::uint64_t ticks) {
   daemon::DaemonOptions options;
   options.virtual_time = true;
@@ -119,7 +120,8 @@ void print(double rate_hz, const char* name, clockid_t clock, std::uint64_t tick
               rate_hz, name, times.at(0.5), times.at(0.99), times.at(0.999), times.at(1), nothing.at(0.5));
 }
 
-/// Seconds of the rig's time per second of the clock, everything recorded; the middle one of several runs.
+/// Prints the simulated seconds per second of the clock with a recording of everything: the median of several
+/// runs.
 void print_speed(double rate_hz) {
   constexpr int runs = 7;
   std::vector<double> by_clock;

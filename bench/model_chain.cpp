@@ -1,4 +1,4 @@
-// What a sample of a chain costs: a step, a trial of an inverse, with and without derivatives.
+// CPU time of one sample of a model chain: a step and a trial of an inverse, with and without derivatives.
 
 #include <benchmark/benchmark.h>
 

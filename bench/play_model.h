@@ -1,5 +1,6 @@
 #pragma once
-// A finger of play operators, as rich as identification makes them, to measure beside the Bouc-Wen chain.
+// A finger with play operators and the usual number of parameters of an identified model, for comparison with
+// the Bouc-Wen chain.
 
 #include <cmath>
 #include <utility>
@@ -14,8 +15,9 @@
 
 namespace softgrip::bench {
 
-/// Twelve plays up to 57 kPa, seven branches of creep, a bend; behind the dead time of bench_twin and a lag
-/// that fills faster than it vents. Example values, not measured; it reaches 20 mm below 60 kPa.
+/// 12 play operators up to 57 kPa, 7 creep branches and a nonlinear characteristic, with the dead time of
+/// bench_twin and a lag that fills faster than it vents. The values are examples, not measurements; the
+/// finger reaches 20 mm below 60 kPa.
 inline model::Model play_model() {
   constexpr int plays = 12, branches = 7;
   std::vector<double> hysteresis{0, 0, 0, 0, 0, 0.15}, creep{1e9};

@@ -1,5 +1,6 @@
-// What a whole tick of a rig costs: two fingers on full_model and PID, sequence, supervisor, fault monitor.
-// Only RigController::tick is timed; the plants step outside. Models that are to be compared run in turn:
+// Duration of a whole tick of a rig: two fingers with full_model and PID, sequence, supervisor and fault
+// monitor. Only RigController::tick is timed; the plants advance outside. To compare models, run them
+// alternately:
 // --benchmark_enable_random_interleaving=true --benchmark_repetitions=9.
 
 #include <benchmark/benchmark.h>
@@ -54,7 +55,7 @@ control::RigSettings settings(const model::Model& model, double rate_hz) {
   return rig;
 }
 
-/// The sine of config/sequences/track_sine.yaml, again and again.
+/// Repeats the sine of config/sequences/track_sine.yaml.
 void rig_tick(benchmark::State& state, const model::Model& model) {
   const control::RigSettings rig = settings(model, static_cast<double>(state.range(0)));
   const double period_s = 1 / rig.rate_hz;

@@ -1,14 +1,15 @@
-// How often the 95 % intervals hold the truth: scattered truths, simulated logs, white and correlated noise.
+// Coverage of the 95 % intervals: scattered true models, simulated logs, white and correlated noise.
 //
 //   bench_sysid_coverage [LOGS [RATE_HZ [FIRST_SEED]]]
 //
-// One log of tp1 per fit; every parameter of the truth is off the start's by 5 % (standard deviation).
+// Each fit uses one log of the signal tp1. Each true parameter deviates from the start value by 5 % (standard
+// deviation).
 //
-// A fit's RMSE is below the noise that was added, because the fit follows some of it. How much is known
-// ahead: with H = J (J'J)^-1 J' and the noise's correlation R the expected sum of squares is s^2 (n - tr(H
-// R)). For white noise tr(H R) is the number of parameters; what is correlated resembles the model's own slow
-// answers, and the same fit takes away many times as much. So both ratios are printed: to the noise that was
-// added, and to what a right fit leaves of it.
+// The RMSE of a fit is below the added noise, because the fit follows a part of the noise. The expected ratio
+// is known: with H = J (J'J)^-1 J' and the correlation matrix R of the noise, the expected sum of squares is
+// s^2 (n - tr(H R)). For white noise tr(H R) is the number of parameters. Correlated noise resembles the slow
+// responses of the model, and the fit absorbs much more of it. So the program prints two ratios: to the added
+// noise, and to the expected residual of a correct fit.
 
 #include <algorithm>
 #include <cmath>
@@ -45,16 +46,17 @@ struct Count {
   [[nodiscard]] double percent() const { return trials > 0 ? 100.0 * inside / trials : 0; }
 };
 
-/// One fit: which combinations' intervals hold the truth, and the fit's RMSE over the noise that was added.
+/// Result of one fit: the combinations whose intervals cover the true value, and the RMSE divided by the
+/// added noise.
 struct Trial {
   std::map<std::string, bool> inside;
   double rmse_over_noise = 0;
-  double expected_over_noise = 0;   ///< of the fit's RMSE, from the derivatives at the truth
-  double estimated_over_noise = 0;  ///< the noise as the fit estimates it, its own share given back
+  double expected_over_noise = 0;   ///< expected RMSE divided by the added noise
+  double estimated_over_noise = 0;  ///< estimated noise divided by the added noise
   bool failed = true;
 };
 
-/// sqrt(1 - tr(H R) / n) at `truth` for noise of this lag-1 correlation.
+/// Returns sqrt(1 - tr(H R) / n) at `truth` for noise with this lag-1 correlation.
 double expected_ratio(const model::Model& truth, const Identification& fit, double correlation) {
   std::vector<std::size_t> free;
   for (std::size_t i = 0; i < fit.parameters.size(); ++i) {
@@ -109,7 +111,7 @@ Trial fit_one(const std::string& name, double correlation, double rate_hz, std::
   return trial;
 }
 
-/// Median, 5 and 95 % of the trials, share of them within 2 % of 1.
+/// Prints the median, the 5 % and 95 % quantiles, and the share of trials within 2 % of 1.
 void print(const char* what, std::vector<double> values) {
   if (values.empty()) return;
   std::sort(values.begin(), values.end());

@@ -1,4 +1,5 @@
-// Our side of bench/sysid_peers.sh: makes three logs and start points, fits, prints times.
+// The softgrip side of bench/sysid_peers.sh: creates three logs and start points, fits them and prints the
+// times.
 //
 //   sysid_starts FOLDER [STARTS [SAMPLES]]
 //
@@ -25,7 +26,7 @@ namespace {
 using namespace softgrip;
 using namespace softgrip::sysid;
 
-/// Starts off by factors of up to e on every parameter but k0 and the exponent.
+/// Returns start points with random factors of up to e on every parameter except k0 and the exponent.
 std::vector<model::Model> start_points(std::size_t count) {
   std::mt19937_64 random(2025);
   std::uniform_real_distribution<double> logarithm(-1, 1);
@@ -43,7 +44,7 @@ std::vector<model::Model> start_points(std::size_t count) {
   return starts;
 }
 
-/// How long a fit took: on the clock, and of the processor, which other programs do not disturb as much.
+/// Duration of a fit: wall-clock time, and CPU time, which other programs disturb less.
 struct Seconds {
   double wall;
   double processor;

@@ -1,5 +1,6 @@
-// How well the twin is tracked: 13 ± 7 mm sines at 0.05, 0.1 and 0.2 Hz, 200 Hz loop, sensor noise 0.03 mm,
-// the controller's model off by ±5 %. Every scheme gets its gains from the same search. Prints a table.
+// Tracking accuracy on the bench twin: sines of 13 ± 7 mm at 0.05, 0.1 and 0.2 Hz, 200 Hz loop, sensor noise
+// 0.03 mm, and a controller model with errors of ±5 %. One search method finds the controller gains of
+// all schemes. Prints a table.
 //
 //   tracking_study [--draws N] [--search-draws N] [--seed S] [--latency-ms L] [--quantised]
 //   [--max-sensitivity M]
@@ -26,18 +27,18 @@ using control::FeedforwardKind;
 using control::PidSettings;
 
 struct Options {
-  int draws = 40;        ///< on which the table stands
-  int search_draws = 6;  ///< others, on which the gains are found
+  int draws = 40;        ///< draws for the results in the table
+  int search_draws = 6;  ///< other draws, for the search of the controller gains
   std::uint64_t seed = 1;
   double latency_ms = 0;
-  bool quantised = false;  ///< 16 bit over 100 mm read, 12 bit over 100 kPa written
+  bool quantised = false;  ///< readings with 16 bits over 100 mm, commands with 12 bits over 100 kPa
   double max_sensitivity = 2;
 };
 
 struct Scheme {
   std::string name;
   FeedforwardKind kind = FeedforwardKind::none;
-  model::Model believed;  ///< before the scatter
+  model::Model believed;  ///< model of the controller without errors
   double pressure_max_kpa = 60;
 };
 
@@ -55,7 +56,8 @@ model::Model model_named(const std::string& name) {
   return *model;
 }
 
-/// A published element that could be inverted: its wrong-way part cut down to 0.9 of alpha.
+/// Returns a published element with an inverse: beta, which causes the inverse response, is reduced to 0.9 of
+/// alpha.
 model::Model regularised(const model::Model& published) {
   auto values = model::flat_values(published);
   values[model::find_path(published, "bouc_wen.beta_mm_per_kpa").value()] =
@@ -79,7 +81,7 @@ control::TrackingRun run_of(const Scheme& scheme, const Options& options, const 
   return run;
 }
 
-/// Models within the scatter for which the feedforward exists; counts those for which it does not.
+/// Returns models within the scatter for which the feedforward exists, and counts the others in `refused`.
 std::vector<model::Model> draws_of(const Scheme& scheme, int count, std::uint64_t seed, int& refused) {
   std::vector<model::Model> models;
   refused = 0;
@@ -95,7 +97,8 @@ std::vector<model::Model> draws_of(const Scheme& scheme, int count, std::uint64_
   return models;
 }
 
-/// Root mean square over the draws of the RMSE, from a short run each; large where the loop lacks margin.
+/// Root mean square of the RMSE over the draws, from one short run each; large if the loop lacks stability
+/// margin.
 class Cost {
  public:
   Cost(const Scheme& scheme, const Options& options, const model::Model& finger, double frequency_hz)
