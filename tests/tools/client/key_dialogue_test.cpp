@@ -23,7 +23,8 @@ class KeyDialogueTest : public ::testing::Test {
 TEST_F(KeyDialogueTest, TheWaysOutAskNothingBack) {
   EXPECT_EQ(type("s"), R"({"command":"stop"})");
   EXPECT_EQ(type("v"), R"({"command":"vent"})");
-  EXPECT_EQ(type("a"), R"({"command":"acknowledge"})") << "it moves nothing";
+  EXPECT_EQ(type("a"), R"({"command":"acknowledge"})")
+      << "acknowledge moves no finger, so it needs no confirmation";
   EXPECT_EQ(type("q"), "leave");
   EXPECT_EQ(type("\x04"), "leave");
   EXPECT_EQ(type("x"), "");
@@ -34,7 +35,7 @@ TEST_F(KeyDialogueTest, WhatMovesIsAskedBack) {
   EXPECT_NE(dialogue_.question().find("held parts drop"), std::string::npos);
   EXPECT_EQ(type("n"), "");
   EXPECT_TRUE(dialogue_.question().empty());
-  EXPECT_EQ(type("y"), "") << "the question is over";
+  EXPECT_EQ(type("y"), "") << "the question has ended";
   type("r");
   EXPECT_EQ(type("y"), R"({"command":"release"})");
 }
@@ -49,13 +50,14 @@ TEST_F(KeyDialogueTest, AStartOffersWhatRanAndTakesAnotherName) {
   type("hand_ovr");
   type("\x7f");
   type("er");
-  EXPECT_EQ(dialogue_.question(), "start which sequence [pick_stone]? hand_over_") << "with the backspace";
+  EXPECT_EQ(dialogue_.question(), "start which sequence [pick_stone]? hand_over_")
+      << "backspace has removed one character";
   type("\x15");
   type("empty_grip\n");
   EXPECT_EQ(type("y"), R"({"command":"start","sequence":"empty_grip"})");
   ran_.clear();
   type("g");
-  EXPECT_EQ(type("\r"), "") << "no name, no start";
+  EXPECT_EQ(type("\r"), "") << "without a name nothing is started";
   EXPECT_TRUE(dialogue_.question().empty());
 }
 
@@ -82,8 +84,8 @@ TEST_F(KeyDialogueTest, AStopIsHeardInThePlaceOfAnAnswer) {
   EXPECT_EQ(type("s"), R"({"command":"stop"})");
   EXPECT_TRUE(dialogue_.question().empty());
   type("g");
-  EXPECT_EQ(type("s"), "") << "a letter of a name";
-  EXPECT_EQ(type("\x1b"), "") << "Escape ends it";
+  EXPECT_EQ(type("s"), "") << "the key is a letter of the name";
+  EXPECT_EQ(type("\x1b"), "") << "Escape ends the question";
   EXPECT_TRUE(dialogue_.question().empty());
 }
 

@@ -33,7 +33,7 @@ class LastHealth : public ::testing::Test {
     Json json{{"made_unix_s", made}};
     json["fingers"] = Json::array({{{"finger", "left"},
                                     {"state", left},
-                                    {"sentence", "Since then left is another."},
+                                    {"sentence", "Finger left has changed since the last note."},
                                     {"suspects", {{{"id", "leak"}, {"next_steps", {"Listen.", "Close."}}}}}},
                                    {{"finger", "right"}, {"state", "steady"}}});
     return read(json.dump());
@@ -46,7 +46,7 @@ class LastHealth : public ::testing::Test {
 TEST_F(LastHealth, SaysWhatChangedWhenAndWhatToDo) {
   const auto lines = health_lines(aged(7200, "alarm"));
   ASSERT_EQ(lines.size(), 1U);
-  EXPECT_EQ(lines[0].text, "Since then left is another.");
+  EXPECT_EQ(lines[0].text, "Finger left has changed since the last note.");
   EXPECT_EQ(lines[0].advice, "Listen.");
   EXPECT_FALSE(lines[0].good);
 }

@@ -98,7 +98,8 @@ TEST(ReplyCheck, RefusesWhatNestsTooDeepBeforeItIsParsed) {
   EXPECT_EQ(error_of(nested(31)), "a line nests deeper than 32 levels");
   EXPECT_EQ(error_of(std::string(8'000'000, '[')), "a line nests deeper than 32 levels");
   const std::string brackets(100, '[');
-  EXPECT_TRUE(parse_reply(R"({"ok":true,"result":{"a":"\"\\)" + brackets + R"("}})")) << "they are text";
+  EXPECT_TRUE(parse_reply(R"({"ok":true,"result":{"a":"\"\\)" + brackets + R"("}})"))
+      << "brackets inside a string are text";
 }
 
 /// Replaces every value of every kind of line by every other kind of value. The check refuses the line, or

@@ -35,7 +35,8 @@ TEST(StyledLine, TextBreaksAtBlanks) {
   EXPECT_EQ(broken(style, "one\ntwo", Tone::plain, 2), (Lines{"one", "  two"}));
   EXPECT_EQ(broken(style, "", Tone::plain, 2), (Lines{""}));
   for (const std::size_t columns : {0U, 1U, 2U}) {
-    EXPECT_FALSE(broken({columns, false, false}, "one two", Tone::plain, 4).empty()) << "it ends";
+    EXPECT_FALSE(broken({columns, false, false}, "one two", Tone::plain, 4).empty())
+        << "the function must return";
   }
 }
 

@@ -59,10 +59,11 @@ TEST_F(Completion, BashOffersWhatTheProgramHas) {
   EXPECT_EQ(offered({"tool", "events", "--"}), "--help --lines --severity --json");
   EXPECT_EQ(offered({"tool", "events", "--severity", ""}), "warning error");
   EXPECT_EQ(offered({"tool", "events", "--severity", "e"}), "error");
-  EXPECT_EQ(offered({"tool", "events", "-n", ""}), "") << "files, by readline";
+  EXPECT_EQ(offered({"tool", "events", "-n", ""}), "") << "readline completes file names";
   EXPECT_EQ(offered({"tool", "start", "from"}), "from_daemon");
   EXPECT_EQ(offered({"tool", "study", ""}), "control published");
-  EXPECT_EQ(offered({"tool", "study", "control", "--o"}), "--out") << "once, though two have it";
+  EXPECT_EQ(offered({"tool", "study", "control", "--o"}), "--out")
+      << "offered once, although two commands have it";
   EXPECT_EQ(offered({"tool", "--he"}), "--help");
 }
 

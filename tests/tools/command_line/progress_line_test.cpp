@@ -10,7 +10,7 @@ namespace {
 
 TEST(RestEstimate, IsWhatTheStageTookSoFar) {
   RestEstimate estimate;
-  EXPECT_LT(estimate.left_s("start 1 of 20", 10), 0) << "nothing to go by yet";
+  EXPECT_LT(estimate.left_s("start 1 of 20", 10), 0) << "no estimate is possible yet";
   EXPECT_NEAR(estimate.left_s("start 6 of 20, best RMSE 0.3 mm", 15), 14, 1e-9);
   EXPECT_NEAR(estimate.left_s("start 20 of 20", 29), 0, 1e-9);
 }
@@ -46,7 +46,8 @@ TEST(ProgressLine, WhereThereIsNoTerminalALineNowAndThenSaysHowFarItIs) {
   }
   const std::string text = text_of(file.get());
   EXPECT_NE(text.find("start 2 of 4000, about "), std::string::npos) << text;
-  EXPECT_NE(text.find("start 4000 of 4000\n"), std::string::npos) << "and not that 0 s are left: " << text;
+  EXPECT_NE(text.find("start 4000 of 4000\n"), std::string::npos)
+      << "it must not state that 0 s remain: " << text;
   EXPECT_EQ(text.find('\033'), std::string::npos);
 }
 

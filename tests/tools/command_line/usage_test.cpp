@@ -49,7 +49,8 @@ TEST(Usage, AMistypedOptionIsNamedWithTheNearestOfItsCommand) {
   const Said said = said_of({"status", "--jsno"});
   EXPECT_EQ(said.code, 2);
   EXPECT_NE(said.text.find("--jsno: did you mean `--json`?"), std::string::npos) << said.text;
-  EXPECT_EQ(said_of({"start", "--jsno"}).text.find("--json"), std::string::npos) << "start has none";
+  EXPECT_EQ(said_of({"start", "--jsno"}).text.find("--json"), std::string::npos)
+      << "start has no such option";
 }
 
 TEST(Usage, HelpIsNoError) {

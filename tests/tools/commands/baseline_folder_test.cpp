@@ -58,7 +58,7 @@ TEST_F(BaselineFolder, WhatCannotBeWrittenWholeLeavesNothing) {
   ASSERT_TRUE(write_baseline(folder_ + "/base/", contents_, {{"schema", 1}}));
   std::size_t entries = 0;
   for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator(folder_)) ++entries;
-  EXPECT_EQ(entries, 3U) << "tp1.csv, file and base";
+  EXPECT_EQ(entries, 3U) << "expected: tp1.csv, file and base";
 }
 
 TEST_F(BaselineFolder, WhatWasChangedIsRefusedByName) {

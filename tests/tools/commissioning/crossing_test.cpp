@@ -62,9 +62,9 @@ class CrossingTest : public ::testing::Test {
 
 TEST_F(CrossingTest, NothingIsCrossedOnAHealthyRigOrWhereSomethingIsDead) {
   EXPECT_TRUE(find({{0, 1}, {0, 1}}).empty());
-  EXPECT_TRUE(find({{0, -1}, {0, 1}}).empty()) << "a sensor that is stuck";
-  EXPECT_TRUE(find({{1, 1}, {0, 1}}).empty()) << "one that follows both fingers: no circle";
-  EXPECT_TRUE(find({{1, -1}, {0, 1}}).empty()) << "no way back";
+  EXPECT_TRUE(find({{0, -1}, {0, 1}}).empty()) << "one sensor is stuck";
+  EXPECT_TRUE(find({{1, 1}, {0, 1}}).empty()) << "one sensor follows both fingers, so there is no swap";
+  EXPECT_TRUE(find({{1, -1}, {0, 1}}).empty()) << "the mapping is not a swap";
 }
 
 TEST_F(CrossingTest, TwoSensorsAreNamedByTheirInputs) {

@@ -292,7 +292,7 @@ TEST_F(DoctorTest, AValveThatDoesNotFollow) {
   expect("valve left", Verdict::fail, "15.00 kPa commanded");
   expect_not_judged("finger left", "see `valve left`");
   expect_not_judged("model left", "see `valve left`");
-  EXPECT_EQ(findings_.count(Verdict::fail), 2U) << "of both fingers: the lines are blocked for all";
+  EXPECT_EQ(findings_.count(Verdict::fail), 2U) << "both fingers: the fault blocks all lines";
   EXPECT_EQ(output_kpa(0), 0);
 }
 
@@ -389,7 +389,7 @@ TEST_F(DoctorTest, AFolderThatCannotBeWrittenAndOneThatCan) {
   examine_disk(rig_, findings_);
   EXPECT_EQ(finding("disk").name, "disk");
   EXPECT_NE(finding("disk").text.find("GB free"), std::string::npos) << finding("disk").text;
-  EXPECT_TRUE(std::filesystem::is_empty(folder.path())) << "nothing was left behind";
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path())) << "no file remains";
   findings_ = {};
   rig_.recorder.directory = "/proc/softgrip-runs";
   examine_disk(rig_, findings_);
@@ -450,7 +450,7 @@ TEST(ExamineDaemon, FindsWhatTheDaemonSaysOfItself) {
 TEST(ExamineDaemon, AnUnfitModelCountsOnceSomethingHasRun) {
   using Json = nlohmann::ordered_json;
   const auto unfit = [](Json& status, Json&) { status["channels"][0]["health"] = "unfit"; };
-  EXPECT_EQ(worst_after(unfit), Verdict::warn) << "at the start the finger may have been on its way to rest";
+  EXPECT_EQ(worst_after(unfit), Verdict::warn) << "at start-up the finger may still have moved to rest";
   EXPECT_EQ(worst_after([&](Json& status, Json& statistics) {
               unfit(status, statistics);
               status["sequence"] = {{"name", "pick"}};
@@ -491,7 +491,7 @@ TEST(ExamineDaemon, AnUnpluggedSensorIsOneFailureAndAFaultWhoseCauseIsGoneIsOne)
   Findings findings;
   examine_daemon(status, healthy_statistics(), "bench", findings);
   EXPECT_EQ(findings.count(Verdict::fail), 1U);
-  EXPECT_EQ(findings.count(Verdict::not_judged), 2U) << "the fault and the model";
+  EXPECT_EQ(findings.count(Verdict::not_judged), 2U) << "fault and model are not checked";
   status["channels"][0]["validity"] = "valid";
   status["fault"]["present"] = nullptr;
   status["fault"]["next"] = "The cause is gone.";

@@ -159,7 +159,7 @@ TEST_F(MotionSessionTest, MovesWithinTheSlewAndLeavesTheLowestPressures) {
     const control::LimitSettings& limits = rig_.settings.channels[0].limits;
     EXPECT_LE(board_.largest_rise_kpa, limits.slew_up_kpa_per_s / rig_.settings.rate_hz + equal_kpa);
   }
-  EXPECT_EQ(board_.outputs_kpa[0], 0) << "on destruction";
+  EXPECT_EQ(board_.outputs_kpa[0], 0) << "the destructor writes the rest pressure";
 }
 
 TEST_F(MotionSessionTest, AFingerBelowRestIsBroughtUpToItWithinTheSlew) {
@@ -210,8 +210,7 @@ TEST_F(MotionSessionTest, APauseAsLongAsTheWatchdogEndsTheMotionAndNothingRisesB
       EXPECT_TRUE(board.vented);
       EXPECT_EQ(board.highest_after_vent_kpa, 0);
       EXPECT_LE(board.largest_rise_kpa, step_kpa());
-      EXPECT_FALSE(session.ramp(0, pressure_kpa, speed_kpa_per_s))
-          << "a session that has ended moves nothing";
+      EXPECT_FALSE(session.ramp(0, pressure_kpa, speed_kpa_per_s)) << "an ended session moves no finger";
       EXPECT_FALSE(session.sample(0.1));
       EXPECT_TRUE(session.leave());
       EXPECT_EQ(board.highest_after_vent_kpa, 0);
@@ -252,7 +251,7 @@ TEST_F(MotionSessionTest, APauseInTheMiddleOfAnExchangeIsFoundOutAfterItAndEndsT
   EXPECT_NE(moved.error().text.find("no good exchange for 1.20"), std::string::npos) << moved.error().text;
   EXPECT_TRUE(session.leave());
   EXPECT_EQ(board_.outputs_kpa[0], 0);
-  EXPECT_LE(board_.highest_after_vent_kpa, before_kpa + step_kpa()) << "the next step and no more";
+  EXPECT_LE(board_.highest_after_vent_kpa, before_kpa + step_kpa()) << "only one further step";
 }
 
 TEST_F(MotionSessionTest, RequestsThatAreLostForLongerThanTheWatchdogEndTheMotionAndNothingRises) {
@@ -268,7 +267,7 @@ TEST_F(MotionSessionTest, RequestsThatAreLostForLongerThanTheWatchdogEndTheMotio
       const auto moved = move(session);
       ASSERT_FALSE(moved);
       EXPECT_EQ(moved.error().kind, Kind::bus);
-      EXPECT_TRUE(session.leave()) << "the board is back";
+      EXPECT_TRUE(session.leave()) << "the board responds again";
       EXPECT_EQ(board.highest_after_vent_kpa, 0);
       EXPECT_EQ(board.outputs_kpa[0], 0);
       EXPECT_LE(board.largest_rise_kpa, step_kpa());
@@ -315,7 +314,7 @@ TEST_F(MotionSessionTest, ABoardWithoutAWatchdogThatIsSilentForTooLongEndsTheMot
   EXPECT_EQ(moved.error().text, "scripted");
   const Nanoseconds before = clock_.now();
   EXPECT_FALSE(session.leave()) << "the board did not confirm it";
-  EXPECT_LT(clock_.now() - before, 3 * ns_per_s) << "and the command ends";
+  EXPECT_LT(clock_.now() - before, 3 * ns_per_s) << "the command ends in time";
 }
 
 TEST_F(MotionSessionTest, APauseOnABoardWithoutAWatchdogMakesNoLargerStep) {
@@ -323,7 +322,7 @@ TEST_F(MotionSessionTest, APauseOnABoardWithoutAWatchdogMakesNoLargerStep) {
   clock_.pause_at = clock_.now() + 1500 * ms;
   clock_.pause = 60 * ns_per_s;
   MotionSession session(rig_, board_, clock_, stop());
-  EXPECT_TRUE(move(session)) << "it holds its outputs through any gap";
+  EXPECT_TRUE(move(session)) << "without a watchdog the board holds its outputs";
   EXPECT_LE(board_.largest_rise_kpa, step_kpa());
 }
 
@@ -406,7 +405,7 @@ TEST_F(MotionSessionTest, StoppedByTheUserItGoesDownWithinTheSlew) {
   const auto moved = move(session);
   ASSERT_FALSE(moved);
   EXPECT_EQ(moved.error().kind, Kind::stopped);
-  EXPECT_GT(board_.outputs_kpa[0], 1) << "it was on its way";
+  EXPECT_GT(board_.outputs_kpa[0], 1) << "the command had begun to rise";
   EXPECT_TRUE(session.leave());
   EXPECT_EQ(board_.outputs_kpa[0], 0);
 }

@@ -80,8 +80,9 @@ TEST_F(RigDraftTest, ABoardInTheNetwork) {
   EXPECT_EQ(rig.wiring[1].pressure->input, 5U);
   const auto& board = std::get<drivers::ModbusSettings>(rig.board);
   EXPECT_EQ(std::get<drivers::TcpAddress>(board.links[0]), (drivers::TcpAddress{"192.168.1.20", 1502}));
-  EXPECT_LT(rig.settings.rate_hz, 50) << "what a network allows";
-  EXPECT_NE(text_.find("map: boards/adam-6024.yaml\n"), std::string::npos) << "relative to the file";
+  EXPECT_LT(rig.settings.rate_hz, 50) << "limited by the network";
+  EXPECT_NE(text_.find("map: boards/adam-6024.yaml\n"), std::string::npos)
+      << "the path is relative to the rig file";
   EXPECT_NE(text_.find("channel_defaults:"), std::string::npos);
 }
 
@@ -164,7 +165,7 @@ TEST(DraftFacts, SayWhatIsWrongWithAnAnswer) {
   EXPECT_NE(take(draft, "unit", "one"), "");
   EXPECT_NE(take(draft, "valve-kpa", "100"), "");
   EXPECT_NE(take(draft, "valve-kpa", "0 0"), "");
-  EXPECT_EQ(take(draft, "valve-kpa", "0 6,5"), "") << "a decimal comma is one";
+  EXPECT_EQ(take(draft, "valve-kpa", "0 6,5"), "") << "a decimal comma is accepted";
   EXPECT_NE(take(draft, "pressure-max-kpa", "60").find("up to 6.5"), std::string::npos);
   EXPECT_NE(take(draft, "monitor", "perhaps"), "");
 }

@@ -106,7 +106,8 @@ TEST_F(RigUpdateTest, ValveAndMonitorOfTheOtherChannel) {
       << *changed;
   EXPECT_NE(changed->find("    pressure_monitor: {input: 5, at_v: [1, 7], is_kpa: [10.5, 70]}\n"),
             std::string::npos);
-  EXPECT_NE(changed->find("    valve: {output: 0}\n"), std::string::npos) << "the other channel is as it was";
+  EXPECT_NE(changed->find("    valve: {output: 0}\n"), std::string::npos)
+      << "the other channel has not changed";
 }
 
 TEST_F(RigUpdateTest, PointsThatTheRigRefusesAreNotWritten) {
@@ -124,7 +125,7 @@ TEST_F(RigUpdateTest, TheOldFileIsKeptAndTheNewOneIsInItsPlace) {
   ASSERT_TRUE(backup) << backup.error();
   EXPECT_EQ(text_of_file(*backup), text_);
   EXPECT_EQ(text_of_file(path_), replaced("name: simulated", "name: other"));
-  EXPECT_NE(fs::path(*backup).extension(), ".yaml") << "softgrip check FOLDER does not take it for a rig";
+  EXPECT_NE(fs::path(*backup).extension(), ".yaml") << "softgrip check FOLDER must not read it as a rig";
 }
 
 TEST_F(RigUpdateTest, AFileThatSomebodyChangedMeanwhileIsLeftAlone) {

@@ -58,7 +58,7 @@ TEST(ExperimentRig, AFaultOnTheWayIsNotAcceptableAndIsNamed) {
   EXPECT_EQ(faulted.code, ExitCode::not_acceptable);
   EXPECT_EQ(faulted.why, "the experiment did not run to its end: Fault F303");
   EXPECT_EQ(refused(outcome_of(Ending::sequence_ended, SequenceEnd::faulted, false)).code, ExitCode::failed)
-      << "and the outputs are not known to be safe";
+      << "the safe outputs are not confirmed";
   EXPECT_EQ(refused(outcome_of(Ending::board_taken, std::nullopt, false)).code, ExitCode::io);
   EXPECT_EQ(refused(outcome_of(Ending::sequence_ended, SequenceEnd::done, false)).code, ExitCode::io)
       << "the board did not confirm the safe outputs";

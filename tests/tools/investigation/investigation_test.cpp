@@ -133,7 +133,7 @@ TEST(ExperimentRig, PlaysOnASimulatedBoardWithoutAskingAndReturnsItsLog) {
   fs::remove_all(folder);
   fs::create_directories(folder);
   const Player play = rig_player(simulated_rig(), [](const std::string&) {
-    ADD_FAILURE() << "a simulated rig needs no consent";
+    ADD_FAILURE() << "a simulated rig must not ask for consent";
     return false;
   });
   const auto log = play(small_experiment(), folder.string());
@@ -161,12 +161,12 @@ TEST(ExperimentRig, KeepsWithinTheChannelsLimitsAndItsDisplacementRange) {
   EXPECT_EQ(rig.limits(0, 0).pressure_max_kpa, 60);
   EXPECT_EQ(rig.limits(0, 0).slew_kpa_per_s, 300);
   EXPECT_EQ(rig.limits(0.5, 30).pressure_max_kpa, 0.85 * 35 / 0.5)
-      << "further than the logs went: with a margin";
-  EXPECT_EQ(rig.limits(0.7, 45).pressure_max_kpa, 45) << "as far as the logs went";
-  EXPECT_EQ(rig.limits(1, 35).pressure_max_kpa, 0.95 * 35) << "never to the end of its range";
+      << "beyond the range of the logs, a margin applies";
+  EXPECT_EQ(rig.limits(0.7, 45).pressure_max_kpa, 45) << "the range of the logs";
+  EXPECT_EQ(rig.limits(1, 35).pressure_max_kpa, 0.95 * 35) << "never up to the end of the sensor's range";
   document::Problems problems;
   auto file = rig::load_rig(SOFTGRIP_SOURCE_DIR "/config/rig.yaml", problems);
-  EXPECT_FALSE(experiment_rig(*file, "")) << "two channels: one must be named";
+  EXPECT_FALSE(experiment_rig(*file, "")) << "with two channels one must be named";
   EXPECT_FALSE(experiment_rig(*file, "middle"));
 }
 
@@ -318,13 +318,13 @@ TEST(SimulatedGauge, ReadsTheSensorOfTheTruthAndNotItsFinger) {
   fs::create_directories(folder);
   const auto gauge = simulated_gauge(rig)({0, 10, 20, 10, 100}, folder.string());
   ASSERT_TRUE(gauge) << gauge.error().why;
-  ASSERT_EQ(gauge->readings.size(), 4U) << "100 mm are beyond its range";
+  ASSERT_EQ(gauge->readings.size(), 4U) << "100 mm exceed the range of the gauge";
   const double expected_mm[]{0, 11.5, 20, 11.5};
   for (std::size_t i = 0; i < 4; ++i) {
     EXPECT_NEAR(gauge->readings[i].reading_mm, expected_mm[i], 0.015);
     EXPECT_EQ(gauge->readings[i].samples, 200);
   }
-  EXPECT_NE(gauge->readings[1].reading_mm, gauge->readings[3].reading_mm) << "its noise is in it";
+  EXPECT_NE(gauge->readings[1].reading_mm, gauge->readings[3].reading_mm) << "the readings contain noise";
   fs::remove_all(folder);
 }
 

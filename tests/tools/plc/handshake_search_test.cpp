@@ -161,10 +161,11 @@ struct World {
     }
   }
   void executes(const std::string& command, const std::optional<Frame>& cause) {
-    check(cause && cause->command >= 0, "something is executed that nobody asked");
+    check(cause && cause->command >= 0, "a command is executed that no master has requested");
     if (!broken.empty()) return;
     Command& asked = commands[static_cast<std::size_t>(cause->command)];
-    check((asked.code == start) == (command == "start"), "another command is executed than was asked");
+    check((asked.code == start) == (command == "start"),
+          "the executed command differs from the requested one");
     check(!asked.executed, "a command is executed twice");
     check(!asked.reported_refused, "a command is executed that was reported as refused");
     check(asked.code != start || cause->halts == halts,
@@ -207,7 +208,7 @@ struct World {
     const modbus::Bytes bytes = wire.flying->bytes();
     wire.stream.append(std::span(bytes).first(bytes.size() / 2));
     wire.half = true;
-    check(!wire.stream.next().has_value(), "half a request is one");
+    check(!wire.stream.next().has_value(), "half a request is accepted as a whole one");
     gateway->masters().find(wire.id)->half = wire.stream.half();
   }
   void deliver(std::size_t index) {
@@ -452,7 +453,7 @@ std::string World::lost_for_good() const {
   if (world.owed || world.gateway->watch().owes()) return "the reaction to a silence is lost";
   if (!world.broken.empty()) return world.broken;
 
-  if (!world.connect(0)) return "a master is locked out: it has no place";
+  if (!world.connect(0)) return "a master is locked out: no free place";
   const Masters::Id id = world.wires.back().id;
   Plc& master = world.masters[0];
   master.alive = true;
@@ -502,7 +503,7 @@ std::vector<Step> steps_from(World& world) {
     for (const std::uint16_t code : {start, vent}) {
       add(master.alive && world.left.commands[plc] > 0 &&
               (ready || (master.progress == Progress::waits && (code == vent || world.left.impatient))),
-          who + (code == start ? "asks for a start" : "asks for a vent"), [=](World& w) {
+          who + (code == start ? "requests a start" : "requests a vent"), [=](World& w) {
             --w.left.commands[plc];
             w.ask(plc, code);
           });
@@ -518,9 +519,9 @@ std::vector<Step> steps_from(World& world) {
     add(world.wires[i].flying && !world.wires[i].half, "half of " + which + " arrives",
         [=](World& w) { w.deliver_half(w.wires[i]); });
   }
-  add(true, "the gateway turns", [](World& w) { w.turn(); });
+  add(true, "the gateway runs one turn", [](World& w) { w.turn(); });
   add(world.left.time, "time passes", [](World& w) { w.pass(); });
-  add(world.left.gateway_deaths > 0, "the gateway dies and comes back", [](World& w) {
+  add(world.left.gateway_deaths > 0, "the gateway dies and restarts", [](World& w) {
     --w.left.gateway_deaths;
     w.gateway_dies();
   });
@@ -533,9 +534,9 @@ std::vector<Step> steps_from(World& world) {
     --w.left.pauses;
     w.paused = true;
   });
-  add(world.paused, "the daemon goes on", [](World& w) { w.paused = false; });
+  add(world.paused, "the daemon continues", [](World& w) { w.paused = false; });
   const bool hears = world.runs && !world.paused && !world.lines.empty();
-  add(hears, "the daemon obeys", [](World& w) { w.daemon_takes(false); });
+  add(hears, "the daemon executes the command", [](World& w) { w.daemon_takes(false); });
   add(hears && world.left.busy > 0, "the daemon is busy", [](World& w) {
     --w.left.busy;
     w.daemon_takes(true);

@@ -42,7 +42,7 @@ class Verification : public sysid::CommandInFolder {
 TEST_F(Verification, WhatWasNotTouchedComesOutAgain) {
   const auto json = verified(0);
   EXPECT_EQ(json["same"], true);
-  EXPECT_GT(json["numbers"], 5000) << "series and all";
+  EXPECT_GT(json["numbers"], 5000) << "the numbers of all series are included";
   EXPECT_EQ(
       run("validate --model report/model.yaml --data other.csv --at-most-percent 50 --held --out judged"), 0);
   EXPECT_EQ(run("report --verify judged/"), 0) << read("err.txt");
@@ -71,7 +71,8 @@ TEST_F(Verification, AMissingOrAnotherLogIsRefusedWithItsHash) {
   write("fit.csv", read("elsewhere/fit.csv") + "\n");
   EXPECT_NE(verified(3)["missing"][0].get<std::string>().find("has another content"), std::string::npos);
   std::filesystem::rename(folder_ / "elsewhere/fit.csv", folder_ / "report/fit.csv");
-  EXPECT_EQ(verified(0)["same"], true) << "beside the report it is found, whatever stands where it was";
+  EXPECT_EQ(verified(0)["same"], true)
+      << "the log is found next to the report, regardless of the file at its old path";
 }
 
 TEST_F(Verification, AFolderThatDoesNotSayHowItWasMadeIsRefused) {

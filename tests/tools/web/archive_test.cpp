@@ -89,7 +89,7 @@ TEST_F(ArchiveTest, ManyWhoAskAtOnceGetTheSameList) {
     if (&task->text() != last) ++lists;
     last = &task->text();
   }
-  EXPECT_LE(lists, 3U) << "each list is made once, however many ask";
+  EXPECT_LE(lists, 3U) << "each list is built once for all clients";
 }
 
 TEST_F(ArchiveTest, WhoeverGoesCostsNothing) {
@@ -106,7 +106,7 @@ TEST_F(ArchiveTest, EndsWithQuestionsOpen) {
     Archive other(folder_);
     for (int i = 0; i < 100; ++i) open = other.ask({.kind = DiskRequest::Kind::listing});
   }
-  EXPECT_EQ(open->request().kind, DiskRequest::Kind::listing) << "an answer may come or not";
+  EXPECT_EQ(open->request().kind, DiskRequest::Kind::listing) << "the answer may be missing";
 }
 
 }  // namespace

@@ -43,7 +43,7 @@ TEST_F(ClientTest, AsksInPiecesAndGetsOneAnswer) {
   EXPECT_TRUE(client_.receive());
   EXPECT_EQ(client_.request(), "GET / HTTP/1.1\r\n\r\n");
   client_.answer("good", Phase::answering, 1);
-  EXPECT_FALSE(client_.send_on(1)) << "that is all";
+  EXPECT_FALSE(client_.send_on(1)) << "everything has been sent";
   EXPECT_EQ(heard(), "good");
 }
 
@@ -63,7 +63,7 @@ TEST_F(ClientTest, WhoSaysNoMoreStillGetsHisAnswer) {
   client_.answer("good", Phase::answering, 1);
   EXPECT_FALSE(client_.send_on(1));
   EXPECT_EQ(heard(), "good");
-  EXPECT_FALSE(client_.receive()) << "a second end is a connection that broke";
+  EXPECT_FALSE(client_.receive()) << "a second end of data means a broken connection";
 }
 
 TEST_F(ClientTest, WhoNeverStopsSendingHasATurnThatEnds) {
@@ -77,16 +77,16 @@ TEST_F(ClientTest, WhoNeverStopsSendingHasATurnThatEnds) {
   EXPECT_TRUE(client_.receive());
   int left = 0;
   ASSERT_EQ(::ioctl(client_.descriptor(), FIONREAD, &left), 0);
-  EXPECT_GT(left, 0) << "the rest is for the next turn";
+  EXPECT_GT(left, 0) << "the rest is sent in the next turn";
 }
 
 TEST_F(ClientTest, AFileIsSentInPieces) {
   client_.answer("head", Phase::loading, 0);
-  EXPECT_TRUE(client_.send_on(0)) << "pieces follow";
+  EXPECT_TRUE(client_.send_on(0)) << "more pieces follow";
   EXPECT_FALSE(client_.has_to_send());
   EXPECT_TRUE(client_.add("-one"));
   EXPECT_TRUE(client_.send_on(0));
-  EXPECT_TRUE(client_.late(Client::longest_pause + 1)) << "of a disk that does not answer, too";
+  EXPECT_TRUE(client_.late(Client::longest_pause + 1)) << "the limit includes a disk that does not respond";
   EXPECT_TRUE(client_.add("-two"));
   client_.finish();
   EXPECT_FALSE(client_.send_on(0));
@@ -114,7 +114,7 @@ TEST_F(ClientTest, WhoIsSlowIsLate) {
   EXPECT_TRUE(client_.late(Client::longest_question + 1));
   client_.wait();
   EXPECT_EQ(client_.phase(), Phase::waiting);
-  EXPECT_FALSE(client_.late(100 * ns_per_s)) << "the daemon's time is not his";
+  EXPECT_FALSE(client_.late(100 * ns_per_s)) << "the daemon's time does not count for the client";
   client_.answer(std::string(1U << 22U, 'x'), Phase::answering, 0);
   EXPECT_TRUE(client_.send_on(0));
   EXPECT_TRUE(client_.has_to_send());
@@ -129,7 +129,7 @@ TEST_F(ClientTest, WhoTakesATrickleIsLateInTheEnd) {
     std::string little(100'000, '\0');
     EXPECT_GT(::recv(other_.get(), little.data(), little.size(), 0), 0);
   }
-  EXPECT_GT(now, Client::longest_pause) << "he does take some";
+  EXPECT_GT(now, Client::longest_pause) << "the client reads some data";
   EXPECT_LE(now, Client::longest_answer + 2 * ns_per_s);
 }
 
@@ -140,7 +140,7 @@ TEST_F(ClientTest, AStreamThatIsNotReadHasABound) {
   const std::string message(10000, 'm');
   int kept = 0;
   for (; kept < 1000 && client_.add(message); ++kept) EXPECT_TRUE(client_.send_on(0));
-  EXPECT_LT(kept, 200) << "the socket's own buffer and 1 MB";
+  EXPECT_LT(kept, 200) << "at most the socket's buffer and 1 MB";
   EXPECT_TRUE(client_.late(Client::longest_pause + 1));
 }
 

@@ -33,7 +33,7 @@ TEST(LiveState, KeepsTheLastMinute) {
   EXPECT_EQ(trend.back()[0], 100.0);
   EXPECT_EQ(trend.back()[1], Json({1, nullptr, 100.0, nullptr}));
   state.take_status(status_at(0.5));
-  EXPECT_EQ(greeting_of(state)["trend"].size(), 1U) << "another daemon";
+  EXPECT_EQ(greeting_of(state)["trend"].size(), 1U) << "a new daemon has its own trend";
 }
 
 TEST(LiveState, NewsAreToldOnceAndDoNotGrowUnread) {
@@ -59,7 +59,7 @@ TEST(LiveState, WithoutADaemonNothingOfItIsKnown) {
   state.lose();
   EXPECT_EQ(state.take_news(), "event: state\ndata: null\n\n");
   EXPECT_TRUE(state.statistics().is_null());
-  EXPECT_EQ(greeting_of(state)["events"].size(), 1U) << "what happened has happened";
+  EXPECT_EQ(greeting_of(state)["events"].size(), 1U) << "earlier events remain";
   state.lose();
   EXPECT_EQ(state.take_news(), "");
 }

@@ -65,14 +65,14 @@ TEST_F(RecordingsTest, AListReadsOnlyWhatHasChanged) {
   const std::string first = list();
   EXPECT_EQ(recordings_.folders_read(), 1U + 300U);
   for (int i = 0; i < 5; ++i) EXPECT_EQ(list(), first);
-  EXPECT_EQ(recordings_.folders_read(), 301U) << "those without a file that is shown are known, too";
+  EXPECT_EQ(recordings_.folders_read(), 301U) << "folders without a shown file are also read once";
 
   add("run-1299", "late.svg");
   EXPECT_NE(list().find(R"({"name":"run-1299","files":["late.svg"]})"), std::string::npos);
   EXPECT_EQ(recordings_.folders_read(), 302U);
   add("run-2000", "run.csv");
   EXPECT_TRUE(list().starts_with(R"([{"name":"run-2000","files":["run.csv"]})"));
-  EXPECT_EQ(recordings_.folders_read(), 304U) << "the folder of all, and the new one";
+  EXPECT_EQ(recordings_.folders_read(), 304U) << "only the root folder and the new folder are read";
   fs::remove_all(folder_ / "run-2000");
   EXPECT_EQ(list().find("run-2000"), std::string::npos);
 }
@@ -94,14 +94,15 @@ TEST_F(RecordingsTest, AFolderThatHasJustChangedIsReadAgain) {
   static_cast<void>(recordings_.list(changed));
   const std::size_t read = recordings_.folders_read();
   static_cast<void>(recordings_.list(changed - 100 * ns_per_s));
-  EXPECT_EQ(recordings_.folders_read(), 2 * read) << "its stamp is too coarse for a second change";
+  EXPECT_EQ(recordings_.folders_read(), 2 * read)
+      << "the time stamp is too coarse to exclude a second change";
 }
 
 TEST_F(RecordingsTest, OfVeryManyFoldersTheNewestAreSeen) {
   for (std::size_t i = 0; i < 2 * Recordings::most_considered + 10; ++i)
     fs::create_directory(folder_ / ("run-" + std::to_string(100'000 + i)));
   add("run-0", "run.csv");
-  EXPECT_EQ(list(), "[]") << "it is older than all that are read";
+  EXPECT_EQ(list(), "[]") << "it is older than all listed recordings";
   EXPECT_EQ(recordings_.folders_read(), 1 + Recordings::most_considered);
   add("run-999999", "run.csv");
   EXPECT_EQ(list(), R"([{"name":"run-999999","files":["run.csv"]}])");

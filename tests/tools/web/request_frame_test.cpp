@@ -67,7 +67,7 @@ TEST(RequestFrame, HeadsHaveABound) {
   for (std::size_t i = 0; i <= most_headers; ++i) many += "X: 1\r\n";
   EXPECT_EQ(frame_of(many + "\r\n").status, 431);
   EXPECT_EQ(frame_of(std::string("GET /\0 HTTP/1.1", 15)).status, 400)
-      << "at once, before the head has ended";
+      << "refused at once, before the end of the header";
 }
 
 /// The fuzz target aborts if a checked property does not hold.

@@ -161,7 +161,7 @@ TEST_F(ServerTest, DownloadsThatAreNotReadLeavePlacesForCommands) {
     ASSERT_NE(answer.find("no_daemon"), std::string::npos) << i << ": " << answer;
   }
   const std::string file = ask_patiently(get_file);
-  EXPECT_TRUE(file.ends_with(large_)) << "one who reads gets the place of one who does not";
+  EXPECT_TRUE(file.ends_with(large_)) << "a client that reads replaces one that does not read";
 }
 
 TEST_F(ServerTest, AFileThatBecomesShorterEndsItsAnswer) {

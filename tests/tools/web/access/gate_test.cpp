@@ -65,12 +65,12 @@ TEST_F(GateTest, ForgedOriginsAndStrangeNamesAreTurnedAway) {
   forged.fetch_site = "cross-site";
   EXPECT_EQ(status(gate.admit(forged, true, 0)), 403);
   forged.origin.clear();
-  EXPECT_EQ(gate.admit(forged, false, 0), Role::operate) << "a link to the page may be followed";
+  EXPECT_EQ(gate.admit(forged, false, 0), Role::operate) << "a link from another site may open the page";
   forged.fetch_site.clear();
-  EXPECT_EQ(status(gate.admit(forged, true, 0)), 403) << "who changes something says where he comes from";
+  EXPECT_EQ(status(gate.admit(forged, true, 0)), 403) << "a request that changes state needs an origin";
   forged.host = "evil.example:8017";
   forged.origin = "http://evil.example:8017";
-  EXPECT_EQ(status(gate.admit(forged, false, 0)), 421) << "a name that was made to point here";
+  EXPECT_EQ(status(gate.admit(forged, false, 0)), 421) << "another host name resolves to this server";
 }
 
 TEST_F(GateTest, ATokenInAHeaderNeedsNoPage) {
@@ -93,7 +93,8 @@ TEST_F(GateTest, SessionsEndAndTokensDecideWhatTheyMay) {
   EXPECT_EQ(gate.admit(browser, true, 0), Role::none);
   browser.cookie = "softgrip=" + id;
   for (int s = 0; s < 100; s += 9) EXPECT_EQ(gate.admit(browser, true, s * ns_per_s), Role::operate) << s;
-  EXPECT_EQ(gate.admit(browser, true, 101 * ns_per_s), Role::none) << "however busy it was";
+  EXPECT_EQ(gate.admit(browser, true, 101 * ns_per_s), Role::none)
+      << "a session ends after its time, even if it was in use";
 
   const std::string idle = *gate.open(look, 0);
   browser.cookie = "softgrip=" + idle;
@@ -116,7 +117,7 @@ TEST_F(GateTest, LogInsWithOneTokenEndNoSessionOfAnother) {
   for (int i = 0; i < 1000; ++i) last_viewer.cookie = "softgrip=" + *gate.open(look, 1);
   EXPECT_EQ(gate.admit(operator_page, true, 2), Role::operate);
   EXPECT_EQ(gate.admit(last_viewer, false, 2), Role::look);
-  EXPECT_EQ(gate.admit(first_viewer, false, 2), Role::none) << "sessions of one token have a bound";
+  EXPECT_EQ(gate.admit(first_viewer, false, 2), Role::none) << "the number of sessions per token is limited";
 }
 
 }  // namespace

@@ -30,7 +30,7 @@ TEST(Tokens, WhatIsNoListOfThemIsRefusedAndNeverRepeated) {
     const auto tokens = Tokens::parse(text);
     EXPECT_FALSE(tokens);
     const std::string message = tokens ? std::string() : tokens.error();
-    EXPECT_EQ(message.find(look), std::string::npos) << "a token has no place in a log";
+    EXPECT_EQ(message.find(look), std::string::npos) << "a log must not contain a token";
     return message;
   };
   EXPECT_NE(said("").find("no token"), std::string::npos);

@@ -94,14 +94,15 @@ TEST(Metrics, CountWhatHasHappened) {
 
 TEST(Metrics, WhatIsNotKnownIsNotThere) {
   const std::string text = told(status(), statistics());
-  EXPECT_EQ(text.find("softgrip_pressure_pascals{"), std::string::npos) << "it is not measured";
+  EXPECT_EQ(text.find("softgrip_pressure_pascals{"), std::string::npos) << "the pressure is not measured";
   EXPECT_EQ(text.find("softgrip_reference_meters{"), std::string::npos);
   EXPECT_EQ(text.find("softgrip_emergency_stop"), std::string::npos) << "the rig has no digital lines";
-  EXPECT_EQ(text.find("softgrip_loop_compute_seconds{"), std::string::npos) << "no quantiles of nothing";
+  EXPECT_EQ(text.find("softgrip_loop_compute_seconds{"), std::string::npos)
+      << "there are no quantiles without samples";
   EXPECT_EQ(text.find("nan"), std::string::npos);
   const std::string gone = told(nullptr, statistics());
   EXPECT_TRUE(has_line(gone, "softgrip_up 0"));
-  EXPECT_EQ(gone.find("softgrip_state"), std::string::npos) << "nothing stale";
+  EXPECT_EQ(gone.find("softgrip_state"), std::string::npos) << "no metric may be out of date";
 }
 
 }  // namespace
