@@ -83,13 +83,13 @@ class BlocksInWorld final : public Guest {
       const bool runs = daemon->service.runs(*started.request);
       if (started.left) started.waited = disturbed ? 0 : started.waited + passed;
       if (runs && started.confirmed)
-        breaks(ends_with_block, "the daemon has confirmed its stop, and it runs");
+        breaks(ends_with_block, "the daemon has confirmed the stop, but the sequence is running");
       if (runs && started.waited > block_end_bound)
-        breaks(ends_with_block, "it runs though its stop was sent long ago");
+        breaks(ends_with_block, "the sequence is running 2 s after its stop was sent");
       const daemon::Service::Ending& ending = daemon->service.last_ending();
       if (ending.request == *started.request && ending.end == control::SequenceEnd::stopped &&
           !started.left && !started.halted)
-        breaks(stops_no_other, "a sequence was stopped, and no client has requested it");
+        breaks(stops_no_other, "a sequence was stopped without a request of a client");
     }
   }
 

@@ -60,12 +60,12 @@ void CommandWatch::execute(const std::string& name, const std::optional<Block>& 
   if (!cause || cause->command < 0) return check(false, asked_before, "no master has commanded it");
   Command& asked = commands_[static_cast<std::size_t>(cause->command)];
   check(plc::command_of(static_cast<plc::CommandCode>(asked.code)) == name, asked_before,
-        "it was another command");
+        "the executed command differs from the requested one");
   check(!asked.executed, executed_once, "a command is executed again");
   check(!asked.read_as_refused, true_end, "a command is executed that was read as refused");
   check(asked.code != start_code || cause->halts == halts_, outlives_nothing,
-        "its block is older than a stop or a vent");
-  check(asked.code != start_code || !owed_, reaction_kept, "a start is executed before it");
+        "the block of the start is older than a stop or a vent");
+  check(asked.code != start_code || !owed_, reaction_kept, "a start is executed before the reaction");
   if (asked.code == vent_code) ++halts_;
   asked.executed = true;
   ++executed_;
@@ -129,7 +129,8 @@ void CommandWatch::passed(Nanoseconds now, bool undisturbed) {
   waited_ = owed_ && undisturbed ? waited_ + duration : 0;
   if (waited_ <= reaction_bound) return;
   on_break(reaction_kept,
-           fmt::format("no daemon has answered it within {:.3f} s of undisturbed time", seconds(waited_)));
+           fmt::format("no daemon has answered the reaction within {:.3f} s of undisturbed time",
+                       seconds(waited_)));
 }
 
 }  // namespace softgrip::world

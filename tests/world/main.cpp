@@ -115,10 +115,10 @@ void explain(const Library& library, std::uint64_t seed, const WorldResult& fail
   again.trace = true;
   const WorldResult result = run_world(library, seed, again);
   std::string text =
-      fmt::format("seed {}: {}\n  {}{}\n  of {} incidents these are enough:\n", seed,
+      fmt::format("seed {}: {}\n  {}{}\n  {} incidents; these alone cause the violation:\n", seed,
                   failed.violation->invariant, of_tool(options.tool), failed.shape, failed.incidents.size());
   for (const Incident& incident : *again.incidents) text += "    " + text_of(incident) + "\n";
-  text += "  the last of the trace:\n";
+  text += "  end of the trace:\n";
   const std::size_t shown = std::min<std::size_t>(result.trace.size(), options.trace ? 100000 : 25);
   for (std::size_t i = result.trace.size() - shown; i < result.trace.size(); ++i)
     text += "    " + result.trace[i] + "\n";
@@ -177,7 +177,7 @@ Sum run_jobs(const Library& library, const Options& options) {
   for (unsigned job = 0; job < options.jobs; ++job) {
     Sum one;
     if (read(ends[job], &one, sizeof one) != sizeof one) {
-      fmt::print("a job of the worlds broke off\n");
+      fmt::print("a job ended before its worlds\n");
       one = {};
       one.failed = 1;
     }
@@ -194,11 +194,10 @@ bool tell_tools(const Options& options, const Sum& sum) {
   for (std::size_t i = 1; i < tool_count; ++i) {
     const auto& [worlds, failed, met] = sum.tools[i];
     if (worlds == 0) continue;
-    fmt::print(
-        "{}: {} worlds, {} violated; {} calls, {} with a result; it met {} pauses, {} gaps, {} faults\n",
-        tool_names[i], worlds, failed, met.calls, met.results, met.pauses, met.gaps, met.faults);
+    fmt::print("{}: {} worlds, {} violated; {} calls, {} with a result; {} pauses, {} gaps, {} faults\n",
+               tool_names[i], worlds, failed, met.calls, met.results, met.pauses, met.gaps, met.faults);
     const bool whole = met.whole() || worlds < enough_worlds;
-    if (!whole) fmt::print("{}: one of these counts is 0, so these worlds are no test\n", tool_names[i]);
+    if (!whole) fmt::print("{}: one of these counts is 0, so these worlds do not test it\n", tool_names[i]);
     eventful = eventful && whole;
   }
   if (options.tool == all_tools && options.count >= turns.size() * enough_worlds) {
@@ -211,19 +210,18 @@ int run(int argc, char** argv) {
   Options options;
   std::vector<std::string> known(tool_names.begin(), tool_names.end());
   known.emplace_back(all_tools);
-  CLI::App app(
-      "Whole rigs in simulated worlds, each under a seed, watched by the invariants of docs/reliability.md");
+  CLI::App app("Simulates whole rigs, one per seed, and checks the invariants of docs/reliability.md");
   app.add_option("--first", options.first, "First seed")->capture_default_str();
-  app.add_option("--count", options.count, "So many seeds")->capture_default_str();
+  app.add_option("--count", options.count, "Number of seeds")->capture_default_str();
   app.add_option("--jobs", options.jobs, "Processes")->capture_default_str();
-  app.add_option("--tool", options.tool, "The program in the world; tools: each in its turn")
+  app.add_option("--tool", options.tool, "Program in the world; tools: one after another")
       ->check(CLI::IsMember(known))
       ->capture_default_str();
-  app.add_option("--seconds", options.length_s, "Simulated, each")->capture_default_str();
-  app.add_flag("--trace", options.trace, "With --count 1: everything that happens");
-  app.add_flag("--twice", options.twice, "Run each twice and compare");
+  app.add_option("--seconds", options.length_s, "Simulated seconds per world")->capture_default_str();
+  app.add_flag("--trace", options.trace, "With --count 1: print all events");
+  app.add_flag("--twice", options.twice, "Run each seed twice and compare the results");
   app.add_flag("--habits", options.habits, "Every seed has a board with habits, not one in 5");
-  app.add_flag("--stop", options.stop_at_first, "At the first violation");
+  app.add_flag("--stop", options.stop_at_first, "Stop at the first violation");
   CLI11_PARSE(app, argc, argv);
   const Library library = load_library();
   const Sum sum = run_jobs(library, options);

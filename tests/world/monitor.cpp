@@ -275,11 +275,11 @@ void Monitor::passed(Nanoseconds now, const Excuse& excuse, std::span<const doub
   }
   if (vent_waits_ && *vent_waits_ > vent_bound + nanoseconds(slowest_s))
     violate(now, "a vent is carried out in time",
-            fmt::format("outputs are not at rest {:.3f} s of undisturbed time after it was asked",
+            fmt::format("outputs are not at rest {:.3f} s of undisturbed time after the request",
                         seconds(*vent_waits_)));
   if (trip_untold_) *trip_untold_ += duration;
   if (trip_untold_ && *trip_untold_ > trip_bound)
-    violate(now, "a watchdog that has tripped is a fault", "none was latched");
+    violate(now, "a watchdog that has tripped is a fault", "no fault was latched");
 }
 
 void Monitor::foreign_wrote(std::span<const double> outputs_kpa) noexcept {
@@ -304,7 +304,8 @@ void Monitor::watch_foreign(Nanoseconds now, const Excuse& excuse, Nanoseconds d
   foreign_unseen_ = answered ? 0 : *foreign_unseen_ + duration;
   if (*foreign_unseen_ > foreign_bound)
     violate(now, "another master is noticed",
-            fmt::format("it has written for {:.3f} s of undisturbed time", seconds(*foreign_unseen_)));
+            fmt::format("another client has written for {:.3f} s of undisturbed time",
+                        seconds(*foreign_unseen_)));
 }
 
 void Monitor::left(Nanoseconds now, std::span<const double> outputs_kpa) {
@@ -318,7 +319,7 @@ void Monitor::left(Nanoseconds now, std::span<const double> outputs_kpa) {
 
 void Monitor::answer_is_late(Nanoseconds now, Nanoseconds asked_at) {
   violate(now, "every request is answered",
-          fmt::format("one of {:.3f} s ago is not", seconds(now - asked_at)));
+          fmt::format("a request has had no answer for {:.3f} s", seconds(now - asked_at)));
 }
 
 }  // namespace softgrip::world

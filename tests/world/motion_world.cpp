@@ -254,7 +254,7 @@ class MotionWorld {
   }
 
   void kill() {
-    around_.trace("it is killed");
+    around_.trace("the command is killed");
     around_.scheduler.kill(actor_);
     around_.board.hang_up();
     alive_ = false;

@@ -48,7 +48,7 @@ RecordingsRead check_recordings(const std::string& folder, const std::vector<Nan
       found = all;
     }
     if (!found)
-      read.lack = fmt::format("{}: its {} rows are no row of ticks without gaps",
+      read.lack = fmt::format("{}: its {} rows do not match consecutive ticks",
                               entry.path().parent_path().filename().string(), times.size());
   }
   return read;

@@ -70,7 +70,7 @@ class Caller : public Guest {
     host_.around().trace("exit code {}", static_cast<int>(code));
     if (code == ExitCode::done && !done)
       host_.around().monitor.command_breaks(now, "exit code 0 means that the sequence ran to its end",
-                                            "it did not");
+                                            "the sequence did not end");
     if (code == ExitCode::done && host_.vented_in_motion())
       host_.around().monitor.told_nobody(now, "the command ended with exit code 0");
   }

@@ -141,7 +141,7 @@ void Surroundings::to_line(const Incident& incident, bool begins) {
 }
 
 void Surroundings::write_as_another(const Incident& incident) {
-  scheduler.add("foreign", [this, &incident] {
+  scheduler.add("other client", [this, &incident] {
     const std::vector<double> outputs(hardware.channels(), incident.value);
     while (foreign_ == &incident) {
       monitor.foreign_wrote(outputs);
