@@ -122,7 +122,7 @@ TEST_F(Libgpiod, ReadsAndWritesLogicalLevels) {
   EXPECT_TRUE(chips()[0].lines[4].high);
   EXPECT_TRUE((*lines)->write(GpioRole::ready_lamp, false));
   EXPECT_FALSE(chips()[0].lines[4].high);
-  EXPECT_TRUE((*lines)->write(GpioRole::fault_lamp, true)) << "a role without a line";
+  EXPECT_TRUE((*lines)->write(GpioRole::fault_lamp, true)) << "a role without a line is accepted";
   EXPECT_EQ((*lines)->read(GpioRole::part_in_position), std::nullopt);
 }
 
@@ -220,7 +220,7 @@ TEST_F(Libgpiod, RefusesALineBehindTheLast) {
   EXPECT_EQ(beyond.line, 1U);
   EXPECT_EQ(beyond.message, "the chip `gpiochip0` has no line 6");
   EXPECT_EQ(beyond.hint, "its lines count from 0 to 5");
-  EXPECT_FALSE(chips()[0].lines[0].used) << "nothing is kept of the others";
+  EXPECT_FALSE(chips()[0].lines[0].used) << "the other lines are released";
 }
 
 TEST_F(Libgpiod, RefusesAnInputThatIsAnOutput) {

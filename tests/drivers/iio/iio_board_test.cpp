@@ -181,7 +181,7 @@ TEST_F(IioBoardTest, AnOutputThatIsSwitchedOffIsSwitchedOnAfterItsNumberWasWritt
   put("iio:device1/out_voltage0_raw", "1234");
   IioBoard board(settings_);
   ASSERT_EQ(board.connect(5s), BusStatus::ok) << board.detail();
-  EXPECT_EQ(get("iio:device1/out_voltage0_powerdown"), "1") << "the old number must not come out";
+  EXPECT_EQ(get("iio:device1/out_voltage0_powerdown"), "1") << "the old value must not be output";
   EXPECT_EQ(exchange(board, 110, 10), BusStatus::write_refused);
   EXPECT_EQ(get("iio:device1/out_voltage0_powerdown"), "1");
   BusStatus status = BusStatus::disconnected;
@@ -290,9 +290,9 @@ TEST_F(IioBoardTest, AHeartbeatChangesWithEveryExchange) {
   EXPECT_EQ(exchange(board, 50, 25), BusStatus::disconnected);
   const std::string last = get("iio:device1/out_voltage2_raw");
   EXPECT_EQ(exchange(board, 50, 25), BusStatus::disconnected);
-  EXPECT_EQ(get("iio:device1/out_voltage2_raw"), last) << "no session, no heartbeat";
+  EXPECT_EQ(get("iio:device1/out_voltage2_raw"), last) << "without a session there is no heartbeat";
   settings_.heartbeat->terminal = settings_.outputs[0];
-  EXPECT_NE(refusal().find("both are "), std::string::npos) << "a valve is no heartbeat";
+  EXPECT_NE(refusal().find("both are "), std::string::npos) << "an output of a valve cannot be a heartbeat";
 }
 
 TEST_F(IioBoardTest, OneChannelUnderTwoWordsIsRefused) {
@@ -381,7 +381,7 @@ TEST_F(IioBoardTest, AConverterThatShowsNoNumberEndsTheSession) {
   ASSERT_EQ(board.connect(5s), BusStatus::ok);
   put("iio:device0/in_voltage0_raw", "no");
   EXPECT_EQ(exchange(board, 10, 10), BusStatus::disconnected);
-  EXPECT_EQ(readings_[0].sequence, 0U) << "readings change all at once or not at all";
+  EXPECT_EQ(readings_[0].sequence, 0U) << "readings change together or not at all";
   EXPECT_EQ(exchange(board, 10, 10), BusStatus::disconnected);
   put("iio:device0/in_voltage0_raw", "8000");
   ASSERT_EQ(board.connect(5s), BusStatus::ok) << board.detail();

@@ -99,12 +99,14 @@ TEST(ExchangePlan, TheCountOfClientsIsReadByWhatWritesTheOutputs) {
   BoardMap map = plain_map();
   map.watchdog.clients = BoardWatchdog::ClientCount{.function = 3, .address = 2};
   const ExchangePlan beside = plan_exchange(map, test::two_fingers(false));
-  EXPECT_EQ(beside.reads, (std::vector<ReadStep>{{3, 0, 3}})) << "next to the inputs: no request more";
+  EXPECT_EQ(beside.reads, (std::vector<ReadStep>{{3, 0, 3}}))
+      << "next to the inputs, so no further request is needed";
   EXPECT_EQ(beside.clients, (Slot{0, 2}));
   map.watchdog.clients = BoardWatchdog::ClientCount{.function = 4, .address = 40};
   EXPECT_EQ(plan_exchange(map, test::two_fingers(false)).reads,
             (std::vector<ReadStep>{{3, 0, 2}, {4, 40, 1}}));
-  EXPECT_FALSE(plan_exchange(map, test::two_fingers(false), 1).clients.has_value()) << "of another module";
+  EXPECT_FALSE(plan_exchange(map, test::two_fingers(false), 1).clients.has_value())
+      << "the count belongs to another module";
 }
 
 TEST(ExchangePlan, WritesSplitWhereAnOutputIsNotWired) {

@@ -180,7 +180,7 @@ TEST_F(ModbusBoardTest, ACommandBeyondTheOutputsRangeIsReportedAndItsEndWritten)
   EXPECT_EQ(exchange(-1, 10), BusStatus::write_refused);
   EXPECT_EQ(server_.holding(10), 0);
   EXPECT_EQ(readings_[0].sequence, 1U) << "readings change only with ok";
-  EXPECT_EQ(exchange(100, 0), BusStatus::ok) << "the ends themselves are allowed: " << board_->detail();
+  EXPECT_EQ(exchange(100, 0), BusStatus::ok) << "the limits themselves are allowed: " << board_->detail();
 }
 
 TEST_F(ModbusBoardTest, ACommandThatIsNoNumberWritesNothing) {
@@ -217,7 +217,7 @@ TEST_F(ModbusBoardTest, TheDeadlineSpansTheWholeExchange) {
   EXPECT_LT(MonotonicClock().now() - before, 50'000'000 + 400'000'000);
   EXPECT_EQ(exchange(10, 10), BusStatus::disconnected);
   EXPECT_NE(std::string(board_->detail()).find("deadline"), std::string::npos)
-      << "the reason of the loss stays: " << board_->detail();
+      << "the reason of the loss must remain: " << board_->detail();
   EXPECT_EQ(readings_[0].sequence, 0U);
   server_.delay(0ms);
   ASSERT_EQ(board_->connect(generous), BusStatus::ok) << board_->detail();
@@ -266,7 +266,7 @@ TEST_F(ModbusBoardTest, LaterSessionsBeginWithTheOutputs) {
   (void)server_.take_requests();
   ASSERT_EQ(board_->connect(generous), BusStatus::ok);
   EXPECT_TRUE(server_.take_requests().empty())
-      << "what is asked first feeds a watchdog before the outputs are safe";
+      << "the first request resets the watchdog before the outputs are safe";
   ASSERT_EQ(exchange(0, 0), BusStatus::ok);
   EXPECT_EQ(server_.take_requests().front().function, 16);
 }
@@ -289,7 +289,7 @@ TEST_F(ModbusBoardTest, SaysHowManyClientsTheBoardCounts) {
   BoardMap map = shipped("adam-6024.yaml");
   connect(map);
   ASSERT_EQ(exchange(10, 10), BusStatus::ok) << board_->detail();
-  EXPECT_EQ(board_->clients(), 0U) << "it does not count them";
+  EXPECT_EQ(board_->clients(), 0U) << "this board does not count clients";
   EXPECT_TRUE(board_->fed_by_readers());
   map.watchdog.clients = BoardWatchdog::ClientCount{.function = 4, .address = 30};
   server_.set_input(30, 1);
@@ -338,7 +338,7 @@ TEST_F(WatchdogTest, ATripIsReportedAndNotClearedByExchanging) {
   ASSERT_EQ(exchange(10, 10), BusStatus::ok);
   trip();
   for (int i = 0; i < 3; ++i) EXPECT_EQ(exchange(10, 10), BusStatus::watchdog_tripped);
-  EXPECT_EQ(server_.holding(10), 0) << "outputs stay safe until somebody connects anew";
+  EXPECT_EQ(server_.holding(10), 0) << "outputs remain safe until the next connection";
   EXPECT_EQ(server_.coil(32), 1);
   EXPECT_EQ(readings_[0].sequence, 1U);
 }
@@ -356,7 +356,7 @@ TEST_F(WatchdogTest, AfterConnectTheFirstCommandsStandBeforeAndAfterTheClearing)
   EXPECT_EQ(requests[3], write);
   EXPECT_EQ(server_.holding(10), 2048);
   trip();
-  EXPECT_EQ(exchange(50, 50), BusStatus::watchdog_tripped) << "cleared once per session";
+  EXPECT_EQ(exchange(50, 50), BusStatus::watchdog_tripped) << "a trip is cleared once per session";
 }
 
 TEST_F(WatchdogTest, AWatchdogThatDidNotTripIsNotCleared) {
@@ -364,7 +364,7 @@ TEST_F(WatchdogTest, AWatchdogThatDidNotTripIsNotCleared) {
   ASSERT_EQ(exchange(10, 10), BusStatus::ok);
   for (const auto& request : server_.take_requests()) EXPECT_NE(request.function, 5);
   trip();
-  EXPECT_EQ(exchange(10, 10), BusStatus::watchdog_tripped) << "nor later in the same session";
+  EXPECT_EQ(exchange(10, 10), BusStatus::watchdog_tripped) << "and not later in the same session";
 }
 
 TEST_F(WatchdogTest, AFeedingWriteIsSentInEveryExchange) {
@@ -410,7 +410,7 @@ TEST_F(WatchdogTest, ABoardThatRefusesWritesWhileTrippedIsToldByItsFlag) {
   (void)server_.take_requests();
   ASSERT_EQ(board_->connect(generous), BusStatus::ok) << board_->detail();
   for (const auto& request : server_.take_requests()) {
-    EXPECT_NE(request.function, 6) << "to set it up again could end the trip before the outputs are written";
+    EXPECT_NE(request.function, 6) << "the setup could end the trip before the outputs are written";
   }
   ASSERT_EQ(exchange(5, 5), BusStatus::ok) << board_->detail();
   int set_up = 0;

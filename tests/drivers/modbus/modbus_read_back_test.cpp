@@ -45,7 +45,7 @@ TEST_F(ModbusBoardTest, ARefusedExchangeNamesTheOutputsThatItHasFound) {
     server.input_[11] = server.holding_[11];
   });
   EXPECT_EQ(exchange(40, 60), BusStatus::write_refused);
-  EXPECT_TRUE(std::isnan(board_->found_kpa(0))) << "it is as written";
+  EXPECT_TRUE(std::isnan(board_->found_kpa(0))) << "the output is as written";
   EXPECT_NEAR(board_->found_kpa(1), 20, 0.1);
   writes = false;
   EXPECT_EQ(exchange(40, 20), BusStatus::ok);
@@ -66,7 +66,7 @@ TEST_F(ModbusBoardTest, WhatSomebodyElseWritesIsNoticedWithinEightExchanges) {
   EXPECT_LE(until_noticed, 8);
   EXPECT_NE(std::string(board_->detail()).find("channel 'right': another client"), std::string::npos)
       << board_->detail();
-  EXPECT_EQ(server_.holding_[11], 0) << "it is not written over before somebody has decided what to do";
+  EXPECT_EQ(server_.holding_[11], 0) << "the output must not be overwritten before a decision";
   EXPECT_EQ(exchange(0, 0), BusStatus::ok);
 }
 
@@ -80,7 +80,7 @@ TEST_F(ModbusBoardTest, AnOutputThatDoesNotFollowIsNotTakenForSomebodyElsesWriti
     ASSERT_EQ(exchange(10, 10), BusStatus::ok) << board_->detail();
     server_.ignore_writes(true);
     ASSERT_NE(exchange(50, 10), BusStatus::overwritten)
-        << "ok where it reads first: what stands there is still right";
+        << "an exchange that reads first still finds the correct output";
     for (int i = 0; i < 16 + first; ++i) ASSERT_EQ(exchange(50, 10), BusStatus::write_refused) << i;
     server_.ignore_writes(false);
   }
@@ -107,7 +107,7 @@ TEST_F(ModbusBoardTest, SomebodyElseIsToldApartFromARefusedWriteAfterTheFirstGoo
   server_.ignore_writes(false);
   ASSERT_EQ(exchange(50, 70), BusStatus::ok);
   server_.set_holding(11, 0);
-  EXPECT_EQ(exchange(50, 70), BusStatus::overwritten) << "a look was due for long";
+  EXPECT_EQ(exchange(50, 70), BusStatus::overwritten) << "a reading before the write is overdue";
 }
 
 TEST_F(ModbusBoardTest, AnExchangeThatReadsFirstAsksNoMoreThanTheOthers) {
@@ -162,8 +162,8 @@ TEST_F(ModbusBoardTest, AReadBackMayLagAsFarAsTheMapAllows) {
   ASSERT_EQ(exchange(10, 10), BusStatus::ok);
   ASSERT_EQ(exchange(10, 10), BusStatus::ok);
   server_.ignore_writes(true);
-  ASSERT_EQ(exchange(50, 10), BusStatus::ok) << "it may still show the exchange before";
-  EXPECT_EQ(exchange(50, 10), BusStatus::write_refused) << "but not for ever";
+  ASSERT_EQ(exchange(50, 10), BusStatus::ok) << "it may still show the previous exchange";
+  EXPECT_EQ(exchange(50, 10), BusStatus::write_refused) << "the lag is limited to one exchange";
 }
 
 }  // namespace

@@ -264,7 +264,7 @@ TEST(ModbusRtuLink, ALostRequestIsRepeatedAndASecondAnswerIsNotBelieved) {
     EXPECT_TRUE(right(link));
     ASSERT_EQ(link.ask(1, {.function = 4, .address = 9, .count = 2}, now() + generous), BusStatus::ok)
         << link.detail();
-    EXPECT_EQ(word_at(link.data(), 0), 1009) << "not the second answer to the question before";
+    EXPECT_EQ(word_at(link.data(), 0), 1009) << "not the second response to the previous request";
     EXPECT_TRUE(link.is_open());
   }
 }

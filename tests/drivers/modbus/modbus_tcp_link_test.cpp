@@ -95,7 +95,7 @@ Outcome ask_once(const std::function<void(Peer&, const Bytes&)>& misbehave,
   outcome.detail = session.detail();
   if (!session.is_open()) {
     EXPECT_EQ(session.ask(1, read_four, now() + generous), BusStatus::disconnected)
-        << "a poisoned session answered";
+        << "a session must not be used after a defect";
     EXPECT_EQ(session.open(now() + generous), BusStatus::ok) << session.detail();
   }
   EXPECT_EQ(session.ask(1, read_four, now() + generous), BusStatus::ok) << session.detail();
@@ -329,7 +329,7 @@ TEST(ModbusTcpLink, NothingIsSentBeforeTheSettleTimeIsOver) {
   ASSERT_EQ(session.settle(before + generous), BusStatus::ok) << session.detail();
   ASSERT_EQ(session.ask(1, read_four, now() + generous), BusStatus::ok) << session.detail();
   EXPECT_GE(first_request - before, 200'000'000);
-  EXPECT_EQ(session.settle(now() - 1), BusStatus::ok) << "once: it is over";
+  EXPECT_EQ(session.settle(now() - 1), BusStatus::ok) << "it settles once per session";
 }
 
 TEST(ModbusTcpLink, ASettleTimeDoesNotExtendTheDeadline) {
@@ -440,7 +440,7 @@ TEST(ModbusTcpLink, DuplicatedRepliesNeverMoveTheAnswers) {
     }
   }
   EXPECT_GT(good, 100U);
-  EXPECT_GT(bad, 50U) << "the duplicates did not reach the client: the test tests nothing";
+  EXPECT_GT(bad, 50U) << "too few duplicates reached the client for a valid test";
 }
 
 TEST(ModbusTcpLink, RefusedConnection) {
@@ -572,8 +572,8 @@ TEST(ModbusTcpLink, AnswersWithoutTheTransactionIdAreTakenOnlyWhereThatIsAccepte
   }
   std::this_thread::sleep_for(200ms);
   EXPECT_EQ(lenient.ask(1, read_four, now() + generous), BusStatus::bad_reply)
-      << "a second answer waits there";
-  EXPECT_NE(std::string(lenient.detail()).find("unexpected bytes"), std::string::npos) << lenient.detail();
+      << "a second answer has arrived";
+  EXPECT_NE(std::string(lenient.detail()).find("nobody asked"), std::string::npos) << lenient.detail();
 }
 
 TEST(ModbusTcpLink, ADeadlineInThePastFailsAtOnce) {

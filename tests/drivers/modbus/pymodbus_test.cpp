@@ -249,7 +249,7 @@ TEST(PymodbusOnALine, TwoModulesAreWrittenAndRead) {
 
   settings.modules[1].unit = 3;
   ModbusBoard stranger(settings);
-  EXPECT_EQ(stranger.connect(500ms), BusStatus::disconnected) << "the line has one master";
+  EXPECT_EQ(stranger.connect(500ms), BusStatus::disconnected) << "a serial line has one Modbus client";
 }
 
 TEST(PymodbusOnALine, AUnitThatIsNotThereIsSilent) {
@@ -268,11 +268,12 @@ TEST(PymodbusOnALine, AUnitThatIsNotThereIsSilent) {
   EXPECT_EQ(board.connect(500ms), BusStatus::timed_out) << board.detail();
   settings.modules[0].unit = 1;
   ModbusBoard there(settings);
-  ASSERT_EQ(board.connect(1ms), BusStatus::timed_out) << "and lets go of the line";
+  ASSERT_EQ(board.connect(1ms), BusStatus::timed_out) << "the line is released";
   ASSERT_EQ(there.connect(generous), BusStatus::ok) << there.detail();
   std::array<Reading, 2> readings;
   ASSERT_EQ(there.exchange(std::array{12.5, 50.0}, readings, generous), BusStatus::ok) << there.detail();
-  EXPECT_EQ(server.writes(), (Json{{"holding", 256, {0x3fa0, 0, 0x40a0, 0}}})) << "function 23 on a line";
+  EXPECT_EQ(server.writes(), (Json{{"holding", 256, {0x3fa0, 0, 0x40a0, 0}}}))
+      << "function code 23 on a serial line";
 }
 
 }  // namespace

@@ -80,7 +80,7 @@ TEST_F(EntranceTest, RestsWhileNoDescriptorIsFree) {
   EXPECT_FALSE(would_wake(now + Entrance::rest - 1)) << "the client is still in the queue";
   EXPECT_TRUE(would_wake(now + Entrance::rest));
   EXPECT_FALSE(entrance_.accept(now + Entrance::rest));
-  EXPECT_FALSE(would_wake(now + Entrance::rest)) << "it rests again";
+  EXPECT_FALSE(would_wake(now + Entrance::rest)) << "the entrance pauses again";
   ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &usual_), 0);
   EXPECT_TRUE(entrance_.accept(now + 2 * Entrance::rest));
   EXPECT_FALSE(entrance_.short_of_descriptors());
@@ -94,11 +94,11 @@ TEST_F(EntranceTest, ServesOneClientWithItsSpareDescriptors) {
   EXPECT_TRUE(first);
   EXPECT_TRUE(entrance_.short_of_descriptors());
   const Descriptor needed{::dup(first.get())};
-  EXPECT_TRUE(needed) << "a second descriptor, for what the request needs";
+  EXPECT_TRUE(needed) << "a second descriptor for the request";
   EXPECT_FALSE(entrance_.accept(0));
   EXPECT_FALSE(would_wake(0));
   first.reset();
-  EXPECT_TRUE(entrance_.accept(Entrance::rest)) << "the place of the first one";
+  EXPECT_TRUE(entrance_.accept(Entrance::rest)) << "the descriptor of the first client is free again";
 }
 
 TEST_F(EntranceTest, WithoutAListenerNoClientComes) {

@@ -12,7 +12,7 @@ TEST(RequestStream, CutsOneRequestWhateverTheChunks) {
     RequestStream stream;
     std::optional<Request> request;
     for (std::size_t i = 0; i < read_four.size(); i += chunk) {
-      EXPECT_FALSE(request) << "complete too early, chunks of " << chunk;
+      EXPECT_FALSE(request) << "the request is complete too early with chunks of " << chunk;
       stream.append(std::span(read_four).subspan(i, std::min(chunk, read_four.size() - i)));
       request = stream.next();
     }
@@ -45,7 +45,7 @@ TEST(RequestStream, BreaksOnAHeaderThatMakesNoSense) {
     const bool nothing = !stream.next();
     return nothing && stream.broken();
   };
-  EXPECT_TRUE(broken_by(2, 1)) << "protocol id";
+  EXPECT_TRUE(broken_by(2, 1)) << "wrong protocol id";
   EXPECT_TRUE(broken_by(4, 1)) << "length above the longest frame";
   EXPECT_TRUE(broken_by(5, 0)) << "length 0";
   EXPECT_TRUE(broken_by(5, 1)) << "no function code";

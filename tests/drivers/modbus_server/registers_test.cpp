@@ -58,7 +58,7 @@ TEST_F(RegistersTest, EitherReadFunctionFindsWhatOnlyOneTableHas) {
   EXPECT_EQ(ask({0x03, 0, 10, 0, 2}), (Bytes{0x03, 4, 0, 7, 0, 8}));
   registers.define_input(0, 0x5555);
   EXPECT_EQ(ask({0x04, 0, 0, 0, 1}), (Bytes{0x04, 2, 0x55, 0x55}))
-      << "both have it: the function code decides";
+      << "both tables have the address, so the function code decides";
   EXPECT_EQ(ask({0x03, 0, 0, 0, 1}), (Bytes{0x03, 2, 0x12, 0x34}));
 }
 
@@ -67,11 +67,12 @@ TEST_F(RegistersTest, ReadWriteWritesFirst) {
 }
 
 TEST_F(RegistersTest, RefusesAddressesThatAreNotThere) {
-  EXPECT_EQ(ask({0x03, 0, 3, 0, 2}), (Bytes{0x83, illegal_address})) << "runs over the end";
-  EXPECT_EQ(ask({0x03, 0xff, 0xff, 0, 2}), (Bytes{0x83, illegal_address})) << "wraps around";
+  EXPECT_EQ(ask({0x03, 0, 3, 0, 2}), (Bytes{0x83, illegal_address})) << "the range exceeds the table";
+  EXPECT_EQ(ask({0x03, 0xff, 0xff, 0, 2}), (Bytes{0x83, illegal_address})) << "the address wraps around";
   EXPECT_EQ(ask({0x04, 0, 12, 0, 1}), (Bytes{0x84, illegal_address}));
-  EXPECT_EQ(ask({0x06, 0, 0, 0, 1}), (Bytes{0x86, illegal_address})) << "read only";
-  EXPECT_EQ(ask({0x10, 0, 1, 0, 2, 4, 0, 1, 0, 2}), (Bytes{0x90, illegal_address})) << "half read only";
+  EXPECT_EQ(ask({0x06, 0, 0, 0, 1}), (Bytes{0x86, illegal_address})) << "the register is read-only";
+  EXPECT_EQ(ask({0x10, 0, 1, 0, 2, 4, 0, 1, 0, 2}), (Bytes{0x90, illegal_address}))
+      << "one of the registers is read-only";
   EXPECT_EQ(registers.holding(2), 0) << "a refused write changes nothing";
   EXPECT_EQ(ask({0x17, 0, 9, 0, 1, 0, 2, 0, 1, 2, 0, 1}), (Bytes{0x97, illegal_address}));
   EXPECT_EQ(registers.holding(2), 0) << "a refused read-write writes nothing";

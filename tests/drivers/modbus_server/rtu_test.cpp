@@ -53,7 +53,7 @@ TEST(RtuRequestStream, AWrongChecksumIsSilence) {
   stream.append(damaged, start);
   EXPECT_FALSE(stream.next().has_value());
   stream.append(read_request(), start + 1s);
-  EXPECT_TRUE(stream.next().has_value()) << "and the next question is heard";
+  EXPECT_TRUE(stream.next().has_value()) << "the next request is received";
 }
 
 TEST(RtuRequestStream, WhatWasBegunAndNotEndedIsForgotten) {
