@@ -74,7 +74,7 @@ TEST(BoardMapFile, EverythingLandsWhereItBelongs) {
   const Result result = read(valid);
   ASSERT_TRUE(result.map.has_value()) << result.problems.format();
   const BoardMap& map = *result.map;
-  EXPECT_EQ(map.inputs.registers.address, 0) << "the file counts from 1, the wire from 0";
+  EXPECT_EQ(map.inputs.registers.address, 0) << "addresses start at 1 in the file and at 0 on the bus";
   EXPECT_EQ(map.inputs.registers.function, 4);
   EXPECT_EQ(map.inputs.registers.count, 6);
   EXPECT_EQ(map.inputs.unit, ElectricalUnit::volt);
@@ -239,7 +239,7 @@ TEST(BoardMapFile, SeveralFlagsAndSeveralClearingWrites) {
   ASSERT_TRUE(result.map.has_value()) << result.problems.format();
   EXPECT_EQ(result.map->watchdog.tripped->count, 2);
   ASSERT_EQ(result.map->watchdog.clear.size(), 2U);
-  EXPECT_EQ(result.map->watchdog.clear[1].address, 41) << "counted from 1";
+  EXPECT_EQ(result.map->watchdog.clear[1].address, 41) << "the file counts from 1";
 }
 
 TEST(BoardMapFile, TheCountOfClientsIsARegister) {
@@ -251,7 +251,7 @@ TEST(BoardMapFile, TheCountOfClientsIsARegister) {
   ASSERT_TRUE(result.map.has_value()) << result.problems.format();
   ASSERT_TRUE(result.map->watchdog.clients.has_value());
   EXPECT_EQ(result.map->watchdog.clients->function, 4);
-  EXPECT_EQ(result.map->watchdog.clients->address, 50) << "counted from 1";
+  EXPECT_EQ(result.map->watchdog.clients->address, 50) << "the file counts from 1";
   EXPECT_FALSE(with("{function: 1, address: 51}").map.has_value());
   EXPECT_FALSE(with("{function: 3}").map.has_value());
   EXPECT_FALSE(read(valid).map->watchdog.clients.has_value());
