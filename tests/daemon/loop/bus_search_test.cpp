@@ -138,7 +138,8 @@ std::string follow(std::span<const Step> path) {
     const double before_kpa = board.output_kpa;
     bus.step(clock.now());
     clock.advance(period);
-    if (board.output_kpa > before_kpa + 1e-9 && (!may_rise || trips > 0)) return "rises unasked";
+    if (board.output_kpa > before_kpa + 1e-9 && (!may_rise || trips > 0))
+      return "the output rises without permission";
     return {};
   };
   for (int i = 0; i < 4; ++i) {
@@ -169,9 +170,9 @@ std::string follow(std::span<const Step> path) {
     if (!controller.runs) may_rise = false;
     if (const std::string broken = exchange(); !broken.empty()) return broken;
   }
-  if (controller.heard != shared.bus.value().health.inhibit) return "nobody heard why";
+  if (controller.heard != shared.bus.value().health.inhibit) return "the loop did not receive the reason";
   shared.bus.fetch();
-  if (shared.bus.value().health.fault != FaultCode::none) return "the bus never obeys again";
+  if (shared.bus.value().health.fault != FaultCode::none) return "the fault of the bus never ends";
   return {};
 }
 

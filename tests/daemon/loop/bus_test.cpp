@@ -269,7 +269,8 @@ TEST_F(VacuumBusTest, OutputsThatTheBoardDidNotConfirmAreTheNearerToRest) {
   EXPECT_EQ(shared_.bus.value().outputs_kpa[0], -11);
   command(3, 0, true);
   step(bus);
-  EXPECT_EQ(shared_.bus.value().outputs_kpa[0], 0) << "on two sides of rest: nothing else is safe";
+  EXPECT_EQ(shared_.bus.value().outputs_kpa[0], 0)
+      << "values on both sides of rest: only the rest pressure is safe";
 }
 
 /// A board that fails repeatedly for the same reason must not fill the log.
@@ -298,13 +299,13 @@ TEST_F(BusTest, ThatNoSessionCanBeOpenedAgainIsToldOnceIfItIsForAnotherReason) {
       clock_.advance(60'000'000'000);
       step();
     }
-    EXPECT_TRUE(failures().empty()) << "the same reason";
+    EXPECT_TRUE(failures().empty()) << "the reason has not changed";
     board_.said = refusal.c_str();
     for (int i = 0; i < 5; ++i) {
       clock_.advance(60'000'000'000);
       step();
     }
-    EXPECT_EQ(failures(), (std::vector<std::string>{"again: " + refusal})) << "whole, and once";
+    EXPECT_EQ(failures(), (std::vector<std::string>{"again: " + refusal})) << "the complete text, once";
     board_.next_exchange = BusStatus::ok;
     board_.next_connect = BusStatus::ok;
     clock_.advance(60'000'000'000);
@@ -343,7 +344,7 @@ TEST_F(BusTest, ASessionIsToldOfOnceTheBoardHasAnsweredInIt) {
     clock_.advance(60 * ns_per_s);
     step();
   }
-  EXPECT_EQ(told(), (Told{{Kind::connected, BusStatus::ok}})) << "it answers, and be it that it refuses";
+  EXPECT_EQ(told(), (Told{{Kind::connected, BusStatus::ok}})) << "an exception is also a response";
   board_.next_exchange = BusStatus::ok;
   step();
   EXPECT_EQ(told(), (Told{{Kind::recovered, BusStatus::ok}}));
@@ -356,11 +357,12 @@ TEST_F(BusTest, AnotherClientThatFeedsTheWatchdogIsToldOnceASession) {
   step();
   (void)events();
   step();
-  EXPECT_EQ(events(), none) << "only writes feed it: another one that writes is found at the outputs";
+  EXPECT_EQ(events(), none)
+      << "only writes reset this watchdog, and another client's writes are found at the outputs";
   board_.readers_feed = true;
   board_.counted_clients = 1;
   step();
-  EXPECT_EQ(events(), none) << "this one";
+  EXPECT_EQ(events(), none) << "requests of any client reset this watchdog";
   for (const unsigned clients : {3U, 1U, 2U}) {
     board_.counted_clients = clients;
     step();
@@ -525,7 +527,7 @@ TEST_F(BusTest, OutputsFoundNearerToRestAreNotWrittenBack) {
   EXPECT_EQ(last_written(), 5);
   command(12, 0, false, shared_.bus.value().health.inhibit);
   step();
-  EXPECT_EQ(last_written(), 5) << "the loop has heard of the fault, and its ramp begins further from rest";
+  EXPECT_EQ(last_written(), 5) << "the loop knows the fault, but its ramp begins further from rest";
   command(4, 0, false, shared_.bus.value().health.inhibit);
   step();
   EXPECT_EQ(last_written(), 4);
@@ -575,7 +577,7 @@ TEST_F(BusTest, WhatTheBoardSaidOnceIsReportedAndNothingRisesUntilTheLoopHasHear
     board_.next_exchange = said;
     step();
     EXPECT_EQ(shared_.bus.value().health.connected, said == BusStatus::write_refused)
-        << "only a new session clears a watchdog";
+        << "only a new session clears a watchdog trip";
     EXPECT_EQ(fault(), fault_of(said));
     board_.next_exchange = BusStatus::ok;
     const double outputs_kpa = said == BusStatus::watchdog_tripped ? 0 : 12;

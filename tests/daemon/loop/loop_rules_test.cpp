@@ -135,7 +135,7 @@ class WatchedTicks {
 };
 
 TEST(LoopRules, TheHookSeesAnAllocation) {
-  if (SOFTGRIP_SANITIZED) GTEST_SKIP() << "sanitizers bring an allocator of their own";
+  if (SOFTGRIP_SANITIZED) GTEST_SKIP() << "sanitizers have their own allocator";
   allocations.store(0);
   armed = true;
   // Volatile, so that the compiler does not remove the pair of calls.
@@ -146,7 +146,7 @@ TEST(LoopRules, TheHookSeesAnAllocation) {
 }
 
 TEST(LoopRules, NoTickAllocates) {
-  if (SOFTGRIP_SANITIZED) GTEST_SKIP() << "sanitizers bring an allocator of their own";
+  if (SOFTGRIP_SANITIZED) GTEST_SKIP() << "sanitizers have their own allocator";
   const auto parts = make_parts(true);
   parts->rig.recorder.mode = rig::RecorderSettings::Mode::off;
   const auto sequence = testing::example_sequence(parts->rig, "pick_stone.yaml");
@@ -217,7 +217,7 @@ void run_threads(DaemonParts& parts, Nanoseconds duration, const Around& around)
 }
 
 TEST(LoopRules, NoTickPageFaults) {
-  if (SOFTGRIP_SANITIZED) GTEST_SKIP() << "sanitizers touch pages of their own";
+  if (SOFTGRIP_SANITIZED) GTEST_SKIP() << "sanitizers cause additional page faults";
   const auto parts = make_parts(false);
   rusage before{};
   rusage after{};
@@ -289,7 +289,7 @@ int verdict() {
 }
 
 TEST(LoopRules, TheFilterSeesASystemCall) {
-  if (SOFTGRIP_SANITIZED) GTEST_SKIP() << "sanitizers make calls of their own";
+  if (SOFTGRIP_SANITIZED) GTEST_SKIP() << "sanitizers make additional system calls";
   const auto body = [] {
     std::atomic<bool> done{false};
     std::thread thread([&done] {
@@ -307,7 +307,7 @@ TEST(LoopRules, TheFilterSeesASystemCall) {
 }
 
 TEST(LoopRules, NoTickCallsTheSystemButForClockAndSleep) {
-  if (SOFTGRIP_SANITIZED) GTEST_SKIP() << "sanitizers make calls of their own";
+  if (SOFTGRIP_SANITIZED) GTEST_SKIP() << "sanitizers make additional system calls";
   const auto body = [] {
     const auto parts = make_parts(false);
     Around around;

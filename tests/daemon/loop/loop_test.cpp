@@ -162,10 +162,10 @@ TEST_F(LoopTest, ACutWireStopsMotionUntilAcknowledgedAndStartedAgain) {
     ASSERT_EQ(snapshot().state, State::faulted);
   }
   EXPECT_TRUE(snapshot().bus.connected);
-  EXPECT_EQ(snapshot().channels[0].command_kpa, 0) << "closing: vent, says the rig file";
+  EXPECT_EQ(snapshot().channels[0].command_kpa, 0) << "the rig file specifies vent for the closing phase";
   parts_->service.submit(control::Request::Kind::acknowledge);
   ASSERT_TRUE(until(State::idle));
-  EXPECT_EQ(snapshot().channels[0].command_kpa, 0) << "nothing moves by itself";
+  EXPECT_EQ(snapshot().channels[0].command_kpa, 0) << "no finger moves without a command";
 }
 
 TEST_F(LoopTest, LeavingSendsTheSafeOutputsAsTheLastOnes) {
@@ -208,7 +208,7 @@ TEST(LoopThread, CyclesThatWereSleptThroughAreSlipsAndToldToTheController) {
   parts.shared.shutdown_requested.store(true);
   loop.join();
   EXPECT_GE(parts.loop_statistics.overruns_woken_late.value(), 100U);
-  EXPECT_LE(parts.loop_statistics.ticks.value(), 10U) << "no burst";
+  EXPECT_LE(parts.loop_statistics.ticks.value(), 10U) << "missed ticks must not be made up";
   EXPECT_EQ(parts.service.snapshot().first_fault.code, FaultCode::cycles_lost);
 }
 

@@ -112,7 +112,7 @@ TEST(RealTime, WithoutRightsEveryStepSaysWhichLimitStandsInTheWay) {
 
 TEST(RealTime, ReportsTheStackThatWasTouched) {
 #ifdef __SANITIZE_THREAD__
-  GTEST_SKIP() << "ThreadSanitizer faults pages of its own for every one that is touched, again and again";
+  GTEST_SKIP() << "ThreadSanitizer causes additional page faults for every touched page";
 #endif
   rig::RealTimeSettings settings;
   settings.prefault_stack_bytes = 512 * 1024;

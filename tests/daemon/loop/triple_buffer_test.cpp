@@ -124,7 +124,7 @@ TEST(TripleBuffer, IsWholeHoweverOftenTheWriterPublishesDuringACopy) {
 }
 
 TEST(TripleBuffer, TheSameInterruptionTearsAWrongCell) {
-  EXPECT_TRUE(whole_when_interrupted<TwoSlots<TornValue>>(1)) << "looks right at first";
+  EXPECT_TRUE(whole_when_interrupted<TwoSlots<TornValue>>(1)) << "one publish does not reveal the error";
   EXPECT_FALSE(whole_when_interrupted<TwoSlots<TornValue>>(2));
 }
 

@@ -96,7 +96,7 @@ TEST_F(PanelTest, StartsPressedAndOpenBeforeAnythingIsRead) {
 TEST_F(PanelTest, IsNotReleasedBeforeTheLoopHasLatchedIt) {
   make(all_lines());
   run(0.05);
-  EXPECT_TRUE(pressed()) << "the line is released, but a loop that never saw it pressed would just go on";
+  EXPECT_TRUE(pressed()) << "the line is released, but a loop that never saw it pressed would continue";
   shared_.state.store(control::State::faulted);
   run(0.02);
   EXPECT_FALSE(pressed());
@@ -149,7 +149,7 @@ TEST_F(PanelTest, EnableAndLampsFollowTheState) {
   EXPECT_TRUE(is_on(GpioRole::fault_lamp));
   shared_.state.store(control::State::starting);
   run(0.02);
-  EXPECT_FALSE(is_on(GpioRole::enable)) << "not before the rig is ready";
+  EXPECT_FALSE(is_on(GpioRole::enable)) << "off until the rig is ready";
   EXPECT_FALSE(is_on(GpioRole::fault_lamp));
   shared_.state.store(control::State::idle);
   run(0.02);
@@ -167,19 +167,19 @@ TEST_F(PanelTest, PressureThatStaysOnMakesTheLampBlinkThatIsOn) {
     const std::vector<bool> written = terminals_.written(role);
     return std::count(written.begin() + static_cast<std::ptrdiff_t>(before), written.end(), true);
   };
-  EXPECT_EQ(lit(GpioRole::ready_lamp), 0) << "it is on and stays on";
+  EXPECT_EQ(lit(GpioRole::ready_lamp), 0) << "the lamp remains on";
   EXPECT_TRUE(is_on(GpioRole::ready_lamp));
   shared_.under_pressure.store(true);
   EXPECT_NEAR(static_cast<double>(lit(GpioRole::ready_lamp)), 3.5, 1);
-  EXPECT_FALSE(is_on(GpioRole::fault_lamp)) << "nothing is wrong";
-  EXPECT_TRUE(is_on(GpioRole::enable)) << "what holds the part is not switched off";
+  EXPECT_FALSE(is_on(GpioRole::fault_lamp)) << "there is no fault";
+  EXPECT_TRUE(is_on(GpioRole::enable)) << "the pressure that holds the part must remain";
   shared_.state.store(control::State::faulted);
   EXPECT_NEAR(static_cast<double>(lit(GpioRole::fault_lamp)), 3.5, 1);
   EXPECT_FALSE(is_on(GpioRole::ready_lamp));
   shared_.under_pressure.store(false);
   run(0.02);
   EXPECT_TRUE(is_on(GpioRole::fault_lamp));
-  EXPECT_EQ(lit(GpioRole::fault_lamp), 0) << "steady again";
+  EXPECT_EQ(lit(GpioRole::fault_lamp), 0) << "the lamp no longer flashes";
 }
 
 TEST_F(PanelTest, ALoopThatHangsUnderPressureHasASteadyFaultLamp) {
@@ -219,7 +219,7 @@ TEST_F(PanelTest, TheEmergencyStopAlwaysDropsTheEnable) {
   make_ready();
   terminals_.set(GpioRole::emergency_stop, true);
   run(0.03);
-  EXPECT_FALSE(is_on(GpioRole::enable)) << "even while the loop still says idle";
+  EXPECT_FALSE(is_on(GpioRole::enable)) << "although the loop still reports idle";
 }
 
 TEST_F(PanelTest, ALoopThatHangsDropsTheEnableAndMayNotGoOn) {
@@ -231,9 +231,9 @@ TEST_F(PanelTest, ALoopThatHangsDropsTheEnableAndMayNotGoOn) {
   run(0.1, false);
   EXPECT_FALSE(is_on(GpioRole::enable));
   EXPECT_TRUE(is_on(GpioRole::fault_lamp));
-  EXPECT_TRUE(shared_.inputs.lost.load()) << "a loop that wakes up again finds a fault";
+  EXPECT_TRUE(shared_.inputs.lost.load()) << "a loop that continues must find a fault";
   run(0.02);
-  EXPECT_TRUE(shared_.inputs.lost.load()) << "until it has latched it";
+  EXPECT_TRUE(shared_.inputs.lost.load()) << "until the loop has latched the fault";
   shared_.state.store(control::State::faulted);
   run(0.02);
   EXPECT_FALSE(shared_.inputs.lost.load());
@@ -372,12 +372,13 @@ TEST_F(PanelOfDaemon, StartsFaultedAndMovesOnlyAfterReleaseAndAcknowledgement) {
   ASSERT_TRUE(until_state("faulted"));
   EXPECT_EQ(status()["fault"]["code"], "F501");
   EXPECT_EQ(status()["gpio"]["emergency_stop"], true);
-  EXPECT_EQ(ask("acknowledge")["error"]["refusal"]["name"], "cause_persists") << "still pressed";
+  EXPECT_EQ(ask("acknowledge")["error"]["refusal"]["name"], "cause_persists")
+      << "the emergency stop is still pressed";
 
   terminals_.set(GpioRole::emergency_stop, false);
   ASSERT_TRUE(eventually([&] { return status()["gpio"]["emergency_stop"] == false; }));
   std::this_thread::sleep_for(std::chrono::milliseconds(50));
-  EXPECT_EQ(status()["state"], "faulted") << "a reset starts nothing";
+  EXPECT_EQ(status()["state"], "faulted") << "releasing the emergency stop resets no fault";
   EXPECT_FALSE(terminals_.level(GpioRole::enable));
   EXPECT_TRUE(terminals_.level(GpioRole::fault_lamp));
 
@@ -396,10 +397,10 @@ TEST_F(PanelOfDaemon, StartsFaultedAndMovesOnlyAfterReleaseAndAcknowledgement) {
 
   terminals_.set(GpioRole::emergency_stop, false);
   ASSERT_TRUE(eventually([&] { return ask("acknowledge")["ok"] == true; }));
-  ASSERT_TRUE(until_state("idle")) << "and there it stays";
+  ASSERT_TRUE(until_state("idle")) << "the rig must remain idle";
   end();
   EXPECT_TRUE(outcome_.safe_state_confirmed);
-  EXPECT_FALSE(terminals_.level(GpioRole::enable)) << "dropped at the end";
+  EXPECT_FALSE(terminals_.level(GpioRole::enable)) << "the enable output is off after the end";
   EXPECT_FALSE(terminals_.level(GpioRole::ready_lamp));
 }
 

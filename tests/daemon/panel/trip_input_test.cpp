@@ -25,7 +25,7 @@ TripInput cleared() {
 TEST(TripInput, IsTrippedUntilItWasSteadilyClear) {
   TripInput input(debounce);
   EXPECT_TRUE(input.tripped());
-  EXPECT_EQ(input.due(), 0) << "it wants to be looked at";
+  EXPECT_EQ(input.due(), 0) << "the level must be read at once";
   input.level(false, 1 * ms);
   EXPECT_TRUE(input.tripped());
   EXPECT_EQ(input.due(), 6 * ms);
@@ -69,7 +69,7 @@ TEST(TripInput, SeesAPressThatWasOverBeforeAnybodyLooked) {
   TripInput input = cleared();
   input.edge(true, 20 * ms);
   input.edge(false, 26 * ms);
-  EXPECT_TRUE(input.tripped()) << "6 ms of pressing, told by the kernel's times alone";
+  EXPECT_TRUE(input.tripped()) << "pressed for 6 ms according to the kernel's times";
 }
 
 TEST(TripInput, TripsOnAContactThatOnlyChatters) {
@@ -82,7 +82,7 @@ TEST(TripInput, TripsOnAContactThatOnlyChatters) {
     now += 2 * ms;
     input.level(pressed, now);
   }
-  EXPECT_LE(now, 30 * ms + 2 * ms) << "twice the debounce time, and one look";
+  EXPECT_LE(now, 30 * ms + 2 * ms) << "at most twice the debounce time and one reading";
 }
 
 TEST(TripInput, NeedsNoEdges) {

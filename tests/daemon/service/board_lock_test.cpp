@@ -41,7 +41,7 @@ TEST(BoardLock, OneMasterPerBoardUnderWhateverSpelling) {
   EXPECT_TRUE(BoardLock::take(rig_at("::1", 40503))) << "another port";
   EXPECT_TRUE(BoardLock::take(rig_at("::1", 40502, 2))) << "another unit behind a gateway";
   *first = BoardLock();
-  EXPECT_TRUE(BoardLock::take(rig_at("::1", 40502))) << "it was let go";
+  EXPECT_TRUE(BoardLock::take(rig_at("::1", 40502))) << "the lock was released";
 }
 
 TEST(BoardLock, AnAddressWithinTheOtherFamilyIsTheSameBoard) {
@@ -157,7 +157,7 @@ TEST(BoardLock, AnotherUsersClaimDoesNotCountAndIsSaid) {
     ASSERT_TRUE(lock) << lock.error();
     ASSERT_EQ(lock->remarks().size(), 1U);
     EXPECT_NE(lock->remarks()[0].find("without the right to it"), std::string::npos) << lock->remarks()[0];
-    EXPECT_FALSE(BoardLock::take(rig)) << "and programs of softgrip are kept apart nevertheless";
+    EXPECT_FALSE(BoardLock::take(rig)) << "nevertheless the lock separates programs of softgrip";
     EXPECT_FALSE(BoardLock::take(rig, LockPurpose::vent));
   }
 }
@@ -196,7 +196,7 @@ TEST(BoardLock, SafeOutputsYieldToAProgramThatRunsAndNotToOneThatStandsStill) {
   const Holder holder(a_program_on(rig));
   EXPECT_FALSE(BoardLock::take(rig, LockPurpose::vent));
   holder.stop();
-  EXPECT_FALSE(BoardLock::take(rig)) << "a program that is to drive the board waits for its end";
+  EXPECT_FALSE(BoardLock::take(rig)) << "a program that drives the board must wait for its end";
   const auto lock = BoardLock::take(rig, LockPurpose::vent);
   ASSERT_TRUE(lock) << lock.error();
   ASSERT_FALSE(lock->remarks().empty());

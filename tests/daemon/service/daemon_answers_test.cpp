@@ -70,7 +70,7 @@ TEST_F(DaemonAnswers, AnotherProgramIsNoDaemon) {
   EXPECT_FALSE(with_reply("HTTP/1.1 400 Bad Request\r\n"));
   EXPECT_FALSE(with_reply("{}\n"));
   EXPECT_FALSE(with_reply("[\"ok\"]\n"));
-  EXPECT_FALSE(with_reply("{\"ok\": tr")) << "half a line, then the end";
+  EXPECT_FALSE(with_reply("{\"ok\": tr")) << "half a line, then the end of the connection";
 }
 
 TEST_F(DaemonAnswers, WhoAcceptsAndStaysSilentIsNoDaemon) {

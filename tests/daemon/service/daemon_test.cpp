@@ -103,7 +103,7 @@ TEST(Daemon, EveryEndingHasItsExitCode) {
     return exit_code_of(outcome);
   };
   EXPECT_EQ(code(Ending::asked), ExitCode::done);
-  EXPECT_EQ(code(Ending::interrupted), ExitCode::not_acceptable) << "a sequence that was to run is not done";
+  EXPECT_EQ(code(Ending::interrupted), ExitCode::not_acceptable) << "the requested sequence has not finished";
   EXPECT_EQ(code(Ending::sequence_refused), ExitCode::state_refused);
   EXPECT_EQ(code(Ending::not_idle), ExitCode::state_refused);
   EXPECT_EQ(code(Ending::real_time_refused), ExitCode::failed);
@@ -120,8 +120,7 @@ TEST(Daemon, EveryEndingHasItsExitCode) {
   }
   outcome.safe_state_confirmed = false;
   outcome.sequence_end = SequenceEnd::done;
-  EXPECT_EQ(code(Ending::sequence_ended), ExitCode::failed)
-      << "a board that was not left safely is a failure";
+  EXPECT_EQ(code(Ending::sequence_ended), ExitCode::failed) << "unconfirmed safe outputs are a failure";
   EXPECT_EQ(code(Ending::asked), ExitCode::failed);
   EXPECT_EQ(code(Ending::interrupted), ExitCode::failed);
 }

@@ -44,7 +44,7 @@ TEST_F(KeptRig, IsTheRigThatRanWhateverBecameOfTheFiles) {
   ASSERT_TRUE(kept) << kept.error();
   for (const char* file : {"rig_tcp.yaml", "boards/adam-6024.yaml", "models/bench_twin.yaml"}) halve(file);
   document::Problems problems;
-  ASSERT_FALSE(rig::load_rig(path_, problems)) << "the files are good for nothing";
+  ASSERT_FALSE(rig::load_rig(path_, problems)) << "the files are invalid";
   const auto again = kept_rig(path_);
   ASSERT_TRUE(again);
   EXPECT_EQ(again->name, rig.name);

@@ -52,7 +52,7 @@ TEST(NamedDevice, AConverterByItsNameOrItsFolderAndOnlyTheOutputsThatAreWritten)
   EXPECT_FALSE(named_device(rig, "iio:device2"));
   EXPECT_FALSE(named_device(rig, "iio:device3"));
   std::ofstream(root.path() + "/iio:device2/name") << "dac7578\n";
-  EXPECT_FALSE(named_device(rig, "iio:device1")) << "a name of two converters names none";
+  EXPECT_FALSE(named_device(rig, "iio:device1")) << "a name that two converters share is ambiguous";
 }
 
 TEST(NamedDevice, OtherDevicesAreNone) {

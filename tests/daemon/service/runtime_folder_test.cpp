@@ -96,10 +96,10 @@ TEST_F(RuntimeFolderTest, PutsAWholeFileOrNone) {
   ASSERT_TRUE(mine.put("file", "old"));
   ASSERT_TRUE(mine.put("file", long_text));
   EXPECT_EQ(mine.get("file", 2'000'000).value(), long_text);
-  EXPECT_FALSE(mine.get("file", 999'999)) << "beyond its bound";
+  EXPECT_FALSE(mine.get("file", 999'999)) << "larger than the limit";
   mine.remove("file");
   EXPECT_FALSE(mine.get("file", 10));
-  EXPECT_TRUE(fs::is_empty(place_)) << "nothing temporary is left";
+  EXPECT_TRUE(fs::is_empty(place_)) << "no temporary file remains";
 }
 
 TEST_F(RuntimeFolderTest, KnowsWhetherANameIsStillTheFile) {

@@ -93,8 +93,8 @@ TEST_F(SocketSession, AStopThatNamesAStartEndsThatOneAlone) {
            {"start_id", "cell/2"}, {"request", request + 1}, {"request", 4294967295U}}) {
     EXPECT_EQ(stop_of(key, value)["error"]["refusal"]["name"], "named_start_not_running") << key << value;
   }
-  EXPECT_EQ(status()["sequence"]["ended"], nullptr) << "none of them has named it";
-  EXPECT_EQ(start("cell/1")["error"]["code"], "bad_request") << "the id has been given away";
+  EXPECT_EQ(status()["sequence"]["ended"], nullptr) << "none of these stops names this start";
+  EXPECT_EQ(start("cell/1")["error"]["code"], "bad_request") << "the id is already in use";
   EXPECT_EQ(stop_of("start_id", "cell/1")["ok"], true);
   ASSERT_TRUE(until_state("idle"));
   EXPECT_EQ(status()["sequence"]["ended"], "stopped");
@@ -103,7 +103,7 @@ TEST_F(SocketSession, AStopThatNamesAStartEndsThatOneAlone) {
   ASSERT_EQ(second["ok"], true) << second;
   EXPECT_EQ(stop_of("start_id", "cell/1")["error"]["refusal"]["code"], "R12");
   EXPECT_EQ(stop_of("request", request)["error"]["refusal"]["code"], "R12");
-  EXPECT_EQ(status()["sequence"]["ended"], nullptr) << "another start runs now";
+  EXPECT_EQ(status()["sequence"]["ended"], nullptr) << "a later start is running now";
   EXPECT_EQ(stop_of("request", second["result"]["request"])["ok"], true);
 }
 
@@ -186,7 +186,7 @@ TEST_F(SocketSession, AStartChoosesParameters) {
   };
   const json wrong = start({{"squeeze_kpa", 400}});
   EXPECT_EQ(wrong["error"]["code"], "sequence_refused");
-  EXPECT_EQ(start({{"nobody", 4}})["error"]["code"], "sequence_refused");
+  EXPECT_EQ(start({{"no_parameter", 4}})["error"]["code"], "sequence_refused");
   ASSERT_EQ(start({{"squeeze_kpa", 4}})["ok"], true);
   EXPECT_EQ(status()["sequence"]["parameters"]["squeeze_kpa"], 4.0);
 }
@@ -211,7 +211,7 @@ TEST_F(SocketSession, WatchStreamsAtTheRateThatWasAskedFor) {
   }
   const double period_s = (times.back() - times.front()) / 19;
   EXPECT_GT(period_s, 0.04);
-  EXPECT_LT(period_s, 0.5) << "a loaded machine may be slow, not stuck";
+  EXPECT_LT(period_s, 0.5) << "a loaded machine may be slow, but must not stop";
 }
 
 TEST_F(SocketSession, StatisticsHaveTheirHistogramsOnRequest) {

@@ -200,7 +200,7 @@ TEST_F(SoftgripdTest, AFullDiskEndsTheRecordingAndNotTheGrip) {
     ASSERT_TRUE(until_state(client, "idle"));
     ASSERT_EQ(client.ask({{"command", "start"}, {"sequence", "pick_stone"}})["ok"], true);
     ASSERT_TRUE(until_state(client, "running"));
-    ASSERT_TRUE(until_state(client, "idle", 30)) << "the sequence goes on to its end";
+    ASSERT_TRUE(until_state(client, "idle", 30)) << "the sequence continues to its end";
     const json end = status(client);
     EXPECT_EQ(end["sequence"]["ended"], "done");
     EXPECT_EQ(end["channels"][0]["result"], "RELEASED");
@@ -211,7 +211,7 @@ TEST_F(SoftgripdTest, AFullDiskEndsTheRecordingAndNotTheGrip) {
     EXPECT_TRUE(std::any_of(events.begin(), events.end(),
                             [](const json& event) { return event["kind"] == "recording_failed"; }));
     process.signal(SIGTERM);
-    EXPECT_EQ(process.wait(), 4) << "the recording that was asked for is not whole";
+    EXPECT_EQ(process.wait(), 4) << "the requested recording is incomplete";
   }
   const std::string csv = text_of(disk + "/record/run.csv");
   EXPECT_GT(csv.size(), 10'000U);
@@ -246,7 +246,7 @@ TEST_F(SoftgripdTest, RefusesWithTheExitCodesOfTheManual) {
   };
   EXPECT_EQ(code({}), 2);
   EXPECT_EQ(code({"--config", rig, "--fly"}), 2);
-  EXPECT_EQ(code({"--config", rig, "--virtual-time"}), 2) << "without an end";
+  EXPECT_EQ(code({"--config", rig, "--virtual-time"}), 2) << "virtual time needs an end of the run";
   EXPECT_EQ(code({"--help"}), 0);
   EXPECT_EQ(code({"--version"}), 0);
   EXPECT_EQ(code({"--config", rig, "--check"}), 0);

@@ -208,7 +208,7 @@ TEST_F(SocketServerTest, AnUrgentLineIsHeardThoughAllPlacesAreTaken) {
   EXPECT_EQ(lines_, std::vector<std::string>{"urgent: down"});
   EXPECT_EQ(received(late), "done\n");
   turn(2, 3 * ns_per_s);
-  EXPECT_FALSE(received(late)) << "one word was all";
+  EXPECT_FALSE(received(late)) << "only one message was sent";
 }
 
 TEST_F(SocketServerTest, TheLongestSilentOnesMakeRoom) {
@@ -224,14 +224,14 @@ TEST_F(SocketServerTest, TheLongestSilentOnesMakeRoom) {
   clients.push_back(connect_to(settings_.path));
   turn();
   EXPECT_NE(received(clients[1]).value_or("").find("too_many_clients"), std::string::npos)
-      << "it never spoke";
+      << "this client never sent a line";
   turn(1, 6 * ns_per_s);
   send_text(clients[3], "hello\n");
   turn();
   clients.push_back(connect_to(settings_.path));
   turn();
   EXPECT_NE(received(clients[0]).value_or("").find("too_many_clients"), std::string::npos)
-      << "the longest silent";
+      << "this client was silent for the longest time";
   EXPECT_EQ(received(clients[2]), "");
   EXPECT_EQ(received(clients[3]), "");
 }
@@ -250,14 +250,14 @@ TEST_F(SocketServerTest, AClientThatKeepsItsPlaceIsDisplacedByNobody) {
   send_text(clients.back(), "hello\n");
   turn();
   EXPECT_NE(received(clients[1]).value_or("").find("too_many_clients"), std::string::npos)
-      << "silent, and nothing keeps its place";
+      << "a silent client without a reason to keep its place";
   keeps_.insert(4);
   turn(1, 60 * ns_per_s);
   const Descriptor late = connect_to(settings_.path);
   send_text(late, "and I\n");
   turn();
   EXPECT_NE(received(late).value_or("").find("too_many_clients"), std::string::npos)
-      << "all places are kept: the newcomer is refused with a sentence";
+      << "all places are in use, so the new client is refused with a message";
   for (const std::size_t i : {0UL, 2UL, 3UL})
     EXPECT_EQ(received(clients[i]), "") << i << " is still connected";
   const Descriptor urgent = connect_to(settings_.path);
@@ -280,7 +280,7 @@ TEST_F(SocketServerTest, WhoLooksHasPlacesOfItsOwn) {
   const Descriptor operating = connect_to(settings_.path);
   send_text(operating, "move\n");
   turn();
-  EXPECT_EQ(received(operating), "") << "it stays";
+  EXPECT_EQ(received(operating), "") << "this client remains connected";
   EXPECT_EQ(opened_, (std::vector<Role>{Role::look, Role::look, Role::look, Role::operate}));
   const Descriptor late = connect_to(settings_.look.path);
   send_text(late, "and I\n");
@@ -291,7 +291,7 @@ TEST_F(SocketServerTest, WhoLooksHasPlacesOfItsOwn) {
   ASSERT_EQ(stat(settings_.look.path.c_str(), &status), 0);
   EXPECT_EQ(status.st_mode & 0777, 0666U);
   server_.reset();
-  EXPECT_NE(stat(settings_.look.path.c_str(), &status), 0) << "its file goes with it";
+  EXPECT_NE(stat(settings_.look.path.c_str(), &status), 0) << "its socket file is removed, too";
 }
 
 TEST_F(SocketServerTest, WhoOperatesIsHeardBeforeWhoLooks) {
@@ -372,7 +372,7 @@ TEST_F(SocketServerTest, AClientThatDoesNotReadIsNotReadEitherAndThenDropped) {
     send_text(client, "more\n");
     turn(1);
   }
-  EXPECT_LT(lines_.size(), 100U) << "what it asks waits in its own buffer";
+  EXPECT_LT(lines_.size(), 100U) << "further requests wait in the client's own buffer";
   EXPECT_EQ(server().clients(), 1U);
   turn(11, ns_per_s);
   EXPECT_EQ(server().clients(), 0U);
@@ -389,7 +389,7 @@ TEST_F(SocketServerTest, WhatAClientHasSentAtOnceWaitsAsLongAsItTakesNoAnswers) 
   for (int i = 0; i < 100; ++i) questions += "more\n";
   send_text(client, questions);
   turn(50);
-  EXPECT_EQ(server().clients(), 1U) << "its queue would be too long";
+  EXPECT_EQ(server().clients(), 1U) << "the queue of the other client would be too long";
   const std::size_t before = lines_.size();
   EXPECT_LT(before, 5U);
   for (int i = 0; i < 20; ++i) {
@@ -408,9 +408,9 @@ TEST_F(SocketServerTest, ASlowWatcherMissesLinesAndThenIsDropped) {
   turn();
   for (int i = 0; i < 1000; ++i) server().send(watcher, std::string(10'000, 'w'), true);
   turn();
-  EXPECT_EQ(server().clients(), 1U) << "what it misses does not pile up";
+  EXPECT_EQ(server().clients(), 1U) << "missed states do not accumulate";
   turn(11, ns_per_s);
-  EXPECT_EQ(server().clients(), 0U) << "it took nothing for ten seconds";
+  EXPECT_EQ(server().clients(), 0U) << "the client has read nothing for 10 s";
 }
 
 TEST_F(SocketServerTest, ASlowClientThatReadsOnStays) {
@@ -460,7 +460,8 @@ TEST_F(SocketServerTest, AnUrgentLineOfAClientThatHasGoneIsHeard) {
     }
     turn(20);
     EXPECT_EQ(std::count(lines_.begin(), lines_.end(), "urgent: down"), 1);
-    EXPECT_EQ(std::count(lines_.begin(), lines_.end(), "move"), 0) << "it has gone, and wants no motion";
+    EXPECT_EQ(std::count(lines_.begin(), lines_.end(), "move"), 0)
+        << "a client that has left must not cause motion";
     EXPECT_EQ(server().clients(), 0U);
   }
   EXPECT_EQ(closed_, 3);

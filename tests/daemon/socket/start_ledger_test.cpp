@@ -18,7 +18,7 @@ TEST(StartLedger, AStartIsFoundByItsNumberAndByItsId) {
   EXPECT_FALSE(ledger.has(5));
   EXPECT_EQ(ledger.client_of(5), 0U);
   EXPECT_EQ(ledger.request_of("b"), std::nullopt);
-  EXPECT_EQ(ledger.request_of(""), std::nullopt) << "a start without an id has none in common with another";
+  EXPECT_EQ(ledger.request_of(""), std::nullopt) << "a start without an id matches no other start";
 }
 
 TEST(StartLedger, WhatAStopHasNamedBeforeItCameIsForbidden) {
@@ -26,7 +26,7 @@ TEST(StartLedger, WhatAStopHasNamedBeforeItCameIsForbidden) {
   EXPECT_FALSE(ledger.is_forbidden("a"));
   ledger.forbid("a");
   EXPECT_TRUE(ledger.is_forbidden("a"));
-  EXPECT_FALSE(ledger.is_forbidden("")) << "a start without an id is never meant";
+  EXPECT_FALSE(ledger.is_forbidden("")) << "a start without an id is never forbidden";
 }
 
 TEST(StartLedger, TheOldestGoButForTheOneThatRuns) {
