@@ -130,7 +130,8 @@ ModbusSettings with_rtu_frames(ModbusSettings settings) {
 TEST(BoardHabits, RtuFramesOverTcp) {
   RunningRig rig(serial_server(settling(0)));
   ModbusSettings settings = rig.board();
-  EXPECT_EQ(Client(settings).board.connect(deadline), BusStatus::timed_out) << "these are no RTU frames";
+  EXPECT_EQ(Client(settings).board.connect(deadline), BusStatus::timed_out)
+      << "the frames are not RTU frames";
   settings = with_rtu_frames(settings);
   Client client(settings);
   ASSERT_EQ(client.board.connect(generous), BusStatus::ok) << client.board.detail();

@@ -54,7 +54,8 @@ TEST(EmulatedBoard, ShowsHowManyClientsItHasWhereTheMapHasARegisterForIt) {
   drivers::BoardMap map = adam();
   EmulatedBoard silent(map);
   silent.count_clients(2);
-  EXPECT_EQ(silent.answer(0, Bytes{0x04, 0, 30, 0, 1}).pdu, (Bytes{0x84, 2})) << "no such register";
+  EXPECT_EQ(silent.answer(0, Bytes{0x04, 0, 30, 0, 1}).pdu, (Bytes{0x84, 2}))
+      << "the register does not exist";
   for (const std::uint8_t function : {std::uint8_t{3}, std::uint8_t{4}}) {
     map.watchdog.clients = drivers::BoardWatchdog::ClientCount{.function = function, .address = 30};
     EmulatedBoard board(map);
@@ -81,7 +82,7 @@ TEST(EmulatedBoard, WatchdogVentsAndSaysSo) {
   drivers::BoardMap map = adam();
   map.watchdog.timeout_s = 0.5;
   EmulatedBoard board(map);
-  EXPECT_FALSE(board.watchdog_due()) << "it sleeps until a client comes";
+  EXPECT_FALSE(board.watchdog_due()) << "the watchdog starts with the first request";
   board.answer(0, write_outputs(2000, 2000));
   EXPECT_EQ(board.watchdog_due(), second / 2);
   board.advance(second / 2 - 1);
@@ -89,10 +90,10 @@ TEST(EmulatedBoard, WatchdogVentsAndSaysSo) {
   board.advance(second / 2);
   EXPECT_TRUE(board.tripped());
   EXPECT_EQ(board.output(0), 0);
-  EXPECT_EQ(read_one(board, second, 0x04, 10), 0) << "the read-back shows what the output is";
-  EXPECT_TRUE(board.tripped()) << "a read feeds it but clears nothing";
+  EXPECT_EQ(read_one(board, second, 0x04, 10), 0) << "the read-back shows the actual output";
+  EXPECT_TRUE(board.tripped()) << "a read resets the timer but clears no trip";
   board.answer(second, write_outputs(1000, 1000));
-  EXPECT_FALSE(board.tripped()) << "any write ends it where the map knows no other way";
+  EXPECT_FALSE(board.tripped()) << "without a clearing write in the map, any write clears the trip";
   EXPECT_GT(board.output(0), 2);
 }
 
@@ -127,8 +128,8 @@ TEST(EmulatedBoard, AHeartbeatFeedsTheWatchdogOnlyIfItChanges) {
     return board.tripped();
   };
   EXPECT_FALSE(trips_with(1));
-  EXPECT_TRUE(trips_with(0)) << "the same value again and again";
-  EXPECT_TRUE(trips_with(2)) << "a value that is none of the two";
+  EXPECT_TRUE(trips_with(0)) << "a repeated value is not a heartbeat";
+  EXPECT_TRUE(trips_with(2)) << "a value other than the two heartbeat values";
 }
 
 TEST(EmulatedBoard, ALatchedTripIgnoresWritesUntilItIsCleared) {
@@ -141,10 +142,10 @@ TEST(EmulatedBoard, ALatchedTripIgnoresWritesUntilItIsCleared) {
   ASSERT_TRUE(board.tripped());
   EXPECT_EQ(board.answer(second, Bytes{0x01, 0x10, 0x21, 0, 1}).pdu, (Bytes{0x01, 1, 1}));
   board.answer(second, write_outputs(2000, 2000));
-  EXPECT_EQ(board.output(0), 0) << "answered, without effect";
+  EXPECT_EQ(board.output(0), 0) << "confirmed without effect";
   board.answer(second, Bytes{0x05, 0x10, 0x20, 0xff, 0});
   EXPECT_FALSE(board.tripped());
-  EXPECT_EQ(board.output(0), 0) << "clearing alone moves nothing";
+  EXPECT_EQ(board.output(0), 0) << "clearing alone does not change the output";
   board.answer(second, write_outputs(2000, 2000));
   EXPECT_GT(board.output(0), 4);
 }

@@ -151,7 +151,7 @@ TEST_F(EmulatorTest, AStuckSensorOfOneChannelSticks) {
   command(emulator, second, 50);
   keep_alive(emulator, 2 * second);
   EXPECT_EQ(reading_mm(emulator, 2 * second, 1), before_mm);
-  EXPECT_GT(reading_mm(emulator, 2 * second, 0), before_mm + 3) << "the other one sees";
+  EXPECT_GT(reading_mm(emulator, 2 * second, 0), before_mm + 3) << "the other sensor still measures";
   emulator.clear("stuck", 2 * second);
   emulator.advance(2 * second + millisecond);
   EXPECT_GT(reading_mm(emulator, 2 * second + millisecond, 1), before_mm + 3);
@@ -173,7 +173,8 @@ TEST_F(EmulatorTest, ASensorOutOfRangeShowsTheUpperEndAndItsStatus) {
   emulator.trigger("blind", 0);
   emulator.advance(millisecond);
   EXPECT_NEAR(reading_mm(emulator, millisecond, 0), 45, 0.01);
-  EXPECT_EQ(ask(emulator, millisecond, {0x04, 0, 20, 0, 1}).pieces.at(0).bytes.back(), 1) << "over range";
+  EXPECT_EQ(ask(emulator, millisecond, {0x04, 0, 20, 0, 1}).pieces.at(0).bytes.back(), 1)
+      << "above the range";
 }
 
 TEST_F(EmulatorTest, LinesBlockAndLeak) {

@@ -78,7 +78,7 @@ TEST(FaultsFile, SaysWhatIsWrongAndWhere) {
             std::string::npos);
   EXPECT_NE(refused("{}\n").find("faults"), std::string::npos);
   EXPECT_NE(refused("faults:\n  - {name: a, kind: no_reply, for_s: 0}\n").find("for_s"), std::string::npos)
-      << "what lasts no time is none";
+      << "a fault with duration 0 does not occur";
 }
 
 TEST(FaultSchedule, FollowsTheClockFromTheFirstCommand) {
@@ -93,7 +93,7 @@ TEST(FaultSchedule, FollowsTheClockFromTheFirstCommand) {
   EXPECT_EQ(schedule.next_change(), 103 * second);
   EXPECT_TRUE(schedule.advance(103 * second));
   EXPECT_FALSE(schedule.active(0));
-  EXPECT_FALSE(schedule.next_change()) << "it comes once";
+  EXPECT_FALSE(schedule.next_change()) << "the fault occurs once";
 }
 
 TEST(FaultSchedule, TriggersAndClearsByName) {
@@ -106,7 +106,7 @@ TEST(FaultSchedule, TriggersAndClearsByName) {
   EXPECT_TRUE(schedule.clear("a"));
   EXPECT_FALSE(schedule.active(0));
   EXPECT_TRUE(schedule.clear("b"));
-  EXPECT_FALSE(schedule.advance(20 * second)) << "cleared before its time: it does not come";
+  EXPECT_FALSE(schedule.advance(20 * second)) << "cleared before its start, so the fault does not occur";
   EXPECT_FALSE(schedule.trigger("c", 0));
   EXPECT_FALSE(schedule.clear("c"));
 }
@@ -120,7 +120,7 @@ TEST(FaultSchedule, EndsWithItsLastReply) {
   EXPECT_FALSE(schedule.active(0));
   schedule.trigger("a", 0);
   schedule.count_reply(0);
-  EXPECT_TRUE(schedule.active(0)) << "triggered again, it counts anew";
+  EXPECT_TRUE(schedule.active(0)) << "after another trigger the duration starts again";
 }
 
 }  // namespace

@@ -107,7 +107,7 @@ TEST_P(ShippedBoard, ZeroPressureIsZeroWhateverItsRawNumber) {
   ASSERT_TRUE(hold(30, 300ms)) << board_->detail();
   ASSERT_TRUE(hold(0, 100ms)) << board_->detail();
   for (const Finger& finger : rig_->stop().fingers()) {
-    EXPECT_NEAR(finger.plant().held_command_kpa(), 0, 0.013) << "2047.5 has no whole raw number";
+    EXPECT_NEAR(finger.plant().held_command_kpa(), 0, 0.013) << "2047.5 is not an integer raw value";
   }
 }
 
@@ -123,7 +123,7 @@ TEST_P(ShippedBoard, AWatchdogThatTripsIsSeenAndStaysUntilANewSession) {
   }
   EXPECT_TRUE(board_->has_watchdog());
   if (!watchdog.tripped.has_value()) {
-    EXPECT_EQ(rig_->stop().watchdog_trips(), 1U) << "such a board says nothing of it";
+    EXPECT_EQ(rig_->stop().watchdog_trips(), 1U) << "this board does not report a trip";
     return;
   }
   for (int i = 0; i < 3; ++i) {
@@ -140,7 +140,7 @@ TEST_P(ShippedBoard, AWatchdogThatTripsIsSeenAndStaysUntilANewSession) {
 
 TEST_P(ShippedBoard, WhileTheWatchdogHoldsTheOutputsNothingGetsThrough) {
   const drivers::BoardWatchdog& watchdog = output_map().watchdog;
-  if (!watchdog.tripped.has_value()) GTEST_SKIP() << "the board does not say when it tripped";
+  if (!watchdog.tripped.has_value()) GTEST_SKIP() << "the board does not report a trip";
   ASSERT_TRUE(hold(40, 200ms)) << board_->detail();
   std::this_thread::sleep_for(std::chrono::milliseconds(static_cast<int>(test_timeout_s * 2e3)));
   for (int i = 0; i < 5; ++i) EXPECT_EQ(exchange(40), BusStatus::watchdog_tripped);

@@ -83,7 +83,7 @@ TEST(Plant, AnObjectStopsTheFingerAndLetsItGoAgain) {
   held.set_object(std::nullopt);
   settle(free, 40, 1);
   settle(held, 40, 1);
-  EXPECT_NEAR(held.displacement_mm(), free.displacement_mm(), 1e-9) << "the object left no trace";
+  EXPECT_NEAR(held.displacement_mm(), free.displacement_mm(), 1e-9) << "the removed object has no effect";
 }
 
 TEST(Plant, AModelThatHasAContactOfItsOwnKeepsIt) {

@@ -201,7 +201,7 @@ TEST(SimulatedBoard, SensorFaultsShowInTheReading) {
   ASSERT_EQ(rig.exchange(30, 30), BusStatus::ok);
   EXPECT_EQ(rig.readings[0].validity, Validity::out_of_range) << "beyond the sensor's range";
   EXPECT_EQ(rig.readings[1].validity, Validity::out_of_range);
-  EXPECT_EQ(rig.readings[1].displacement_mm, last) << "a number, but an old one";
+  EXPECT_EQ(rig.readings[1].displacement_mm, last) << "the last value is repeated";
 }
 
 TEST(SimulatedBoard, LostAndRestoredBus) {
@@ -234,7 +234,7 @@ TEST(SimulatedBoard, TheWatchdogVentsAtItsTimeAndHoldsUntilConnect) {
   EXPECT_EQ(rig.exchange(40, 40), BusStatus::watchdog_tripped);
   EXPECT_NEAR(rig.board.plant(0).pressure_kpa(), 0, 1e-6);
   EXPECT_EQ(rig.run(1, 40, 40), BusStatus::watchdog_tripped);
-  EXPECT_NEAR(rig.board.plant(0).pressure_kpa(), 0, 1e-6) << "exchanging alone moves nothing";
+  EXPECT_NEAR(rig.board.plant(0).pressure_kpa(), 0, 1e-6) << "exchanges alone do not change the outputs";
   ASSERT_EQ(rig.board.connect(1s), BusStatus::ok);
   EXPECT_EQ(rig.run(1, 10, 10), BusStatus::ok);
   EXPECT_NEAR(rig.board.plant(0).pressure_kpa(), 10, 1e-6);
@@ -255,8 +255,7 @@ TEST(SimulatedBoard, CommandsOutsideTheOutputsRange) {
   EXPECT_EQ(rig.board.plant(1).held_command_kpa(), 100);
   EXPECT_EQ(rig.exchange(-1, 0), BusStatus::write_refused);
   EXPECT_EQ(rig.exchange(std::numeric_limits<double>::quiet_NaN(), 70), BusStatus::write_refused);
-  EXPECT_EQ(rig.board.plant(1).held_command_kpa(), 0)
-      << "nothing is written with a command that is no number";
+  EXPECT_EQ(rig.board.plant(1).held_command_kpa(), 0) << "no output is written if a command is not a number";
 }
 
 TEST(SimulatedBoard, OutputsThatDoNotFollow) {
@@ -265,7 +264,7 @@ TEST(SimulatedBoard, OutputsThatDoNotFollow) {
   settings.events.push_back({.at_s = 2, .kind = Kind::write_taken});
   Rig rig(settings);
   ASSERT_EQ(rig.run(1, 30, 30), BusStatus::ok);
-  EXPECT_EQ(rig.exchange(30, 30), BusStatus::ok) << "it still stands at what is asked";
+  EXPECT_EQ(rig.exchange(30, 30), BusStatus::ok) << "the output still equals the command";
   EXPECT_EQ(rig.exchange(0, 30), BusStatus::write_refused);
   EXPECT_EQ(rig.board.plant(0).held_command_kpa(), 30);
   rig.run(1, 0, 0);
