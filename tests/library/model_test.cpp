@@ -49,11 +49,11 @@ TEST(LibraryModel, NamesTheLineOfAMalformedFile) {
   }
   try {
     (void)Model::load("/no/such/file.yaml");
-    FAIL() << "there is no such file";
+    FAIL() << "the file does not exist";
   } catch (const FileError& error) {
     const std::string message = error.what();
     EXPECT_NE(message.find("/no/such/file.yaml:1:1: the file cannot be read"), std::string::npos) << message;
-    EXPECT_EQ(message.find('\n'), std::string::npos) << "nothing about its content: " << message;
+    EXPECT_EQ(message.find('\n'), std::string::npos) << "the message must not quote the file: " << message;
   }
   EXPECT_THROW((void)Model::parse(std::string("\0\xff", 2)), FileError);
 }
