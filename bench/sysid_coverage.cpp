@@ -149,10 +149,10 @@ void run(const std::string& name, double correlation, std::size_t logs, double r
               correlation == 0 ? "white" : "correlated", correlation, logs, failed);
   std::printf("  %-52s median    5 %%      95 %%    within 2 %% of 1\n", "");
   print("fit RMSE / added noise", plain);
-  print("expected of it: sqrt(1 - tr(H R)/n)", expected);
-  print("fit RMSE / expected of it", corrected);
-  print("noise as the fit estimates it / added noise", estimated);
-  std::printf("  intervals that hold the truth: %.1f %% of %d\n", all.percent(), all.trials);
+  print("expected RMSE / added noise: sqrt(1 - tr(H R)/n)", expected);
+  print("fit RMSE / expected RMSE", corrected);
+  print("estimated noise / added noise", estimated);
+  std::printf("  intervals that cover the true value: %.1f %% of %d\n", all.percent(), all.trials);
   for (const auto& [combination, count] : counts) {
     std::printf("    %-32s %5.1f %% of %d\n", combination.c_str(), count.percent(), count.trials);
   }
@@ -165,7 +165,7 @@ int main(int argc, char** argv) {
   const std::size_t logs = argc > 1 ? std::strtoul(argv[1], nullptr, 10) : 200;
   const double rate_hz = argc > 2 ? std::strtod(argv[2], nullptr) : 100;
   const std::uint64_t seed = argc > 3 ? std::strtoull(argv[3], nullptr, 10) : 1;
-  std::printf("noise %g mm, truth scattered by %g %%, tp1 at %g Hz, seeds from %llu\n", noise_mm,
+  std::printf("noise %g mm, true models scattered by %g %%, tp1 at %g Hz, seeds from %llu\n", noise_mm,
               100 * scatter, rate_hz, static_cast<unsigned long long>(seed));
   for (const char* name : {"zhang2025", "bench_twin"}) {
     for (const double correlation : {0.0, 0.9}) run(name, correlation, logs, rate_hz, seed);
