@@ -133,7 +133,7 @@ TEST(ExperimentRig, PlaysOnASimulatedBoardWithoutAskingAndReturnsItsLog) {
   fs::remove_all(folder);
   fs::create_directories(folder);
   const Player play = rig_player(simulated_rig(), [](const std::string&) {
-    ADD_FAILURE() << "a simulated rig must not ask for consent";
+    ADD_FAILURE() << "a simulated rig must not request consent";
     return false;
   });
   const auto log = play(small_experiment(), folder.string());
