@@ -33,17 +33,17 @@ std::string_view what_it_does(Kind kind) {
 std::string_view how_undone(Inverse inverse) {
   switch (inverse) {
     case Inverse::implicit:
-      return "solved together with the actuator";
+      return "inverted together with the actuator";
     case Inverse::lead:
-      return "led, so that the planned pressure comes out behind it";
+      return "compensated by a lead, so that its output is the planned pressure";
     case Inverse::preview:
-      return "met by asking for the future value of the reference";
+      return "compensated with the future value of the reference";
     case Inverse::play:
-      return "half the band is added in the direction of travel";
+      return "half the band is added in the direction of motion";
     case Inverse::bound:
-      return "no inverse; bounds the reference";
+      return "no inverse; limits the reference";
     case Inverse::ignored:
-      return "not undone";
+      return "not compensated";
   }
   return "";
 }
@@ -68,7 +68,7 @@ void write_block(std::ostream& out, const BlockDescriptor& descriptor) {
   out << "    " << info.equation << "\n\n";
   out << "Acts on: " << what_it_does(info.kind) << ". In the feedforward: " << how_undone(info.inverse) << "."
       << (info.repeatable ? " A chain may contain it more than once." : "") << "\n\n";
-  out << "| key | unit | default | allowed | does nothing at | meaning |\n|---|---|---|---|---|---|\n";
+  out << "| key | unit | default | allowed | no effect at | meaning |\n|---|---|---|---|---|---|\n";
   for (const ParameterSpec& spec : descriptor.parameters) write_parameter(out, spec);
   for (const ParameterSpec& spec : descriptor.repeated) write_parameter(out, spec);
   if (descriptor.max_parts > 0) {
