@@ -84,13 +84,13 @@ def page(results, verdicts, real, options, version):
                  f"simulated logs, `softgrip simulate` with `{' '.join(options)}`, `softgrip diagnose --model "
                  "config/models/zhang2025.yaml`"),
              f"The demo's finger has a transport delay of {real['transport_delay']} s and a valve lag of {real['valve_lag']} s. The given",
-             "model has neither. If the", "logs do not show the presence of the lag, the interval of the delay contains both answers.", "",
+             "model has neither. If the logs do not show that there is a lag, the interval of the delay covers the results with and without it.", "",
              "| logs | verdict | transport delay | valve lag |", "|---|---|---|---|"]
     for subset, rows in results.items():
         lines.append(f"| {' + '.join(subset)} | {verdicts[subset]} | {cell(rows.get('transport_delay'))} | "
                      f"{cell(rows.get('valve_lag'))} |")
     wrong = complaints(results, real)
-    lines += ["", "Every interval contains the true value, and more logs never give fewer names." if not wrong else "Wrong:"]
+    lines += ["", "Every interval contains the true value, and additional logs never reduce the number of named causes." if not wrong else "Wrong:"]
     return "\n".join(lines + [f"- {sentence}" for sentence in wrong]) + "\n"
 
 

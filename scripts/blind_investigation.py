@@ -55,25 +55,25 @@ def page(results, command, version):
     lines = [*results_page.head("Blind investigations", meaning, version, command,
                                 f"{sum(not r['poor'] for r in results)} ambiguous cases of the campaign and "
                                 f"{sum(r['poor'] for r in results)} that wrote one log of triangles alone"),
-             f"{len(asked)} first diagnoses were ambiguous with the truth among what they listed; these were investigated, with the world as "
-             "the rig and its sensor on a gauge. The position of the gauge's target has an error of 0.01 mm (standard deviation). A "
+             f"{len(asked)} first diagnoses were ambiguous and listed the true cause. These cases were investigated, with the simulated "
+             "finger as the rig and its sensor on a gauge. The position of the gauge's target has an error of 0.01 mm (standard deviation). A "
              "reading is the mean of 2 s, with the noise, quantisation, drift, disturbances and wrong samples of the "
              "simulated case.", "",
-             "| of the ambiguous verdicts | worlds, with the 95 % interval of the share |",
+             "| ambiguous verdicts | cases, with the 95 % interval of their share |",
              "|---|---|",
-             f"| resolved to the truth | {share(resolved, asked)} |",
+             f"| resolved to the true cause | {share(resolved, asked)} |",
              f"| of these by a waveform | {len(resolved) - len(by_gauge)} |",
              f"| of these by the gauge check | {len(by_gauge)} |",
-             f"| resolved to something else (wrong) | {share(wrong, asked)} |",
-             f"| still open, the truth among what is listed | {len(open_still)} |",
-             f"| of these equal for every command and every gauge (lags of valve and sensor) | {len(twins)} |",
-             f"| anything else (unexplained, partly, failed) | {len(others)} |", ""]
+             f"| resolved to another cause (wrong) | {share(wrong, asked)} |",
+             f"| still ambiguous, with the true cause listed | {len(open_still)} |",
+             f"| of these, indistinguishable by any command or gauge (lags of valve and sensor) | {len(twins)} |",
+             f"| other results (unexplained, partly, failed) | {len(others)} |", ""]
     for title, chosen in (("the campaign's", [r for r in asked if not r["poor"]]),
                           ("one log of triangles", [r for r in asked if r["poor"]])):
         if chosen:
             lines += [f"Of {title} ambiguous verdicts, "
-                      f"{share([r for r in chosen if r['outcome'] == 'right'], chosen)}, are resolved to the truth.", ""]
-    lines += ["| hidden | strength | seed | logs | ambiguous among | after | experiments | minutes of rig time | outcome |",
+                      f"{share([r for r in chosen if r['outcome'] == 'right'], chosen)}, are resolved to the true cause.", ""]
+    lines += ["| hidden | strength | seed | logs | ambiguous among | after | experiments | rig time [min] | outcome |",
               "|---|---|---|---|---|---|---|---|---|"]
     for r in sorted(asked, key=lambda r: (r["poor"], r["causes"], -r["strength"], r["seed"])):
         before = "; ".join(" or ".join(one) for one in r.get("rivals", []))

@@ -68,18 +68,18 @@ def summary(results):
 
     for strength, target in ((8, "at least 98 %"), (2, "at least 90 %")):
         among = [r for r in singles if r["strength"] == strength]
-        row(f"named right, or ambiguous with the truth listed, at strength {strength}", target, among, "right",
+        row(f"true cause named, or listed in an ambiguous verdict, at strength {strength}", target, among, "right",
             "ambiguous_right")
-        row(f"of these named alone, at strength {strength}", "-", among, "right")
-        row(f"wrong names at strength {strength}", "at most 2 %", among, "wrong")
-    row("clean worlds with a name (false alarms)", "at most 2 %", clean, "wrong")
-    row("clean worlds said to hold structure", "-", clean, "unexplained")
-    row("outside the library: given a name of the library", "at most 5 %", outside, "wrong")
-    row("outside the library: unexplained", "-", outside, "right")
-    row("pairs: both found", "at least 80 %", pairs, "right", "ambiguous_right")
+        row(f"of these, true cause named alone, at strength {strength}", "-", among, "right")
+        row(f"wrong cause named, at strength {strength}", "at most 2 %", among, "wrong")
+    row("cases without an effect: a cause is named (false alarms)", "at most 2 %", clean, "wrong")
+    row("cases without an effect: an unexplained error is reported", "-", clean, "unexplained")
+    row("effects outside the library: a cause of the library is named", "at most 5 %", outside, "wrong")
+    row("effects outside the library: reported as unexplained", "-", outside, "right")
+    row("two effects: both found", "at least 80 %", pairs, "right", "ambiguous_right")
     held = [(r["seed"], value) for r in results if r["outcome"] == "right" for value in r.get("covered", {}).values()]
     if held:
-        rows.append(("true parameter inside its 95 % interval, right verdicts", "90 to 98 %",
+        rows.append(("95 % intervals of parameters that contain the true value, right verdicts", "90 to 98 %",
                      interval_by_seed(held), len(held)))
     return rows
 
@@ -163,7 +163,7 @@ def detection_limits(results):
     """Returns by cause the share that was found at each strength, and the smallest strength that was found in 90 %."""
     singles = [r for r in results if len(r["causes"]) == 1 and not is_outside(r["causes"][0])]
     strengths = sorted({r["strength"] for r in singles}, reverse=True)
-    lines = ["| cause | " + " | ".join(f"found at {s:g} x noise" for s in strengths) + " | found nine times in ten from |",
+    lines = ["| cause | " + " | ".join(f"found at {s:g} x noise" for s in strengths) + " | smallest strength with at least 90 % found |",
              "|---|" + "---|" * (len(strengths) + 1)]
     for cause in sorted({r["causes"][0] for r in singles}):
         rates = {s: share([r for r in singles if r["causes"][0] == cause and r["strength"] == s], "right",
@@ -179,7 +179,7 @@ def detection_limits(results):
 
 
 def table(results):
-    lines = ["| hidden | strength | worlds | right | ambiguous, truth listed | partly | missed | wrong | named instead |",
+    lines = ["| hidden | strength | cases | right | ambiguous, true cause listed | partly | missed | wrong | named instead |",
              "|---|---|---|---|---|---|---|---|---|"]
     for (name, strength), rows in by_group(results):
         count = collections.Counter(r["outcome"] for r in rows)
@@ -192,10 +192,10 @@ def table(results):
 
 def meaning(rows):
     measured = {what: text.split(" (")[0] for what, _, text, _ in rows}
-    found = [measured.get(f"named right, or ambiguous with the truth listed, at strength {strength}", "-") for strength in (8, 2)]
+    found = [measured.get(f"true cause named, or listed in an ambiguous verdict, at strength {strength}", "-") for strength in (8, 2)]
     return (f"In simulated fingers, the diagnosis names or lists the true cause in {found[0]} of the cases at 8 times the noise, "
             f"and in {found[1]} at 2 times. It gives a name to "
-            f"{measured.get('outside the library: given a name of the library', '-')} of the effects outside its library.")
+            f"{measured.get('effects outside the library: a cause of the library is named', '-')} of the effects outside its library.")
 
 
 def write(path, results, planned, command, variation, version):
@@ -209,17 +209,18 @@ def write(path, results, planned, command, variation, version):
     unreachable = sum(not r.get("reachable", True) for r in results)
     lines = [*results_page.head("Blind campaign", meaning(summary(results)), version, command,
                                 f"{len(results)} simulated cases{of_planned}"),
-             "Every world is a program of its own that hides an effect and writes logs; `softgrip diagnose` gets the logs and a model whose numbers are some "
-             "percent off. Strength is the effect's excess error after recalibration, in units of the noise (0.04 mm).",
-             "", variation, "", "| measure | target | measured (95 % interval) | worlds |", "|---|---|---|---|"]
+             "In each case, a separate program simulates a finger with a hidden effect and writes logs. `softgrip diagnose` gets the logs and a model "
+             "whose parameters have errors of a few percent. Strength is the excess error that the effect leaves in the refitted model, in units of "
+             "the noise (0.04 mm).",
+             "", variation, "", "| measure | target | measured (95 % interval) | cases |", "|---|---|---|---|"]
     lines += [f"| {what} | {target} | {measured} | {count} |" for what, target, measured, count in summary(results)]
     walls = [r["wall_s"] for r in results if "wall_s" in r]
     lines += ["", f"Median wall time of a diagnosis: {statistics.median(walls):.1f} s (three logs of 8,000 samples). In "
-              f"{unreachable} worlds the effect cannot physically be as strong as asked and has its largest size instead.",
+              f"{unreachable} cases the effect cannot physically reach the required strength and has its largest size instead.",
               "", f"![Outcomes by hidden cause]({bars_path.name})", "",
-              f"![What was named where something was hidden, in percent]({confusion_path.name})", "", "Found: named alone, or listed in an ambiguous verdict.", "",
+              f"![Named cause by hidden cause, in percent]({confusion_path.name})", "", "A cause counts as found if it is named alone or listed in an ambiguous verdict.", "",
               *detection_limits(results), "", *table(results), "",
-              "Right: the cause is named alone (a clean world: nothing is named and no error remains unexplained; outside the "
-              "library: `unexplained`). Missed: nothing is named though something is there. Wrong: a name that is not "
-              "there, alone or beside the right one."]
+              "Right: the cause is named alone. In a case without an effect, right means that no cause is named and no error remains "
+              "unexplained; outside the library, it means `unexplained`. Missed: no cause is named although there is an effect. Wrong: a "
+              "cause is named that is not present, alone or together with the right one."]
     path.write_text("\n".join(lines) + "\n")

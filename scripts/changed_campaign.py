@@ -62,7 +62,7 @@ def worlds(args, build):
 
 
 def table(rows, keys, outcomes):
-    lines = ["| " + " | ".join((*keys, "worlds", *outcomes)) + " |", "|" + "---|" * (len(keys) + 1 + len(outcomes))]
+    lines = ["| " + " | ".join((*keys, "cases", *outcomes)) + " |", "|" + "---|" * (len(keys) + 1 + len(outcomes))]
     groups = collections.defaultdict(collections.Counter)
     for row in rows:
         groups[tuple(row[key] for key in keys)][row["outcome"]] += 1
@@ -109,25 +109,25 @@ def page(rows, command, planned, variation, version):
     lines = [*results_page.head("Campaign of changed fingers", meaning(changed, still), version, command,
                                 f"{len(rows)} simulated cases of {planned} planned, {failed} of them failed. Stopped before its "
                                 "end, it is a sample of the plan in random order."),
-             *changing_text(), "", variation, "", "| measure | wanted | measured (95 % interval) | worlds |", "|---|---|---|---|"]
+             *changing_text(), "", variation, "", "| measure | wanted | measured (95 % interval) | cases |", "|---|---|---|---|"]
     for strength, wanted in ((0.15, 90), (1, 97)):
         own = [r for r in changed if r["strength"] == strength]
-        for name, good in (("true change first", ("first",)), ("first, or its mirror image", ("first", "twin")),
-                           ("named or listed", ("first", "twin", "listed"))):
+        for name, good in (("true cause named first", ("first",)), ("named first, or its `twin`", ("first", "twin")),
+                           ("true cause named or listed", ("first", "twin", "listed"))):
             lines.append(f"| strength {strength}: {name} | {f'at least {wanted} %' if len(good) == 1 else '-'} | "
                          f"{interval(sum(r['outcome'] in good for r in own), len(own))} | {len(own)} |")
-        lines.append(f"| strength {strength}: something else named | - | "
+        lines.append(f"| strength {strength}: only another cause named | - | "
                      f"{interval(sum(r['outcome'] == 'wrong' for r in own), len(own))} | {len(own)} |")
     told = [one["held"] for r in changed for one in r["intervals"]]
     lines.append(f"| 95 % intervals that contain the true value | 92 to 97 % | {interval(sum(told), len(told))} | {len(told)} |")
-    lines.append("| unchanged reported as unchanged | at least 98 % | "
+    lines.append("| unchanged fingers that are reported as unchanged | at least 98 % | "
                  f"{interval(sum(r['outcome'] == 'unchanged' for r in still), len(still))} | {len(still)} |")
     if len({row["baseline runs"] for row in rows}) > 1:
         lines += ["", "## By baseline runs", "", *smallest_found(changed), "", *table(changed, ("baseline runs", "strength"), OUTCOMES), "",
                   *table(still, ("baseline runs",), ("unchanged", "false_alarm", "unexplained"))]
     lines += ["", "## By family and columns", "", *table(changed, ("family", "columns", "strength"), OUTCOMES), "",
               *table(still, ("family", "columns"), ("unchanged", "false_alarm", "unexplained")), "",
-              "## By cause", "", *table(changed, ("cause", "strength"), OUTCOMES), "", "## Names given instead", "",
+              "## By cause", "", *table(changed, ("cause", "strength"), OUTCOMES), "", "## Cases without the true cause named first", "",
               "| hidden | strength | family | columns | seed | outcome | verdict | named |", "|---|---|---|---|---|---|---|---|"]
     for row in sorted((r for r in changed + still if r["outcome"] not in ("first", "unchanged")), key=lambda r: r["cause"]):
         lines.append(f"| {row['cause']} | {row['strength']} | {row['family']} | {row['columns']} | {row['seed']} | "
@@ -137,15 +137,15 @@ def page(rows, command, planned, variation, version):
 
 def changing_text():
     return [
-        "Each world is a finger whose healthy logs (campaign 0 of its seed; 3 unless given) are recorded before anything is hidden,",
-        "and whose later logs (campaign 1: other waveforms, other noise) have one cause in them, or none. Strength 1 is what",
-        "the other campaigns call 8: an excess error of 8 times the noise of 0.04 mm; 0.15 of it is 0.048 mm. The later day",
-        "has another zero and another temperature. `first`: the true cause is named first; `twin`: stiffening and a bent",
-        "scale for each other; `listed`: named after another or among the alternatives; `unnamed`: something changed, nothing is",
-        "named; `missed`: reported as unchanged; `wrong`: only something else is named. Intervals are those of numbers that mean",
-        "the same in the world and in the answer, of true changes that are named first. The textbook family's valve is by",
-        "the standard that the base's regulator is by (ISO 6358, a controller with an integral): what that is worth for",
-        "a valve by another law, these worlds do not show."]
+        "In each case, the healthy logs of a finger (campaign 0 of its seed; 3 logs unless stated) are recorded without a hidden",
+        "cause. The later logs (campaign 1, with other waveforms and other noise) contain one hidden cause or none. Strength 1 is the",
+        "strength 8 of the other campaigns: an excess error of 8 times the noise of 0.04 mm. At strength 0.15 the excess error is 0.048 mm.",
+        "The zero of the sensor and the temperature differ on the later day. The outcomes are: `first`: the true cause is named first.",
+        "`twin`: stiffening is named for a nonlinear scale, or the reverse. `listed`: the true cause is named after another cause or among",
+        "the alternatives. `unnamed`: a change is reported without a cause. `missed`: the finger is reported as unchanged. `wrong`: only",
+        "another cause is named. The intervals are those of true changes that are named first, for parameters with the same meaning in the",
+        "simulation and in the result. The valve of the textbook family follows the same standard (ISO 6358, a controller with an integral)",
+        "as the regulator of the model structure. These cases do not show the performance on a valve with another law."]
 
 
 def main():

@@ -55,7 +55,7 @@ def summary(rows):
         among = [r for r in clean if r["columns"] == columns]
         line(f"without an effect, {columns_text(columns)}: held-out error at most {most:g} times the noise", "100 %",
              within(among, most), among)
-    line("without an effect: nothing named that the world does not have", "at least 97 %",
+    line("without an effect: no cause named that is not present", "at least 97 %",
          share(sum(not r["wrong"] for r in clean), len(clean)), clean)
     line("without an effect: no name and an unexplained error (`unexplained`)", "-",
          share(sum(r["outcome"] == "unexplained" for r in clean), len(clean)), clean)
@@ -63,12 +63,12 @@ def summary(rows):
     for strength in sorted({r["strength"] for r in singles}, reverse=True):
         among = [r for r in singles if r["strength"] == strength]
         line(f"one effect at {strength:g} times the noise: found", wanted.get(strength, "-"), found_of(among), among)
-    line("one effect: something wrong is named", "at most 3 %", wrong_of(singles), singles)
+    line("one effect: a wrong cause is named", "at most 3 %", wrong_of(singles), singles)
     for size, word in ((2, "two"), (3, "three")):
         among = [r for r in rows if len(r["causes"]) == size]
-        line(f"{word} effects: share of them that is found", "-", found_of(among), among)
+        line(f"{word} effects: share of the effects that are found", "-", found_of(among), among)
         line(f"{word} effects: all found", "-", share(sum(len(r["found"]) == size for r in among), len(among)), among)
-        line(f"{word} effects: something wrong is named", "-", wrong_of(among), among)
+        line(f"{word} effects: a wrong cause is named", "-", wrong_of(among), among)
     closed = [r for r in rows if r.get("feedforward")]
     line("the extended model gives a feedforward", "100 %", share(sum(r["feedforward"] != "none" for r in closed), len(closed)),
          closed)
@@ -93,7 +93,7 @@ def clean_table(rows):
             lines.append((make, columns_text(columns), len(among), median(chosen), f"{max(chosen, default=math.nan):.2f}",
                           median(extended), ", ".join(f"{name} ({n})" for name, n in own.most_common()),
                           instead(among)))
-    return table(("make", "columns", "worlds", "held-out error / noise, median", "worst",
+    return table(("make", "columns", "cases", "held-out error / noise, median", "worst",
                   "of the diagnosis' model, median", "own physics named", "wrongly named"), lines)
 
 
@@ -106,7 +106,7 @@ def split_table(rows, key, text=str):
         by_strength = [found_of([r for r in among if r["strength"] == s]) for s in strengths]
         if among:
             lines.append((text(value), len(among), *by_strength, wrong_of(among), instead(among)))
-    return table((key, "worlds", *(f"found at {s:g} x noise" for s in strengths), "wrong", "wrongly named"), lines)
+    return table((key, "cases", *(f"found at {s:g} x noise" for s in strengths), "wrong", "wrongly named"), lines)
 
 
 def cause_table(rows):
@@ -121,7 +121,7 @@ def cause_table(rows):
         lines.append((cause, *(f"{sum(len(r['found']) for r in some)} of {len(some)}" for some in at),
                       share(sum(len(r["found"]) for r in among), len(among)),
                       sum(len(r["alone"]) for r in among), in_part, instead(among)))
-    return table(("cause", *(f"found at {s:g} x noise" for s in strengths), "found in all", "alone", "listed as a part only",
+    return table(("cause", *(f"found at {s:g} x noise" for s in strengths), "found in total", "named alone", "only listed as a partial cause",
                   "wrongly named"), lines)
 
 
@@ -130,15 +130,15 @@ def wrong_table(rows):
     lines = [("+".join(r["causes"]) or "nothing", f"{r['strength']:g}", r["make"], columns_text(r["columns"]), r["seed"],
               ", ".join(r["wrong"]), ", ".join(name for name in r["named"] if name not in r["wrong"]), r["verdict"])
              for r in rows if r["wrong"]]
-    return table(("hidden", "strength", "make", "columns", "seed", "wrong", "named besides", "verdict"), sorted(lines))
+    return table(("hidden", "strength", "make", "columns", "seed", "wrong", "also named", "verdict"), sorted(lines))
 
 
 def meaning(rows):
     measured = {what: text.split(" (")[0] for what, _, text, _ in summary(rows)}
     found = [measured.get(f"one effect at {strength} times the noise: found", "-") for strength in (8, 2)]
     return (f"In fingers and valves that share no equation with softgrip, the diagnosis finds the true cause in {found[0]} of the "
-            f"cases at 8 times the noise, and in {found[1]} at 2 times. It names something wrong in "
-            f"{measured.get('one effect: something wrong is named', '-')}.")
+            f"cases at 8 times the noise, and in {found[1]} at 2 times. It names a wrong cause in "
+            f"{measured.get('one effect: a wrong cause is named', '-')}.")
 
 
 def made(results, planned):
@@ -146,30 +146,30 @@ def made(results, planned):
     walls = [r["wall_s"] for r in results if "wall_s" in r]
     of_planned = f" of {planned} planned" if len(results) < planned else ""
     unreachable = sum(not r.get("reachable", True) for r in results)
-    return (f"{len(results)} simulated cases{of_planned}, {len(failed)} of them failed, in {unreachable} the effect missed its "
-            f"strength. Median time of a diagnosis on one core of a machine that others use too: "
+    return (f"{len(results)} simulated cases{of_planned}, {len(failed)} of them failed, in {unreachable} the effect did not reach its "
+            f"strength. Median time of a diagnosis on one core of a shared machine: "
             f"{statistics.median(walls):.0f} s, longest {max(walls):.0f} s.")
 
 
 INTRODUCTION = """\
-Simulated cases that share nothing with the models of softgrip: an ISO 6358 valve behind a PI spool with overlap and pilot
-hysteresis, and fingers of five makes (generalised play operators, Maxwell-slip elements, Preisach relays, a tube of
-slices of rubber with a Prony series, play with fractional creep), creep over five decades, a slight curvature. Three
-logs each, readings with 0.04 mm, pressures with 0.05 kPa, supplies with 0.3 kPa of noise.
+The simulated cases share no equation with the models of softgrip. The valve follows ISO 6358, behind a PI spool with overlap and
+pilot hysteresis. There are five makes of fingers: generalised play operators, Maxwell-slip elements, Preisach relays, a tube of
+slices of rubber with a Prony series, and play with fractional creep. All have creep over five decades and a slight curvature. Each
+case has three logs. The noise is 0.04 mm for readings, 0.05 kPa for pressures and 0.3 kPa for supplies.
 
-Strength is what the effect adds to the displacement, RMS over the campaign, beyond what a recalibrated twin takes up
-(any zero and gain; width, curvature and creep within what fingers of that make have), over the noise. A leak counts
-whole. Own physics is what a world has without an effect, found by taking the mechanism out of it and counted if that
-changes more than a quarter of the noise: to name it is a finding and never wrong. Where the hidden cause is also own
-physics (a slower valve behind a valve that has a lag) the name counts as found.
+Strength is the RMS that the effect adds to the displacement over the campaign, divided by the noise. It excludes the part that a
+refit can absorb: any zero and gain, and any width, curvature and creep that fingers of this make can have. A leak counts in full.
+*Own physics* are the mechanisms of a case without an effect that change the displacement by more than 25 % of the noise when they
+are removed. To name own physics is a finding and never wrong. If the hidden cause is also own physics (a slower valve behind a valve
+with a lag), its name counts as found.
 
-The diagnosis starts from a plain Bouc-Wen model of another finger (`tests/blind/textbook/given.yaml`), as if one finger of
-a kind was identified and the next one bought. `--given commissioned` starts from the model of `softgrip identify --structure
-auto` for other logs of the same finger without the effect. Found: named, or among the alternatives of a name, for any verdict;
-a name finds one cause at most. Wrong: named although neither it nor any of its alternatives is present. The held-out error is
-that of `softgrip identify --structure auto` on interleaved blocks, from the measured pressure if it is recorded, otherwise from
-the command. The next column is the error of the diagnosis' own model on its held-out blocks. If the pressure is recorded, it
-drives the finger (`--drive measured`), and the valve is judged by it."""
+The diagnosis starts from a plain Bouc-Wen model of another finger (`tests/blind/textbook/given.yaml`), as if one finger of a type
+had been identified and another one had been bought. `--given commissioned` starts from the model of `softgrip identify --structure
+auto` for other logs of the same finger without the effect. A cause is *found* if it is named or among the alternatives of a named
+cause, for any verdict; a name finds at most one cause. A name is *wrong* if neither it nor any of its alternatives is present. The
+held-out error is that of `softgrip identify --structure auto` on interleaved blocks, from the measured pressure if it is recorded,
+otherwise from the command. The next column is the error of the diagnosis' own model on its held-out blocks. If the pressure is
+recorded, it is the input of the finger (`--drive measured`), and the valve is judged by it."""
 
 
 def write(path, results, planned, command, variation, version):
@@ -190,13 +190,13 @@ def write(path, results, planned, command, variation, version):
                 r["rivals"].append(rivals)
     confusion_path.write_text(blind_page.confusion(plain))
     lines = [*results_page.head("Textbook campaign", meaning(rows), version, command, made(results, planned)),
-             f"Every outcome is a line of [{rows_path.name}]({rows_path.name}): as `DIR/textbook.jsonl` the command goes on from it.",
+             f"Every outcome is a line of [{rows_path.name}]({rows_path.name}). If you copy this file to `DIR/textbook.jsonl`, the command continues from it.",
              "", *INTRODUCTION.splitlines(), "", variation, "",
-             *table(("measure", "wanted", "measured (95 % interval)", "worlds"), summary(rows)),
+             *table(("measure", "wanted", "measured (95 % interval)", "cases"), summary(rows)),
              "## Without an effect", "", *clean_table(rows), "## By cause, hidden alone", "", *cause_table(rows),
              f"![Outcomes by hidden cause]({bars_path.name})", "",
-             f"![What was named where something was hidden, own physics left out]({confusion_path.name})", "",
-             "## Wrong names, one by one", "", *wrong_table(rows), "## By make", "", *split_table(rows, "make"), "## By columns", "", *split_table(rows, "columns", columns_text)]
+             f"![Named cause by hidden cause, without own physics]({confusion_path.name})", "",
+             "## Cases with a wrong cause", "", *wrong_table(rows), "## By make", "", *split_table(rows, "make"), "## By columns", "", *split_table(rows, "columns", columns_text)]
     if len({r["given"] for r in rows}) > 1:
         lines += ["## By the model that was given", "", *split_table(rows, "given")]
     path.write_text("\n".join(lines).rstrip() + "\n")

@@ -88,9 +88,9 @@ def page(args, rows, command):
             f"{os.cpu_count()} processors, closed loop and report included"),
         f"Required: median at most {WANTED['median']} s, longest at most {WANTED['longest']} s. Measured: {median:.1f} s and "
         f"{longest:.1f} s.", "",
-        *table(("", "worlds", "median [s]", "longest [s]", "processor time, median [s]"), summary(rows)),
+        *table(("", "cases", "median [s]", "longest [s]", "processor time, median [s]"), summary(rows)),
         *table(("stage", "share of the time"), shares(rows)),
-        "The five longest:", "",
+        "The five longest diagnoses:", "",
         *table(("hidden", "strength", "make", "columns", "seed", "verdict", "took [s]"), [
             (" + ".join(r["causes"]) or "nothing", f"{r['strength']:g}", r["make"], r["columns"], r["seed"], r["verdict"],
              f"{r['wall_s']:.1f}") for r in slowest])])
