@@ -21,7 +21,7 @@ the command. A part of it runs with every test (`system.test_fault_matrix`).
   (relief valve, dump valve in the emergency-stop circuit).
 
 Every cell also checks these conditions: no output moved away from rest after the fault; the fault is acknowledged once its cause is
-gone, and this moves nothing; recordings are complete, without a missing row except for ticks that the loop itself lost; and `run.json`
+gone, and this causes no motion; recordings are complete, without a missing row except for ticks that the loop itself lost; and `run.json`
 contains the fault.
 """
 
@@ -72,7 +72,7 @@ def page(table, results, build):
     notes = []
     lines = [*results_page.head("Fault matrix", meaning(results), results_page.version_of(build), "scripts/fault_matrix.sh --page",
                                 "real daemon and emulated board over real sockets"), EXPLANATION, summary(results), "", "## Thresholds", "",
-             "`config/rig_tcp.yaml` with these changes; bounds are expressions of them:", "",
+             "The rig is `config/rig_tcp.yaml` with these changes. The allowed numbers of cycles are computed from them:", "",
              "| key | |", "|---|---|"]
     lines += [f"| `{key}` | {value} |" for key, value in table.rig.items()]
     lines += ["", "## The table", "", "| class | fault | " + " | ".join(table.phases) + " |",
