@@ -24,8 +24,8 @@ sys.path.insert(0, str(ROOT / "tests/system"))
 ZONES = (("nearer by 4 to 8 mm", -8, -4), ("nearer by 0 to 4 mm", -4, 0), ("farther by 0 to 4 mm", 0, 4),
          ("farther by 4 to 8 mm", 4, 8.001))
 SLIPPED = "pulled out when held"
-HEAD = ("part", "where", "fingers", "grips", "largest gripping pressure, median and most [kPa]", "results",
-        "time to the result, median and most [s]")
+HEAD = ("part", "where", "fingers", "grips", "largest gripping pressure, median and maximum [kPa]", "results",
+        "time to the result, median and maximum [s]")
 
 
 parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -77,14 +77,14 @@ def table(groups):
 
 def page(groups, problems, off, wire, version):
     others = "".join(f"- {abs(percent)} % {'farther' if percent > 0 else 'less far'}: {summary(judged)}, "
-                     f"{len(found)} promises broken.\n" for percent, (judged, found) in off.items())
+                     f"{len(found)} requirements violated.\n" for percent, (judged, found) in off.items())
     over_the_wire = "" if wire is None else f"""
 ## Over the network
 
-The first {args.wire} of these trials again in real time, `softgripd` at 100 Hz against `softgrip-rig` over Modbus TCP,
+The first {args.wire} of these trials are repeated in real time, with `softgripd` at 100 Hz against `softgrip-rig` over Modbus TCP,
 {args.side_by_side} rigs in parallel. Both fingers touch the part at the same place. Every fifth part is pulled out 1 s after HOLDING, and the result must
 be PART LOST. {summary(wire[0])}, {len(wire[1])}
-promises broken.
+requirements violated.
 
 {table(wire[0])}"""
     wanted = f"--seeds {args.seeds}" + (f" --wire {args.wire}" if args.wire else "")
@@ -96,18 +96,18 @@ promises broken.
         f"{ALLOWED_KPA:g} kPa are allowed. If the fingers differ from the model by 2 %, it was at most {off_model:.1f} kPa.", version, f"scripts/gentle_grips.py {wanted} --page docs/results/gentle-grips.md",
         "simulated rig; virtual time, and real time over Modbus TCP" if wire else "simulated rig, virtual time")
     return "\n".join(head) + f"""
-`config/sequences/pick_stone.yaml`, with its two places at the expected place of each part, on the simulated rig of
-`config/rig.yaml` in virtual time. The approach ends {gripping.APPROACH_MM} mm before that place, the grip searches to {gripping.REACH_MM} mm behind
-it. Each seed draws the part, one finger or two, and the distance of the part from its place. Largest gripping pressure: the true
-pressure at the finger minus the pressure that the free finger would need to rest at its true place, from the first contact on
+`config/sequences/pick_stone.yaml` is run on the simulated rig of `config/rig.yaml` in virtual time. Its two positions are adapted to
+the expected position of each part: the approach ends {gripping.APPROACH_MM} mm before it, and the grip searches up to {gripping.REACH_MM} mm beyond it. Each seed draws
+the part, one or two fingers, and the distance of the part from its expected position. The largest gripping pressure is the true
+pressure at the finger minus the pressure that the free finger would need to rest at its true position, from the first contact on
 ([gripping pressure](../reference/sequence-file.md#contact-and-gripping-pressure)). The sequence allows
-{ALLOWED_KPA:g} kPa; noise and the board's last bit may add {gripping.TOLERANCE_KPA:g}.
+{ALLOWED_KPA:g} kPa; noise and the board's last bit may add {gripping.TOLERANCE_KPA:g} kPa.
 
-{summary(groups)}, {len(problems)} promises broken: no gripping pressure above
-the limit of the sequence, no HOLDING without a part, no NO PART with a part.
+{summary(groups)}, {len(problems)} requirements violated. The requirements are: no gripping pressure
+above the limit of the sequence, no HOLDING without a part, no NO PART with a part.
 
 {table(groups)}
-Every third seed again, with fingers that move more or less than the controller's model predicts:
+Every third seed is repeated with fingers that move more or less than the controller's model predicts:
 
 {others}{over_the_wire}"""
 

@@ -248,7 +248,7 @@ def listed(lives, temperature, key):
                    if told[temperature][key]) or "- none\n"
 
 
-NAMES = {True: "with the temperature", False: "without it"}
+NAMES = {True: "with the temperature", False: "without the temperature"}
 
 
 def page(args, seen, eventful, healthy, wall_s):
@@ -263,7 +263,7 @@ def page(args, seen, eventful, healthy, wall_s):
                     f"Alarms of a finger judged alone, {NAMES[t]}:\n\n{listed(healthy, t, 'alone')}\n" for t in TOGETHER)
     told = "".join(f"### {NAMES[t].capitalize()}\n\n| change | finger | on day | warned on day | "
                    f"alarm on day | after grips | indicators in "
-                   f"alarm before the repair | candidate faults that night | candidate faults before the repair |\n"
+                   f"alarm before the repair | candidate faults in the night of the alarm | candidate faults before the repair |\n"
                    f"|---|---|---|---|---|---|---|---|---|\n{event_rows(seen[t])}\n"
                    f"False alarms: {'; '.join(eventful[t]['false']) or 'none'}. Warnings without an alarm: "
                    f"{'; '.join(eventful[t]['warnings']) or 'nothing'}.\n\n" for t in TOGETHER)
@@ -277,31 +277,31 @@ def page(args, seen, eventful, healthy, wall_s):
     return "\n".join(head) + f"""
 {(args.healthy + 1) * DAYS * len(HOURS)} recordings of `softgrip run` were judged{took}. The changes of a finger are simulated in its plant; `softgrip health` reads only the recordings.
 
-Every life has weather of {WEATHER_C:g} °C (standard deviation, correlated by {WEATHER_STAYS:g} from day to day), {DAY_C:g} °C within the day, a
-gain of {100 * GAIN_PER_C["left"]:g} (left) and {100 * GAIN_PER_C["right"]:g} (right) % per °C, parts with a place that varies by {PART_MM:g} mm (standard deviation), and wear of {-100 * WEAR_PER_DAY * DAYS:.1g} % in ninety
-days. The rig has one thermometer, noise {working_life.THERMOMETER_NOISE_C:g} °C. Every life is judged with its temperatures and again
-without them, as for a rig without a thermometer.
+Every simulated life has weather of {WEATHER_C:g} °C (standard deviation, with a correlation of {WEATHER_STAYS:g} from day to day), a variation of {DAY_C:g} °C
+within the day, and a temperature coefficient of the gain of {100 * GAIN_PER_C["left"]:g} (left) and {100 * GAIN_PER_C["right"]:g} (right) % per °C. The position of the parts varies by
+{PART_MM:g} mm (standard deviation), and the wear is {-100 * WEAR_PER_DAY * DAYS:.1g} % in ninety days. The rig has one thermometer with a noise of {working_life.THERMOMETER_NOISE_C:g} °C. Every life is
+judged with its temperatures and again without them, as for a rig without a thermometer.
 
 ## Detected changes
 
-{told}Warned: the difference between the fingers was reported, possibly without the finger that changed (`unclear`). `shared` is a change of
-the rig, not of a finger. On day 60 the left finger was replaced by one that is {100 * (NEW_FINGER - 1):.0f} % softer, which the maintenance
-record contains; its charts started again.
+{told}`warned on day` is the day on which the difference between the fingers was reported, possibly without naming the changed finger
+(`unclear`). `shared` is a change of the rig, not of a finger. On day 60 the left finger was replaced by one that is {100 * (NEW_FINGER - 1):.0f} % softer. The maintenance
+record contains this, so its charts started again.
 
 ## Healthy days
 
-Lives of {DAYS} days with weather and wear only, two fingers each, nine indicators per finger. For independent days the stated
-average is one false alarm in 3650 points of a finger: of {2 * args.healthy} fingers {2 * args.healthy * DAYS / 3650:.2f}. Fingers
-with an alarm, and lives with a reported change of the rig:
+These are lives of {DAYS} days with weather and wear only, two fingers each, nine indicators per finger. For independent days the stated
+average is one false alarm in 3650 points of a finger, which is {2 * args.healthy * DAYS / 3650:.2f} for {2 * args.healthy} fingers. The table
+states the fingers with an alarm, and the lives with a reported change of the rig:
 
 | | fingers in alarm, judged together | fingers in alarm, each judged alone | lives with a warning of the rig |
 |---|---|---|---|
 {counts}
 The estimated temperature coefficient of the gain is {min(slopes, default=0):.4f} to {max(slopes, default=0):.4f} mm per °C.
 
-{lists}An active alarm hides further ones of the same indicator. A shared change of the gain without a thermometer is the weather here: it is
-true, but not useful. Limits of these figures: the simulated fingers are all of one kind, they follow the temperature of the hall at
-once, and only the weather is correlated from day to day.
+{lists}An active alarm hides further alarms of the same indicator. Without a thermometer, a shared change of the gain is caused by the weather
+here: the warning is true, but not useful. These figures have limits: all simulated fingers are of one kind, they follow the
+temperature of the hall at once, and only the weather is correlated from day to day.
 """
 
 

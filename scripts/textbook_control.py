@@ -1,18 +1,18 @@
 #!/usr/bin/python3
-"""Textbook fingers followed in closed loop over the wire: the identified model's feedforward beside PID alone and beside
-the paper's scheme.
+"""Tracking of textbook fingers in closed loop over the network: the identified model's feedforward compared with PID alone
+and with the paper's scheme.
 
     scripts/textbook_control.py --work DIR [--build build/release] [--fingers 10] [--side-by-side 5] [--page PAGE.md]
                                 [--frequencies-hz 0.05 0.1 0.2 0.5]
 
-Each finger (tests/blind/textbook) is identified from a campaign of its own, twice: `softgrip identify --structure auto` and
-`--structure bouc_wen`. Then tests/blind/textbook/rig.cpp plays it in real time on Modbus TCP, four times side by side, and
-softgripd's loop at 200 Hz follows the same sines on all four. First four PIDs try a sine of 0.2 Hz, as `softgrip tune`
-gives them for sensitivities of at most 2, 1.6, 1.3 and 1.15; the better two of them are kept. Then four controllers follow
-all sines: the identified model's feedforward with PID, the two PIDs, and the paper's scheme, which is the inverse of the
-Bouc-Wen element with PID, both with the gains of `softgrip tune`. The error is the root mean square of
-reading minus reference, each reading with the reference of its own time, from the second cycle on. The table also gives the error
-without the noise of the sensor, which adds its own mean square to every scheme.
+Each finger (tests/blind/textbook) is identified twice from its own campaign: with `softgrip identify --structure auto` and with
+`--structure bouc_wen`. Then tests/blind/textbook/rig.cpp simulates four copies of it in real time on Modbus TCP, and softgripd's
+loop follows the same sines on all four at 200 Hz. In the first run, four PIDs follow a sine of 0.2 Hz, with the gains of `softgrip
+tune` for sensitivities of at most 2, 1.6, 1.3 and 1.15; the better two are kept. In the second run, four controllers follow all
+sines: the identified model's feedforward with PID, the two PIDs, and the paper's scheme, which is the inverse of the Bouc-Wen
+element with PID. The first and the last use the gains of `softgrip tune`. The error is the root mean square of reading minus
+reference, each reading with the reference of its own time, from the second cycle on. The table also states the error without the
+noise of the sensor, which adds its own mean square to every scheme.
 """
 import argparse
 import concurrent.futures
@@ -183,9 +183,9 @@ def page(results, frequencies_hz, command, version):
     lines = [*results_page.head("Textbook fingers in closed loop", meaning, version, command,
                                 f"{len(results)} simulated fingers in real time on Modbus TCP, 200 Hz"),
              " ".join(__doc__.split("\n\n")[2].replace("(tests/blind/textbook)", "(`tests/blind/textbook`)").split()), "",
-             f"{len(results)} fingers; sines of a quarter of their span about the middle. The sensor's noise is "
-             f"{NOISE_MM} mm: no scheme reads less.", "",
-             "| frequency | identified model and PID | best PID alone | paper's scheme | better than the best PID, median | "
+             f"There are {len(results)} fingers. The amplitude of the sines is 25 % of the span. The sensor's noise is "
+             f"{NOISE_MM} mm, so the error of no scheme can be smaller.", "",
+             "| frequency | identified model and PID | best PID alone | paper's scheme | smaller error than the best PID, median | "
              "worst | without the noise, median | paper's scheme, median |", "|---|---|---|---|---|---|---|---|"]
     for hz in frequencies_hz:
         median = [statistics.median(r["errors_mm"][hz, "identified"] for r in results),
@@ -196,9 +196,9 @@ def page(results, frequencies_hz, command, version):
         lines.append(f"| {hz:g} Hz | " + " | ".join(f"{m:.3f} mm" for m in median) +
                      f" | {statistics.median(read):.1f} times | {min(read):.1f} times | {statistics.median(free):.1f} times | "
                      f"{statistics.median(paper):.1f} times |")
-    lines += ["", f"Over all fingers and frequencies: {statistics.median(raw):.1f} times better than the best PID as it is read, "
-              f"where a finger that followed exactly would read {statistics.median(exact):.1f} times; "
-              f"{statistics.median(every):.1f} times without the noise.", "", "## Finger by finger, as it is read", "",
+    lines += ["", f"Over all fingers and frequencies, the error of the readings is {statistics.median(raw):.1f} times smaller than with the "
+              f"best PID ({statistics.median(exact):.1f} times for a finger that follows exactly). Without the noise it is "
+              f"{statistics.median(every):.1f} times smaller.", "", "## Errors of the readings, for each finger", "",
               "| make | seed | reference | " + " | ".join(f"{hz:g} Hz: identified, best PID, paper" for hz in frequencies_hz) + " |",
               "|---" * (3 + len(frequencies_hz)) + "|"]
     for r in results:

@@ -106,16 +106,17 @@ def page(args, figures):
                  f"repeats {twice} of the {done} rows that were done.", results_page.version_of(args.build),
                  f"scripts/workflow_campaign.py --work DIR --rows {rows} --cores {args.cores} --batch {args.batch} --page {args.page}",
                  f"{os.cpu_count()} processors, which other programs used, too"),
-             "The load is the mean of the last minute. Each row is `softgrip identify --threads 1` of another simulated finger, 25 s at 20 Hz. "
-             "Such short rows are the workflow's worst case: its overhead per row is the same for rows of minutes.", "",
-             "| how | wall time | per row | load | models, hash over all |", "|---|---|---|---|---|"]
+             "The load is the mean of the last minute. Each row runs `softgrip identify --threads 1` for another simulated finger, with a "
+             "log of 25 s at 20 Hz. Such short rows are the workflow's worst case, because its overhead per row does not depend on the "
+             "duration of a row.", "",
+             "| method | wall time | per row | load | models, hash over all |", "|---|---|---|---|---|"]
     for name, seconds, (digest, count), load in figures["ways"]:
         lines.append(f"| {name} | {seconds:.0f} s | {seconds / rows:.2f} s | {load:.1f} | {count}, `{digest}` |")
     whole_s = figures["whole_s"]
     lines += ["", f"The models are {'the same, byte by byte' if same else 'NOT the same'}.", "",
-              f"Killed with SIGKILL after {first_s:.0f} s, when {done} of {rows} rows were done, and begun again: {second_s:.0f} s "
-              f"more, {first_s + second_s:.0f} s in all beside {whole_s:.0f} s of one that was left alone right before; {twice} of the rows that were done were run "
-              "twice."]
+              f"A workflow was killed with SIGKILL after {first_s:.0f} s, when {done} of {rows} rows were done, and started again. It took "
+              f"{second_s:.0f} s more, in total {first_s + second_s:.0f} s, compared with {whole_s:.0f} s for an undisturbed workflow directly "
+              f"before. Of the rows that were done, {twice} {'was' if twice == 1 else 'were'} run twice."]
     return "\n".join(lines) + "\n"
 
 

@@ -41,9 +41,9 @@ def requirements(values):
     summary = values.get("summary", {})
     rows = []
     for group, part in summary.get("repeats", {}).items():
-        rows.append((f"{group}, nothing changed: reported as changed", "at most 1 of 12" if group == "runs" else "-",
+        rows.append((f"{group} without a change: reported as changed", "at most 1 of 12" if group == "runs" else "-",
                      of(part["changed"], part["cases"])))
-        rows.append((f"{group}, nothing changed: `sensor_drift` named", "-", of(part["sensor_drift"], part["cases"])))
+        rows.append((f"{group} without a change: `sensor_drift` named", "-", of(part["sensor_drift"], part["cases"])))
     if "changes" in summary:
         part = summary["changes"]
         rows += [("labelled changes beyond the run-to-run spread: detected", "80 %",
@@ -61,13 +61,13 @@ def requirements(values):
                  ("other loops: `valve_deadband` named", "at most 1 of 16", of(others["stiction_named"], others["cases"])),
                  ("all loops: `sensor_drift` named alone", "none",
                   of(sticking["drift_alone"] + others["drift_alone"], sticking["cases"] + others["cases"])),
-                 ("loops with a sticking valve, Horch's phase test", "-", of(sticking["horch"], sticking["cases"])),
-                 ("other loops, Horch's phase test", "-", of(others["horch"], others["cases"]))]
+                 ("loops with a sticking valve: detected by Horch's phase test", "-", of(sticking["horch"], sticking["cases"])),
+                 ("other loops: reported as sticking by Horch's phase test", "-", of(others["horch"], others["cases"]))]
     if "identification" in summary:
         part = summary["identification"]
         rows += [("identification, `auto`: a linear model of order 3 is better by more than 10 %", "none",
                   of(part["linear_better"]["auto"], part["rows"])),
-                 ("identification, `plain`: the same", "-", of(part["linear_better"]["plain"], part["rows"])),
+                 ("identification, `plain`: a linear model of order 3 is better by more than 10 %", "-", of(part["linear_better"]["plain"], part["rows"])),
                  ("identification: `auto` or `plain` has the smallest error", "-",
                   of(part["first"]["auto"] + part["first"]["plain"], part["rows"]))]
     return rows
@@ -104,11 +104,11 @@ PLAIN_TEXT = [
     "`--structure`): on the baseline, the largest on a baseline run that was left out of the fit, and on the later run.",
     "*bound* is the one-sided 95 % prediction bound (Student's t) for the error on 1 more healthy run, from the errors on",
     "the runs left out.",
-    "*ratio* is *later* over *bound*. With 1 baseline run there is no bound, and *ratio* is *later* over *fitted*."]
+    "*ratio* is *later* divided by *bound*. With 1 baseline run there is no bound, and *ratio* is *later* divided by *fitted*."]
 
 
 def repeats_section(values):
-    return ["## Repeated runs, nothing changed", "", *PLAIN_TEXT, "", *pair_tables(values, "repeats", [], lambda case: [])]
+    return ["## Repeated runs without a change", "", *PLAIN_TEXT, "", *pair_tables(values, "repeats", [], lambda case: [])]
 
 
 def changes_section(values):
@@ -124,8 +124,8 @@ def changes_section(values):
 
 STICTION_TEXT = [
     "*phase ratio* is the statistic of Horch's test (A. Horch, Control Engineering Practice 7, 1999, 1221-1231), which",
-    "`bench/foreign/horch.py` computes without softgrip: above 2/3 the valve sticks, below 1/3 it is free. Its form was chosen",
-    "with the labels of these loops in sight, so its counts are no independent measure of the test."]
+    "`bench/foreign/horch.py` computes without softgrip: above 2/3 the valve sticks, below 1/3 it is free. The labels of these loops",
+    "were known when its form was chosen, so its counts are no independent measure of the test."]
 
 
 def stiction_section(values):
@@ -137,15 +137,15 @@ def stiction_section(values):
 
 
 IDENTIFICATION_TEXT = [
-    "Held-out RMSE in % of the span of the log. A log alone: the first half is fitted, the second half is predicted from the",
-    "start of the log. `A -> B`: A is fitted, B is predicted. *plain* is `softgrip identify`, *auto* is `softgrip identify",
+    "The values are held-out RMSE in % of the span of the log. Of a single log, the first half is fitted, and the second half is",
+    "predicted from the start of the log. `A -> B`: A is fitted, and B is predicted. *plain* is `softgrip identify`, *auto* is `softgrip identify",
     "--structure auto`. *output error* is a linear output-error model of order 3 (`bench/foreign/output_error.py`): the",
     "published element also has 3 states. *SciPy* is Bouc-Wen with 2 Kelvin-Voigt branches, fitted by `least_squares`",
     "(`bench/foreign/scipy_bouc_wen.py`). For B, the last 2 estimate only the offset, from the first 5 % (at least 2 s).",
-    "With the drive *command* the measured pressure is withheld from every method; with *measured* it drives every model.",
-    "The start rule of the linear model was chosen with held-out errors of `piezo` and `hydraulic` in sight.",
-    "The start at rest, the bounded answer, the second lag and the resonance of *auto* were added with errors on",
-    "`asu_softarm` and `hydraulic` in sight: these counts are no independent measure of them.",
+    "With the drive *command* the measured pressure is withheld from every method; with *measured* it is the input of every model.",
+    "The held-out errors of `piezo` and `hydraulic` were known when the start rule of the linear model was chosen.",
+    "The errors on `asu_softarm` and `hydraulic` were known when the start at rest, the bounded response, the second lag and the",
+    "resonance of *auto* were added, so these counts are no independent measure of them.",
     "The smallest error is bold. *linear better*: the linear model is better than *auto* by more than 10 %."]
 
 
@@ -213,7 +213,7 @@ def head(values, title, command):
     lines = results_page.head(title, meaning(values), values["softgrip"]["version"], command,
                               f"{machine['processors']} processors, {machine['threads']} thread per call, 1-minute load {load}",
                               values["began"][:10])
-    return [*lines, "Times are of all calls of a case; cases that share an identification both count it. "
+    return [*lines, "The time of a case includes all its calls; an identification that two cases share counts for both. "
             "[How to run the judges](../how-to/measure.md#data-of-other-laboratories)."]
 
 
