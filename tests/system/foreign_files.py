@@ -1,9 +1,9 @@
-"""Files as other people have them, made by this script in every dialect, and what `softgrip import` makes of each.
+"""Writes external files in every supported format, and checks the result of `softgrip import` for each.
 
     tests/system/foreign_files.py [--page] [--keep FOLDER]
 
-Prints what came of every file; --page writes docs/reference/foreign-files.md. Exit code 6 if one came to anything else
-than what stands here: values equal to the truth, or refused with the reason. Needs a built tree and python3-h5py.
+Prints the result of every file; --page writes docs/reference/foreign-files.md. Exit code 6 if a result differs from the
+required one: values equal to the original, or a refusal with the reason. Needs a built tree and python3-h5py.
 """
 
 import argparse
@@ -274,14 +274,14 @@ def spreadsheets():
         File("plain.xlsx", "a workbook", workbooks.book([names] + rows)),
         File("dates.xlsx", "dates in a workbook, across midnight", workbooks.book(days)),
         File("clocks.xlsx", "times of day in a workbook, across midnight", workbooks.book(clocks)),
-        File("dates_1904.xlsx", "dates that count from 1904", workbooks.package(
+        File("dates_1904.xlsx", "a workbook with dates that are counted from 1904", workbooks.package(
             {"Run": workbooks.sheet(days, strings)}, strings, from_1904=True), says="counted from 1904"),
-        File("odd.xlsx", "titles, formulas, errors, booleans, merged cells, not from A1 on", workbooks.book(
+        File("odd.xlsx", "a workbook with titles, formulas, errors, booleans and merged cells that does not begin at A1", workbooks.book(
             odd, first_row=2, first_column=1, below='<mergeCells><mergeCell ref="B2:E2"/></mergeCells>'),
              columns=BASIC_OF | {"displacement_mm": holes}, says="D17 (#DIV/0!)"),
         File("two_sheets.xlsx", "two sheets with numbers", several, refused="2 sheets have rows of numbers: 'Monday', 'Tuesday'"),
-        File("sheet_chosen.xlsx", "the same, and one of them", several, "--sheet Tuesday", says="sheet 'Monday' is not used"),
-        File("idle_sheet.csv", "a sheet of a file without sheets", PLAIN, "--sheet Run", says="--sheet has no effect"),
+        File("sheet_chosen.xlsx", "two sheets with numbers, one of them selected", several, "--sheet Tuesday", says="sheet 'Monday' is not used"),
+        File("idle_sheet.csv", "the option --sheet for a file without sheets", PLAIN, "--sheet Run", says="--sheet has no effect"),
         File("word.xlsx", "a word among the numbers of a sheet", workbooks.book(stuck),
              refused="sheet 'Run':102:10: displacement: cell C102: 'stuck' is not a number"),
         File("cut_off.xlsx", "a workbook, cut off", workbooks.book([names] + rows)[:3000], refused="broken or cut off"),
@@ -370,9 +370,9 @@ def reports():
         File("fingers.xlsx", "two fingers in a workbook, one of them", workbooks.book(
             [["time_s", "P1 set (kPa)", "P2 set (kPa)", "tip 1 (mm)", "tip 2 (mm)"]]
             + [list(row) for row in zip(T, quarter, COMMAND, other_tip, TIP)]), "--channel 2"),
-        File("one_sensor.csv", "the pressures of two fingers and the reading of one",
+        File("one_sensor.csv", "the pressures of two fingers and the reading of one finger",
              table(["t_s", "left set (kPa)", "right set (kPa)", "right tip (mm)"], [T, quarter, COMMAND, TIP])),
-        File("counter_24_bit.csv", "a counter of 24 bits in microseconds",
+        File("counter_24_bit.csv", "microseconds of a 24-bit counter",
              table(["t_us", "set_kpa", "tip_mm"], [[(2 ** 24 - 1000000 + round(1e6 * t)) % 2 ** 24 for t in T], COMMAND, TIP]),
              says="the clock overflows at 16777216, 1 time"),
         File("day_in_ms.csv", "milliseconds of the day across midnight",
@@ -388,13 +388,13 @@ def reports():
         File("late_command.csv", "readings before the first command",
              table(names, [T, [None] * 10 + COMMAND[10:], TIP]), columns={key: without(set(range(10)))[key] for key in BASIC},
              says="10 samples before the first command left out", left_out={"before_command": 10}),
-        File("two_clocks.csv", "a slow clock of the command, decimal commas", two_clocks, columns=BASIC_OF | thirds,
+        File("two_clocks.csv", "a separate, slower clock of the command, decimal commas", two_clocks, columns=BASIC_OF | thirds,
              says="each row has 2 times", joined=100, left_out={"empty": 200}),
         File("same_clock_twice.csv", "the same time in s and in ms", table(
             ["time_s", "t_ms", "set_kpa", "tip_mm"], [T, ms, COMMAND, TIP]), says="shows the time that is used"),
         File("clock_and_counter.csv", "a time and a counter of samples",
              table(["time_s", "sample", "set_kpa", "tip_mm"], [T, list(range(COUNT)), COMMAND, TIP]), says="not used: 'sample'"),
-        File("unread_time.csv", "a time, and dates of which the month comes first", table(
+        File("unread_time.csv", "a time, and dates with the month first", table(
             ["time_s", "Timestamp", *names[1:]], [T, times("2024-05-31T12:00:00", "%m/%d/%Y %H:%M:%S.%f"), COMMAND, TIP]),
              says="the column 'Timestamp' looks like a time and cannot be read ('05/31/2024 12:00:00.000')"),
         File("long_minutes.csv", "minutes above 59", table(
@@ -407,17 +407,17 @@ def reports():
         File("zones.csv", "dates with an offset of time zone", table(
             ["Date", *names[1:]], [[text + "+02:00" for text in times("2024-05-31T23:59:59", "%Y-%m-%dT%H:%M:%S.%f")],
                                    COMMAND, TIP])),
-        File("slow_readings.csv", "a reading in every twentieth row", table(names, [T, COMMAND, slow_cells]),
+        File("slow_readings.csv", "one reading in 20 rows", table(names, [T, COMMAND, slow_cells]),
              refused="95.0 % of the samples have no reading"),
-        File("slow_readings_long.csv", "the same, ten times as long", table(
+        File("slow_readings_long.csv", "one reading in 20 rows, ten times as many rows", table(
             names, [[i / 100 for i in range(10 * COUNT)], COMMAND * 10, slow_cells * 10]),
              columns={"time_s": [i / 100 for i in range(10 * COUNT)], "pressure_command_kpa": COMMAND * 10,
                       "displacement_mm": slow * 10}, says="95.0 % of the samples have no reading"),
-        File("code_minus_1000.csv", "-1000 where the sensor read nothing", table(names, [T, COMMAND, coded[-1000]]),
+        File("code_minus_1000.csv", "-1000 for missing readings", table(names, [T, COMMAND, coded[-1000]]),
              columns=coded_truth, says="3 cells of 'tip_mm' with -1000, far from all others, count as missing"),
-        File("code_65535.csv", "65535 where the sensor read nothing", table(names, [T, COMMAND, coded[65535]]),
+        File("code_65535.csv", "65535 for missing readings", table(names, [T, COMMAND, coded[65535]]),
              columns=coded_truth, says="3 cells of 'tip_mm' with 65535"),
-        File("stamps_of_20_ms.csv", "time stamps of 20 ms in a log of 100 Hz, counted", table(
+        File("stamps_of_20_ms.csv", "time stamps of 20 ms in a log of 100 Hz, with the rate as an option", table(
             names, [[round(0.02 * (i // 2), 6) for i in range(COUNT)], COMMAND, TIP]), "--rate-hz 100",
              says="the column 'time_s' looks like a time and is not used: --rate-hz takes its place"),
         File("cut_off.lvm", "a LabVIEW measurement, cut off", lvm_text[:-20], columns={key: TRUTH[key][:-1] for key in BASIC},
@@ -467,7 +467,7 @@ def other_fingers_and_clocks():
     fast = {name: tdms.Channel(values, {"unit_string": unit}) for name, values, unit in (("t", T, "s"), ("set", COMMAND, "kPa"))}
     stamp = [1717156800 + int(t) for t in T], [round(t % 1 * 1e9) for t in T]
     return [
-        File("psi_as_kpa.csv", "psi in a column that claims kPa", table(["time_s", "set_kpa", "tip_mm"], [T, scaled(COMMAND, PSI), TIP]),
+        File("psi_as_kpa.csv", "psi in a column that is labelled kPa", table(["time_s", "set_kpa", "tip_mm"], [T, scaled(COMMAND, PSI), TIP]),
              columns=BASIC_OF | {"pressure_command_kpa": scaled(COMMAND, PSI)}, says="The largest value of `set_kpa` is 8.7"),
         File("finger_rows.csv", "fingers in rows, by another name than channel", by_word, refused="the file has 2 channels: 'left', 'right'"),
         File("finger_rows_left.csv", "the same, and one of them", by_word, "--channel left", **of_first),
@@ -480,9 +480,9 @@ def other_fingers_and_clocks():
              refused="the channels have one X column, but differ in Delta_X: 0,01 and 0,02"),
         File("two_starts.lvm", "a LabVIEW measurement without X columns, with 2 starts", one_x.replace("50,938\t\n", "51,138\t\n"),
              refused="the channels have one X column, but begin 0.2 s apart"),
-        File("own_times.lvm", "a LabVIEW measurement with an X column per channel: another start, rate and length", own_x,
+        File("own_times.lvm", "a LabVIEW measurement with an X column per channel, with different starts, rates and lengths", own_x,
              columns=late, joined=149, left_out={"empty": 151}, says="channel 2 begins 0.02 s after the first"),
-        File("two_lengths.tdms", "LabVIEW TDMS: groups with times of their own", tdms.file([
+        File("two_lengths.tdms", "LabVIEW TDMS: groups with separate times", tdms.file([
             tdms.segment("valve", fast), tdms.segment("laser", slow)]), refused="'laser/tip' is skipped: 150 values where others have 300"),
         File("seconds_and_rest.csv", "seconds and nanoseconds in two columns", table(
             ["stamp_sec", "stamp_nsec", "set_kpa", "tip_mm"], [*stamp, COMMAND, TIP]), tolerance=1e-6,
@@ -493,11 +493,11 @@ def other_fingers_and_clocks():
         File("secs_nsecs.csv", "seconds and nanoseconds, numbers of the columns given", table(
             ["secs", "nsecs", "p", "y"], [*stamp, COMMAND, TIP]),
              "--time 1 --command 3 --unit command=kPa --displacement 4 --unit displacement=mm", tolerance=1e-6),
-        File("no_rest.csv", "nanoseconds that count all the time are no rest of the seconds", table(
+        File("no_rest.csv", "nanoseconds that count the whole time, in addition to seconds", table(
             ["stamp_sec", "stamp_nsec", "set_kpa", "tip_mm"], [stamp[0], [10**10 + round(1e9 * t) for t in T], COMMAND, TIP]),
              refused="the times of the columns 'stamp_sec', 'stamp_nsec' differ"),
         *signals(stamp),
-        File("place_of_no_time.csv", "a clock of whole seconds left of a time", table(
+        File("place_of_no_time.csv", "a clock of whole seconds in the column before the time", table(
             ["board_s", "set_kpa", "tip_mm", "log_time_s"], [[7000 + 2 * int(50 * t) / 100 for t in T], COMMAND, TIP, T]),
              refused="the times of the columns 'board_s', 'log_time_s' differ"),
     ]
@@ -524,12 +524,12 @@ def signals(stamp):
     return [
         File("signals.mcap", "MCAP: a topic per signal, at the same times", mcap(of("/command", COMMAND) + of("/displacement", TIP)), units,
              joined=COUNT, says="the messages of 2 topics are merged by log_time"),
-        File("signals_half.mcap", "MCAP: a topic per signal, with times of their own and another message", mcap(
+        File("signals_half.mcap", "MCAP: a topic per signal with separate times, and another message", mcap(
             of("/command", COMMAND) + of("/displacement", TIP, 0.002, 2) + of("/room", [20.5] * 3)), units, columns=half,
              left_out={"empty": 3}, says="not used: 'room'"),
-        File("signals_stamped.mcap", "MCAP: a topic per signal, with the stamps of ROS", mcap(both), joined=COUNT, tolerance=1e-6,
+        File("signals_stamped.mcap", "MCAP: a topic per signal, with time stamps of ROS", mcap(both), joined=COUNT, tolerance=1e-6,
              says="the messages of 2 topics are merged by 'header.stamp.sec'"),
-        File("signals_apart.mcap", "the same with a laser that counts from its start", mcap(
+        File("signals_apart.mcap", "MCAP: a topic per signal, with a sensor clock that counts from its start", mcap(
             stamped("/valve", "set_kpa", COMMAND) + stamped("/laser", "tip_mm", TIP, begin=1717156000)),
              refused="of the topics 'laser' and 'valve' belong to two clocks: relative to log_time they differ by 1.717e+09 s"),
         File("signals_back.mcap", "the same with a clock that steps back", mcap(
@@ -572,15 +572,15 @@ def files():
              table(["time_s", "set_kpa", "tip"], [T, COMMAND, TIP]), "--unit displacement=mm"),
         File("milliseconds_tabs.tsv", "milliseconds, tabs",
              table(["Time ms", "Setpoint kPa", "Position mm"], [[round(1000 * t) for t in T], COMMAND, TIP], "\t")),
-        File("savetxt.txt", "blanks, the names in a comment (numpy.savetxt)",
+        File("savetxt.txt", "columns separated by blanks, with the names in a comment (numpy.savetxt)",
              "# bench 3\n# t_s p_cmd_kpa tip_mm\n" + table([], [T, COMMAND, TIP], " ")),
-        File("comments.csv", "comment lines before and within",
+        File("comments.csv", "comment lines before and between the rows",
              "% run 7\n// by hand\n" + PLAIN.replace("\n0.5,", "\n# touched the table here\n0.5,")),
         File("units_row.csv", "a row of units below the names",
              table(["Time", "Set", "Actual", "Tip"], [[round(1000 * t) for t in T], scaled(COMMAND, 0.1),
                                                       scaled(PRESSURE, 0.1), scaled(TIP, 1e-3)], ";",
                    units=["ms", "mbar", "mbar", "µm"]), "--pressure Actual --command Set", columns=MEASURED),
-        File("missing.csv", "NaN, NA, empty cells and -999 where nothing was read",
+        File("missing.csv", "NaN, NA, empty cells and -999 for missing readings",
              table(["time_s", "set_kpa", "tip_mm"],
                    [T, COMMAND, [{7: "NaN", 8: "NA", 9: None, 10: "-999"}.get(i, tip) for i, tip in enumerate(TIP)]]),
              "--missing -999",
@@ -618,15 +618,15 @@ def files():
              PREAMBLE + table(["X_Value (s)", "Set (psi)", "Tip (in)"],
                               [T, scaled(COMMAND, PSI), scaled(TIP, 25.4)], "\t"),
              "--time 'X_Value (s)' --command 'Set (psi)' --displacement 'Tip (in)'"),
-        File("fixed_width.txt", "columns between blanks, names with blanks",
+        File("fixed_width.txt", "columns separated by blanks, names with blanks",
              "Time s      Set kPa     Tip mm\n" + "".join(f"{t:<12.2f}{c:<12.6f}{y:.6f}\n"
                                                       for t, c, y in zip(T, COMMAND, TIP))),
-        File("no_names.csv", "no names: columns by number", table([], [T, COMMAND, TIP]),
+        File("no_names.csv", "a file without names: columns by number", table([], [T, COMMAND, TIP]),
              "--time 1 --command 2 --displacement 3 --unit time=s --unit command=kPa --unit displacement=mm"),
-        File("no_time.csv", "no times: a rate", table(["set_kpa", "tip_mm"], [COMMAND, TIP]), "--rate-hz 100"),
-        File("no_displacement.csv", "nothing that a finger did", table(["time_s", "set_kpa"], [T, COMMAND]),
+        File("no_time.csv", "a file without times: the rate as an option", table(["set_kpa", "tip_mm"], [COMMAND, TIP]), "--rate-hz 100"),
+        File("no_displacement.csv", "a file without a displacement", table(["time_s", "set_kpa"], [T, COMMAND]),
              refused="no column looks like a displacement"),
-        File("pressure_alone.csv", "measured pressure alone", table(["time_s", "pressure_kpa", "tip_mm"],
+        File("pressure_alone.csv", "a measured pressure without a command", table(["time_s", "pressure_kpa", "tip_mm"],
                                                                     [T, PRESSURE, TIP]),
              columns=ALONE, says="the measured pressure is used instead"),
         File("two_chambers.csv", "two chambers, averaged",
@@ -638,7 +638,7 @@ def files():
              columns={key: TRUTH[key] for key in BASIC} | {
                  "displacement_mm": [math.nan if tip is None else tip for tip in slow]},
              says="of the samples have no reading"),
-        File("command_gap.csv", "a command that is missing once",
+        File("command_gap.csv", "one missing command",
              table(["time_s", "set_kpa", "tip_mm"], [T, broken_bar, TIP]),
              columns={key: TRUTH[key] for key in BASIC} | {"pressure_command_kpa": [
                  COMMAND[49] if i == 50 else value for i, value in enumerate(COMMAND)]},
@@ -650,7 +650,7 @@ def files():
              table(["time_s", "set_kpa", "tip_mm"], dropped([T, COMMAND, TIP], set(range(80, 150)))),
              columns={key: without(set(range(150)))[key] for key in BASIC}, says="the longest segment is kept",
              left_out={"hole": 80}),
-        File("stretch.csv", "a stretch of the file", PLAIN, "--from-s 1 --to-s 1.99",
+        File("stretch.csv", "a part of the file", PLAIN, "--from-s 1 --to-s 1.99",
              columns={key: without(set(range(100)) | set(range(200, 300)))[key] for key in BASIC},
              left_out={"outside_stretch": 200}),
         File("two_runs.csv", "two runs in one file", PLAIN + table([], [T, COMMAND, TIP]), refused="the time goes back"),
@@ -678,7 +678,7 @@ def files():
                                                "p_meas_kPa": PRESSURE, "tip_mm": TIP}))), columns=MEASURED),
         File("dspace.mat", "MATLAB 5: structures with Name, Data and Unit (dSPACE)", dspace()),
         File("trials.mat", "MATLAB 5: an array of structures", trials(), refused="of 3 fingers: '1', '2', '3'"),
-        File("trials_chosen.mat", "the same, and one of them", trials(), "--channel 2"),
+        File("trials_chosen.mat", "MATLAB 5: one structure of an array", trials(), "--channel 2"),
         File("cells.mat", "MATLAB 5: a cell array", matlab_5(cells("log", [matrix("", T), matrix("", COMMAND),
                                                                         matrix("", TIP)])),
              "--time 1 --command 2 --displacement 3 --unit time=s --unit command=kPa --unit displacement=mm"),
@@ -693,10 +693,10 @@ def files():
              refused="no two arrays of numbers"),
         File("groups.h5", "HDF5: groups, packed, units as attributes", hdf5_datasets, columns=MEASURED),
         File("compound.h5", "HDF5: a table of compounds", hdf5_compound),
-        File("counter_16_bit.csv", "milliseconds of a counter of 16 bits",
+        File("counter_16_bit.csv", "milliseconds of a 16-bit counter",
              table(["t_ms", "set_kpa", "tip_mm"], [[(64000 + round(1000 * t)) % 65536 for t in T], COMMAND, TIP]),
              says="the clock overflows at 65536, 1 time"),
-        File("counter_32_bit.csv", "microseconds of a counter of 32 bits",
+        File("counter_32_bit.csv", "microseconds of a 32-bit counter",
              table(["t_us", "set_kpa", "tip_mm"],
                    [[(2 ** 32 - 500000 + round(1e6 * t)) % 2 ** 32 for t in T], COMMAND, TIP]),
              says="the clock overflows at 4294967296, 1 time"),
@@ -711,10 +711,10 @@ def files():
              refused="below_the_first.csv:102:1: the time goes back"),
         File("minutes.csv", "minutes and seconds across the hour",
              table(["Time", "set_kpa", "tip_mm"], [times("2024-05-31T11:59:58", "%M:%S.%f"), COMMAND, TIP])),
-        File("two_fields.csv", "hours and minutes, or minutes and seconds",
+        File("two_fields.csv", "times that are hours and minutes, or minutes and seconds",
              table(["Time", "set_kpa", "tip_mm"], [[f"{i // 60:02}:{i % 60:02}" for i in range(COUNT)], COMMAND, TIP]),
              refused="'Time' can be hours and minutes, or minutes and seconds"),
-        File("two_fields_said.csv", "the same, and the unit as an option",
+        File("two_fields_said.csv", "minutes and seconds, with the unit as an option",
              table(["Time", "set_kpa", "tip_mm"], [[f"{i // 60:02}:{i % 60:02}" for i in range(COUNT)], COMMAND, TIP]),
              "--unit time=mm:ss", columns={key: TRUTH[key] for key in BASIC} | {"time_s": list(range(COUNT))}),
         File("half_days.csv", "AM and PM across noon",
@@ -734,7 +734,7 @@ def files():
         File("coarser_times.csv", "time stamps of 1 s in a log of 100 Hz",
              table(["time_s", "set_kpa", "tip_mm"], [[i // 100 for i in range(COUNT)], COMMAND, TIP]),
              refused="too few rows are usable: 300 rows: 3 used, 297 left out (297 at the time of the row before)"),
-        File("rows_of_commands.csv", "commands in rows of their own",
+        File("rows_of_commands.csv", "commands in separate rows",
              table(["time_s", "set_kpa", "tip_mm"],
                    [T, [value if i % 10 == 0 else None for i, value in enumerate(COMMAND)],
                     [None if i % 10 == 0 else tip for i, tip in enumerate(TIP)]]),
@@ -742,14 +742,14 @@ def files():
                  math.nan if i % 10 == 0 else tip for i, tip in enumerate(TIP)]}, says="have the previous command"),
         File("rows_at_one_time.csv", "command and reading in two rows of one time",
              "time_s,set_kpa,tip_mm\n" + "".join(f"{t!r},{c!r},\n{t!r},,{y!r}\n" for t, c, y in pairs), joined=300),
-        File("two_times.csv", "a time of the command and a time of the reading",
+        File("two_times.csv", "separate times of the command and of the reading",
              table(["t_cmd (s)", "set (kPa)", "t_tip (s)", "tip (mm)"],
                    [T[::10] + [None] * 270, COMMAND[::10] + [None] * 270, T, TIP]),
              columns=BASIC_OF | {"pressure_command_kpa": held}, says="each row has 2 times", left_out={"empty": 270}, joined=30),
-        File("two_times_unclear.csv", "two times that differ, without a sign of what each is of",
+        File("two_times_unclear.csv", "two times that differ, without names that show to which signal they belong",
              table(["time_a_s", "time_b_s", "set_kpa", "tip_mm"], [T, [round(0.5 * t, 6) for t in T], COMMAND, TIP]),
              refused="the times of the columns 'time_a_s', 'time_b_s' differ"),
-        File("two_times_chosen.csv", "the same, and a choice",
+        File("two_times_chosen.csv", "two times that differ, and one of them as an option",
              table(["time_a_s", "time_b_s", "set_kpa", "tip_mm"], [T, [round(0.5 * t, 6) for t in T], COMMAND, TIP]),
              "--time time_a_s", says="the column 'time_b_s' looks like a time and is not used: it differs"),
         File("fingers.csv", "two fingers in the columns", fingers, refused="the columns belong to 2 fingers: 'left', 'right'"),
@@ -759,20 +759,20 @@ def files():
              refused="no finger has the name 'thumb': the columns belong to 'left', 'right'"),
         File("finger_alone.csv", "a channel of a file that has one finger", PLAIN, "--channel thumb",
              refused="--channel 'thumb': the file has no column 'channel'"),
-        File("codes.csv", "999 where the sensor read nothing", table(["time_s", "set_kpa", "tip_mm"], [T, COMMAND, coded]),
+        File("codes.csv", "999 for missing readings", table(["time_s", "set_kpa", "tip_mm"], [T, COMMAND, coded]),
              columns=BASIC_OF | {"displacement_mm": [math.nan if v == 999 else v for v in coded]},
              says="3 cells of 'tip_mm' with 999, far from all others, count as missing"),
-        File("nul_tail.csv", "NUL bytes behind the last line", PLAIN.encode() + bytes(512),
+        File("nul_tail.csv", "NUL bytes after the last line", PLAIN.encode() + bytes(512),
              says="512 NUL bytes at the end of the file are left out"),
-        File("extra_separator.csv", "a separator behind each row of numbers", PLAIN.replace("\n", ",\n").replace(
+        File("extra_separator.csv", "a separator at the end of each row of numbers", PLAIN.replace("\n", ",\n").replace(
             "tip_mm,\n", "tip_mm\n")),
-        File("bad_lines.csv", "a word and a cell too many, skipped",
+        File("bad_lines.csv", "a row with a word and a row with a cell too many, both skipped",
              changed(changed(PLAIN, 120, ",", ",,"), 77, "0.75,", "0.75x,"), "--skip-bad-lines",
              columns={key: values for key, values in without({75, 118}).items() if key in BASIC}, says="--skip-bad-lines leaves out 1 lines with another number of cells: 120",
              left_out={"bad_line": 2}),
-        File("idle_options.csv", "options that change nothing", PLAIN,
+        File("idle_options.csv", "options without an effect", PLAIN,
              "--missing 888 --unit supply=bar --to-s 100", says="--missing 888 has no effect"),
-        File("months_first.csv", "dates of which the month comes first",
+        File("months_first.csv", "dates with the month first",
              table(["Timestamp", "set_kpa", "tip_mm"], [times("2024-05-31T12:00:00", "%m/%d/%Y %H:%M:%S.%f"), COMMAND, TIP]),
              refused="'Timestamp' has '05/31/2024 12:00:00.000', which is in an unknown format"),
         File("fingers_a_b.csv", "fingers A and B", table(
@@ -783,7 +783,7 @@ def files():
             ["time_s", "set_kpa", "bend [\u00b0]"], [T, COMMAND, TIP]), columns=BENT),
         File("angle_rad.csv", "radians", table(
             ["time_s", "set_kpa", "theta_rad"], [T, COMMAND, scaled(TIP, math.degrees(1), 15)]), columns=BENT),
-        File("angle_volts.csv", "a bend sensor of 18 degrees a volt", table(
+        File("angle_volts.csv", "a bend sensor with 18 degrees per volt", table(
             ["time_s", "set_kpa", "flex_V"], [T, COMMAND, scaled(TIP, 18)]),
              "--displacement flex_V --scale displacement=18 --unit displacement=deg", columns=BENT),
         File("angle_beside.csv", "a tip in mm, and the angle of the bend", table(
@@ -794,16 +794,16 @@ def files():
         File("angle_scaled.csv", "degrees, as the path of a tip 45 mm from the bend",
              table(["time_s", "set_kpa", "tip (deg)"], [T, COMMAND, scaled(TIP, math.radians(45))]),
              f"--scale displacement={math.radians(45)!r}"),
-        File("recording", "a recording of softgripd, one of its channels", recording, "--channel left",
+        File("recording", "a recording of softgripd, one channel selected", recording, "--channel left",
              columns=MEASURED, left_out={"other_channel": 300}),
-        File("recording_both", "the same without saying which", recording, refused="2 channels"),
-        File("run.mcap", "the same recording exported as MCAP, one of its channels", exported(bytes), "--channel left",
+        File("recording_both", "a recording of softgripd, no channel selected", recording, refused="2 channels"),
+        File("run.mcap", "a recording exported as MCAP, one channel selected", exported(bytes), "--channel left",
              columns=MEASURED, says="not used: 'state'", left_out={"other_channel": 300}),
-        File("both.mcap", "the same without saying which", exported(bytes), refused="2 channels: 'left', 'right'"),
-        File("cut_off.mcap", "the same, cut off", exported(lambda whole: whole[:whole.index(b'"time_s":2.0') - 40]),
+        File("both.mcap", "a recording exported as MCAP, no channel selected", exported(bytes), refused="2 channels: 'left', 'right'"),
+        File("cut_off.mcap", "a recording exported as MCAP, cut off", exported(lambda whole: whole[:whole.index(b'"time_s":2.0') - 40]),
              "--channel left", columns={key: TRUTH[key][:201] for key in MEASURED}, says="the file is cut off: its last",
              left_out={"other_channel": 200, "cut_off_line": 1}),
-        File("changed.mcap", "the same with a changed byte",
+        File("changed.mcap", "a recording exported as MCAP, with a changed byte",
              exported(lambda whole: whole.replace(b'"time_s":1.5,', b'"time_s":2.5,', 1)), "--channel left", refused="a chunk does not match its checksum"),
         *spreadsheets(),
         *measurements(),
@@ -867,15 +867,16 @@ def outcome(file, folder):
 
 HEAD = """# External files
 
-This page shows how `softgrip import` converts external files. It was written by
+This page shows how `softgrip import` converts external files. This command writes it:
 
 ```
 $ tests/system/foreign_files.py --page
 ```
 
-The script writes every file, imports it, and compares each value with the original: a deviation of at most 1e-9 of the column's size, or
-a refusal with the reason and without output. A test compares this page with the imports (`system.test_import`). Without options, the
-columns were proposed by their names and units and confirmed (`--yes`). [How to import](../how-to/import.md) has the rules.
+The script writes every file, imports it, and compares each value with the original. An import passes if the deviation is at most 1e-9
+of the column's size, or if it is refused with the reason and without output. A test compares this page with the imports
+(`system.test_import`). Without options, the proposed columns, which follow from names and units, were confirmed (`--yes`).
+[How to import](../how-to/import.md) contains the rules.
 
 | file | content | options | result | messages |
 |---|---|---|---|---|
