@@ -1,4 +1,4 @@
-"""What differs between the pymodbus of Debian 12 (3.0) and that of Debian 13 (3.8), in one place."""
+"""The differences between the pymodbus of Debian 12 (3.0) and that of Debian 13 (3.8), in one place."""
 
 import asyncio
 
@@ -14,7 +14,7 @@ except ModuleNotFoundError:
 
     OLD = False
 
-#: Where the blocks of a context begin. The newer one counts from 1 whatever it is told.
+#: The first address of the blocks of a context. The newer version always counts from 1.
 FIRST_REGISTER = 0 if OLD else 1
 
 __all__ = [
@@ -29,14 +29,14 @@ __all__ = [
 
 
 class ModbusSlaveContext(datastore.ModbusSlaveContext):
-    """Registers counted from 0, as they are on the wire."""
+    """Registers counted from 0, as in the messages."""
 
     def __init__(self, **blocks):
         super().__init__(**blocks, **({"zero_mode": True} if OLD else {}))
 
 
 def block():
-    """All registers of a table."""
+    """A block with all registers of a table."""
     return ModbusSequentialDataBlock(FIRST_REGISTER, [0] * 65536)
 
 

@@ -1,4 +1,4 @@
-"""bench/foreign/judge_changes.py: the worth of an answer, and the run-to-run spread."""
+"""Tests bench/foreign/judge_changes.py: how an answer is judged, and the run-to-run spread."""
 import importlib.util
 import random
 import unittest

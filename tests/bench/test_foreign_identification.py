@@ -1,4 +1,4 @@
-"""bench/foreign/output_error.py on linear systems that are known, and the comparison of the methods."""
+"""Tests bench/foreign/output_error.py on known linear systems, and the comparison of the methods."""
 import importlib.util
 import json
 import math
@@ -23,7 +23,8 @@ def drive(seed):
 
 
 class Plant:
-    """0.1 mm/kPa at once, a lag of 0.5 s, and a mode of 1.5 Hz or creep of 8 s; integrated with 20 steps per sample."""
+    """A known system: 0.1 mm/kPa at once, a lag of 0.5 s, and a mode of 1.5 Hz or creep of 8 s. It is integrated with
+    20 steps per sample."""
 
     def __init__(self, resonance, start=(0.0, 0.0, 0.0)):
         self.resonance, self.state = resonance, list(start)

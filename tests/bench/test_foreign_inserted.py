@@ -1,4 +1,4 @@
-"""bench/foreign/insert_effects.py: effects in the readings of real runs, and the table of the sets."""
+"""Tests bench/foreign/insert_effects.py: effects inserted into the readings of real runs, and the table of the sets."""
 import unittest
 
 import numpy as np

@@ -1,4 +1,4 @@
-"""bench/foreign/log_reading.py: logs as others write them, sound and broken."""
+"""Tests bench/foreign/log_reading.py with valid and broken logs of other formats."""
 import math
 
 from foreign_case import SAMPLES, ForeignCase, kpa, log_text, mm

@@ -1,4 +1,4 @@
-"""bench/foreign/scipy_bouc_wen.py on a log whose answer is known; needs scipy."""
+"""Tests bench/foreign/scipy_bouc_wen.py on a log with a known answer; needs scipy."""
 import importlib.util
 import json
 import math
@@ -12,7 +12,7 @@ SAMPLES = 600
 
 
 def relaxed(pressures, share):
-    """A gain, and creep towards `share` kPa per kPa with a time constant of 2 s."""
+    """Applies a gain, and creep that approaches `share` kPa per kPa with a time constant of 2 s."""
     creep, readings = 0.0, []
     for p in pressures:
         creep += (share * p - creep) * 0.05 / 2

@@ -1,4 +1,4 @@
-"""bench/foreign/horch.py on simulated control loops, and the worth of an answer on a labelled loop."""
+"""Tests bench/foreign/horch.py on simulated control loops, and how an answer on a labelled loop is judged."""
 import importlib.util
 import math
 import random
@@ -15,7 +15,8 @@ SAMPLES, LAG_S = 1500, 8.0
 
 
 class Stem:
-    """A valve stem that moves only if the command leaves a band around it, and then follows it completely."""
+    """A valve stem with stiction: it only moves when the command leaves a band around it, and then moves to the
+    command."""
 
     def __init__(self, band):
         self.band, self.at = band, 0.0
@@ -57,7 +58,8 @@ class Phase(unittest.TestCase):
         self.assertNotIn("free", verdicts)
 
     def test_oscillating_disturbances_are_no_stiction(self):
-        # The integral part shifts the phase by less than 30 degrees: its reset time is longer than the period over 2 pi.
+        # The integral part shifts the phase by less than 30 degrees, because its reset time is longer than the period /
+        # (2 pi).
         verdicts = [horch.verdict(*loop(seed, disturbance=0.5, reset_s=20))[0] for seed in range(20)]
         self.assertEqual(verdicts.count("sticks"), 0)
         self.assertGreaterEqual(verdicts.count("free"), 18)

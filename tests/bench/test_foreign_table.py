@@ -1,4 +1,4 @@
-"""bench/foreign/log_table.py: what the table says, and what is said of its mistakes."""
+"""Tests bench/foreign/log_table.py: the values it reads from a table, and its messages about mistakes."""
 from foreign_case import BENCH, ForeignCase
 
 import log_table

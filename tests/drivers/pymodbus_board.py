@@ -1,11 +1,11 @@
-"""A board served by pymodbus: an implementation of Modbus that shares nothing with the one under test.
+"""A board served by pymodbus, a Modbus implementation that shares no code with the one under test.
 
-Speaks with the test over stdin and stdout, one JSON object per line:
+It communicates with the test over stdin and stdout, one JSON object per line:
   {"set": [table, address, [values]]}     table: holding, input, coil
   {"get": [table, address, count]}        answered {"values": [...]}
-  {"writes": true}                        answered {"writes": [[table, address, [values]], ...]} since last time
-First line printed: {"port": N}, or with the argument `serial` {"device": PATH}: a pseudo-terminal on whose line the same
-registers answer to the units 1 and 2.
+  {"writes": true}                        answered {"writes": [[table, address, [values]], ...]} since the last request
+The first line that it prints is {"port": N}. With the argument `serial` it is {"device": PATH}: a pseudo-terminal on
+which the same registers answer to the units 1 and 2.
 """
 
 import asyncio
@@ -34,21 +34,21 @@ WRITTEN_BY = {5: "coil", 15: "coil", 6: "holding", 16: "holding", 22: "holding",
 
 
 class Board(ModbusSlaveContext):
-    """Registers that note what clients write."""
+    """Registers that record what clients write."""
 
     def __init__(self):
         super().__init__(di=block(), co=block(), hr=block(), ir=block())
         self.writes = []
         self.local = threading.local()
 
-    def setValues(self, fc_as_hex, address, values):  # noqa: N802 (pymodbus names it)
+    def setValues(self, fc_as_hex, address, values):  # noqa: N802 (the name is given by pymodbus)
         if not getattr(self.local, "own", False):
             self.writes.append([WRITTEN_BY.get(fc_as_hex, str(fc_as_hex)), address, [int(v) for v in values]])
         super().setValues(fc_as_hex, address, values)
 
 
 def answer(board, line):
-    """What a line of the test asks for, or nothing."""
+    """The answer to a line of the test, or None."""
     request = json.loads(line)
     if "set" in request:
         table, address, values = request["set"]
@@ -64,7 +64,7 @@ def answer(board, line):
 
 
 def talk(board, loop):
-    """Serves the test until it closes its end."""
+    """Serves the test until it closes its end of the pipe."""
     for line in sys.stdin:
         print(json.dumps(answer(board, line)), flush=True)
     loop.call_soon_threadsafe(loop.stop)
@@ -77,7 +77,7 @@ async def start(board):
 
 
 def wire(one, other):
-    """Carries bytes between the inner ends of two pseudo-terminals: the cable."""
+    """The cable: carries bytes between the inner ends of two pseudo-terminals."""
     while True:
         for end in select.select([one, other], [], [])[0]:
             os.write(other if end == one else one, os.read(end, 4096))
@@ -96,7 +96,7 @@ async def start_serial(board):
 
 
 def main():
-    logging.disable(logging.CRITICAL)  # sessions that end are what these tests are about
+    logging.disable(logging.CRITICAL)  # these tests end sessions on purpose
     loop = asyncio.new_event_loop()
     asyncio.set_event_loop(loop)
     board = Board()

@@ -1,4 +1,4 @@
-"""Where the package is: `import package` before `import softgrip`."""
+"""Finds the package: `import package` before `import softgrip`."""
 
 import pathlib
 import sys

@@ -1,4 +1,4 @@
-"""The examples of one file each (examples/python) run, and have at most 80 lines."""
+"""The examples in examples/python, one file each, run and have at most 80 lines."""
 
 import os
 import pathlib

@@ -1,4 +1,5 @@
-"""Lines that no softgripd sends: each is a ProtocolError or makes no difference, and never an exception of Python's own."""
+"""Lines that softgripd never sends: each is a ProtocolError or has no effect, but never raises one of Python's own
+exceptions."""
 
 import json
 import random
@@ -24,7 +25,7 @@ STATUS = {"state": "running", "result": "HOLDING", "channels": [CHANNEL], "owner
           "sequence": {"name": "pick", "request": 3, "client": None, "parameters": {"a": 1}, "step": 0, "step_name": "s",
                        "steps": 2, "ended": None}}
 PARAMETER = {"name": "a", "unit": "kpa", "lower": 0, "upper": 9, "default": 4, "about": ""}
-# By the request that they answer: a good result each, and what the package makes of it.
+# For each request: a valid result, and the function of the package that reads it.
 RESULTS = {
     "status": (STATUS, lambda result: Status.of(result, "status")),
     "sequences": ({"sequences": [{"name": "a", "about": "", "parameters": [PARAMETER], "problems": [PROBLEM]}]},
@@ -42,7 +43,7 @@ OTHERS = (None, True, False, 0, -1, 1.5, 10**400, "", "x", "\ud800", [], [1], {}
 
 
 def places(value, path=()):
-    """Where something else may stand in a value."""
+    """The paths of a value and of all values in it; each of them may be replaced."""
     yield path
     if isinstance(value, dict):
         for key in value:
@@ -53,7 +54,7 @@ def places(value, path=()):
 
 
 def put(value, path, other):
-    """A copy with something else there; `put` itself: nothing."""
+    """A copy with `other` at that place, or without the place if `other` is `put` itself."""
     if not path:
         return other
     copy = dict(value) if isinstance(value, dict) else list(value)
@@ -66,7 +67,7 @@ def put(value, path, other):
 
 class Malformed(unittest.TestCase):
     def hear(self, command, said):
-        """What the package does with a line behind a request of that name."""
+        """What the package returns or raises for a line that follows a request of that name."""
         session = Session()
         session.subscribed({"since": 0, "started_at": "x"})
         number, _ = session.request("start" if command == "check" else command,

@@ -1,4 +1,4 @@
-"""The annotations of package and examples hold."""
+"""The type annotations of package and examples are correct."""
 
 import os
 import subprocess

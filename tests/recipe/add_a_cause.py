@@ -3,9 +3,9 @@
 
     add_a_cause.py --source DIR --work DIR
 
-A fence says what it is: ```cpp file=PATH is a new file; ```diff file=PATH adds lines between lines that are there;
-```sh is run; ```text expect must come out of the build in which the last thing that was registered is missing.
-"""
+The first line of a fence says what to do with it: ```cpp file=PATH is a new file; ```diff file=PATH adds lines between
+existing lines; ```sh is run; ```text expect must appear in the output of the build in which the last registration is
+missing."""
 import argparse
 import os
 import pathlib
@@ -20,7 +20,7 @@ FENCE = re.compile(r"^```(\w+)(?: ([^\n]*))?\n(.*?)^```$", re.MULTILINE | re.DOT
 
 
 def copy_of(source, target):
-    """The files that the repository knows or would take; without a repository all but the builds."""
+    """Copies the files that the repository tracks or would add; without a repository, everything except the builds."""
     if target.exists():
         kept = target / "build"
         for path in target.iterdir():
@@ -38,7 +38,7 @@ def copy_of(source, target):
 
 
 def insert(path, hunk):
-    """Adds the hunk's lines (+) where its other lines stand in the file, however they are spaced, and nowhere else."""
+    """Adds the hunk's new lines (+) at the only place where its other lines are found, regardless of spacing."""
     parts = [(line[0], line[1:]) for line in hunk.splitlines()]
     assert all(mark in " +" for mark, _ in parts), f"{path}: a hunk only adds"
     wanted = [line.split() for mark, line in parts if mark == " "]
@@ -65,7 +65,7 @@ def main():
     args = parser.parse_args()
     copy = args.work / "source"
     copy_of(args.source, copy)
-    if shutil.which("ccache"):  # what did not change is taken from the build that is there
+    if shutil.which("ccache"):  # what did not change is taken from the existing build
         os.environ.update(CMAKE_CXX_COMPILER_LAUNCHER="ccache", CCACHE_NOHASHDIR="1",
                           CCACHE_BASEDIR=os.path.commonpath([args.source, copy]))
     run("cmake --preset release -DSOFTGRIP_TESTS=ON -DSOFTGRIP_BENCHMARKS=OFF", copy)
@@ -82,7 +82,7 @@ def main():
             insert(copy / file[1], body)
         elif file:
             (copy / file[1]).write_text(body)
-    # A block that no cause takes does not compile, and the message is the page's.
+    # A block that no cause uses does not compile, and the message is the one on the page.
     refused = run("cmake --build build/release --target softgrip_sysid_diagnosis_causes", copy, check=False)
     assert refused.returncode != 0 and expected, "a block without a cause compiles"
     for sentence in expected:

@@ -1,7 +1,8 @@
 """Carries out a page of docs/how-to in a copy of the source tree, and builds it.
 
-What the page shows is what is done: a fence ```cpp file=PATH is a new file, ```diff file=PATH changes one. What a diff
-leaves or takes away must stand in the file exactly once.
+The code of the page is used as it is: a fence ```cpp file=PATH is a new file, ```diff file=PATH changes a file. The
+lines
+that a diff keeps or removes must be in the file exactly once.
 """
 
 import os
@@ -41,7 +42,7 @@ class Tree:
         copy_sources(self.folder)
 
     def carry_out(self, page):
-        """Returns how many fences of the page were carried out."""
+        """Carries out the fences of the page and returns their number."""
         fences = FENCE.findall((SOURCE / page).read_text(encoding="utf-8"))
         for language, name, body in fences:
             path = self.folder / name
@@ -55,7 +56,7 @@ class Tree:
         return len(fences)
 
     def make(self, *targets):
-        """Builds as the release preset does, with a compiler cache where there is one."""
+        """Builds like the release preset, with a compiler cache where there is one."""
         launcher = shutil.which("ccache")
         options = [f"-DCMAKE_CXX_COMPILER_LAUNCHER={launcher}"] if launcher else []
         environment = {**os.environ, "CCACHE_BASEDIR": str(self.folder)}

@@ -1,4 +1,4 @@
-"""docs/how-to/add-a-command.md, carried out."""
+"""Carries out docs/how-to/add-a-command.md."""
 
 import pathlib
 import subprocess

@@ -1,6 +1,7 @@
-"""Processes and files of the end-to-end tests: a folder per test, free ports, nothing left behind.
+"""Processes and files of the end-to-end tests: a folder per test, free ports, and no process or file remains
+afterwards.
 
-The programs come from the build; their folder is named by the environment variable SOFTGRIP_BUILD.
+The programs come from the build. The environment variable SOFTGRIP_BUILD names its folder.
 """
 
 import contextlib
@@ -27,16 +28,16 @@ SOFTGRIP = BUILD / "tools" / "softgrip"
 SOFTGRIP_RIG = BUILD / "tools" / "softgrip-rig"
 SOFTGRIPD = BUILD / "daemon" / "softgripd"
 
-# Generous: the machine may be busy. No result depends on it.
+# A generous limit, because the machine may be busy. No result depends on it.
 PATIENCE_S = 30
 
-# Of the rig that the tests run: 100 Hz, and a bus that may be silent for 0.6 s.
+# The rig of the tests: 100 Hz, and the bus may be silent for 0.6 s.
 RATE_HZ = 100
-BUS_DOWN_CYCLES = 30  # within the watchdog of the board
+BUS_DOWN_CYCLES = 30  # shorter than the watchdog of the board
 
 
 def wait_for(what, condition, patience_s=PATIENCE_S, pause_s=0.02):
-    """Returns the first true result of condition(); fails with `what` when patience ends."""
+    """Returns the first true result of condition(); fails with `what` after the patience."""
     end = time.monotonic() + patience_s
     while True:
         result = condition()
@@ -48,7 +49,7 @@ def wait_for(what, condition, patience_s=PATIENCE_S, pause_s=0.02):
 
 
 class Lines:
-    """Lines to and from a Unix socket."""
+    """Sends and receives lines over a Unix socket."""
 
     def __init__(self, path):
         self.socket = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
@@ -74,12 +75,12 @@ class Lines:
 
 
 def resident_kib(pid):
-    """The memory that a process has in use."""
+    """The resident memory of a process."""
     return int(re.search(r"VmRSS:\s+(\d+)", pathlib.Path(f"/proc/{pid}/status").read_text()).group(1))
 
 
 class Process:
-    """A child whose output goes to files and who never outlives its test."""
+    """A child process whose output goes to files and which ends with its test at the latest."""
 
     def __init__(self, name, arguments, folder, environment=None):
         self.name = name
@@ -105,7 +106,7 @@ class Process:
         self.child.send_signal(number)
 
     def kill(self):
-        """As kill -9 does."""
+        """Kills it with SIGKILL, like kill -9."""
         self.child.kill()
         self.child.wait(PATIENCE_S)
 
@@ -208,7 +209,7 @@ class Daemon(Process):
             raise AssertionError(f"{error}\n{self.errors()}") from None
 
     def start(self, sequence):
-        """Starts it; one exchange that the busy machine delayed is no reason to give up."""
+        """Starts a sequence. It tries again if a delay of the busy machine caused a refusal."""
         def accepted():
             reply = self.ask("start", sequence=sequence)
             if reply["ok"]:
@@ -223,7 +224,7 @@ class Daemon(Process):
 
 
 class BenchTest(unittest.TestCase):
-    """A test with a folder of its own, the shipped configuration in it, and processes that end with it."""
+    """A test with its own folder that contains the shipped configuration; its processes end with it."""
 
     def setUp(self):
         self.folder = pathlib.Path(tempfile.mkdtemp(prefix="softgrip_system_"))
@@ -242,12 +243,12 @@ class BenchTest(unittest.TestCase):
                 print(f"--- {process.name}\n{process.output()[-2000:]}\n{process.errors()[-6000:]}", file=sys.stderr)
 
     def check_recordings(self):
-        """Whatever the test was about: what it recorded keeps the promises."""
+        """Whatever the test was about, its recordings must keep the promises of docs/reliability.md."""
         for about in sorted((self.folder / "runs").glob("*/run.json")):
             self.assertEqual(recording_check.check(about.parent), [])
 
     def start_rig(self, *arguments):
-        """A stone between the fingers of an emulated rig, and its daemon, idle."""
+        """Starts an emulated rig with a stone between the fingers, and its daemon, until it is idle."""
         self.board = self.emulator("--object", "stone", *arguments)
         self.rig_path = self.rig(self.board.port)
         self.softgripd = self.daemon(self.rig_path)
@@ -259,10 +260,9 @@ class BenchTest(unittest.TestCase):
         return path
 
     def rig(self, port, changes=(), name="rig_tcp.yaml"):
-        """The shipped TCP rig with this port, the test's folder and further (pattern, replacement) changes.
+        """The shipped TCP rig with this port, the test's folder, and more changes (pattern, replacement).
 
-        Loop and bounds are set for a busy machine: a stall of the host must not look like a fault.
-        """
+        Loop and bounds are set for a busy machine, so that a stall of the host does not look like a fault."""
         text = (self.folder / "config" / name).read_text()
         for pattern, replacement in (
                 (r"port: \d+", f"port: {port}"),
@@ -286,7 +286,7 @@ class BenchTest(unittest.TestCase):
         return path
 
     def creep_faster(self):
-        """Makes the finger of the shipped rigs, and its model, one that has crept back after a few seconds."""
+        """Changes the finger of the shipped rigs and its model so that its creep ends after a few seconds."""
         path = self.folder / "config/models/bench_twin.yaml"
         text, count = re.subn(r"c1_kpa_s_per_mm: [\d.]+", "c1_kpa_s_per_mm: 20", path.read_text())
         self.assertEqual(count, 1)
@@ -314,7 +314,7 @@ class BenchTest(unittest.TestCase):
         return done
 
     def recordings(self):
-        """Folders of recordings, oldest first."""
+        """The folders of recordings, oldest first."""
         return sorted(path.parent for path in (self.folder / "runs").glob("*/run.csv"))
 
     @staticmethod

@@ -8,7 +8,7 @@ import bench
 import exit_codes
 
 TWIN = "config/models/bench_twin.yaml"
-MEMORY_BYTES = 5 << 30  # address space that a process may have; a sanitizer has terabytes
+MEMORY_BYTES = 5 << 30  # the address space that a process may use; a sanitizer needs terabytes
 
 
 class Files(bench.BenchTest):

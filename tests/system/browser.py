@@ -1,4 +1,4 @@
-"""A real browser in front of the operator's page."""
+"""A real browser that shows the operator's page."""
 
 import base64
 
@@ -11,10 +11,10 @@ from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.support.select import Select
 
-# As root it has no sandbox; and it asks nothing of the network for itself, which costs processors and waits.
+# It has no sandbox as root. Its own network requests are switched off, because they cost processor time and delays.
 QUIET = ("--headless=new", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-sync",
          "--disable-background-networking", "--disable-component-update")
-# Colours of an element and of what stands behind it, of everything with text of its own that can be seen.
+# The colours of each visible element that has its own text, and of its background.
 TEXTS = """
 const seen = (element) => element.checkVisibility() && element.getClientRects().length > 0;
 const ground = (element) => {
@@ -100,14 +100,14 @@ class Browser:
         return [b.text for b in self.driver.find_elements(By.TAG_NAME, "button") if b.is_displayed()]
 
     def results(self):
-        """What stands large on the fingers' cards."""
+        """The large texts on the fingers' cards."""
         return [e.text for e in self.driver.find_elements(By.CSS_SELECTOR, ".finger .big")]
 
     def wait(self, what, condition, patience_s=bench.PATIENCE_S):
         def on_this_page():
             try:
                 return condition()
-            except StaleElementReferenceException:  # the page has been loaded again meanwhile
+            except StaleElementReferenceException:  # the page was loaded again in between
                 return False
         return bench.wait_for(what, on_this_page, patience_s, pause_s=0.1)
 
@@ -115,12 +115,12 @@ class Browser:
         return self.wait(f"the page to say {states}", lambda: self.text("state") in states)
 
     def complaints(self):
-        """What the browser wrote into its console: refused scripts, failed loads, exceptions."""
+        """What the browser wrote to its console: refused scripts, failed loads, exceptions."""
         return [entry["message"] for entry in self.driver.get_log("browser")
                 if entry["level"] in ("SEVERE", "WARNING") and entry["source"] != "rendering"]
 
     def nameless(self):
-        """Roles of controls and pictures that a screen reader would have no name for."""
+        """The roles of controls and pictures for which a screen reader would have no name."""
         nodes = self.driver.execute_cdp_cmd("Accessibility.getFullAXTree", {})["nodes"]
         controls = {"button", "textbox", "combobox", "spinbutton", "link", "image", "img", "list", "form", "region"}
         wanted = controls - {"list", "form"}
@@ -129,7 +129,7 @@ class Browser:
                 and not n.get("name", {}).get("value")]
 
     def faint(self, least=4.5):
-        """Texts that have less contrast than WCAG 2.1 AA asks for."""
+        """Texts with less contrast than WCAG 2.1 AA requires."""
         return [t for t in self.run(TEXTS) if contrast(t["ink"], t["ground"]) < least]
 
     def picture(self, path, width):

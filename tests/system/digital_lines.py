@@ -1,4 +1,4 @@
-"""Buttons and lamps of a rig: a GPIO chip without a kernel that is preloaded into softgripd (gpio_chips.cpp)."""
+"""Buttons and lamps of a rig: a GPIO chip in user space that is preloaded into softgripd (gpio_chips.cpp)."""
 
 import time
 
@@ -19,13 +19,13 @@ gpio:
 
 
 def environment(folder):
-    """Of the softgripd that has the chip."""
+    """The environment of the softgripd that uses the chip."""
     (folder / "gpio").mkdir()
     return {"GPIO_CHIPS": str(folder / "gpio"), "LD_PRELOAD": str(PRELOADED)}
 
 
 class Lines:
-    """A hand at the buttons and an eye on the lamps."""
+    """Presses the buttons and reads the lamps."""
 
     def __init__(self, folder):
         self.wire = bench.Lines(folder / "gpio/lines")
@@ -37,7 +37,7 @@ class Lines:
         self.wire.ask(f"low {name} {time.monotonic_ns()}")
 
     def press_for(self, for_s, name="ESTOP"):
-        """Without waiting for an answer, which a process that stands still does not give."""
+        """Presses without waiting for an answer, because a process that is stopped does not answer."""
         self.wire.file.write(f"high {name} {time.monotonic_ns()}\n")
         self.wire.file.flush()
         time.sleep(for_s)
@@ -45,7 +45,7 @@ class Lines:
         self.wire.file.flush()
 
     def heard(self):
-        """What press_for() did has arrived."""
+        """Waits until press_for() has taken effect."""
         for _ in range(2):
             self.wire.file.readline()
 

@@ -1,4 +1,4 @@
-"""The table of docs/reference/exit-codes.md, and what brings a program to each of its endings."""
+"""The table of docs/reference/exit-codes.md, and how to bring a program to each of its endings."""
 
 import contextlib
 import dataclasses
@@ -19,7 +19,7 @@ ENDINGS = ("done", "refused", "signal", "fault", "full disk", "closed pipe")
 STOPPING = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 IMPOSSIBLE = "-"
 ELSEWHERE = ()
-# Files that a command may create under their own name: base/files.h has no part in them.
+# Files that a command may create under their final name, without base/files.h.
 GROWING = re.compile(r"/run\.csv$|^/dev/|^/proc/self/fd/\d+$")
 TEMPORARY = re.compile(r"/\.softgrip-[0-9a-f]{16}\.part$|^\.softgrip-[0-9a-f]{16}\.part$")
 
@@ -41,7 +41,7 @@ def motion_faults():
 
 
 def each(test, commands, ending, check):
-    """Calls check(name, command, cell) as a part of the test, for every command that can end so."""
+    """Calls check(name, command, cell) as a subtest for every command that can end in this way."""
     cells = table()
     for name, command in commands.items():
         if cells[name][ending] != IMPOSSIBLE:
@@ -51,18 +51,19 @@ def each(test, commands, ending, check):
 
 @dataclasses.dataclass
 class Command:
-    """How one row of the table is brought to its endings. `{out}` in the words is the folder of the outputs."""
+    """How to bring one row of the table to its endings. `{out}` in the words is the folder of the outputs."""
 
     done: str
     refused: str = ""
-    hangs_at: str = ""  # an input that it opens while it works: the end of its path
-    writes: str = ""  # a file that it replaces, within {out}; "": it writes to the standard output only
+    hangs_at: str = ""  # an input that it opens while it works: the end of the path
+    writes: str = ""  # a file that it replaces, within {out}; "": it only writes to the standard output
     new: bool = False  # it never replaces a file
     more: tuple = ()  # other forms that write, for the full disk
 
 
 class FullDisk:
-    """A folder on a disk that fill() fills. Without the right to mount, the kernel's limit on the size of files."""
+    """A folder on a disk that fill() fills. Without the right to mount, the kernel's limit on the size of files is
+    used."""
 
     def __init__(self, folder):
         self.folder = pathlib.Path(folder)
@@ -78,7 +79,7 @@ class FullDisk:
                 filler.write(bytes(4096))
 
     def limit(self):
-        """To be called in the child before it runs the program."""
+        """Is called in the child before it runs the program."""
         if not self.mounted:
             signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
             resource.setrlimit(resource.RLIMIT_FSIZE, (1, resource.RLIM_INFINITY))
@@ -89,7 +90,7 @@ class FullDisk:
 
 
 def code_of(cell, number=None):
-    """What subprocess has as the return code for a cell of the table."""
+    """The return code of subprocess for a cell of the table."""
     return -number if cell == "signal" else int(cell)
 
 
@@ -117,7 +118,7 @@ class Runner:
             return done, pathlib.Path(noted.name).read_text().splitlines()
 
     def stopped(self, line, number, hangs_at, out="out"):
-        """The return code after a signal that comes while it opens an input."""
+        """The return code after a signal that arrives while it opens an input."""
         told = self.folder / "told"
         told.unlink(missing_ok=True)
         child = subprocess.Popen(self.words(line, out), cwd=self.folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
@@ -126,14 +127,14 @@ class Runner:
         return self.end_of(child, number, lambda: told.exists() or child.poll() is not None)
 
     def waiting(self, line, number, out="out", pause_s=0.3):
-        """The return code after a signal that comes while it waits for a daemon or for its own output to be read."""
+        """The return code after a signal that arrives while it waits for a daemon or until its own output is read."""
         child = subprocess.Popen(self.words(line, out), cwd=self.folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
                                  stderr=subprocess.PIPE, env=self.environment)
         time.sleep(pause_s)
         return self.end_of(child, number, lambda: True)
 
     def blocked(self, line, number, out="out"):
-        """The return code after a signal that comes while it waits for the reader of its standard output."""
+        """The return code after a signal that arrives while it waits for the reader of its standard output."""
         reader, writer = os.pipe()
         os.set_blocking(writer, False)
         with contextlib.suppress(BlockingIOError):
@@ -144,7 +145,7 @@ class Runner:
                                  stderr=subprocess.PIPE, env=self.environment)
         os.close(writer)
         try:
-            # In the kernel, on the pipe: it sleeps and uses no more processor time.
+            # It waits in the kernel for the pipe: it sleeps and uses no more processor time.
             def waits():
                 state, used = self.state_and_ticks(child.pid)
                 time.sleep(0.1)
@@ -169,7 +170,7 @@ class Runner:
                 child.kill()
 
     def unread(self, line, ignored, out="out"):
-        """The finished process whose standard output has lost its reader; with SIGPIPE ignored or not."""
+        """The finished process after the reader of its standard output was closed, with SIGPIPE ignored or not."""
         reader, writer = os.pipe()
         os.close(reader)
         try:

@@ -1,6 +1,6 @@
-"""Fails the Nth call of one kind (libfail_nth.so), for N from 1 until a run gets through without a failure.
+"""Fails the Nth call of one kind (libfail_nth.so), for N from 1 until a run has fewer than N such calls.
 
-scripts/fail_nth.sh runs all of it; test_fail_nth.py what fits into a minute.
+scripts/fail_nth.sh runs all of it; test_fail_nth.py runs what takes less than a minute.
 """
 
 import argparse
@@ -19,12 +19,12 @@ import bench
 
 SHIM = bench.BUILD / "tests" / "system" / "libfail_nth.so"
 PATIENCE_S = 60
-# What is done by calls in loops is called so often that N goes up by a quarter.
+# Calls that are made in loops are so frequent that N grows by a quarter each time.
 SPARSE = ("clock", "sleep", "send", "recv", "write", "open", "allocation")
 FILES = ("open", "write", "short_write", "fsync", "rename", "mkdir")
 PROCESS = ("mmap", "mlockall", "scheduler", "thread")
 WIRE = ("socket", "connect", "bind", "listen", "send", "recv", "sleep", "clock")
-# Exit codes: done, failed, refused, I/O, the state does not allow it, ended but not acceptable.
+# The exit codes: done, failed, refused, I/O, the state does not allow it, ended but not acceptable.
 GOT_OVER_IT, VIRTUAL, REAL = (0,), (0, 1, 3, 4), (0, 1, 3, 4, 5, 6)
 SEQUENCE = """name: short
 steps:
@@ -34,16 +34,17 @@ steps:
 
 
 class Failure(AssertionError):
-    """What must not come of a failed call."""
+    """A failed call had a forbidden consequence."""
 
 
 def ends_in_a_destructor(done, call):
-    """The JSON library allocates in its destructors, which may not throw: an allocation that fails there ends the process."""
+    """The JSON library allocates in its destructors, which must not throw. So an allocation that fails there ends the
+    process."""
     return call == "allocation" and done.returncode == -signal.SIGABRT and "std::bad_alloc" in done.stderr
 
 
 def run(arguments, folder, call, nth, from_then_on=False):
-    """The finished process, and whether there was an Nth call."""
+    """The finished process, and whether it had an Nth call."""
     told = folder / "told"
     told.unlink(missing_ok=True)
     environment = {**os.environ, "LD_PRELOAD": str(SHIM), "FAIL_CALL": call, "FAIL_NTH": str(nth), "FAIL_TOLD": str(told)}
@@ -58,7 +59,7 @@ def run(arguments, folder, call, nth, from_then_on=False):
 
 
 def check_end(done, what, codes, silenced=False):
-    """Neither a crash nor silence, unless it cannot speak either."""
+    """The program neither crashes nor ends without a message, unless it cannot write one."""
     if done.returncode not in codes:
         raise Failure(f"{what}: exit code {done.returncode}\n{done.stderr[-1500:]}")
     if done.returncode != 0 and not silenced and len((done.stdout + done.stderr).strip()) < 20:
@@ -66,7 +67,8 @@ def check_end(done, what, codes, silenced=False):
 
 
 def check_recording(folder, what):
-    """What there is of a recording is whole: all rows but the last, run.json if it is there, nothing left behind."""
+    """The existing part of a recording is complete: all rows except the last, run.json if it exists, and no temporary
+    file."""
     csv = folder / "run.csv"
     if csv.exists():
         rows = csv.read_text().split("\n")
@@ -82,14 +84,14 @@ def check_recording(folder, what):
 
 
 def check_complete(folder, done, what):
-    """Exit code 0 says that everything that was asked for is there."""
+    """With exit code 0, everything that was requested exists."""
     about = folder / "run.json"
     if not about.exists() or json.loads(about.read_text())["state"] != "complete":
         raise Failure(f"{what}: no whole recording, and exit code 0\n{done.stderr[-1500:]}")
 
 
 def numbers(call, highest):
-    """1, 2, 3 ...; of frequent calls every one up to ten and then a quarter more each time."""
+    """1, 2, 3 ...; for frequent calls every number up to ten, then a quarter more each time."""
     nth = 1
     while nth <= highest:
         yield nth
@@ -115,7 +117,7 @@ class Scenario:
         shutil.rmtree(self.folder, ignore_errors=True)
 
     def virtual(self, call, nth, from_then_on=False):
-        """softgripd in virtual time: one thread, the same calls every time."""
+        """Runs softgripd in virtual time: one thread, so the calls are always the same."""
         shutil.rmtree(self.out, ignore_errors=True)
         histograms = self.folder / "histograms"
         histograms.unlink(missing_ok=True)
@@ -133,7 +135,7 @@ class Scenario:
         return happened
 
     def writer(self, arguments, name, call, nth, from_then_on=False):
-        """A command that writes a file or a folder: the file of before stays, or the new one is there."""
+        """A command that writes a file or a folder: afterwards there is the old file or the complete new one."""
         out = self.folder / name
         before = "what was there before\n"
         if out.suffix:
@@ -183,7 +185,7 @@ class Scenario:
         return path
 
     def real(self, call, nth, from_then_on=False):
-        """softgripd in real time, and what the board has afterwards."""
+        """Runs softgripd in real time, and checks the board afterwards."""
         rig = self.rig()
         shutil.rmtree(self.out, ignore_errors=True)
         done, happened = run([bench.SOFTGRIPD, "--config", rig, "--sequence", self.sequence, "--record", self.out],
@@ -202,7 +204,7 @@ class Scenario:
 
 
 def until_success(scenario, call, highest=2000, from_then_on=False):
-    """How many calls were failed, one after the other, before a run got through without."""
+    """Fails call after call until a run succeeds without a failed call; returns the number of failed calls."""
     failed = 0
     for nth in numbers(call, highest):
         if not scenario(call, nth, from_then_on):

@@ -1,7 +1,8 @@
-"""Runs cells of fault_matrix.yaml: a real softgripd, a real softgrip-rig, real sockets, and a spoiled wire between.
+"""Runs cells of fault_matrix.yaml: a real softgripd, a real softgrip-rig, real sockets, and between them a wire with
+faults.
 
-scripts/fault_matrix.sh runs all of them and publishes docs/results/fault-matrix.md; test_fault_matrix.py has a few.
-With --vacuum the same faults meet the rig of config/vacuum, whose outputs are below their rest pressure.
+scripts/fault_matrix.sh runs all of them and publishes docs/results/fault-matrix.md; test_fault_matrix.py runs a few.
+With --vacuum the same faults act on the rig of config/vacuum, whose outputs are below their rest pressure.
 """
 
 import argparse
@@ -29,9 +30,9 @@ import wire_proxy
 
 TABLE = pathlib.Path(__file__).with_name("fault_matrix.yaml")
 PAGE = bench.SOURCE / "docs" / "results" / "fault-matrix.md"
-# In the phase of the rig file's safe_action; `connect` is none.
+# The phases by their names in safe_action of the rig file; `connect` is not in it.
 PHASE_OF = {"idle": "idle", "closing": "closing", "holding": "holding", "venting": "releasing"}
-# How long a fault that shows nothing is looked at, in cycles.
+# How long a fault without any visible effect is observed, in cycles.
 OBSERVED_CYCLES = 80
 SETTLED_KPA = 0.1
 SEQUENCE = """name: matrix
@@ -47,7 +48,7 @@ steps:
   - release: {{duration_s: 3, purge_s: 0.5, timeout_s: 8, on_fail: vent}}
 """
 
-# Below rest, as slow as the other one.
+# Below the rest pressure, and as slow as the other sequence.
 VACUUM_SEQUENCE = """name: matrix
 steps:
   - grip:
@@ -60,18 +61,18 @@ steps:
   - hold: {{hold_s: {hold_s}, reverify_every_s: 0.25, on_fail: release}}
   - release: {{duration_s: 3, purge_s: 0.5, timeout_s: 8, on_fail: vent}}
 """
-# What the 12 bits of an output say at its rest pressure: 0 kPa is 0 V on the shipped rig, 5 V on the vacuum rig.
+# The 12-bit value of an output at its rest pressure: 0 kPa is 0 V on the shipped rig and 5 V on the vacuum rig.
 REST_RAW = {False: 0, True: 2047.5}
-# A vacuum is held by a command that does not change, so old contents are true until the release.
+# A vacuum is held by a constant command, so old contents are correct until the release.
 NOT_BELOW_REST = {("repetition_of_contents", "holding")}
 
 
 class Wrong(AssertionError):
-    """A cell did not come to what the table says."""
+    """The result of a cell differs from the table."""
 
 
 class Skipped(Exception):
-    """What a cell needs is not allowed or not there."""
+    """Something that a cell needs is not permitted or does not exist."""
 
 
 def require(holds, sentence):
@@ -95,7 +96,7 @@ class Table:
         return cells.get(phase, cells.get("all"))
 
     def names(self):
-        """What an expression of `within` may use, in cycles."""
+        """The names that an expression of `within` may use, in cycles."""
         rig, shipped = self.rig, shipped_rig()
         rate = rig["rate_hz"]
         slowest_kpa_per_s = self.sequence["slowest_kpa_per_s"]
@@ -113,7 +114,7 @@ class Table:
         text = str(expression)
         if not re.fullmatch(r"[a-z_0-9 +*]+", text):
             raise ValueError(f"no expression of cycles: {text}")
-        return eval(text, {"__builtins__": {}}, names)  # letters, digits, + and * only
+        return eval(text, {"__builtins__": {}}, names)  # only letters, digits, + and *
 
 
 def shipped_rig():
@@ -135,10 +136,10 @@ class Cell:
         self.processes = []
         self.proxy = None
         self.lines = None
-        self.seen = 0  # events up to it were before the fault
+        self.seen = 0  # events up to this id were before the fault
         self.measured = {}
 
-    # --- what runs
+    # --- the processes
 
     def rig_file(self, port):
         text = self.vacuum_rig() if self.vacuum else (self.folder / "config" / "rig_tcp.yaml").read_text()
@@ -205,14 +206,15 @@ class Cell:
             self.lines = digital_lines.Lines(self.folder)
 
     def clear_emergency_stop(self):
-        """It counts as pressed from the start."""
+        """The emergency stop counts as pressed from the start."""
         self.daemon.wait_for_state("faulted")
         bench.wait_for("an acknowledged start", lambda: self.daemon.ask("acknowledge")["ok"], pause_s=0.05)
         bench.wait_for("the enable output", lambda: "ENABLE" in self.lines.on())
         self.seen = self.daemon.events()[-1]["id"]
 
     def find_origin(self):
-        """time.monotonic() of the daemon's time 0. A status is as old as the last tick: the youngest of some counts."""
+        """time.monotonic() at the daemon's time 0. A status is as old as the last tick, so the youngest of several
+        statuses counts."""
         self.origin = math.inf
         for n in range(20):
             now_s = self.daemon.status()["time_s"]
@@ -246,7 +248,7 @@ class Cell:
             self.lines.release()
             return
         if "pause" in self.fault["do"] or "hand" in self.fault["do"]:
-            return  # it is over
+            return  # the fault is over
         if "plant" in self.fault["do"]:
             self.emulator.ask("clear it")
             if self.fault["do"]["plant"] == "ignored_write":
@@ -257,7 +259,7 @@ class Cell:
             self.proxy.clear()
 
     def first_other_write(self):
-        """When a write first asked for something else than the outputs had when writes began to be ignored."""
+        """The time of the first write with other values than the outputs had when the board began to ignore writes."""
         before = [words for at, words in self.proxy.writes if at <= self.began][-1:]
         return next((at for at, words in self.proxy.writes
                      if at > self.began and before and wire_proxy.noticeable(words, before[0])), self.began)
@@ -283,13 +285,13 @@ class Cell:
         if self.phase == "holding":
             require(self.daemon.results() == ["HOLDING", "HOLDING"], f"before the fault: {self.daemon.results()}")
 
-    # --- what must come of it
+    # --- the required results
 
     def latched(self):
         return next((e for e in self.daemon.events() if e["kind"] == "fault_latched" and e["id"] > self.seen), None)
 
     def observe(self, cycles=OBSERVED_CYCLES):
-        """Lets so many ticks pass."""
+        """Waits for so many ticks."""
         ticks = self.daemon.status()["loop"]["ticks"]
         bench.wait_for("ticks", lambda: self.daemon.status()["loop"]["ticks"] >= ticks + cycles)
 
@@ -297,7 +299,7 @@ class Cell:
         return self.emulator.commands_kpa()
 
     def away_kpa(self):
-        """How far the outputs are from their rest pressure, which is 0 kPa."""
+        """The distance of the outputs from their rest pressure, which is 0 kPa."""
         return [abs(kpa) for kpa in self.outputs_kpa()]
 
     def check_waits(self):
@@ -320,11 +322,11 @@ class Cell:
         if self.expected.get("outputs") != "spoiled":
             self.check_outputs(fault["code"])
             self.check_no_motion(writes_before)
-        if self.has_lines() and not self.expected.get("for_good"):  # a chip that is gone drives nothing
+        if self.has_lines() and not self.expected.get("for_good"):  # a chip that was removed drives no output
             bench.wait_for("an enable output that has dropped", lambda: "ENABLE" not in self.lines.on(), 2)
             bench.wait_for("the fault lamp", lambda: "FAULT" in self.lines.on(), 2)
         self.find_origin()
-        self.observe(60)  # the recording's tail
+        self.observe(60)  # the end of the recording
         self.clear_fault()
         if self.expected.get("for_good"):
             require(not self.daemon.ask("acknowledge")["ok"], "it was acknowledged")
@@ -334,7 +336,7 @@ class Cell:
 
     def action(self, code):
         safety = shipped_rig()["safety"]
-        # Where the board has no watchdog a hold outlasts the bus: the phase decides alone.
+        # Where the board has no watchdog, a hold continues without the bus: only the phase decides.
         watched = self.fault.get("rig") != "serial"
         if watched and code.startswith("F1") or code in ("F303", "F304") or self.phase == "connect":
             return "vent"  # the ADAM's watchdog vents
@@ -343,7 +345,7 @@ class Cell:
         return safety["safe_action"][PHASE_OF[self.phase]]
 
     def check_outputs(self, code):
-        """As the emulator has them, which is what a valve would get."""
+        """The outputs of the emulator are what a valve would receive."""
         action = self.action(code)
         self.measured["outputs"] = action
         if action == "vent":
@@ -363,7 +365,7 @@ class Cell:
                     f"an output moved away from rest after the fault: {before} to {after}")
 
     def acknowledge(self):
-        """The cause is gone: it is accepted, the rig becomes idle, and nothing moves."""
+        """The fault is removed: the acknowledgement is accepted, the rig becomes idle, and nothing moves."""
         since = len(self.proxy.writes)
         bench.wait_for("an acknowledged fault", lambda: self.daemon.ask("acknowledge")["ok"], 15, 0.1)
         self.daemon.wait_for_state("idle")
@@ -390,7 +392,7 @@ class Cell:
         require(not self.latched(), "a fault at the end")
 
     def check_unseen(self):
-        """No fault although something is wrong. What the grip's result says of it is measured, not judged."""
+        """There is no fault although something is wrong. The grip result is measured, but not judged."""
         self.observe()
         fault = self.latched()
         require(not fault, f"it is seen: {fault and fault['code']}: {fault and fault['text']}")
@@ -417,8 +419,9 @@ class Cell:
             require(missing <= slips, f"{recording.name}: {missing} ticks missing, {slips} slipped")
 
     def reaction(self, fault):
-        """Ticks from the fault's first effect to its latch, counted in the recording's rows."""
-        for recording in reversed(self.recordings()):  # the emergency stop of the start was one of its own
+        """The ticks between the first effect of the fault and the latched fault, counted in the rows of the
+        recording."""
+        for recording in reversed(self.recordings()):  # the emergency stop at the start was an event of its own
             about = json.loads((recording / "run.json").read_text())
             same = next((e for e in reversed(about["faults"]) if e["code"] == fault["code"]), None)
             if same is None:
@@ -437,7 +440,7 @@ class Cell:
             self.begin_fault()
             self.start_daemon()
             hurry(True)
-            # Short faults are over before anything could be looked at.
+            # Short faults end before anything can be observed.
             if self.expected["ends"] in ("ridden", "unseen"):
                 self.daemon.wait_for_state("idle")
         else:
@@ -475,8 +478,9 @@ class Cell:
 
 
 def hurry(yes):
-    """The wire is this process: where it may, it does not wait behind the machine's other work, as no wire does. It
-    mostly sleeps. Processes are begun without: what is tested finds its own priorities."""
+    """This process is the wire. A wire does not wait for the machine's other work, so this process gets a higher
+    priority where that is permitted. It mostly sleeps. Child processes start without the priority, because the test
+    checks the priorities that they set."""
     with contextlib.suppress(PermissionError):
         os.sched_setscheduler(0, os.SCHED_FIFO if yes else os.SCHED_OTHER, os.sched_param(30 if yes else 0))
 
@@ -492,7 +496,7 @@ def run_once(name, phase, vacuum=False):
         skipped = str(error)
     except Wrong as error:
         wrong = str(error)
-    except Exception as error:  # one broken cell must not hide the others
+    except Exception as error:  # a broken cell must not stop the others
         wrong = f"{type(error).__name__}: {error}\n{traceback.format_exc(limit=4)}"
     if wrong:
         log = "\n".join(p.errors()[-1800:] for p in cell.processes if p.name == "softgripd")
@@ -502,7 +506,8 @@ def run_once(name, phase, vacuum=False):
 
 
 def run_cell(name, phase, attempts=2, vacuum=False):
-    """Once more if it went wrong: the machine may have stood still. How often is told and published."""
+    """Runs a failed cell once more, because the machine may have stood still. The number of repetitions is printed and
+    published."""
     for attempt in range(1, attempts + 1):
         result = run_once(name, phase, vacuum)
         result["attempts"] = attempt

@@ -1,4 +1,4 @@
-"""docs/results/fault-matrix.md out of the table and what was measured."""
+"""Writes docs/results/fault-matrix.md from the table and the measured values."""
 
 import pathlib
 import sys

@@ -29,7 +29,8 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 BUILD = pathlib.Path(os.environ.get("SOFTGRIP_BUILD", ROOT / "build" / "release"))
 PAGE = ROOT / "docs/reference/foreign-files.md"
 
-# The truth: three seconds at 100 Hz up to 60 kPa and back, a lagging measured pressure, a finger that follows it.
+# The original signals: three seconds at 100 Hz up to 60 kPa and back, a measured pressure with a lag, and a finger that
+# follows it.
 COUNT = 300
 PSI, BAR = 6.894757293168361, 100.0
 
@@ -52,7 +53,7 @@ T, COMMAND, PRESSURE, TIP, WARM = TRUTH.values()
 
 
 def table(names, columns, separator=",", decimal=".", above="", units=None, quote=False, end="\n"):
-    """Rows of text; a value that is None is an empty cell."""
+    """Rows of text; a value of None becomes an empty cell."""
     def cell(value):
         text = "" if value is None else value if isinstance(value, str) else repr(value)
         text = text if isinstance(value, str) else text.replace(".", decimal)
@@ -92,7 +93,7 @@ def without(rows):
     return kept | {"time_s": [round(t - first, 9) for t in kept["time_s"]]}
 
 
-# MATLAB 5, written here and not by the library that reads it (MAT-File Format, The MathWorks).
+# MATLAB 5 files, written here and not by the library that reads them (MAT-File Format, The MathWorks).
 
 def element(kind, data):
     return struct.pack("<II", kind, len(data)) + data + b"\0" * (-len(data) % 8)
@@ -120,7 +121,7 @@ def text_matrix(text):
 
 
 def structures(name, elements):
-    """An array of structures; the values of the fields are encoded already."""
+    """An array of structures; the values of the fields are already encoded."""
     names = b"".join(field.encode().ljust(32, b"\0") for field in elements[0])
     return headed(2, (1, len(elements)), name, struct.pack("<HHi", 5, 4, 32) + element(1, names)
                   + b"".join(value for fields in elements for value in fields.values()))
@@ -144,7 +145,7 @@ def trials():
 
 
 def lvm(x_columns, sections):
-    """LabVIEW's text with sections of equal length; without X columns the times are counted."""
+    """LabVIEW's text format with sections of equal length; without X columns the times are counted."""
     text = "".join(f"{key}\t{value}\n" for key, value in (
         ("LabVIEW Measurement", ""), ("Writer_Version", "2"), ("Separator", "Tab"), ("Decimal_Separator", ","),
         ("Multi_Headings", "Yes"), ("X_Columns", x_columns), ("Time_Pref", "Relative"), ("***End_of_Header***", "")))
@@ -207,7 +208,7 @@ def recording(path):
 
 
 def exported(file):
-    """What `softgrip export` makes of the recording, as MCAP."""
+    """The recording as MCAP, written by `softgrip export`."""
     def make(path):
         with tempfile.TemporaryDirectory() as folder:
             run = pathlib.Path(folder) / "run"
@@ -219,7 +220,7 @@ def exported(file):
 
 
 def mcap(messages):
-    """An MCAP file of (topic, time [s], object), in the order of the time."""
+    """An MCAP file of (topic, time [s], object), in the order of the times."""
     def text(value):
         return struct.pack("<I", len(value)) + value.encode()
 
@@ -236,7 +237,7 @@ def mcap(messages):
 
 
 class File:
-    """One foreign file: how it is made, what is said to import it, and what must come of it."""
+    """One foreign file: how it is made, the import options, and the required result."""
 
     def __init__(self, name, about, content, options="", *, columns=None, refused="", says="", left_out=None, joined=0,
                  tolerance=1e-9):
@@ -255,7 +256,7 @@ class File:
 
 
 def spreadsheets():
-    """Workbooks, and what looks like them."""
+    """Workbooks, and files that look like workbooks."""
     names = ["Time (s)", "P set (kPa)", "Tip (mm)"]
     rows = [list(row) for row in zip(T, COMMAND, TIP)]
     days = [["Time", *names[1:]]] + [[workbooks.date(45443.999 + t / 86400), *row] for t, *row in rows]
@@ -336,7 +337,7 @@ EPOCH = 1717156800
 
 
 def reports():
-    """More files of the classes of public field reports, each with the account of its rows."""
+    """More files of the kinds in public field reports, each with the text of its rows."""
     names = ["time_s", "set_kpa", "tip_mm"]
     ms = [round(1000 * t) for t in T]
     thirds = {"pressure_command_kpa": [COMMAND[3 * (i // 3)] for i in range(COUNT)]}
@@ -445,7 +446,7 @@ def reports():
 
 
 def other_fingers_and_clocks():
-    """Fingers in rows, and channels with steps or starts of their own."""
+    """Fingers in rows, and channels with different intervals or start times."""
     rows = [(round(t + delay, 3), finger, *values) for t, *both in zip(T, COMMAND, TIP) for delay, finger, values in
             ((0, 1, both), (0.002, 2, [60 - both[0], 12 - both[1]]))]
     of_first = {"left_out": {"other_channel": COUNT}}
@@ -511,7 +512,7 @@ def signals(stamp):
         return [(name, t + late_s, {"data": value}) for t, value in list(zip(T, values))[::every]]
 
     def stamped(name, key, values, late_s=0.0, begin=0):
-        # A message is logged later than it was stamped.
+        # The log time of a message is later than its stamp.
         return [(name, t + late_s, {"header": {"stamp": {"sec": sec - begin, "nanosec": rest}}, key: value})
                 for t, sec, rest, value in zip(T, *stamp, values)]
     half = {"time_s": sorted([*T, *(round(t + 0.002, 6) for t in T[::2])])}
@@ -821,7 +822,7 @@ def read_csv(path):
 
 
 def furthest(got, wanted):
-    """The largest difference, relative to the column's size; why there is none."""
+    """The largest difference, relative to the column's size; or why there is none."""
     if set(got) != set(wanted):
         return math.inf, f"columns {sorted(got)} instead of {sorted(wanted)}"
     worst = 0.0
@@ -838,7 +839,7 @@ def furthest(got, wanted):
 
 
 def outcome(file, folder):
-    """What came of one file: (wrong, what, rest); wrong is empty where it is as it must be."""
+    """The result of one file: (wrong, what, rest); `wrong` is empty if the result is as required."""
     path = file.make(folder)
     out = folder / "out" / (file.name + ".csv")
     done = subprocess.run([BUILD / "tools/softgrip", "import", path, *shlex.split(file.options), "--yes", "--json",

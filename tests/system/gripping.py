@@ -1,6 +1,6 @@
-"""Grips of the shipped recipe on simulated parts, in virtual time or over the wire, judged from outside: what the part was
-squeezed by comes from the plant's own numbers and a curve that `softgrip simulate` gives, not from what the controller
-says."""
+"""Grips of the shipped recipe on simulated parts, in virtual time or over the wire. The judgement does not use the
+controller's values: the force on the part is calculated from the plant's own numbers and a curve of `softgrip
+simulate`."""
 
 import csv
 import dataclasses
@@ -18,8 +18,8 @@ import bench
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 MODEL = ROOT / "config/models/bench_twin.yaml"
 REACH_MM = 10  # how far behind its expected place a part is searched for
-APPROACH_MM = 4  # how far before it the approach ends
-# What the sensor's noise, the board's last bit and the filter of the readings may add to a bound.
+APPROACH_MM = 4  # how far in front of it the approach ends
+# What sensor noise, the resolution of the board and the filter of the readings may add to a bound.
 TOLERANCE_KPA = 0.5
 
 
@@ -27,7 +27,7 @@ TOLERANCE_KPA = 0.5
 class Part:
     name: str
     expected_mm: float
-    yielding: float  # share of the free motion that is left beyond its surface
+    yielding: float  # the share of the free motion that remains beyond its surface
 
 
 PARTS = (Part("stone", 12, 0.1), Part("spring", 10, 0.5), Part("screw", 17, 0.05), Part("nut", 14, 0.02),
@@ -36,15 +36,15 @@ PARTS = (Part("stone", 12, 0.1), Part("spring", 10, 0.5), Part("screw", 17, 0.05
 
 @dataclasses.dataclass(frozen=True)
 class Trial:
-    part: Part | None  # None: nothing is there
+    part: Part | None  # None: there is no part
     fingers: int
-    offset_mm: float  # from where the recipe expects the part
-    tilt_mm: float  # the second finger's part is so much farther
+    offset_mm: float  # relative to where the recipe expects the part
+    tilt_mm: float  # how much farther the part is for the second finger
     seed: int
 
     @property
     def slips(self):
-        """Over the wire every fifth part slips away while it is held."""
+        """Over the wire, every fifth part slips away while it is held."""
         return self.part is not None and random.Random(f"slips {self.seed}").random() < 0.2
 
     def place_mm(self, finger):
@@ -54,15 +54,15 @@ class Trial:
 @dataclasses.dataclass
 class Judged:
     answers: list
-    peak_kpa: float  # the largest squeeze; 0 where nothing was touched
+    peak_kpa: float  # the largest squeeze; 0 if no part was touched
     answered_s: float | None  # from the start of motion to the first answer
     end: str
-    slipped: bool = False  # the part left while it was held
+    slipped: bool = False  # the part was removed while it was held
 
 
 class Finger:
-    """What the simulated fingers really are: the model, or one that moves farther by so many percent; and the pressure
-    under which it rests at a displacement, free, three seconds after a jump."""
+    """The real behaviour of the simulated fingers: the model, or one that moves farther by so many percent; and the
+    pressure at which it rests at a displacement without a part, three seconds after a jump."""
 
     def __init__(self, softgrip, folder, farther_percent=0):
         self.softgrip, self.model = softgrip, folder / f"finger_{farther_percent:g}.yaml"
@@ -75,7 +75,7 @@ class Finger:
         self.points = self.rests(folder)
 
     def answer(self, rows, folder):
-        """The free finger's displacement under (time, pressure) rows."""
+        """The free finger's displacement for rows of (time, pressure)."""
         log, answer = folder / "commands.csv", folder / "free.csv"
         log.write_text("time_s,pressure_command_kpa\n" + "".join(f"{time_s},{kpa}\n" for time_s, kpa in rows))
         subprocess.run([self.softgrip, "simulate", "--model", self.model, "--input", log, "--out", answer], check=True,
@@ -98,14 +98,14 @@ class Finger:
 
 
 def drawn(seed):
-    """A trial: a part or none, on one finger or two, up to 8 mm off."""
+    """Draws a trial: with or without a part, for one finger or two, up to 8 mm from the expected place."""
     random_ = random.Random(seed)
     part = None if random_.random() < 0.1 else random_.choice(PARTS)
     return Trial(part, random_.choice((1, 2)), random_.uniform(-8, 8), random_.uniform(-1, 1), seed)
 
 
 def recipe(trial):
-    """The shipped one, for a part that is expected elsewhere; an empty grip expects a stone."""
+    """The shipped recipe for a part that is expected elsewhere; an empty grip expects a stone."""
     expected_mm = (trial.part or PARTS[0]).expected_mm
     text = (ROOT / "config/sequences/pick_stone.yaml").read_text()
     text = text.replace("displacement_mm: 8", f"displacement_mm: {expected_mm - APPROACH_MM}", 1)
@@ -120,7 +120,7 @@ def rig(trial, finger_model, folder):
     text = text.replace("models/", f"{ROOT}/config/models/").replace("seed: 1", f"seed: {trial.seed}", 1)
     plants, channels = text.split("\nchannel_defaults:", 1)
     text = re.sub(r"model: \S+", f"model: {finger_model}", plants) + "\nchannel_defaults:" + channels
-    text = text.replace("pressure_noise_kpa: 0.1", "pressure_noise_kpa: 0")  # the judge's own reading
+    text = text.replace("pressure_noise_kpa: 0.1", "pressure_noise_kpa: 0")  # the reading of the judge
     text = re.sub(r"directory: \S+}", f"directory: {folder}/runs}}", text)
     text = re.sub(r"path: /\S+,", f"path: {folder}/softgrip.sock,", text)
     objects = iter(range(2))
@@ -152,7 +152,8 @@ def play(trial, finger, folder):
 
 
 def play_on_the_wire(trial, finger, folder):
-    """Runs a trial with softgripd against softgrip-rig, in real time. Both fingers meet the part at the first one's place."""
+    """Runs a trial with softgripd and softgrip-rig in real time. For both fingers the part is at the first finger's
+    place."""
     shutil.copytree(ROOT / "config", folder / "config")
     (folder / "config/sequences/recipe.yaml").write_text(recipe(trial))
     there = () if trial.part is None else ("--object", f"{trial.place_mm(0)}:{trial.part.yielding}")
@@ -179,7 +180,7 @@ def play_on_the_wire(trial, finger, folder):
 
 
 def judged(trial, finger, folder, recording, end):
-    """What came of a trial, by its recording."""
+    """The result of a trial, from its recording."""
     story = json.loads((recording / "run.json").read_text())
     with open(recording / "run.csv", newline="") as file:
         rows = list(csv.DictReader(file))
@@ -193,7 +194,8 @@ def judged(trial, finger, folder, recording, end):
 
 
 def peak_squeeze(rows, trial, number, finger, folder):
-    """Where the finger really was: the free finger's place under the commands that went out, and the part's."""
+    """The largest squeeze, from the real position of the finger: the free finger's position for the commands that were
+    sent, and the position of the part."""
     if trial.part is None:
         return 0
     free = finger.answer([(row["time_s"], row["pressure_command_kpa"]) for row in rows], folder)
@@ -206,7 +208,7 @@ def peak_squeeze(rows, trial, number, finger, folder):
 
 
 def broken(trial, judged, allowed_kpa):
-    """What a grip promises and this one did not keep; empty: all kept."""
+    """The promises of a grip that this one did not keep; empty if it kept all."""
     told = [answer for answers in judged.answers for answer in answers]
     problems = []
     if judged.peak_kpa > allowed_kpa + TOLERANCE_KPA:

@@ -1,12 +1,10 @@
 #!/usr/bin/env python3
-"""What `softgrip import` makes of every file in a folder of field reports.
+"""Shows the result of `softgrip import` for every file in a folder of field reports.
 
     tests/system/import_reports.py [FOLDER] [--softgrip PROGRAM]...
 
 FOLDER has a folder for each report. Without FOLDER the reports of foreign_files.py are made and imported. The table has
-a row for each file. With two programs it has a column for each,
-before and after. Exit code 1 if a run crashed.
-"""
+a row for each file, and with two programs a column for each: before and after. Exit code 1 if a run crashed."""
 
 import argparse
 import json

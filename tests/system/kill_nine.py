@@ -1,6 +1,7 @@
-"""kill -9 at random moments while recording: every recording opens, at most one second is lost, the board vents.
+"""kill -9 at random times while recording: every recording can be opened, at most one second is lost, and the board
+vents.
 
-scripts/kill_nine.sh runs it a hundred times; test_kill.py a few times.
+scripts/kill_nine.sh runs it a hundred times; test_kill.py runs it a few times.
 """
 
 import argparse
@@ -49,7 +50,8 @@ def opens(folder, recording, *arguments):
 
 
 def once(number, seed):
-    """One daemon, killed after a random time. Returns what was lost and how long it took the board to vent [s]."""
+    """Runs one daemon and kills it after a random time. Returns how much was lost and how long the board took to vent
+    [s]."""
     chance = random.Random(f"{seed}/{number}")
     folder = pathlib.Path(tempfile.mkdtemp(prefix="softgrip_killed_"))
     processes = []
@@ -61,7 +63,7 @@ def once(number, seed):
         processes.append(daemon)
         daemon.wait_for_state("idle")
         bench.wait_for("a start", lambda: daemon.ask("start", sequence="killed", sequence_text=SEQUENCE)["ok"])
-        # The recording's time 0 is the tick in which the sequence was accepted.
+        # Time 0 of the recording is the tick in which the sequence was accepted.
         began = daemon.wait_for_event("sequence_started")["time_s"]
         time.sleep(chance.uniform(0.1, 5))
         killed_at = daemon.status()["time_s"] - began
@@ -86,7 +88,7 @@ def once(number, seed):
             opens(folder, recording, "validate", "--model", "config/models/bench_twin.yaml", "--data", recording,
                   "--channel", "left")
         return {"number": number, "killed_at_s": killed_at, "lost_s": lost_s, "vented_s": vented_s, "wrong": None}
-    except Exception as error:  # told, counted, and the others go on
+    except Exception as error:  # printed and counted; the other runs continue
         return {"number": number, "wrong": f"{type(error).__name__}: {error}"}
     finally:
         for process in reversed(processes):

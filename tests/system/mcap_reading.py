@@ -1,4 +1,4 @@
-"""MCAP read by the specification (https://mcap.dev/spec) and not by the code that wrote it; every checksum is checked."""
+"""Reads MCAP by the specification (https://mcap.dev/spec), not with the code that wrote it; checks every checksum."""
 
 import json
 import struct
@@ -8,7 +8,7 @@ MAGIC = b"\x89MCAP0\r\n"
 
 
 class Content:
-    """One record's bytes, read from the left."""
+    """The bytes of one record, read from left to right."""
 
     def __init__(self, data):
         self.data, self.at = data, 0
@@ -49,7 +49,7 @@ def records(data, begin, end):
 
 
 def read(path):
-    """{topic: [(log_time_ns, message)]}; fails where anything is not as the specification has it."""
+    """{topic: [(log_time_ns, message)]}; fails at any difference from the specification."""
     data = path.read_bytes()
     assert data.startswith(MAGIC) and data.endswith(MAGIC), "no magic"
     footer_at = len(data) - len(MAGIC) - 29

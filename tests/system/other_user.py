@@ -1,4 +1,4 @@
-"""A process of a user without any right to the rig: what every local user can do."""
+"""A process of a user without any permission for the rig: what every local user can do."""
 
 import hashlib
 import os
@@ -20,14 +20,14 @@ def board_name(port):
 
 
 def lock_folders():
-    """Where the daemon of this user may have the file of its lock."""
+    """The folders in which the daemon of this user may have its lock file."""
     user = os.geteuid()
     places = ("/run/softgrip", f"/run/user/{user}/softgrip", f"/tmp/softgrip-{user}")
     return [place for place in map(pathlib.Path, places) if place.is_dir()]
 
 
 class OtherUser:
-    """Holds a name, or a path, from its start to its end; `backlog`: None does not listen, 0 lets nobody in."""
+    """Occupies a name or a path from its start to its end. `backlog`: None does not listen, 0 accepts no connection."""
 
     def __init__(self, test, address, backlog=5):
         ready, told = os.pipe()
@@ -60,7 +60,7 @@ class OtherUser:
                     raise
         if backlog is not None:
             held.listen(backlog)
-        if backlog == 0:  # its queue is full: who connects is put off
+        if backlog == 0:  # its queue is full: a new connection has to wait
             full = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
             full.connect(address)
         os.write(told, b"1")

@@ -1,4 +1,4 @@
-"""Something of a daemon stands still for a while: all of it (SIGSTOP), or one of its threads (ptrace)."""
+"""Pauses a daemon: the whole process (SIGSTOP), or one of its threads (ptrace)."""
 
 import contextlib
 import pathlib
@@ -19,7 +19,7 @@ def thread_of(daemon, name):
 
 @contextlib.contextmanager
 def whole_process(daemon):
-    """Stands still meanwhile."""
+    """Pauses the process during the `with` block."""
     daemon.send(signal.SIGSTOP)
     try:
         yield
@@ -38,4 +38,4 @@ def pause(daemon, what, for_s):
         if hang.stdout.readline() != "hangs\n":
             raise PermissionError("this user may not trace another process")
         time.sleep(for_s)
-        hang.kill()  # lets the thread go
+        hang.kill()  # resumes the thread

@@ -1,4 +1,4 @@
-"""softgrip-plc beside the other processes of a test, and a master that commands it as a PLC would."""
+"""softgrip-plc with the other processes of a test, and a master that commands it like a PLC."""
 
 import re
 import struct
@@ -18,7 +18,7 @@ NOT_GIVEN = 0x8000
 
 
 class Map:
-    """Addresses by name, from the file that the gateway reads."""
+    """The addresses by name, from the file that the gateway reads."""
 
     def __init__(self, path):
         registers = yaml.safe_load(path.read_text())["registers"]
@@ -54,7 +54,7 @@ def block(counter, command, recipe=0):
 
 
 class Master:
-    """Counts its commands, and asks what became of each."""
+    """Counts its commands and reads the result of each."""
 
     def __init__(self, plc, synchronise=True):
         self.map = plc.map
@@ -90,13 +90,14 @@ class Master:
         self.write("master_heartbeat", self.beats)
 
     def synchronise(self):
-        """Goes on counting where the gateway is, by a counter without a command, once nothing is under way."""
+        """Takes over the counter of the gateway with a counter without a command, as soon as no command is in
+        progress."""
         bench.wait_for("the end of what is under way", lambda: self.read("outcome") != 1)
         self.counter = self.read("done_counter")
         self.write("command_counter", self.counter, 0)
 
     def put(self, command, recipe=0, squeeze=NOT_GIVEN):
-        """Counter and command in one block, as a PLC writes them."""
+        """Writes counter and command in one block, like a PLC."""
         self.counter = (self.counter + 1) % 65536
         self.write("command_counter", self.counter, command, recipe, squeeze)
         return self.counter
@@ -124,6 +125,6 @@ class Master:
 
 
 def started(daemon, since=0):
-    """Requests by which the gateway has started sequences in this daemon."""
+    """The requests by which the gateway has started sequences in this daemon."""
     return [event["request"] for event in daemon.events(since)
             if event["kind"] == "sequence_started" and event.get("client") == "softgrip-plc"]

@@ -1,4 +1,4 @@
-"""A page as paper has it: printed by chromium, read by poppler."""
+"""A page as it appears on paper: printed by chromium, read by poppler."""
 
 import re
 import subprocess
@@ -19,5 +19,5 @@ def sheets(page, folder):
 
 
 def before_appendix(printed):
-    """How many sheets those read who do not check."""
+    """The number of sheets before the appendix, which is for readers who check the numbers."""
     return next(i for i, sheet in enumerate(printed) if sheet.lstrip().startswith("Appendix"))

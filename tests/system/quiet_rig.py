@@ -1,4 +1,4 @@
-"""A daemon on a simulated rig that no pause of the machine faults: for tests in which only clients are at fault."""
+"""A daemon on a simulated rig in which pauses of the machine cause no fault: for tests in which only clients fail."""
 
 import re
 
@@ -27,12 +27,12 @@ class QuietRigTest(bench.BenchTest):
         self.path = str(self.softgripd.socket_path)
 
     def running(self):
-        """The request of the sequence that runs; None: none does."""
+        """The request of the sequence that runs; None if none runs."""
         sequence = self.softgripd.status()["sequence"]
         return sequence["request"] if sequence and sequence["ended"] is None else None
 
     def ended(self, request):
-        """How that start's sequence ended; None if it runs."""
+        """How the sequence of that start ended; None if it still runs."""
         for event in self.softgripd.events():
             if event["kind"] == "sequence_finished" and event["request"] == request:
                 return event["code"]

@@ -1,7 +1,7 @@
-"""What a recording shows of the promises of docs/reliability.md: recording_check.py RECORDING...
+"""Checks a recording against the promises of docs/reliability.md: recording_check.py RECORDING...
 
-Read are run.csv, run.json and the rig file that run.json names, if it still is what it was. Exit code 6 if a recording
-contradicts a promise, with the row that does.
+It reads run.csv, run.json, and the rig file that run.json names, if that has not changed. Exit code 6 if a recording
+breaks a promise; the message names the row.
 """
 
 import argparse
@@ -14,9 +14,9 @@ import sys
 
 import yaml
 
-# In which a command may move away from rest: control/tick/tick.h, may_rise().
+# The states in which a command may move away from the rest pressure: control/tick/tick.h, may_rise().
 MAY_RISE = ("resynchronising", "running")
-# state -> what may follow it: control/tick/supervisor.h
+# state -> the states that may follow it: control/tick/supervisor.h
 NEXT = {
     "starting": ("idle", "faulted"),
     "idle": ("resynchronising", "running", "stopping", "faulted"),
@@ -41,11 +41,11 @@ class Recording:
         self.limits = self.rig_limits()
 
     def channel_names(self):
-        """In the order of their rows."""
+        """The names of the channels in the order of their rows."""
         return list(dict.fromkeys(row["channel"] for row in self.rows))
 
     def rig_limits(self):
-        """By channel; none where the file has gone or changed since."""
+        """The limits by channel; none if the file was removed or changed since the recording."""
         for file in self.about["files"]:
             path = pathlib.Path(file["path"])
             if file["role"] != "rig" or not path.exists():
@@ -59,7 +59,7 @@ class Recording:
         return {}
 
     def rest(self, name):
-        """Of a channel: rest_kpa, or the end of its limits that is nearest to it."""
+        """The rest pressure of a channel: rest_kpa, or the end of its limits that is nearest to rest_kpa."""
         limits = self.limits.get(name)
         rest = self.rest_kpa.get(name, 0)
         return rest if limits is None else max(limits["pressure_min_kpa"], min(rest, limits["pressure_max_kpa"]))
@@ -79,10 +79,11 @@ class Recording:
         self.check_events()
         return self.wrong
 
-    # --- nothing is missing
+    # --- the recording is complete
 
     def check_whole(self):
-        """Every tick has a row of every channel in the same order; times grow; the rows are as many as run.json says."""
+        """Every tick has a row of every channel in the same order, the times increase, and the number of rows is that
+        of run.json."""
         for index, row in enumerate(self.rows):
             if row["channel"] != self.names[index % len(self.names)]:
                 self.says(row, f"row {index + 2} is out of order")
@@ -107,7 +108,8 @@ class Recording:
                 self.says(row, f"{command} kPa is out of the range of its limits")
 
     def check_step(self, name, before, row):
-        """From one tick to the next: states as drawn, away from rest only in a sequence and within the slew."""
+        """From one tick to the next: only permitted changes of state, and away from rest only in a sequence and within
+        the slew."""
         if row["state"] != before["state"] and row["state"] not in NEXT[before["state"]]:
             self.says(row, f"{before['state']} is followed by {row['state']}")
         for side, slew in ((1, "slew_up_kpa_per_s"), (-1, "slew_down_kpa_per_s")):
@@ -121,7 +123,8 @@ class Recording:
                                f"{self.allowed(name, slew):.6f} are its slew")
 
     def check_return(self, name, before, row, last):
-        """Within the slew, but for what is written in one step: under a fault, and as the last of all."""
+        """The return to rest stays within the slew, except for what is written in one step: under a fault, and as the
+        last write."""
         if name not in self.limits or row["state"] == "faulted" or last:
             return
         for side, slew in ((1, "slew_down_kpa_per_s"), (-1, "slew_up_kpa_per_s")):
@@ -135,13 +138,13 @@ class Recording:
         return max(0.0, side * (float(row["pressure_command_kpa"]) - self.rest(name)))
 
     def allowed(self, name, slew):
-        """In a tick. Ticks that the loop lost do not add to what it may do in one."""
+        """The largest change in a tick. Ticks that the loop lost do not increase it."""
         return self.limits[name][slew] * self.about["decimation"] / self.about["rate_hz"]
 
     # --- answers
 
     def check_results(self, rows):
-        """HOLDING begins with something that was seen: a valid displacement, or a measured pressure."""
+        """HOLDING begins with an observation: a valid displacement or a measured pressure."""
         for before, row in zip(rows, rows[1:]):
             if row["result"] != "holding" or before["result"] == "holding":
                 continue
@@ -150,7 +153,7 @@ class Recording:
                 self.says(row, f"HOLDING from a reading that is {row['validity']}, while {before['state']}")
 
     def check_events(self):
-        """Events in order, and no sequence between a fault and its acknowledgement."""
+        """The events are in order, and no sequence runs between a fault and its acknowledgement."""
         faulted = None
         time_s, number = -math.inf, 0
         for event in self.about["events"]:
@@ -168,7 +171,7 @@ class Recording:
 
 
 def check(folder):
-    """Sentences of what a recording contradicts."""
+    """A sentence for each promise that a recording breaks."""
     return Recording(pathlib.Path(folder)).check()
 
 

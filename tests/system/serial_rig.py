@@ -1,5 +1,5 @@
-"""The shipped rig on a serial line: a pseudo-terminal of the emulator that takes the time of its bytes. Its board has no
-watchdog and no read-back."""
+"""The shipped rig on a serial line: a pseudo-terminal of the emulator on which bytes take as long as on a line. Its
+board has no watchdog and no read-back."""
 
 import os
 import re
@@ -13,12 +13,14 @@ RATE_HZ = 20
 
 
 def board_priority():
-    """A module has a processor of its own and answers in its time however busy this one is."""
+    """A real module has its own processor and answers in time however busy this computer is, so the emulator gets a
+    higher priority."""
     return ["chrt", "-f", "40"] if resource.getrlimit(resource.RLIMIT_RTPRIO)[0] >= 40 or os.geteuid() == 0 else []
 
 
 def rig_file(folder, rate_hz, *changes):
-    """Half the rate that fits: bytes cross a pseudo-terminal in a kernel thread that waits its turn on a busy machine."""
+    """Half of the highest possible rate: the kernel carries the bytes of a pseudo-terminal in a thread that has to wait
+    on a busy machine."""
     text = (folder / "config" / "rig_rtu.yaml").read_text()
     for pattern, replacement in (
             (r"device: .*", f"device: {folder}/line"), (r"rate_hz: \d+", f"rate_hz: {rate_hz}"),
@@ -38,7 +40,7 @@ def rig_file(folder, rate_hz, *changes):
 
 
 class Shared(bench.Emulator):
-    """Its control socket has one client at a time: who watches asks through this one."""
+    """The control socket of the emulator accepts one client at a time, so a watcher uses this connection."""
 
     def __init__(self, folder, *arguments):
         self.one_at_a_time = threading.Lock()
@@ -63,7 +65,7 @@ class Emulator(Shared):
 
 
 class Watcher:
-    """In the place of the wire's proxy: nothing is spoiled, what stands at the outputs is looked at every few milliseconds."""
+    """Replaces the proxy of the wire: it spoils nothing, and reads the outputs every few milliseconds."""
 
     def __init__(self, emulator):
         self.writes = []

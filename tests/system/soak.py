@@ -1,8 +1,8 @@
-"""softgripd for hours: 1 kHz over TCP against softgrip-rig, sequence after sequence, with other work on the machine, and
-between them clients that come and go, pauses and a full disk (soak_disturbances.py).
+"""Runs softgripd for hours: 1 kHz over TCP with softgrip-rig, sequence after sequence, with other work on the machine,
+and between them clients that connect and leave, pauses and a full disk (soak_disturbances.py).
 
-scripts/soak.sh runs it. Once a minute a line goes into soak.csv: memory, descriptors, slips, drops, faults. At the end
-a verdict: exit code 0, or 6 if anything grew, got lost or tripped.
+scripts/soak.sh runs it. Once a minute it writes a line into soak.csv: memory, descriptors, slips, drops, faults. At
+the end it prints a verdict: exit code 0, or 6 if a number grew, something was lost, or a fault occurred.
 """
 
 import argparse
@@ -23,16 +23,16 @@ import bench
 import soak_disturbances
 
 RATE_HZ = 1000
-# What stands still for less than 100 ms on a shared machine is the machine's doing and no fault of a bus.
+# A pause of less than 100 ms on a shared machine is caused by the machine and is not a fault of a bus.
 PATIENCE_CYCLES = 100
-# What is between the fingers, the sequence, how it ends, and what both fingers answer.
+# What is between the fingers, the sequence, how it ends, and the result of both fingers.
 ROUND = (
     ("stone", "pick_stone", "done", "RELEASED"),
     ("out", "empty_grip", "failed", "NO PART"),
     ("13:0.05", "pick_screw", "done", "RELEASED"),
     ("out", "track_sine", "done", "RELEASED"),
 )
-# The newest ten thousand events are kept in memory: the one thing that may grow.
+# The newest ten thousand events are kept in memory; nothing else may grow.
 ALLOWED_GROWTH_KIB = 4096
 COLUMNS = ("minute", "rss_kib", "descriptors", "threads", "ticks", "slips_woken_late", "slips_took_long",
            "bus_exchanges", "bus_failures", "bus_slips", "sessions", "dropped_rows", "faults", "sequences", "unexpected",
@@ -105,7 +105,7 @@ class Soak:
         print(f"  {sentence}", flush=True)
 
     def take_events(self, awaited=()):
-        """New events; faults among them are counted and told, but for the awaited kinds."""
+        """Reads new events. Faults among them are counted and printed, except the kinds that are expected."""
         events = self.daemon.events(self.newest)
         for event in events:
             self.newest = event["id"]
@@ -115,11 +115,11 @@ class Soak:
         return events
 
     def one(self, item, sequence, end, result):
-        """One sequence; what it came to is compared with what it should."""
+        """Runs one sequence and compares its result with the required one."""
         self.emulator.ask(f"object {item}" if item == "out" else "object back")
         if item != "out":
             self.emulator.ask(f"object {item}")
-        # A client of its own: connections come and go.
+        # It has its own client, so connections are opened and closed.
         client = bench.Lines(self.folder / "softgripd.sock")
         reply = json.loads(client.ask(json.dumps({"command": "start", "sequence": sequence})))
         client.close()
@@ -136,17 +136,17 @@ class Soak:
                                                             for e in events) or sequence == "track_sine"):
             self.note(f"{sequence}: ended {came[0]}, {sorted(came[1])}")
         self.recover()
-        time.sleep(1.2)  # the recording's tail
+        time.sleep(1.2)  # the end of the recording
         self.read_recordings()
 
     def recover(self):
-        """A fault is counted and acknowledged: the soak goes on and says so at the end."""
+        """Counts and acknowledges a fault. The soak test continues and reports it at the end."""
         if self.daemon.status()["state"] == "faulted":
             bench.wait_for("an acknowledged fault", lambda: self.daemon.ask("acknowledge")["ok"], 30, 0.5)
         self.daemon.wait_for_state("idle")
 
     def read_recordings(self):
-        """Every recording is read to its end and deleted: rows of both channels, a tick apart, none dropped."""
+        """Reads every recording to its end and deletes it: rows of both channels, one tick apart, none dropped."""
         for recording in sorted((self.folder / "runs").iterdir()):
             about = json.loads((recording / "run.json").read_text())
             if about["state"] == "recording":
@@ -158,7 +158,7 @@ class Soak:
             with open(recording / "run.csv", newline="") as file:
                 for row in csv.reader(file):
                     rows += 1
-            # Two channels, and a header. A row's time is that of its wake-up, so only the whole has no jitter.
+            # Two channels and a header. The time of a row is that of its wake-up, so only the total time has no jitter.
             self.missing += max(0, round(float(row[0]) * RATE_HZ) + 1 - (rows - 1) // 2)
             if rows - 1 != about["rows"]:
                 self.note(f"{recording.name}: {rows - 1} rows, run.json says {about['rows']}")
@@ -166,7 +166,7 @@ class Soak:
             shutil.rmtree(recording)
 
     def remove_recordings(self):
-        """What a full disk has cut off is nobody's to read."""
+        """Removes recordings that a full disk has cut off; they are not read."""
         for recording in self.runs.path.iterdir():
             shutil.rmtree(recording)
 
@@ -185,7 +185,7 @@ class Soak:
         writer.writerow(row)
 
     def pauses(self, count):
-        """Long pauses alone, one after the other."""
+        """Only long pauses, one after the other."""
         for _ in range(count):
             self.disturbances.long_pause()
             self.recover()
@@ -212,8 +212,8 @@ class Soak:
             self.sample((time.monotonic() - began) / 60, writer)
 
     def verdict(self, exit_code):
-        """Sentences of what is wrong; none if nothing is."""
-        # The first round fills what is filled once.
+        """A sentence for each requirement that is not fulfilled; empty if all are."""
+        # The first round fills buffers that are filled only once.
         settled = self.samples[min(2, len(self.samples) - 1)]
         last = self.samples[-1]
         wrong = list(self.unexpected)

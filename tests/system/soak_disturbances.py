@@ -1,5 +1,6 @@
-"""What disturbs the soak between its sequences and during them: clients that come and go, pauses of the process below and
-above the board's watchdog, a full disk. Each says what must come of it; what it says else counts as unexpected.
+"""The disturbances of the soak test, between its sequences and during them: clients that connect and leave, pauses of
+the process shorter and longer than the board's watchdog, and a full disk. Each knows its required result; any other
+result counts as unexpected.
 """
 
 import os
@@ -10,14 +11,14 @@ import time
 
 import bench
 
-SHORT_PAUSE_S = 0.03  # within what the rig of the soak rides through
+SHORT_PAUSE_S = 0.03  # the rig of the soak test tolerates this
 LONG_PAUSE_S = 0.8    # longer than the board's watchdog
 SETTLED_KPA = 0.1
-RUNS_MIB = 64         # the disk of the recordings, where it is one of its own
+RUNS_MIB = 64         # the disk of the recordings, if it is a separate one
 
 
 class Runs:
-    """The folder of the recordings as a file system of its own, where mounting is allowed."""
+    """The folder of the recordings as a separate file system, where mounting is permitted."""
 
     def __init__(self, folder):
         self.path = folder / "runs"
@@ -43,7 +44,8 @@ class Runs:
 
 
 class Disturbances:
-    """One after the other, each with a sequence of its own. `soak` gives daemon and emulator, and notes what is unexpected."""
+    """The disturbances one after the other, each with its own sequence. `soak` provides daemon and emulator, and
+    records each unexpected result."""
 
     def __init__(self, soak, runs, seed):
         self.soak, self.runs, self.chance = soak, runs, random.Random(seed)
@@ -56,7 +58,7 @@ class Disturbances:
         time.sleep(self.chance.uniform(0.5, 6))  # approach, closing, holding
 
     def finish(self, what):
-        """The sequence ends as if nothing had been."""
+        """The sequence ends normally."""
         bench.wait_for(f"the end beside {what}", lambda: self.soak.daemon.status()["state"] in ("idle", "faulted"), 60, 0.25)
         self.soak.take_events()
         ended = self.soak.daemon.status()["sequence"]["ended"]
@@ -64,7 +66,8 @@ class Disturbances:
             self.soak.note(f"{what}: the sequence ended {ended}")
 
     def clients(self):
-        """They connect, ask, and go: with their answer, without it, in the middle of a line, without a word."""
+        """Clients connect, send a request and leave: with their answer, without it, in the middle of a line, or without
+        a request."""
         self.start()
         for number in range(200):
             client = bench.Lines(self.soak.folder / "softgripd.sock")
@@ -90,7 +93,8 @@ class Disturbances:
         self.finish(f"a pause of {SHORT_PAUSE_S} s")
 
     def long_pause(self):
-        """The board has vented meanwhile: a fault, and nothing rises until it is acknowledged and somebody starts."""
+        """The board has vented in the meantime: there is a fault, and no pressure rises until it is acknowledged and a
+        sequence is started."""
         self.start()
         self.stopped(LONG_PAUSE_S)
         risen, began = [], time.monotonic()
@@ -113,7 +117,7 @@ class Disturbances:
         self.start()
         self.runs.fill()
         bench.wait_for("the end on a full disk", lambda: self.soak.daemon.status()["state"] in ("idle", "faulted"), 60, 0.25)
-        time.sleep(1.2)  # the recording's tail
+        time.sleep(1.2)  # the end of the recording
         events = self.soak.take_events(awaited=("recording_failed",))
         self.done["full disks"] += 1
         if self.soak.daemon.status()["sequence"]["ended"] != "done":
@@ -127,5 +131,5 @@ class Disturbances:
         for one in (self.clients, self.short_pause, self.long_pause, self.full_disk):
             one()
             self.soak.recover()
-            time.sleep(1.2)  # the recording's tail
+            time.sleep(1.2)  # the end of the recording
             self.soak.read_recordings()

@@ -1,4 +1,4 @@
-"""A Unix socket between a client and softgripd that can be spoiled while it is in use."""
+"""A Unix socket between a client and softgripd that can be disturbed while it is in use."""
 
 import contextlib
 import os
@@ -10,10 +10,11 @@ TO_DAEMON, TO_CLIENT = "to_daemon", "to_client"
 
 
 class SocketProxy:
-    """Listens at `path` and passes what clients say to the daemon at `daemon_path`, and back.
+    """Listens at `path` and passes what clients say to the daemon at `daemon_path`, and the answers back.
 
-    `held`: the directions whose bytes wait. `refuses`: new clients are hung up on. What waits is passed on with let_go(),
-    also if the client has gone meanwhile, as the kernel does it for a daemon that is paused.
+    `held`: the directions whose bytes wait. `refuses`: new connections are closed. let_go() passes on the bytes that
+    wait,
+    even if the client has left in the meantime, as the kernel does for a daemon that is paused.
     """
 
     def __init__(self, path, daemon_path):
@@ -54,14 +55,14 @@ class SocketProxy:
             return [pair[2 if direction == TO_DAEMON else 3] for pair in self._pairs]
 
     def inject(self, data):
-        """Says something to all clients in the daemon's place."""
+        """Sends something to all clients, as if it came from the daemon."""
         with self._lock:
             for pair in self._pairs:
                 pair[3] += data
         self._wake()
 
     def cut(self):
-        """Ends all connections, on both sides, with what waits in them."""
+        """Closes all connections on both sides and drops the bytes that wait in them."""
         with self._lock:
             for pair in self._pairs:
                 for end in pair[:2]:
@@ -80,7 +81,7 @@ class SocketProxy:
                 reads = [end for pair in self._pairs for end in pair[:2] if end]
             try:
                 ready, _, _ = select.select([self._listener, self._wakes, *reads], [], [], 0.1)
-            except (OSError, ValueError):  # cut meanwhile
+            except (OSError, ValueError):  # closed in the meantime
                 continue
             if self._wakes in ready:
                 os.read(self._wakes, 4096)
@@ -122,7 +123,7 @@ class SocketProxy:
                     with contextlib.suppress(OSError):
                         pair[other].sendall(pair[waits])
                 pair[waits] = b""
-        # One that has gone takes the other with it, once what it has said has been passed on.
+        # When one side closes, the other is closed as well, after the bytes of the first have been passed on.
         if (pair[0] is None and not pair[2]) or (pair[1] is None and not pair[3]):
             for end in pair[:2]:
                 if end:

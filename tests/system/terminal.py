@@ -1,4 +1,4 @@
-"""A program on a pseudo-terminal, and what a person would read on it."""
+"""A program on a pseudo-terminal, and what a person would read there."""
 
 import fcntl
 import os
@@ -14,7 +14,7 @@ import pyte
 
 
 class Terminal:
-    """Runs a program on a terminal of its own; what it draws is kept as a screen and as bytes."""
+    """Runs a program on its own terminal; its output is kept as a screen and as bytes."""
 
     def __init__(self, arguments, folder, columns=80, rows=24, environment=None):
         self.master, self.slave = pty.openpty()
@@ -29,7 +29,7 @@ class Terminal:
             env={**os.environ, "TERM": "xterm-256color", "LC_ALL": "C.UTF-8", "TZ": "UTC", **(environment or {})})
 
     def _own_terminal(self):
-        """So that Ctrl-C, Ctrl-Z and a hang-up reach the program as they would on a real one."""
+        """The program's own terminal, so that Ctrl-C, Ctrl-Z and a hang-up reach it as on a real one."""
         os.setsid()
         fcntl.ioctl(self.slave, termios.TIOCSCTTY, 0)
 
@@ -43,7 +43,7 @@ class Terminal:
         os.write(self.master, keys.encode())
 
     def read(self, seconds=0.05):
-        """Takes what the program has written within so long."""
+        """Reads what the program writes within this time."""
         end = time.monotonic() + seconds
         while (left := end - time.monotonic()) > 0:
             ready, _, _ = select.select([self.master], [], [], left)
@@ -60,7 +60,7 @@ class Terminal:
         return "\n".join(self.lines())
 
     def wait_for(self, what, patience_s=30):
-        """Waits until a text, or one of which `what` says so, stands on the screen; returns the screen."""
+        """Waits until a text is on the screen, or a text for which `what` returns true; returns the screen."""
         shows = what if callable(what) else lambda text: what in text
         end = time.monotonic() + patience_s
         while not shows(text := self.text()):
@@ -69,7 +69,7 @@ class Terminal:
         return text
 
     def wait(self, patience_s=30):
-        """Waits for the program's end; its exit code."""
+        """Waits until the program ends; returns its exit code."""
         end = time.monotonic() + patience_s
         while self.child.poll() is None:
             self.read()
@@ -79,7 +79,7 @@ class Terminal:
         return self.child.returncode
 
     def restored(self):
-        """Whether the cursor is seen, the first screen is back, and the keyboard is as it was."""
+        """True if the cursor is visible, the first screen is shown again, and the keyboard is as before."""
         self.read()
         shown = self.raw.rfind(b"\x1b[?25h") > self.raw.rfind(b"\x1b[?25l")
         back = self.raw.rfind(b"\x1b[?1049l") > self.raw.rfind(b"\x1b[?1049h")

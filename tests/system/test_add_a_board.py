@@ -1,4 +1,4 @@
-"""What docs/how-to/add-a-board.md tells to do is done: the map is checked and exchanged with, the driver compiles."""
+"""Carries out docs/how-to/add-a-board.md: the map is checked and used for exchanges, and the driver compiles."""
 
 import pathlib
 import re

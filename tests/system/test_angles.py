@@ -1,4 +1,4 @@
-"""Logs and models whose output is a bending angle: the same numbers as in mm, another unit in every text."""
+"""Logs and models whose output is a bending angle: the same numbers as in mm, but another unit in every text."""
 
 import csv
 import html
@@ -13,7 +13,7 @@ TWIN, GIVEN = "config/models/bench_twin.yaml", "config/models/zhang2025.yaml"
 
 
 def without_times(value):
-    """The numbers of a JSON companion: what the clock, the unit, the hashes and the texts say is left out."""
+    """A JSON companion without the values that depend on the clock, the unit, the hashes and the texts."""
     if isinstance(value, dict):
         return {key: without_times(inner) for key, inner in value.items()
                 if key not in ("wall_s", "stages_s", "hash", "sha256", "output_unit", "unit")}
@@ -23,7 +23,7 @@ def without_times(value):
 
 
 def words_of(page):
-    """What a reader sees of a page: no markup, no drawing instructions."""
+    """The text of a page that a reader sees, without markup and drawing instructions."""
     return html.unescape(re.sub(r"<[^>]*>", " ", re.sub(r"(?s)<style.*?</style>", "", page)))
 
 

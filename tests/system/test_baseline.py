@@ -1,4 +1,4 @@
-"""softgrip baseline --rig: the commissioning experiment on a rig, what it keeps, and what it refuses."""
+"""softgrip baseline --rig: the commissioning experiment on a rig, the files that it keeps, and what it refuses."""
 
 import csv
 import json
@@ -26,7 +26,7 @@ class Baseline(bench.BenchTest):
         self.addCleanup(patch.stop)
 
     def simulated(self, *changes):
-        """config/rig.yaml with a free way for its left finger."""
+        """config/rig.yaml with a left finger that can move freely."""
         text = (self.folder / "config/rig.yaml").read_text()
         for old, new in ((STONE, ""), *changes):
             self.assertIn(old, text)
@@ -46,7 +46,8 @@ class Baseline(bench.BenchTest):
         self.assertEqual(list(self.temporary.iterdir()), [])
 
     def check_whole(self, logs):
-        """The folder that --data makes, with a second run that is another one; and it does what it is for."""
+        """The folder of --data is complete, its second run was recorded and not copied, and --check gives the same
+        result."""
         self.assertEqual(list(self.temporary.iterdir()), [])
         about = json.loads((self.folder / "base/baseline.json").read_text())
         names = [f"{run}_{i + 1}.csv" for run in ("healthy", "second") for i in range(logs)]
@@ -146,7 +147,7 @@ class Baseline(bench.BenchTest):
         self.assertIn("run_2, 1 of 1: sharp_steps", done.stderr)
         self.assertLess(max(board.pressures_kpa()), 5, "and it is vented")
         about = self.check_whole(1)
-        check = about["check"]  # one short log is thin ground: the verdict on it is not what is shown here
+        check = about["check"]  # one short log is too little data, so the verdict is not checked here
         self.assertEqual(done.returncode, 0 if check["verdict"] == "unchanged" else 6)
         self.assertLess(check["second_run_rms_mm"], 2 * check["healthy_heldout_rms_mm"])
         self.assertEqual((about["rig"]["channel"], about["rig"]["simulated"]), ("left", False))

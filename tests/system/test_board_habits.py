@@ -1,4 +1,4 @@
-"""Boards with habits that people report: what status, events and doctor say of them."""
+"""Boards with habits that users report: what status, events and doctor say about them."""
 
 import datetime
 import json
@@ -10,7 +10,8 @@ import bench
 
 
 class OneTable(socketserver.ThreadingTCPServer):
-    """In front of an emulator, which answers both read functions: here the inputs, registers 0 to 15, have one."""
+    """A proxy for an emulator, which answers both read functions. Here only one function reads the inputs, registers 0
+    to 15."""
     daemon_threads = allow_reuse_address = True
 
     def __init__(self, behind, function, code):
@@ -30,7 +31,7 @@ class OneTable(socketserver.ThreadingTCPServer):
 
 class BoardHabits(bench.BenchTest):
     def habit(self, kind, *arguments):
-        """An emulator with this habit from the start."""
+        """An emulator that has this habit from the start."""
         emulator = self.emulator("--faults", self.write("habit.yaml", f"faults:\n  - {{name: it, kind: {kind}}}\n"),
                                  *arguments)
         emulator.ask("fault it")
@@ -102,7 +103,7 @@ class BoardHabits(bench.BenchTest):
         return self.rig(port, [(r"map: boards/adam-6024.yaml", f"map: boards/{board}.yaml"), (r"unit: 1", "unit: 1" + session)])
 
     def examined(self, described, emulated, *arguments, fault="", session="", in_front=None):
-        """What the doctor says of a board that is not as its map says."""
+        """The doctor's report on a board that differs from its map."""
         if fault:
             arguments += ("--faults", self.write("fault.yaml", f"faults:\n  - {{name: it, kind: {fault}}}\n"))
         emulator = self.emulator(*arguments, board=emulated)

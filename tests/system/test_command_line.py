@@ -1,4 +1,4 @@
-"""The programs as a user meets them: exit codes, messages, JSON, the live view."""
+"""The programs as a user sees them: exit codes, messages, JSON, the live view."""
 
 import json
 import os
@@ -11,7 +11,7 @@ import bench
 
 
 class Offline(bench.BenchTest):
-    """What needs no daemon."""
+    """Commands that need no daemon."""
 
     def simulate(self, *arguments, model="bench_twin", expect=0):
         return self.softgrip("simulate", "--model", f"config/models/{model}.yaml", *arguments, expect=expect)
@@ -47,7 +47,7 @@ class Offline(bench.BenchTest):
 
     def test_check_finds_everything_at_once(self):
         files = sorted((self.folder / "config").rglob("*.yaml"))
-        vacuum = [path for path in files if "vacuum" in path.parts]  # its sequence fits no other rig
+        vacuum = [path for path in files if "vacuum" in path.parts]  # its sequence does not fit any other rig
         good = self.softgrip("check", *(path for path in files if path not in vacuum))
         self.assertIn("rig 'bench': ok", good.stdout)
         self.assertIn("rig 'vacuum_bench': ok", self.softgrip("check", *vacuum).stdout)
@@ -107,7 +107,7 @@ class Offline(bench.BenchTest):
 
 
 class Online(bench.BenchTest):
-    """What talks to the daemon."""
+    """Commands that communicate with the daemon."""
 
     def setUp(self):
         super().setUp()
@@ -139,7 +139,7 @@ class Online(bench.BenchTest):
         self.assertIn("sequence_finished", kinds)
 
     def live(self, environment, keys):
-        """`softgrip watch` on a terminal of its own; returns all that it wrote."""
+        """Runs `softgrip watch` on its own terminal; returns everything that it wrote."""
         child, terminal = pty.fork()
         if child == 0:
             os.environ.update(environment, TERM="xterm", SOFTGRIP_SOCKET=str(self.softgripd.socket_path))

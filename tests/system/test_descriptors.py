@@ -1,4 +1,4 @@
-"""Programs that listen, without a free descriptor: they wait, and their connections continue."""
+"""Servers that have no free descriptor: they wait, and their existing connections continue."""
 
 import os
 import resource

@@ -1,4 +1,5 @@
-"""Words that fit two devices of the computer: every program refuses them with exit code 3, and nothing moves."""
+"""Device words of a rig file that fit two devices of the computer: every program refuses them with exit code 3, and
+nothing moves."""
 
 import os
 import pathlib
@@ -29,7 +30,7 @@ class Devices(unittest.TestCase):
         return path
 
     def refused(self, command, environment=None):
-        """What a program says that refuses the rig file."""
+        """The message of a program that refuses the rig file."""
         done = subprocess.run([str(word) for word in command], capture_output=True, text=True, timeout=bench.PATIENCE_S,
                               env={**os.environ, **(environment or {})})
         self.assertEqual(done.returncode, 3, done.stdout + done.stderr)
@@ -53,7 +54,7 @@ class Devices(unittest.TestCase):
             self.assertEqual((self.folder / f"iio/iio:device{number}/out_voltage0_raw").read_text(), "1234\n")
 
     def plug(self, number, address, name):
-        """A converter on a bus, and its link among all converters."""
+        """Adds a converter to a bus, with its link among all converters."""
         node = self.folder / "hardware" / address / f"iio:device{number}"
         node.mkdir(parents=True)
         for attribute, text in (("name", name), ("out_voltage0_raw", "1234"), ("out_voltage0_scale", "0.8"),

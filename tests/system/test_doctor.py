@@ -1,4 +1,4 @@
-"""softgrip doctor and calibrate as a technician runs them, against the emulator over TCP."""
+"""softgrip doctor and calibrate as a technician runs them, with the emulator over TCP."""
 
 import json
 import os
@@ -19,7 +19,7 @@ class Doctor(bench.BenchTest):
     def test_a_healthy_rig_is_fit_and_left_vented(self):
         emulator = self.emulator()
         report, findings = self.doctor(self.rig(emulator.port), "--move", expect=None)
-        # How punctual a busy machine is, is not the rig's.
+        # The punctuality of a busy machine is no property of the rig.
         failed = {name for name, finding in findings.items() if finding["verdict"] == "fail"}
         self.assertLessEqual(failed, {"timer", "bus time"}, report)
         for name in ("board", "sensor left", "valve left", "finger right", "model right", "safe state"):
@@ -39,7 +39,7 @@ class Doctor(bench.BenchTest):
         self.assertIn("cable", findings["board"]["advice"])
 
     def failures(self, report):
-        """Names of what failed; how punctual a busy machine is, is not the rig's."""
+        """The names of the failed checks; punctuality is left out because the machine may be busy."""
         return [finding["name"] for finding in report["findings"]
                 if finding["verdict"] == "fail" and finding["name"] not in ("timer", "bus time", "loop")]
 
@@ -105,7 +105,7 @@ class Doctor(bench.BenchTest):
         self.assertEqual(findings["sensor left"]["verdict"], "not_judged")
 
     def test_without_a_daemon_the_rig_is_named(self):
-        """Beside the shipped config/rig.yaml, which is the simulated rig."""
+        """The folder contains the shipped config/rig.yaml, which is the simulated rig."""
         self.rig(1)
         asked = self.softgrip("doctor", expect=2)
         self.assertIn("--rig RIG", asked.stderr)
@@ -152,9 +152,9 @@ class Doctor(bench.BenchTest):
 
 
 class Calibrate(bench.BenchTest):
-    """The emulator is wired as the shipped rig says; the calibrated file says something else."""
+    """The emulator is wired like the shipped rig; the file to calibrate has other values."""
 
-    # What the sensor and the valve really are: see config/rig_tcp.yaml.
+    # The real sensor and valve, from config/rig_tcp.yaml.
     def true_mm(self, volts):
         return -5 + 5 * volts
 
@@ -179,7 +179,7 @@ class Calibrate(bench.BenchTest):
             stream.close()
 
     def answer_with(self, child, reading):
-        """Answers every question until the end; returns everything it said."""
+        """Answers every question until the end; returns everything that the program printed."""
         said = b""
         while True:
             byte = os.read(child.stderr.fileno(), 1)
@@ -209,7 +209,7 @@ class Calibrate(bench.BenchTest):
         self.assertEqual(child.returncode, 0, said)
         error = float(re.search(r"sensor: error ([\d.]+) mm", out).group(1))
         sensor = self.line_in(out, "sensor")
-        # The gauge is read a moment before the average begins, and the finger creeps meanwhile.
+        # The gauge is read a moment before the average begins, and the finger creeps in between.
         for volts in (2, 4):
             self.assertAlmostEqual(sensor(volts), self.true_mm(volts), delta=error + 0.3, msg=out)
         self.assertEqual(max(emulator.commands_kpa()), 0)
@@ -237,9 +237,9 @@ class Calibrate(bench.BenchTest):
         close = self.softgrip("calibrate", "--rig", rig, *quick, "--gauge-mm", "5", "5.1", expect=6)
         self.assertIn("too close", close.stderr)
         self.softgrip("calibrate", "--rig", rig, *quick, "--gauge-mm", "five", "6", expect=3)
-        self.softgrip("calibrate", "--rig", rig, *quick, expect=3)  # nobody answers
+        self.softgrip("calibrate", "--rig", rig, *quick, expect=3)  # no answer
         self.softgrip("calibrate", "--rig", rig, "--channel", "left", "--valve", expect=2)
-        self.softgrip("calibrate", "--rig", rig, expect=2)  # which channel?
+        self.softgrip("calibrate", "--rig", rig, expect=2)  # --channel is missing
         self.assertEqual(max(emulator.commands_kpa()), 0)
 
     QUICK = ("--channel", "left", "--sensor", "--move", "--settle-s", "0.5", "--average-s", "0.3")
@@ -295,7 +295,7 @@ class Calibrate(bench.BenchTest):
         emulator = self.emulator()
         rig = self.rig(emulator.port)
         before = rig.read_bytes()
-        # No file may grow beyond this; restore_signals would bring back the signal that kills.
+        # No file may grow beyond this size; restore_signals would restore the signal that ends the process.
         done = subprocess.run([bench.SOFTGRIP, "calibrate", "--rig", rig, *self.QUICK, "--gauge-mm", "3.6", "19", "--write",
                                "--out", "-"], cwd=self.folder, capture_output=True, text=True, restore_signals=False,
                               preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000)))

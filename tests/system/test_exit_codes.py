@@ -1,4 +1,5 @@
-"""Every command in every ending: the exit code is that of docs/reference/exit-codes.md, which this test reads."""
+"""Every command in every ending: the exit code must be the one in docs/reference/exit-codes.md, which this test
+reads."""
 
 import os
 import re
@@ -47,7 +48,7 @@ DESK = {
                            f"investigate --model {TWIN} --data bad.csv --rig config/rig.yaml --rig-channel left --yes "
                            "--out {out}/found", "log.csv", "found/investigation.json"),
 }
-# What asks the daemon, in the order in which one daemon can answer all of it; with the state that it needs.
+# Commands that ask the daemon, in an order in which one daemon can answer all; each with the state that it needs.
 CLIENTS = {
     "status": Command("status"),
     "sequences": Command("sequences"),
@@ -60,7 +61,7 @@ CLIENTS = {
     "acknowledge": Command("acknowledge", "acknowledge"),
     "start --wait": Command("start short.yaml --wait", "start short.yaml --wait"),
 }
-# What moves a rig. `{rig}` is the rig file of an emulated board, `{out}` the folder of the outputs.
+# Commands that move a rig. `{rig}` is the rig file of an emulated board, `{out}` the folder of the outputs.
 MOTION = {
     "run": Command("run short.yaml --rig {rig} --no-socket --record {out}/rec", "run bad.yaml --rig {rig} --no-socket",
                    writes="rec"),
@@ -169,7 +170,8 @@ class Desk(bench.BenchTest):
             path = disk.folder / (command.writes or "output")
             path.parent.mkdir(exist_ok=True)
             if not command.new:
-                path.write_text("old\n" if command.writes else "")  # the rest of a page would take some output
+                # an old file with content would have space for more output in its last page
+                path.write_text("old\n" if command.writes else "")
 
         self.each("full disk", put_an_old_file)
         disk.fill()
@@ -212,7 +214,7 @@ class Clients(bench.BenchTest):
         self.write("short.yaml", SHORT)
 
     def ready_for(self, name):
-        """Brings the daemon to the state in which the command does something."""
+        """Brings the daemon to the state in which the command has an effect."""
         if name in ("stop", "release", "vent"):
             self.softgripd.start("pick_stone")
             if name != "stop":
@@ -269,7 +271,7 @@ class Clients(bench.BenchTest):
 
     def test_fault(self):
         self.settle()
-        # The board falls silent while a sequence runs that somebody waits for.
+        # The board stops responding during a sequence for which a command waits.
         child = subprocess.Popen(Runner.words("start pick_stone --wait", ""), cwd=self.folder, stdin=subprocess.DEVNULL,
                                  stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, env=self.runner.environment)
         with child:
@@ -309,14 +311,14 @@ class Clients(bench.BenchTest):
         self.each("closed pipe", check)
 
     def carried_out(self, name):
-        """What moves the rig was done, wherever the sentence about it went."""
+        """The motion was carried out, wherever the sentence about it was written."""
         if name in ("stop", "vent", "release"):
             self.softgripd.wait_for_state("idle", "stopping", "holding")
             self.softgripd.wait_for_event("sequence_finished", since=self.since)
 
 
 class Motion(bench.BenchTest):
-    """Commands that move a rig: whatever ends them, the outputs are safe when they have ended."""
+    """Commands that move a rig: however they end, the outputs are safe afterwards."""
 
     def setUp(self):
         super().setUp()
@@ -330,7 +332,8 @@ class Motion(bench.BenchTest):
         self.count = 0
 
     def use_rested_fingers(self):
-        """Another rig: for a minute after a pressure a finger creeps, and doctor compares its motion with the model."""
+        """Uses another rig: after a pressure a finger creeps for a minute, and doctor compares its motion with the
+        model."""
         self.board = self.emulator("--faults", self.faults)
         self.rig_path = self.rig(self.board.port)
 
@@ -338,7 +341,7 @@ class Motion(bench.BenchTest):
         exit_codes.each(self, MOTION, ending, check)
 
     def line(self, command, out="out"):
-        """The words of the command, with a rig and with folders of its own."""
+        """The words of the command, with its own rig and folders."""
         self.use_rested_fingers()
         self.count += 1
         (self.folder / out / str(self.count)).mkdir()

@@ -1,4 +1,4 @@
-"""softgrip diagnose --explain: what was compared for every name, by run and by cause, on the screen and in the files."""
+"""softgrip diagnose --explain: the comparisons for every name, by run and by cause, on the screen and in the files."""
 
 import json
 

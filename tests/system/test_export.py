@@ -1,4 +1,5 @@
-"""softgrip export, read back by programs of other people, and what identify, validate and diagnose write per log."""
+"""softgrip export, read by programs from other projects, and the files that identify, validate and diagnose write per
+log."""
 
 import csv
 import json
@@ -16,7 +17,7 @@ import mcap_reading
 MODEL = "config/models/bench_twin.yaml"
 
 HERE = pathlib.Path(__file__).resolve().parent
-# Where scripts/mcap_reader.sh puts what HERE/mcap pins.
+# The folder into which scripts/mcap_reader.sh installs what HERE/mcap pins.
 READER = bench.BUILD.parent / "mcap"
 
 
@@ -33,7 +34,7 @@ def same(test, got, wanted):
 
 
 class Signals(bench.BenchTest):
-    """A recording of two fingers, one of which has no reading once and a text besides."""
+    """A recording of two fingers, one of which once has no reading and also has a text."""
 
     def setUp(self):
         super().setUp()
@@ -114,7 +115,7 @@ class Signals(bench.BenchTest):
                 mcap_reading.read(path)
 
     def read_by_its_own_reader(self, path):
-        """Of a machine that npm reaches nothing from, the script has left the reason."""
+        """If npm cannot reach a registry, the script has left the reason in a file."""
         if (READER / "unreachable").exists():
             self.skipTest((READER / "unreachable").read_text().strip())
         self.assertTrue((READER / "node_modules/@mcap/core").is_dir(), "bash scripts/mcap_reader.sh installs @mcap/core")
@@ -257,7 +258,7 @@ int main(void) {
   return 0;
 }
 """
-# Every block that has C, with numbers that make it matter.
+# Every block that has C code, with parameters that have an effect.
 EVERYTHING = """name: every thing
 source: "a test"
 valve:
@@ -291,7 +292,7 @@ def wave_kpa(t):
 class CModel(bench.BenchTest):
 
     def compiled(self, driver, model, *arguments):
-        """The program of an exported model: no warning, whatever the compiler is asked for."""
+        """The program of an exported model; the compiler gives no warning with any option."""
         done = self.softgrip("export", model, "--out", "model.c", "--rate-hz", RATE_HZ, "--json", *arguments)
         told = json.loads(done.stdout)
         self.write("driver.c", driver.replace("NAME", told["function"].removesuffix("_step")))
@@ -338,7 +339,8 @@ class CModel(bench.BenchTest):
 
     @staticmethod
     def wanted():
-        """Out in two seconds, then to and fro within what creep lets be reached above 0 kPa."""
+        """Moves out in two seconds, then back and forth within the range in which creep can be compensated above 0
+        kPa."""
         return [min(2.5 * t, 5.0) + (2 * (1 - math.cos(2 * math.pi * 0.3 * (t - 2))) if t > 2 else 0.0)
                 for t in (i / RATE_HZ for i in range(1, 20 * RATE_HZ))]
 

@@ -1,4 +1,5 @@
-"""The Nth call fails, for every N until a run gets through: what fits into a minute of it. The rest: scripts/fail_nth.sh."""
+"""The Nth call fails, for every N until a run succeeds. This is the part that takes less than a minute;
+scripts/fail_nth.sh runs all."""
 
 import unittest
 

@@ -1,6 +1,6 @@
-"""A part of the fault matrix with every test: one cell of every group in every phase it matters in.
+"""The part of the fault matrix that runs with every test: one cell of every group in every relevant phase.
 
-The whole: scripts/fault_matrix.sh.
+scripts/fault_matrix.sh runs all of it.
 """
 
 import unittest

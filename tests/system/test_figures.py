@@ -1,4 +1,4 @@
-"""Figures as a user gets them: beside a report, and out of softgrip plot."""
+"""Figures as a user gets them: with a report, and from softgrip plot."""
 
 import csv
 import pathlib

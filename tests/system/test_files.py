@@ -1,5 +1,5 @@
-"""Files that a command reads and writes: not its own input over itself, no pipe that it waits for, no small file that fills the
-memory, no other file through a file."""
+"""Files that a command reads and writes: a command does not overwrite its own input, does not wait for a pipe, does not
+fill the memory because of a small file, and opens no other file that a file names."""
 
 import gzip
 import json
@@ -18,7 +18,7 @@ from bench_files import TWIN
 
 class Overwriting(bench_files.Files):
     def refused(self, line, input_path, program=bench.SOFTGRIP):
-        """The command refuses, and its input is what it was; so it does through a symbolic link and a hard link."""
+        """The command refuses and its input is unchanged, also through a symbolic link and a hard link."""
         path = self.folder / input_path
         before = path.read_bytes()
         with self.subTest(line):
@@ -73,7 +73,7 @@ class Overwriting(bench_files.Files):
                      "--out found", "found/step_1/log.csv")
 
     def test_what_is_continued_is_no_input(self):
-        """A mapping of the same log is written anew, and scores are added to."""
+        """A mapping of the same log is written again, and scores are appended."""
         self.softgrip("import", "log.csv", "--yes", "--out", "again.csv")
         self.write("raw.csv", (self.folder / "log.csv").read_text().replace("time_s,pressure_command_kpa,displacement_mm",
                                                                            "t [s],set [kPa],tip [mm]"))
@@ -91,7 +91,7 @@ class Overwriting(bench_files.Files):
 
 
 class Pipes(bench_files.Files):
-    """A pipe without a writer in the place of a file. A command that waits for it does not end."""
+    """A pipe without a writer replaces a file. A command that waits for it never ends."""
 
     def test_inputs(self):
         self.record()
@@ -131,15 +131,15 @@ class Pipes(bench_files.Files):
         self.assertNotIn("health", json.loads(self.softgrip("status", "--json").stdout))
         page = web.Web(self.folder)
         self.processes.append(page)
-        for _ in range(20):  # more than there are threads
+        for _ in range(20):  # more requests than threads
             self.assertEqual(page.ask("/metrics", token=web.LOOK)[0], 200)
             self.assertEqual(page.ask("/recordings/0/run.csv", token=web.LOOK)[0], 404)
         self.assertEqual(page.command("vent")[0], 200)
-        shutil.rmtree(self.folder / "runs/0")  # it was never a recording
+        shutil.rmtree(self.folder / "runs/0")  # it was no recording
 
 
 def compressed_matrix(name, rows, data):
-    """An element of a .mat file of version 5: a column of doubles, compressed, whose header promises `rows`."""
+    """An element of a .mat file of version 5: a compressed column of doubles whose header announces `rows`."""
     def element(kind, content):
         return struct.pack("<II", kind, len(content)) + content + bytes(-len(content) % 8)
     flags = element(6, struct.pack("<II", 6, 0))  # class double
@@ -152,7 +152,7 @@ def compressed_matrix(name, rows, data):
 
 
 class Bombs(bench_files.Files):
-    """Small files that hold more than any memory."""
+    """Small files that contain more than any memory can hold."""
 
     def packed(self, rows, times):
         with open(self.folder / "bomb.csv.gz", "wb") as file, gzip.GzipFile("", "wb", 9, file, 0) as text:
@@ -179,7 +179,7 @@ class Bombs(bench_files.Files):
                       self.limited("import", "bomb.csv.gz", "--yes", "--out", "x.csv", code=3))
 
     def test_workbooks(self):
-        """A sheet of 600 MB, one with more cells than memory, and strings that many cells repeat."""
+        """A sheet of 600 MB, a sheet with more cells than memory, and strings that many cells repeat."""
         cells = "<c><v>1</v></c>" * 4
         huge = f"<worksheet><sheetData><row>{cells}{' ' * (600 << 20)}</row></sheetData></worksheet>"
         many = f"<worksheet><sheetData>{'<row/>' * 20_000_000}</sheetData></worksheet>"
@@ -197,7 +197,7 @@ class Bombs(bench_files.Files):
         header = b"MATLAB 5.0 MAT-file".ljust(124) + struct.pack("<HH", 0x0100, 0x4D49)
         small = b"".join(compressed_matrix(name, 50, [struct.pack("<50d", *(i * scale for i in range(50)))])
                          for name, scale in (("time_s", 0.1), ("pressure_command_kpa", 1), ("displacement_mm", 0.5)))
-        # What it has, and what only its header promises.
+        # Samples that the file contains, and samples that only its header announces.
         for large in (compressed_matrix("bomb", 100 << 20, zeros), compressed_matrix("bomb", 500 << 20, [])):
             (self.folder / "bomb.mat").write_bytes(header + small + large)
             self.assertLess((self.folder / "bomb.mat").stat().st_size, 2 << 20)
@@ -206,7 +206,7 @@ class Bombs(bench_files.Files):
             self.assertEqual(len((self.folder / "from_mat.csv").read_text().splitlines()), 51)
 
     def test_matlab_cells(self):
-        """Each empty cell is 8 bytes of the file, compressed nothing, and an object of libmatio."""
+        """Each empty cell takes 8 bytes of the file, almost nothing when compressed, but an object of libmatio."""
         header = b"MATLAB 5.0 MAT-file".ljust(124) + struct.pack("<HH", 0x0100, 0x4D49)
         body = (struct.pack("<IIII", 6, 8, 1, 0) + struct.pack("<IIii", 5, 8, 500_000_000, 1) + struct.pack("<II", 1, 4) +
                 b"bomb" + bytes(4 + (100 << 20)))
@@ -229,7 +229,7 @@ class Bombs(bench_files.Files):
 
 
 class OtherFiles(bench_files.Files):
-    """HDF5 files that name other files: these would come into the log."""
+    """HDF5 files that name other files, whose content would get into the log."""
 
     def setUp(self):
         super().setUp()

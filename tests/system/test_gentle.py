@@ -1,4 +1,4 @@
-"""Grips that are gentle: wherever the part is, it is squeezed by no more than the recipe allows, and held."""
+"""Gentle grips: wherever the part is, it is held and squeezed by no more than the recipe allows."""
 
 import csv
 import pathlib
@@ -20,7 +20,8 @@ class Gentle(bench.BenchTest):
                 self.assertEqual(gripping.broken(trial, judged, gripping.bound_kpa(gripping.recipe(trial))), [])
 
     def squeezed_kpa(self, truth):
-        """By how much more than the free finger needs there; the part is rigid, so only that place counts."""
+        """The pressure beyond what the free finger needs at that place; the part is rigid, so only the last place
+        counts."""
         with open(truth, newline="") as file:
             rows = [row for row in csv.DictReader(file) if float(row["displacement_mm"]) > self.at_mm - 0.05]
         self.assertTrue(rows)
@@ -40,7 +41,7 @@ class Gentle(bench.BenchTest):
         daemon.end()
         emulated.end()
         allowed_kpa = gripping.bound_kpa((self.folder / "config/sequences/pick_stone.yaml").read_text())
-        # A busy machine may let readings age, and what has moved meanwhile is not known.
+        # On a busy machine readings may be old, and the motion since the last reading is unknown.
         self.assertLess(self.squeezed_kpa(truth), allowed_kpa + 2)
 
     def test_a_hold_ends_when_its_release_is_asked_for(self):

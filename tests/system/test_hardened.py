@@ -1,4 +1,4 @@
-"""What every build of the programs is hardened with, whoever makes it: not the package's alone."""
+"""The hardening options of every build of the programs, not only of the package."""
 
 import platform
 import re
@@ -27,7 +27,7 @@ class Hardened(unittest.TestCase):
             with self.subTest(program=program.name):
                 symbols = self.read(program, "--dyn-syms")
                 self.assertIn("__stack_chk_fail", symbols, "-fstack-protector-strong")
-                if cache("CMAKE_BUILD_TYPE") != "Debug":  # it needs an optimiser
+                if cache("CMAKE_BUILD_TYPE") != "Debug":  # _FORTIFY_SOURCE needs an optimised build
                     self.assertRegex(symbols, r"__(memcpy|read|printf|snprintf|vsnprintf|poll)_chk", "_FORTIFY_SOURCE")
                 self.assertIn("BIND_NOW", self.read(program, "-d"))
                 self.assertIn("GNU_RELRO", self.read(program, "-l"))

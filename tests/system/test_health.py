@@ -1,4 +1,4 @@
-"""softgrip health on recordings of softgrip run: what became of a finger is found out from its ordinary grips."""
+"""softgrip health on recordings of softgrip run: it finds the change of a finger from its ordinary grips."""
 
 import datetime
 import json
@@ -17,7 +17,7 @@ def day(number, hour=8):
 
 
 class Health(bench.BenchTest):
-    """Twelve days of two grips each; what happens to the left finger begins on the ninth."""
+    """Twelve days with two grips each; the left finger changes from the ninth day on."""
 
     @classmethod
     def setUpClass(cls):
@@ -132,7 +132,7 @@ class Health(bench.BenchTest):
         self.assertEqual(fingers["left"]["grips"], 24)
         result = json.loads((self.folder / "out/health.json").read_text())
         self.assertEqual([one["run"] for one in result["skipped"]], [bad.name])
-        # What was scored is not scored again.
+        # A recording that was scored is not scored again.
         self.assertEqual(len((self.folder / "out/health-scores.jsonl").read_text().splitlines()), 48)
 
     def test_what_cannot_be_compared_is_refused(self):
@@ -148,7 +148,7 @@ class Health(bench.BenchTest):
 
 
 class Told(web.WebTest):
-    """The last result, as the service leaves it beside the recordings, is told wherever somebody looks."""
+    """The last result, which the service writes beside the recordings, is shown by every program that reads it."""
 
     def judge(self):
         at_work = working_life.Rig(bench.SOFTGRIP, self.folder / "at_work")

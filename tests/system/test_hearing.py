@@ -1,5 +1,6 @@
-"""A vent is heard whatever others do: floods, pipelines, silent crowds, clients that stand still, files that never answer,
-a full disk, a reader that hangs. scripts/vent_times.py repeats the tests of Hearing that vent and keeps the worst time.
+"""A vent is carried out whatever others do: floods, pipelined commands, silent crowds, clients that stop reading, files
+that never answer, a full disk, a reader that hangs. scripts/vent_times.py repeats the tests of Hearing that vent and
+keeps the longest time.
 """
 
 import json
@@ -19,10 +20,10 @@ import bench
 import fail_nth
 import soak_disturbances
 
-# From the client's line to the written output; a busy machine may add to that, the others may not.
+# From the client's line to the written output. A busy machine may lengthen this time, other clients must not.
 VENT_BOUND_S = 0.5
 
-# A client that says this, tells when it has, and reads nothing.
+# A client that sends these lines, prints when it has sent them, and reads nothing.
 CLIENT = """
 import socket, sys, time
 client = socket.socket(socket.AF_UNIX)
@@ -36,13 +37,14 @@ except TimeoutError:
 print("said", flush=True)
 time.sleep(600)
 """
-# What clients say before they stand still: half a line, more than anybody answers unread, events and values unread.
+# What the clients send before they stop: half a line, requests whose answers nobody reads, and subscriptions to events
+# and values that nobody reads.
 LAST_WORDS = (('{"command":"ve', 1), ('{"command":"events","limit":1000}\n', 10_000),
               ('{"command":"subscribe","since":0}\n{"command":"watch","rate_hz":50}\n', 1))
 
 
 class Hearing(bench.BenchTest):
-    waited_s = {}  # by the test's name: of every vent
+    waited_s = {}  # the times of all vents, by the name of the test
 
     def setUp(self):
         super().setUp()
@@ -65,7 +67,7 @@ class Hearing(bench.BenchTest):
         return client
 
     def vents(self, patience_s=5):
-        """How long a client that comes now waits for the written output [s], and the answer it gets."""
+        """How long a new client waits for the written output [s], and the answer that it gets."""
         self.assertGreater(min(self.board.commands_kpa()), 10, "there is nothing to vent")
         began = time.monotonic()
         client = self.raw()
@@ -84,7 +86,7 @@ class Hearing(bench.BenchTest):
         self.addCleanup(self.stop_.set)
 
     def flood(self, line, reads=True):
-        """A client that sends as fast as it can, and takes its answers as fast, or never."""
+        """A client that sends as fast as it can, and reads its answers as fast, or never."""
         client = self.raw()
         client.settimeout(0.2)
 
@@ -139,7 +141,8 @@ class Hearing(bench.BenchTest):
         self.check_vent()
 
     def paused_clients(self, each):
-        """Processes that have said their last words and are stopped, as a debugger, a closed lid or a full pipe does."""
+        """Processes that have sent their last line and are then stopped, as by a debugger, a closed laptop or a full
+        pipe."""
         for words, times in LAST_WORDS:
             for _ in range(each):
                 client = subprocess.Popen([sys.executable, "-c", CLIENT, self.daemon_.socket_path, words, str(times)],
@@ -162,7 +165,7 @@ class Hearing(bench.BenchTest):
         self.check_vent()
 
     def test_on_a_full_disk(self):
-        """Full in the middle of a recording, and still full when the next one would begin."""
+        """The disk becomes full in the middle of a recording, and is still full when the next recording would begin."""
         disk = soak_disturbances.Runs(self.folder)
         self.addCleanup(disk.end)
         if not disk.mounted:
@@ -178,7 +181,7 @@ class Hearing(bench.BenchTest):
         self.assertEqual(self.daemon_.end(), 0)
 
     def serving_s(self):
-        """What the thread that serves clients has used of the processor."""
+        """The processor time that the thread that serves clients has used."""
         for task in pathlib.Path(f"/proc/{self.daemon_.child.pid}/task").iterdir():
             fields = (task / "stat").read_text()
             if "(softgrip-serve)" in fields:
@@ -210,7 +213,7 @@ class Hearing(bench.BenchTest):
 
     @unittest.skipUnless(fail_nth.SHIM.exists(), "the shim is not built: a sanitizer's runtime must be loaded first")
     def test_a_disk_that_does_not_answer(self):
-        """A file on a mount whose server is gone: its opening does not return."""
+        """A file on a mount whose server is gone: open() does not return."""
         shutil.copy(self.folder / "config/sequences/pick_stone.yaml", self.folder / "config/sequences/lost.yaml")
         self.assertEqual(self.daemon_.end(), 0)
         self.daemon_ = self.daemon(self.folder / "config/test_rig.yaml",
@@ -264,7 +267,7 @@ class Ending(bench.BenchTest):
         self.addCleanup(daemon.wait)
         self.addCleanup(daemon.kill)
         bench.wait_for("the socket", lambda: (self.folder / "softgripd.sock").exists())
-        # Not to block is a property of this descriptor alone: the daemon's must.
+        # O_NONBLOCK is set on this descriptor only; the daemon's descriptor must block.
         filler = os.open(f"/proc/self/fd/{writer}", os.O_WRONLY | os.O_NONBLOCK)
         os.close(writer)
         try:
@@ -288,10 +291,10 @@ class AnotherMaster(bench.BenchTest):
             daemon.wait_for_event("grip_result", code="HOLDING", channel=channel)
         other = socket.create_connection(("127.0.0.1", emulator.port))
         self.addCleanup(other.close)
-        # FC16: outputs 10 and 11 to 0, again and again, as a forgotten script would.
+        # FC16: sets outputs 10 and 11 to 0 again and again, like a script that somebody forgot to stop.
         frame = bytes([0, 1, 0, 0, 0, 11, 1, 16, 0, 10, 0, 2, 4, 0, 0, 0, 0])
-        # Where one of its writes falls between a write and its reading back it looks like a write that was not taken
-        # first, F302, and what is held stays held.
+        # If one of its writes falls between a write of the daemon and its read-back, the daemon sees an output that was
+        # not set. The first code is then F302, and the outputs are held.
         codes = []
         began = time.monotonic()
         while time.monotonic() - began < 5 and "F304" not in codes:

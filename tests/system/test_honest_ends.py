@@ -1,4 +1,4 @@
-"""How a check that failed looks to a person, and to a program."""
+"""How a person and a program see that a check failed."""
 
 import bench
 import terminal

@@ -1,4 +1,4 @@
-"""softgrip import as a user meets it: the matrix of foreign files, and what is asked, kept and refused."""
+"""softgrip import as a user sees it: the matrix of foreign files, its questions, the kept answers, and the refusals."""
 
 import json
 import os

@@ -1,4 +1,4 @@
-"""softgrip init as a newcomer runs it: at a terminal, and by options."""
+"""softgrip init as a new user runs it: in a terminal, and by options."""
 
 import os
 import pty
@@ -11,7 +11,7 @@ import bench
 
 
 class Terminal:
-    """softgrip at a pseudo-terminal."""
+    """softgrip on a pseudo-terminal."""
 
     def __init__(self, test, *arguments):
         self.master, slave = pty.openpty()
@@ -41,7 +41,7 @@ class Terminal:
             self.said += said.replace("\r\n", "\n")
 
     def answer(self, question, text):
-        """Waits for a question that matches and answers it; returns what was said since the last answer."""
+        """Waits for a question that matches and answers it; returns the output since the last answer."""
         self.read_until(lambda: re.search(rf"\? [^\n]*{question}[^\n]*: $", self.said))
         said, self.said = self.said, ""
         os.write(self.master, text.encode() + b"\n")

@@ -1,5 +1,5 @@
-"""softgrip investigate where the experiment is not what it takes it for: a finger that touches something, a rig that plays
-something else. Both end it with exit code 6, and what was recorded is no evidence."""
+"""softgrip investigate when the experiment is not as assumed: the finger touches an object, or the rig plays another
+signal. In both cases it ends with exit code 6, and does not use the recording as evidence."""
 
 import json
 import shlex
@@ -9,10 +9,11 @@ import bench
 
 GIVEN = "config/models/bench_twin.yaml"
 FINGER = "config/models/finger.yaml"
-# Up and down, once. The finger is softer after it, its sensor may as well have drifted, and the scale may be bent.
+# Once up and down. Afterwards the finger is softer, but the log also fits a sensor that has drifted or has a wrong
+# scale.
 CORNERS = ((0, 0), (1, 0), (7, 45), (13, 0), (16, 0))
 RATE_HZ, NOISE_MM, NOISES, LONGEST_MINUTES = 25, "0.15", range(1, 17), 1
-# The rig behind --rig-command: a finger, and a regulator that changes the command before it reaches it.
+# The rig behind --rig-command: a finger, and a regulator that changes the command on its way to the finger.
 PLAYER = """
 import csv, subprocess, sys
 with open(sys.argv[1], newline="") as file:
@@ -39,7 +40,7 @@ class Investigation(bench.BenchTest):
         self.assertTrue(any(map(self.asks, NOISES)), "of none of these logs an experiment would tell more")
 
     def asks(self, seed):
-        """Writes log.csv with this noise. True where a short experiment would tell its rivals apart."""
+        """Writes log.csv with this noise. True if a short experiment would separate the causes that explain it."""
         self.softgrip("simulate", "--model", FINGER, "--input", "load.csv", "--out", "log.csv", "--noise-mm", NOISE_MM,
                       "--seed", seed)
         told = json.loads(self.softgrip("diagnose", "--model", GIVEN, "--data", "log.csv", "--no-closed-loop", "--out",
@@ -62,7 +63,7 @@ class Investigation(bench.BenchTest):
         self.assertIn(told["why"], page)
 
     def simulated(self, about):
-        """The rig of config/rig.yaml with that finger. The stones that stand in its file give way to `about`."""
+        """The rig of config/rig.yaml with that finger. `about` replaces the stones in the file."""
         text = (self.folder / "config/rig.yaml").read_text()
         stone = "\n        object: {position_mm: 12, yielding: 0.1}    # a stone between the fingers"
         self.assertIn(stone, text)

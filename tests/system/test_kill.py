@@ -1,4 +1,5 @@
-"""kill -9 of the daemon in the middle of a grip: the board vents, the recording is whole up to the last second."""
+"""kill -9 of the daemon in the middle of a grip: the board vents, and the recording is complete up to the last
+second."""
 
 import json
 import random
@@ -24,7 +25,7 @@ class Kill(bench.BenchTest):
         daemon.kill()
         killed = time.monotonic()
         bench.wait_for("vented valves", lambda: max(emulator.commands_kpa()) == 0)
-        # The emulator is asked every 20 ms; the rest is what a busy machine may add to that.
+        # The emulator is asked every 20 ms; the rest is a margin for a busy machine.
         self.assertLess(time.monotonic() - killed, WATCHDOG_S + 0.5)
         self.assertTrue(emulator.status()["watchdog_tripped"])
 
@@ -53,7 +54,8 @@ class Kill(bench.BenchTest):
         self.assertEqual(again.status()["state"], "idle")
 
     def test_after_a_free_stroke_the_next_daemon_grips_again(self):
-        """A finger remembers how far it was pressed; a daemon that was not there learns it by a stroke."""
+        """A finger keeps an aftereffect of its last pressure. A daemon that did not observe it learns it with a stroke
+        without a part."""
         self.creep_faster()
         emulator = self.emulator("--object", "stone")
         rig = self.rig(emulator.port)
@@ -78,7 +80,7 @@ class Kill(bench.BenchTest):
         self.assertEqual(grip(), "HOLDING")
 
     def test_at_random_moments(self):
-        """A hundred of them: scripts/kill_nine.sh."""
+        """scripts/kill_nine.sh makes a hundred of them."""
         seed = random.SystemRandom().randrange(1 << 31)
         print(f"seed {seed}")
         for number in range(4):

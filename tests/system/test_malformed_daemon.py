@@ -1,5 +1,5 @@
-"""What answers as a daemon sends lines that no daemon sends: each command says so in a sentence and ends with 4, and a gateway
-goes on as without a daemon."""
+"""A server sends lines that softgripd never sends: each command reports it in a sentence and ends with 4, and a gateway
+continues as without a daemon."""
 
 import contextlib
 import json
@@ -32,7 +32,7 @@ HELLO = {"api": 1, "version": "1", "capabilities": ["start_id"]}
 
 
 class FakeDaemon:
-    """Answers each request with `answer(request)`: bytes; None stands for an endless line."""
+    """Answers each request with `answer(request)`: bytes, or None for an endless line."""
 
     def __init__(self, path, answer):
         self.answer = answer
@@ -89,7 +89,8 @@ class Commands(bench.BenchTest):
         self.assertGreater(daemon.connections, len(COMMANDS))
 
     def test_behind_a_good_hello(self):
-        """A start that may run is stopped by its id: over a connection of its own, whatever the other one said."""
+        """A sequence that may have started is stopped by its id over a new connection, whatever the first connection
+        answered."""
         said = b""
         def answer(request):
             if request["command"] == "hello":
@@ -122,7 +123,7 @@ class Commands(bench.BenchTest):
 
 
 class Gateways(bench.BenchTest):
-    """To a gateway it is a connection that was lost: it makes the next one."""
+    """A gateway treats it as a lost connection and connects again."""
 
     def setUp(self):
         super().setUp()

@@ -1,4 +1,4 @@
-"""One master per board, and signals that end a process end it in order."""
+"""A board has only one master, and signals that end a process let it end in order."""
 
 import os
 import pathlib
@@ -16,7 +16,7 @@ ENDING = (signal.SIGTERM, signal.SIGINT, signal.SIGHUP, signal.SIGQUIT, signal.S
 
 class Masters(bench.BenchTest):
     def second_rig(self, rig):
-        """The same board behind another socket."""
+        """The same board with another socket."""
         text = rig.read_text().replace("softgripd.sock", "second.sock")
         path = rig.with_name("second.yaml")
         path.write_text(text)
@@ -97,7 +97,7 @@ class Masters(bench.BenchTest):
 
 @unittest.skipUnless(os.geteuid() == 0, other_user.NEEDS_ROOT)
 class OtherUsers(bench.BenchTest):
-    """Another user of the machine holds the name of the board's lock. The board has no watchdog."""
+    """Another user of the machine occupies the name of the board's lock. The board has no watchdog."""
 
     HOLDERS = {"listens": 5, "lets nobody in": 0, "does not listen": None}
 
@@ -185,7 +185,7 @@ class OtherUsers(bench.BenchTest):
         second = self.rig_path.with_name("second.yaml")
         second.write_text(self.rig_path.read_text().replace("softgripd.sock", "second.sock"))
         program = self.folder / "softgripd"
-        program.write_bytes(bench.SOFTGRIPD.read_bytes())  # the build may be where others cannot go
+        program.write_bytes(bench.SOFTGRIPD.read_bytes())  # the build may be in a folder that other users cannot read
         program.chmod(0o755)
         other = subprocess.run([program, "--config", second], user=other_user.NOBODY, group=other_user.NOBODY,
                                extra_groups=[], cwd=self.folder, capture_output=True, text=True,

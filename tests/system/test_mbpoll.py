@@ -1,4 +1,4 @@
-"""mbpoll, which shares no code with us, reads and writes the emulator."""
+"""mbpoll, which shares no code with softgrip, reads and writes the emulator."""
 
 import re
 import shutil

@@ -1,4 +1,4 @@
-"""What Prometheus is told is what happened."""
+"""The values that Prometheus reads are those of the daemon."""
 
 import json
 import shutil
@@ -13,7 +13,7 @@ PROMETHEUS, PROMTOOL = "/usr/bin/prometheus", "/usr/bin/promtool"
 
 
 class Prometheus(bench.Process):
-    """The real one, scraping every second, on a free port of its own."""
+    """A real Prometheus that reads every second, on its own free port."""
 
     def __init__(self, folder, port, target, rules):
         config = folder / "prometheus.yml"

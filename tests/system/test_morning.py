@@ -1,4 +1,4 @@
-"""docs/how-to/a-morning.md says what the screen says: the morning is played again."""
+"""Repeats the session of docs/how-to/a-morning.md; the screen must show what the page says."""
 
 import subprocess
 import sys

@@ -1,5 +1,5 @@
-"""Commands that move a rig without a daemon keep the daemon's rule: behind a gap in which the board has vented, and
-without a sensor that the motion needs, nothing rises. They end with an exit code that says so."""
+"""Commands that move a rig without a daemon follow the same rule as the daemon: no pressure rises after a gap in which
+the board has vented, or without a sensor that the motion needs. They end with an exit code for it."""
 
 import json
 import re
@@ -11,14 +11,14 @@ import bench
 WATCHDOG_S = 0.5  # of the board map
 PAUSE_S = 1.2
 NOISE_KPA = 0.05  # the board's resolution
-# The fault file of all tests here; each fault is begun by the test.
+# The fault file of all tests here; each test begins its own fault.
 FAULTS = """faults:
   - {name: requests_lost, kind: lost_request, for_s: 0.7}
   - {name: replies_lost, kind: no_reply, for_s: 0.7}
   - {name: blind, kind: sensor_out_of_range, channel: left}
 """
 CALIBRATE = ("calibrate", "--channel", "left", "--average-s", "0.3")
-# Commands that move the left finger, each with its exit code when the board had vented, and what it then says.
+# Commands that move the left finger, each with its exit code if the board has vented.
 MOTIONS = {
     "calibrate": ((*CALIBRATE, "--valve", "--move", "--settle-s", "1"), 4),
     "doctor": (("doctor", "--move", "--json"), 6),
@@ -46,7 +46,7 @@ class MotionTest(bench.BenchTest):
         bench.wait_for(f"{kpa} kPa", reached, pause_s=0.005)
 
     def outputs_to_the_end(self, child):
-        """What stood at the outputs until the command has ended."""
+        """The values of the outputs until the command ends."""
         samples = []
         while child.running():
             samples.append(self.board.commands_kpa())
@@ -77,7 +77,7 @@ class MotionTest(bench.BenchTest):
 
 
 class Paused(MotionTest):
-    """The whole process stands still (SIGSTOP) for longer than the board's watchdog waits."""
+    """The whole process is paused (SIGSTOP) for longer than the board's watchdog waits."""
 
     def check(self, name):
         command, code = MOTIONS[name]
@@ -102,7 +102,7 @@ class Paused(MotionTest):
 
     def test_calibrate_while_it_asks(self):
         child = self.begin((*CALIBRATE, "--sensor", "--move", "--settle-s", "0.3"))
-        # Standard input is closed there: the pause is before the question, at pressure.
+        # Standard input is closed, so the pause is before the question, with pressure on the finger.
         self.wait_for_pressure(child, 9.9)
         self.pause(child)
         samples = self.outputs_to_the_end(child)
@@ -111,7 +111,7 @@ class Paused(MotionTest):
 
 
 class Silent(MotionTest):
-    """The line loses what is sent for 0.7 s."""
+    """Messages on the line are lost for 0.7 s."""
 
     def check(self, name, fault, expected, kpa=5):
         child = self.begin(MOTIONS[name][0])
@@ -136,14 +136,14 @@ class Silent(MotionTest):
         self.check_nothing_rises_again(samples)
 
     def test_calibrate_without_the_replies(self):
-        """The board is fed and holds: what it was sent last may stand there, and nothing more."""
+        """The board still receives requests and holds: its outputs may keep the last command, but no more."""
         highest, samples = self.check("calibrate", "replies_lost", 4)
         self.assertLess(max(sample[0] for sample in samples), highest + 2, "one step of a cycle, and the noise")
         self.assertLessEqual(samples[-1][0], NOISE_KPA)
 
 
 class Blind(MotionTest):
-    """The displacement sensor of the finger that is moved is out."""
+    """The displacement sensor of the finger that is moved has failed."""
 
     def test_nothing_rises_without_the_sensor(self):
         self.board.ask("fault blind")

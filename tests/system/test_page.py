@@ -1,4 +1,4 @@
-"""The operator's page in a real browser: grips, parts that are lost, daemons that come and go, and who may do what."""
+"""The operator's page in a real browser: grips, parts that are lost, daemons that end and start, and permissions."""
 
 import http.server
 import os
@@ -11,7 +11,7 @@ import web
 
 SIZES = ((1920, 1080), (360, 740))
 
-# What a page of somebody else would try, in the browser of one who may operate.
+# Requests that a foreign page could try in the browser of a user who may operate.
 FORGERY = """<!doctype html><title>forged</title><script>
 const body = JSON.stringify({command: "start", sequence: "pick_stone"});
 const tries = ["text/plain", "application/json"].flatMap((type) => ["no-cors", "cors"].map((mode) =>
@@ -23,7 +23,7 @@ tries.push(fetch("TARGET/api/status", {credentials: "include"}).then((a) => a.te
 Promise.all(tries).then((said) => { document.title = "tried " + said.join(", "); });
 </script>"""
 
-# Whether each canvas shows something, in the colours of the scheme.
+# Whether each canvas shows something in the colours of the scheme.
 CURVES = """return Object.values(Chart.instances).map((c) => {
   const pixels = c.canvas.getContext("2d").getImageData(0, 0, c.canvas.width, c.canvas.height).data;
   const ink = getComputedStyle(document.body).getPropertyValue("--quiet").trim();
@@ -32,7 +32,7 @@ CURVES = """return Object.values(Chart.instances).map((c) => {
 
 
 class Elsewhere:
-    """A web server of somebody else on this machine."""
+    """A foreign web server on this machine."""
 
     def __init__(self, text):
         class Handler(http.server.BaseHTTPRequestHandler):
@@ -138,11 +138,11 @@ class Page(web.WebTest):
         self.assertEqual(set(said) - {"refused", "unseen"}, set())
         self.assertEqual(said[-1], "refused")
         self.assertNotIn("sequence_started", {e["kind"] for e in self.softgripd.events()})
-        # What came through to the server it turned away for where it came from, before anything else was wrong with it.
+        # The server refused the requests that reached it because of their origin, before it checked anything else.
         answers = {bench.re.search(r"\d+", name).group() for name in told.metrics() if "answers_total" in name}
         self.assertIn("403", answers)
         self.assertEqual(answers & {"401", "415"}, set())
-        # The same from the page itself is a start: it was the origin that kept the others out.
+        # The same request from the page itself starts a sequence: only the origin was the reason for the refusals.
         seen.open(told.address)
         status = seen.run_async("const done = arguments[0]; fetch('/api/command', {method: 'POST', headers:"
                                 "{'Content-Type': 'application/json'}, body: JSON.stringify({command: 'start',"
@@ -201,7 +201,7 @@ class Page(web.WebTest):
                     self.assertEqual(seen.run(CURVES), [True, True])
                     seen.picture(pictures / f"page-{width}-{'dark' if dark else 'light'}.png", width)
         seen.look_like(*SIZES[0], False)
-        seen.driver.refresh()  # the keyboard begins at the top
+        seen.driver.refresh()  # the keyboard focus begins at the top
         seen.wait("sequences", lambda: "pick_stone" in seen.text("sequence"))
         seen.run("const s = document.getElementById('sequence'); s.value = 'pick_stone';"
                  "s.dispatchEvent(new Event('change'))")

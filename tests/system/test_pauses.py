@@ -1,7 +1,8 @@
-"""Whatever stands still, and for however long: when it goes on, nothing rises that nobody asked for.
+"""Whatever is paused, and for however long: when it continues, no pressure rises that was not commanded.
 
-The whole process (SIGSTOP), its loop, its bus or its service thread alone (ptrace), below, at and above the time of the
-board's watchdog, in every phase of a grip, over a real wire.
+The whole process (SIGSTOP) or only its loop, its bus or its service thread (ptrace) is paused, for less than,
+exactly and
+more than the time of the board's watchdog, in every phase of a grip, over a real wire.
 """
 
 import os
@@ -12,14 +13,14 @@ import bench
 import pauses
 
 WATCHDOG_S = 0.5  # of the board map
-# For how long what stands still, and what must come of it.
+# What is paused, for how long, and the required result.
 PAUSES = (
-    ("process", 0.2, "anything"),   # shorter than the bus may be silent: the grip goes on, or a fault ends it
+    ("process", 0.2, "anything"),   # shorter than the bus may be silent: the grip continues, or a fault ends it
     ("process", WATCHDOG_S, "F303"),
     ("process", 0.8, "F303"),
     ("softgrip-loop", 0.2, "anything"),
     ("softgrip-loop", 1.5, "F901"),
-    ("softgrip-bus", 0.8, "faulted"),  # the loop has missed the bus before the bus can say what was
+    ("softgrip-bus", 0.8, "faulted"),  # the loop notices the silent bus before the bus can report the reason
     ("softgrip-serve", 0.8, "nothing"),
 )
 NOISE_KPA = 0.05  # the board's resolution

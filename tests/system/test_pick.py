@@ -1,4 +1,4 @@
-"""The pick sequence over TCP on both fingers: with a stone, without, and with the stone pulled out."""
+"""The pick sequence over TCP on both fingers: with a stone, without one, and with a stone that is pulled out."""
 
 import json
 
@@ -41,7 +41,7 @@ class Pick(bench.BenchTest):
             self.assertGreater(len(rows), 500)
             held = [row for row in rows if row["result"] == "holding" and row["step"] == "2"]
             self.assertGreater(len(held), 200)
-            # The stone: 12 mm, and a tenth of the way to where the free finger would be.
+            # The stone: 12 mm, plus a tenth of the distance to where the free finger would be.
             for row in held[50:-50]:
                 self.assertTrue(11.5 < float(row["displacement_mm"]) < 13.5, row)
         self.softgrip("plot", recording, "--out", self.folder / "run.svg")

@@ -41,12 +41,12 @@ class PlantFaults(bench.BenchTest):
         bench.wait_for("vented valves", lambda: max(self.emulated.commands_kpa()) < 0.1)
 
     def test_a_jumping_sensor(self):
-        # 15 mm at 100 mm/s: for 15 cycles no finger could have got there.
+        # 15 mm at 100 mm/s: for 15 cycles no finger could be there.
         self.check_latches("jumping", ("F204",), "right", ((r"max_speed_mm_per_s: \d+", "max_speed_mm_per_s: 100"),
                                                            (r"invalid_reading_cycles: \d+", "invalid_reading_cycles: 10")))
 
     def test_a_sensor_that_jumps_ten_times_a_second(self):
-        # 5 mm are within what max_speed_mm_per_s allows a finger: no single reading is refused.
+        # A finger may move 5 mm within max_speed_mm_per_s, so no single reading is refused.
         self.check_latches("unsteady", ("F204",), "right")
 
     def test_where_that_is_no_fault_it_is_told(self):
@@ -85,7 +85,7 @@ class PlantFaults(bench.BenchTest):
     def test_a_blocked_line_where_the_pressure_is_measured(self):
         self.check_latches("blocked", ("F207",), "left")
 
-    # Without a pressure to compare, the model is what notices.
+    # Without a measured pressure, only the model can show the fault.
     UNWATCHED = ((r"pressure_cycles: \d+", "pressure_cycles: 0"),)
 
     def test_a_leaking_line_makes_the_model_unfit(self):

@@ -1,4 +1,4 @@
-"""A PLC grips through softgrip-plc: counters, registers, a master that falls silent, daemons that come and go."""
+"""A PLC grips through softgrip-plc: counters, registers, a master that becomes silent, daemons that end and start."""
 
 import contextlib
 import socket
@@ -66,7 +66,7 @@ class Gateway(bench.BenchTest):
         self.softgripd.wait_for_state("idle")
         for _ in range(20):
             second.write("command_counter", old, plc.START, 1)
-            # The one that wrote it reads the reason; the other one reads the end of its own command.
+            # The master that wrote it reads the reason; the other master reads the result of its own command.
             self.assertEqual((second.read("outcome"), second.read("reason")), (plc.REFUSED, plc.NOT_NEXT))
             self.assertEqual(master.done(master.counter), (plc.ACCEPTED, 0))
         for wrong in (0, master.counter + 2, 65535):
@@ -83,12 +83,12 @@ class Gateway(bench.BenchTest):
         master = self.master(gateway)
         self.assertEqual(master.command(plc.START, recipe=1)[0], plc.ACCEPTED)
         late = []
-        # An old counter, and the one that is next by the time of the rest.
+        # An old counter, and the counter that is the next one when the rest arrives.
         for counter in (master.counter, master.counter + 2):
             client = socket.create_connection(("127.0.0.1", gateway.port))
             self.addCleanup(client.close)
             client.settimeout(bench.PATIENCE_S)
-            # A whole request before it: the gateway has read the half when it has answered that.
+            # With a complete request before it: when its answer arrives, the gateway has also read the half request.
             client.sendall(plc.block(master.counter, 0) + plc.block(counter, plc.START, 1)[:11])
             self.assertEqual(len(client.recv(100)), 12)
             late.append((client, plc.block(counter, plc.START, 1)[11:]))
@@ -133,7 +133,7 @@ class Gateway(bench.BenchTest):
         gateway.kill()
         again = plc.Plc(self.folder, name="softgrip-plc-again")
         self.processes.append(again)
-        # A PLC that writes its block every cycle, without having noticed.
+        # A PLC that writes its block in every cycle and did not notice the restart.
         cyclic = plc.Master(again, synchronise=False)
         self.addCleanup(cyclic.close)
         for _ in range(20):
@@ -148,7 +148,7 @@ class Gateway(bench.BenchTest):
     def test_a_master_that_falls_silent_is_noticed_and_the_rig_stops(self):
         master = self.master(self.gateway(changes=((r"silence_s: 2", "silence_s: 0.5"),)))
         self.assertEqual(master.command(plc.START, recipe=2)[0], plc.ACCEPTED)
-        time.sleep(0.8)  # who never beat is not watched
+        time.sleep(0.8)  # a master without a heartbeat is not watched
         self.assertEqual((master.read("master"), self.softgripd.status()["state"]), (0, "running"))
         master.beat_until(lambda: master.read("result") == plc.HOLDING)
         self.assertEqual(master.read("master"), 1)
@@ -162,23 +162,23 @@ class Gateway(bench.BenchTest):
         self.assertEqual(master.command(plc.START, recipe=1)[0], plc.ACCEPTED)
 
     def test_the_reaction_to_a_silence_is_kept_for_the_next_daemon(self):
-        """The master falls silent, and the daemon is killed before that is noticed."""
+        """The master becomes silent, and the daemon is killed before that is noticed."""
         changes = ((r"silence_s: 2", "silence_s: 0.5"), (r"when_silent: stop", "when_silent: vent"))
         master = self.master(self.gateway(changes=changes))
         self.assertEqual(master.command(plc.START, recipe=2)[0], plc.ACCEPTED)
         master.beat_until(lambda: master.read("result") == plc.HOLDING)
         self.softgripd.kill()
         master.wait("master", 2)
-        time.sleep(0.5)  # the gateway has found no daemon meanwhile
+        time.sleep(0.5)  # in the meantime the gateway has found no daemon
         master.beat()
-        self.assertEqual(master.read("master"), 2)  # a master that is back does not change it
+        self.assertEqual(master.read("master"), 2)  # a master that returns does not change it
         again = self.daemon(self.rig_path)
         again.wait_for_event("state_changed", client="softgrip-plc")
         master.beat_until(lambda: master.read("master") == 1)
         master.beat_until(lambda: master.read("state") == plc.IDLE)
 
     def test_the_reaction_to_a_silence_waits_for_a_daemon_that_does_not_answer(self):
-        """Master and daemon fall silent within 40 ms; the loop of the daemon runs on meanwhile, with the grip."""
+        """Master and daemon become silent within 40 ms; the loop of the daemon continues the grip meanwhile."""
         for lead_s in (-0.04, -0.02, 0, 0.02, 0.04):
             with self.subTest(lead_s=lead_s):
                 master = self.master(self.gateway(changes=(("silence_s: [0-9.]+", "silence_s: 1.2"),)))
@@ -221,7 +221,7 @@ class Gateway(bench.BenchTest):
             client.settimeout(bench.PATIENCE_S)
             self.assertEqual(client.recv(1), b"")
             client.close()
-            master.read("state")  # who asks keeps its own place
+            master.read("state")  # a master that sends requests keeps its place
 
         def others_place():
             master.read("state")
@@ -234,7 +234,7 @@ class Gateway(bench.BenchTest):
         self.assertEqual(master.command(plc.VENT)[0], plc.ACCEPTED)
 
     def test_a_master_is_not_locked_out_by_its_own_dead_connections(self):
-        """They stay for a minute; it is served much earlier."""
+        """The dead connections stay for a minute; the master gets a place much earlier."""
         gateway = self.gateway()
         dead = [self.master(gateway) for _ in range(4)]
         alive = bench.wait_for("a place", lambda: self.connected(gateway))

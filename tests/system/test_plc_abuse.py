@@ -1,4 +1,4 @@
-"""What softgrip-plc does with masters that mean no good: nothing but refusals, and a PLC keeps its place."""
+"""Hostile masters of softgrip-plc get only refusals, and the PLC keeps its place."""
 
 import contextlib
 import os
@@ -30,7 +30,7 @@ class Abuse(bench.BenchTest):
         return client
 
     def assert_well(self):
-        """The PLC is answered on the connection that it has had from the beginning, and the rig has not moved."""
+        """The PLC gets answers on the connection that it has had from the beginning, and the rig has not moved."""
         self.assertTrue(self.gateway.running())
         self.assertEqual(self.master.read("state"), plc.IDLE)
         status = self.softgripd.status()
@@ -42,10 +42,10 @@ class Abuse(bench.BenchTest):
         for _ in range(1000):
             crowd.append(self.connect())
             if len(crowd) % 5 == 0:
-                self.master.read("state")  # as often as a PLC; on a busy machine these take seconds
+                self.master.read("state")  # as often as a PLC; on a busy machine the connections take seconds
             if len(crowd) % 100 == 0:
                 self.assert_well()
-        # Three beside the PLC may stay until they have asked nothing for five seconds.
+        # Besides the PLC three may stay until they have sent no request for five seconds.
         ends = sum(self.is_at_its_end(client) for client in crowd)
         self.assertGreaterEqual(ends, 997)
         self.assert_well()
@@ -56,7 +56,7 @@ class Abuse(bench.BenchTest):
         resource.prlimit(pid, resource.RLIMIT_NOFILE, (in_use, in_use))
         for _ in range(8):
             self.connect()
-            self.master.read("state")  # as a PLC does: a connection that asks nothing is dropped for a newcomer
+            self.master.read("state")  # like a PLC: a connection without requests is dropped for a new one
         before = processor_s(pid)
         for _ in range(40):
             time.sleep(0.1)
@@ -83,7 +83,7 @@ class Abuse(bench.BenchTest):
             return False
 
     def test_who_dribbles_a_request_is_shown_out(self):
-        """A byte a second never makes a request of 260; the place is another's after `idle_s`."""
+        """A byte per second never completes a request of 260 bytes; after `idle_s` another client gets the place."""
         slow = self.connect()
         began = time.monotonic()
         for byte in struct.pack(">HHHB", 1, 0, 254, 1) + b"\x10" * 253:
@@ -118,8 +118,8 @@ class Abuse(bench.BenchTest):
         self.assert_well()
 
     def test_strange_bytes(self):
-        """Frames that are cut, spoilt, glued together, and whose function, address, count or length lies. None of them
-        is a command: the words that could be one are left out."""
+        """Frames that are cut off, damaged or joined, or whose function, address, count or length is wrong. None of
+        them is a command: words that could be a command are left out."""
         seed = 20261122
         chance = random.Random(seed)
         for turn in range(1500):
@@ -141,7 +141,7 @@ class Abuse(bench.BenchTest):
         self.assert_well()
 
     def check_answers(self, data):
-        """What comes back is whole frames, as many as there were requests at most, or the end of the connection."""
+        """The answer consists of complete frames, at most as many as requests, or the connection ends."""
         with socket.create_connection(("127.0.0.1", self.gateway.port)) as client:
             client.settimeout(bench.PATIENCE_S)
             answer = b""

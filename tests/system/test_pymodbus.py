@@ -1,4 +1,4 @@
-"""softgripd against a board served by pymodbus: two implementations of the protocol that never met."""
+"""softgripd with a board served by pymodbus: two independent implementations of the protocol."""
 
 import json
 import pathlib

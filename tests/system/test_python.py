@@ -1,4 +1,4 @@
-"""The Python package beside a real daemon: what a robot's program does, and what happens to it."""
+"""The Python package with a real daemon: what a robot's program does, and what it experiences."""
 
 import asyncio
 import os
@@ -95,12 +95,12 @@ class Python(bench.BenchTest):
         again.wait_for_state("idle")
         gripper.reconnect()
         self.assertEqual(gripper.wait(timeout_s=PATIENCE_S), softgrip.SequenceEnd.FAULTED)
-        # The finger has been squeezing until now: what creeps back would look like a part.
+        # The finger has been squeezing until now: its creep on the way back would look like a part.
         gripper.start("pick_stone")
         with self.assertRaises(softgrip.GripFailed):
             gripper.wait_until(softgrip.Result.HOLDING, timeout_s=PATIENCE_S)
         codes = {event["code"] for event in again.events() if event["kind"] == "not_at_rest"}
-        # Beside where it should be, and for its first moments still on the way.
+        # It is away from the expected place, and still moves in the first moments.
         self.assertIn("off_model", codes)
         self.assertLessEqual(codes, {"off_model", "moves"})
 

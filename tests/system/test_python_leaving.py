@@ -1,5 +1,5 @@
-"""Leaving the block of a Python client, whatever happened in it: its own sequence does not run any more or an exception
-says that it may, and no sequence of another client is touched."""
+"""Leaving the `with` block of a Python client, whatever happened in it: its own sequence no longer runs or an exception
+says that it may still run, and no sequence of another client is stopped."""
 
 import asyncio
 import contextlib
@@ -20,9 +20,9 @@ sys.path.insert(0, str(bench.SOURCE / "python"))
 
 import softgrip  # noqa: E402
 
-# Printed by a test that fails; SOFTGRIP_SEEDS=FIRST:COUNT runs others.
+# A failed test prints its seed; SOFTGRIP_SEEDS=FIRST:COUNT runs other seeds.
 FIRST_SEED, SEEDS = map(int, os.environ.get("SOFTGRIP_SEEDS", "1:25").split(":"))
-# A client's patience, and a silence that is longer.
+# How long a client waits for an answer, and a silence that is longer.
 ANSWER_S = 0.4
 SILENCE_S = 0.7
 
@@ -70,7 +70,7 @@ class Leaving(quiet_rig.QuietRigTest):
             other = self.gripper(name="other")
             self.addCleanup(other.close)
             theirs = other.start("long", text=LONG).request
-            # What the robot has not read yet: that its sequence ended, and that another one runs.
+            # The robot has not yet read that its sequence ended and that another one runs.
         self.assertEqual(self.running(), theirs)
         other.status()
         other.stop()
@@ -80,7 +80,7 @@ class Leaving(quiet_rig.QuietRigTest):
         async def work():
             async with softgrip.AsyncGripper(self.path, name="robot", answer_s=bench.PATIENCE_S) as robot:
                 await robot.start("short", text=SHORT)
-                # The loop of asyncio does not run meanwhile, so nothing is read.
+                # The loop of asyncio does not run here, so nothing is read.
                 self.wait_until_ended(self.starts()[-1])
                 self.softgripd.wait_for_state("idle")
                 return other.start("long", text=LONG).request
@@ -91,7 +91,7 @@ class Leaving(quiet_rig.QuietRigTest):
         self.assertEqual(self.running(), theirs)
 
     def test_a_daemon_that_was_silent_stops_when_it_goes_on(self):
-        """Paused, and behind a line that is stalled: the stop waits in the socket, and an exception says so."""
+        """The daemon is paused, or its line is stalled: the stop waits in the socket, and an exception says so."""
         proxy = self.proxy()
         for path, pause, resume in (
                 (self.path, lambda: self.softgripd.send(signal.SIGSTOP), lambda: self.softgripd.send(signal.SIGCONT)),
@@ -210,13 +210,13 @@ class Leaving(quiet_rig.QuietRigTest):
             request = robot.start("long", text=LONG).request
             subscriber = self.gripper(name="subscriber")
             self.addCleanup(subscriber.close)
-            # All other places are of clients that are never silent.
+            # All other places are taken by clients that keep sending requests.
             crowd = [bench.Lines(self.path) for _ in range(13)]
             for client in crowd:
                 self.addCleanup(client.close)
             began = time.monotonic()
             refused = 0
-            while time.monotonic() - began < 6:  # longer than a place is kept for a client that is silent
+            while time.monotonic() - began < 6:  # longer than a silent client keeps its place
                 self.softgripd.status()
                 for client in crowd:
                     client.ask('{"command":"sequences"}')
@@ -232,7 +232,7 @@ class Leaving(quiet_rig.QuietRigTest):
 
     def test_a_newcomer_without_a_place_is_refused_with_a_sentence(self):
         proxy = self.proxy()
-        # And the test's own connection.
+        # The test's own connection takes one place as well.
         subscribers = [self.gripper(path, name="subscriber") for path in [proxy.path] + 14 * [self.path]]
         for subscriber in subscribers:
             self.addCleanup(subscriber.close)
@@ -240,7 +240,7 @@ class Leaving(quiet_rig.QuietRigTest):
         self.softgripd.status()
         with self.assertRaisesRegex(softgrip.ConnectionLost, "at most 16 clients"):
             self.gripper(name="late")
-        # A stop is heard all the same, and so is that of a program whose connection was lost meanwhile.
+        # A stop is carried out nevertheless, also for a program whose connection was lost in the meantime.
         with subscribers[0] as robot:
             request = robot.start("long", text=LONG).request
             proxy.cut()
@@ -251,7 +251,7 @@ class Leaving(quiet_rig.QuietRigTest):
             self.assertEqual(subscriber.status().state, softgrip.State.IDLE)
 
     def test_malformed_lines(self):
-        """Whatever the daemon says: an exception of the package, and the sequence is stopped."""
+        """Whatever the daemon sends, the result is an exception of the package, and the sequence is stopped."""
         proxy = self.proxy()
         for seed in range(FIRST_SEED, FIRST_SEED + SEEDS):
             with self.subTest(seed=seed):
@@ -298,7 +298,8 @@ class Leaving(quiet_rig.QuietRigTest):
         asyncio.run(work())
 
     def test_two_clients_and_two_faults_at_once(self):
-        """Seeded: stalls, cuts, damaged lines and exceptions around two clients that use the rig in turn."""
+        """With seeds: stalls, closed connections, damaged lines and exceptions for two clients that use the rig in
+        turn."""
         proxy = self.proxy()
         for seed in range(FIRST_SEED, FIRST_SEED + SEEDS):
             with self.subTest(seed=seed):
@@ -342,7 +343,7 @@ class Leaving(quiet_rig.QuietRigTest):
         own = self.starts()[before:]
         proxy.let_go()
         if isinstance(raised, softgrip.StopNotConfirmed):
-            time.sleep(0.1)  # what waited in the socket is heard, if it was not cut
+            time.sleep(0.1)  # what waited in the socket is carried out, unless the connection was closed
         else:
             self.assertNotIn(self.running(), own, raised)
         if theirs is not None:

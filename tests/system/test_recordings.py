@@ -1,4 +1,4 @@
-"""Recordings of a grip that ends in a fault keep the promises; one that was tampered with does not."""
+"""Recordings of a grip that ends in a fault keep the promises; a recording with changed rows does not."""
 
 import csv
 import signal
@@ -10,7 +10,7 @@ import recording_check
 
 class Recordings(bench.BenchTest):
     def record(self):
-        """A grip, a stop of the process beyond the board's watchdog, an acknowledgement, another grip."""
+        """A grip, a pause of the process beyond the board's watchdog, an acknowledgement, and another grip."""
         emulator = self.emulator("--object", "stone")
         daemon = self.daemon(self.rig(emulator.port))
         daemon.wait_for_state("idle")
@@ -20,7 +20,7 @@ class Recordings(bench.BenchTest):
         time.sleep(0.8)
         daemon.send(signal.SIGCONT)
         daemon.wait_for_state("faulted")
-        time.sleep(1)  # the recording's tail
+        time.sleep(1)  # the end of the recording
         bench.wait_for("an acknowledged fault", lambda: daemon.ask("acknowledge")["ok"])
         daemon.wait_for_state("idle")
         daemon.start("pick_stone")
@@ -31,7 +31,7 @@ class Recordings(bench.BenchTest):
         return recordings
 
     def tampered(self, recording, change):
-        """What is said of the recording with changed rows; the recording is as before afterwards."""
+        """The findings for the recording with changed rows; afterwards the recording is as before."""
         path = recording / "run.csv"
         before = path.read_text()
         with open(path, newline="") as file:

@@ -1,4 +1,4 @@
-"""What the scripts of scripts/ start: an emulated rig and a daemon against it, by scripts/rig_session.sh."""
+"""What scripts/rig_session.sh starts for the other scripts: an emulated rig and a daemon for it."""
 
 import subprocess
 import unittest
@@ -7,7 +7,7 @@ import bench
 
 
 class RigSession(unittest.TestCase):
-    """As scripts/demo.sh uses it."""
+    """The use of it in scripts/demo.sh."""
 
     def test_a_rig_and_a_daemon_come_up_and_end(self):
         done = subprocess.run(["bash", "-euc", """

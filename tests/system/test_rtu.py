@@ -1,4 +1,4 @@
-"""A serial line end to end: real processes on a pseudo-terminal that takes the time of its bytes."""
+"""A serial line end to end: real processes on a pseudo-terminal on which bytes take as long as on a line."""
 
 import re
 import shutil
@@ -12,7 +12,7 @@ from serial_rig import RATE_HZ
 
 
 class Line(bench.BenchTest):
-    """The shipped rig on a serial line, on a pseudo-terminal of the emulator."""
+    """The shipped rig on a serial line: a pseudo-terminal of the emulator."""
 
     def line_rig(self, *changes):
         return serial_rig.rig_file(self.folder, RATE_HZ, *changes)
@@ -82,7 +82,7 @@ class Line(bench.BenchTest):
 
 @unittest.skipUnless(shutil.which("mbpoll"), "mbpoll is not installed")
 class MbpollOnTheLine(bench.BenchTest):
-    """mbpoll, which shares no code with us, is the master."""
+    """mbpoll, which shares no code with softgrip, is the master."""
 
     def poll(self, *arguments):
         done = subprocess.run(["mbpoll", "-m", "rtu", "-b", "19200", "-P", "even", "-0", "-1", "-q",

@@ -1,4 +1,4 @@
-"""What a daemon leaves behind: softgripd --safe-outputs, which the service manager runs after a crash, and a hold."""
+"""What remains after a daemon: softgripd --safe-outputs, which the service manager runs after a crash, and a hold."""
 
 import os
 import signal
@@ -29,7 +29,7 @@ class SafeOutputs(bench.BenchTest):
     def test_after_a_kill_the_board_is_vented(self):
         self.hold().kill()
         time.sleep(0.5)
-        self.assertGreater(min(self.emulator_.commands_kpa()), 10)  # nobody vents by himself
+        self.assertGreater(min(self.emulator_.commands_kpa()), 10)  # the board does not vent on its own
         ended = self.safe_outputs(SERVICE_RESULT="signal")
         self.assertEqual(ended.returncode, 0, ended.stdout + ended.stderr)
         self.assertIn("vented and confirmed", ended.stdout)
@@ -57,7 +57,7 @@ class SafeOutputs(bench.BenchTest):
 
 
 class EditedRig(bench.BenchTest):
-    """A rig file that is half edited at the moment of a crash. The board has no watchdog."""
+    """A rig file that is only half edited when a crash occurs. The board has no watchdog."""
 
     def setUp(self):
         super().setUp()
@@ -80,7 +80,7 @@ class EditedRig(bench.BenchTest):
         return ended
 
     def edits(self):
-        """Ways in which a rig cannot be read, by the names of what was done."""
+        """Changes that make a rig unreadable, by name."""
         board = self.folder / "config/boards/adam-6024.yaml"
         model = self.folder / "config/models/bench_twin.yaml"
         for path in (self.rig_path, board, model):
@@ -144,10 +144,11 @@ class EditedRig(bench.BenchTest):
 
 
 class Hold(bench.BenchTest):
-    """How long a hold lasts depends on the board, and is said before, at the start and at the end."""
+    """How long a hold lasts depends on the board. The programs say so before the start, at the start and at the end."""
 
     def ends_holding(self, emulator, rig):
-        """What is said at the check and by the daemon, which is ended while it holds; and what the board has a second later."""
+        """The output of the check and of the daemon, which is ended while it holds, and the outputs of the board a
+        second later."""
         check = subprocess.run([bench.SOFTGRIPD, "--check", "--config", rig], capture_output=True, text=True, check=True)
         daemon = self.daemon(rig)
         daemon.wait_for_state("idle")

@@ -1,4 +1,4 @@
-"""What the screen says: pressure that stays on, refusals as sentences, events as a journal."""
+"""The output on the screen: pressure that remains, refusals as sentences, events as a journal."""
 
 import json
 import re
@@ -79,7 +79,7 @@ class Screen(bench.BenchTest):
         self.hold()
         self.softgrip("vent")
         self.softgripd.wait_for_state("idle")
-        self.softgripd.wait_for_event("recording_finished")  # the recorder is the last to tell
+        self.softgripd.wait_for_event("recording_finished")  # the recorder writes the last event
         every = self.softgrip("events", "--json").stdout.splitlines()
         told = [json.loads(line) for line in every]
         self.assertEqual([event["id"] for event in told], sorted(event["id"] for event in told))

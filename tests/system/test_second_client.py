@@ -1,4 +1,4 @@
-"""Another Modbus client that only reads feeds the board's watchdog: what is told of it, and by whom."""
+"""Another Modbus client that only reads keeps the board's watchdog from tripping: which programs report it, and how."""
 
 import contextlib
 import json
@@ -14,7 +14,7 @@ REQUEST = bytes((0, 1, 0, 0, 0, 6, 1, 4, 0, 0, 0, 1))
 
 
 class Reader(threading.Thread):
-    """Reads the board's first input every 50 ms, as a display does."""
+    """Reads the board's first input every 50 ms, like a display."""
 
     def __init__(self, port):
         super().__init__(daemon=True)
@@ -50,7 +50,7 @@ class SecondClient(bench.BenchTest):
         return {finding["name"]: finding for finding in report["findings"]}
 
     def test_a_reader_keeps_the_pressure_of_a_killed_daemon_and_was_told_before(self):
-        """The first is what no daemon can change, and the manual says; the second is what can be done about it."""
+        """No daemon can prevent that the pressure remains, as the manual says. But the daemon can warn before."""
         emulator = self.emulator("--object", "stone")
         daemon = self.daemon(self.rig(emulator.port))
         daemon.wait_for_state("idle")

@@ -1,4 +1,4 @@
-"""Recipes that take arguments, the list of them, and what a mistyped word leads to, as a user meets it."""
+"""Recipes with arguments, their list, and the message about a mistyped word, as a user sees them."""
 
 import json
 import re
@@ -12,7 +12,7 @@ PICK = "config/sequences/pick_stone.yaml"
 
 
 def simulated_rig(folder):
-    """The shipped simulated rig, with its socket and recordings in the test's own folder."""
+    """The shipped simulated rig; its socket and recordings are in the test's own folder."""
     text = (folder / "config/rig.yaml").read_text()
     for pattern, replacement in ((r"directory: /tmp/softgrip-runs", f"directory: {folder}/runs"),
                                  (r"path: /tmp/softgrip.sock", f"path: {folder}/softgripd.sock"),

@@ -1,4 +1,5 @@
-"""A signal that interrupts a command: safe outputs, then the end by the same signal, so that a shell ends its loop."""
+"""A signal that interrupts a command: first safe outputs, then the end by the same signal, so that a shell ends its
+loop."""
 
 import os
 import signal
@@ -54,7 +55,7 @@ class Interrupted(bench.BenchTest):
                                  stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         self.addCleanup(shell.wait)
         bench.wait_for("pressure", lambda: min(self.board.commands_kpa()) > 3, pause_s=0.005)
-        os.killpg(shell.pid, signal.SIGINT)  # as a terminal does
+        os.killpg(shell.pid, signal.SIGINT)  # like a terminal
         self.assertEqual(shell.wait(bench.PATIENCE_S), -signal.SIGINT)
         self.assertEqual((self.folder / "turns").read_text(), "turn 1\n")
         self.assertEqual(max(self.board.commands_kpa()), 0)

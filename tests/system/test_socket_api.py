@@ -1,4 +1,4 @@
-"""Version 1 of the socket API: who one is, what one may, what would happen, and events without gaps."""
+"""Version 1 of the socket API: identity and permissions of a client, dry runs, and events without gaps."""
 
 import json
 import time
@@ -8,11 +8,11 @@ import bench
 
 
 class Client:
-    """A connection that keeps apart what it asked for and what it is told."""
+    """A connection that keeps its answers apart from the lines that it did not ask for."""
 
     def __init__(self, path):
         self.lines = bench.Lines(path)
-        # Apart from what is written: a file for both forgets what it has read ahead when it writes.
+        # Reading has its own file object, because one for both forgets what it has read ahead when it writes.
         self.input = self.lines.socket.makefile("r", encoding="utf-8", newline="\n")
         self.told = []
 
@@ -39,7 +39,7 @@ class Client:
         return line
 
     def events(self, until):
-        """The events told, until one for which `until` is true."""
+        """The received events, up to one for which `until` is true."""
         events = []
         while True:
             line = self.told.pop(0) if self.told else self.line()
@@ -164,7 +164,7 @@ class SocketApi(bench.BenchTest):
         seen += second.events(lambda e: e["kind"] == "sequence_finished")
         self.assertEqual([e["id"] for e in seen], list(range(1, len(seen) + 1)))
         self.assertEqual(self.softgripd.end(), 0)
-        # Another daemon counts from one: what it has said is new, whatever was seen of the one before.
+        # Another daemon counts from one: its events are new, whatever was seen of the previous daemon.
         again = self.daemon(self.rig_path)
         again.wait_for_state("idle")
         third = self.client("watcher")
@@ -177,9 +177,9 @@ class SocketApi(bench.BenchTest):
         slow = self.client("slow")
         slow.ask("subscribe", since=0)
         slow.ask("watch", rate_hz=50)
-        time.sleep(3)  # by now states fill what the kernel keeps for it
+        time.sleep(3)  # now state lines fill the buffers that the kernel keeps for it
         asking = self.client("busy")
-        for _ in range(5):  # each is an event
+        for _ in range(5):  # each causes an event
             asking.ask("acknowledge")
         newest = self.softgripd.result("events", limit=1)["newest"]
         told = slow.told
@@ -188,7 +188,7 @@ class SocketApi(bench.BenchTest):
             try:
                 told.append(slow.line())
             except AssertionError:
-                # On a machine that is too busy it was dropped meanwhile: ten seconds are all that it is given.
+                # If the machine is too busy, its connection was closed in the meantime: it has only ten seconds.
                 slow = self.client("slow")
                 slow.ask("subscribe", since=ids[-1] if ids else 0)
                 told += slow.told

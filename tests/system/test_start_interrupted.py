@@ -1,4 +1,4 @@
-"""softgrip start that is interrupted: its sequence is stopped and no other, and the program ends as the signal says."""
+"""softgrip start is interrupted: its sequence is stopped and no other, and the program ends by the signal."""
 
 import json
 import os
@@ -51,7 +51,7 @@ class StartInterrupted(quiet_rig.QuietRigTest):
     def test_the_sequence_of_another_client_goes_on(self):
         process = self.start("--wait", sequence=self.short)
         request = self.wait_until_running()
-        process.send_signal(signal.SIGSTOP)  # so that it does not see the end
+        process.send_signal(signal.SIGSTOP)  # so that it does not notice the end
         self.wait_until_ended(request)
         self.softgripd.wait_for_state("idle")
         theirs = self.softgripd.result("start", sequence="long", sequence_text=quiet_rig.LONG)["request"]
@@ -69,7 +69,7 @@ class StartInterrupted(quiet_rig.QuietRigTest):
                 time.sleep(chance.choice((0.01, 0.1)) * chance.random())
                 process.send_signal(signal.SIGINT)
                 code, errors = self.ended_by(process)
-                if code == 0:  # it had been accepted, and nothing was waited for
+                if code == 0:  # the start was accepted before the signal, and there was nothing to wait for
                     self.wait_until_running()
                     self.softgripd.result("stop")
                 else:
@@ -128,7 +128,7 @@ class StartInterrupted(quiet_rig.QuietRigTest):
                 self.assertIsNone(self.running())
 
     def test_an_older_daemon_is_refused(self):
-        """It says hello as version 1 did before starts had ids, and hears of no start."""
+        """It answers hello as version 1 did before starts had ids, and gets no start."""
         heard = []
         listener = socket.socket(socket.AF_UNIX)
         self.addCleanup(listener.close)

@@ -1,4 +1,4 @@
-"""softgrip tune and softgrip study as a user meets them, with short option sets."""
+"""softgrip tune and softgrip study as a user sees them, with short option sets."""
 
 import json
 import re
@@ -56,7 +56,7 @@ class Tune(bench.BenchTest):
         rig = (self.folder / "config/rig.yaml").read_text().replace("rate_hz: 200", "rate_hz: -200")
         done = self.tune("--rig", self.write("config/slow.yaml", rig), "--out", "pid.yaml", expect=3)
         self.assertRegex(done.stderr, r"slow\.yaml:\d+:\d+: ")
-        # A feedforward that the model does not have is the input's fault, said with the reason.
+        # If the model does not have the requested feedforward, the input is refused with the reason.
         done = self.softgrip("tune", "--model", "config/models/zhang2025.yaml", "--feedforward", "full_model", "--out",
                              "pid.yaml", expect=3)
         self.assertIn("beta > alpha + 1/k0", done.stderr)

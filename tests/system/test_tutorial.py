@@ -1,4 +1,4 @@
-"""docs/tutorial carried out from the words of its pages: what stands in a fence is what is run."""
+"""Carries out docs/tutorial from the text of its pages: the commands in the fences are run."""
 
 import html
 import json
@@ -18,13 +18,13 @@ FENCE = re.compile(r"^```\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 
 
 def fences(page):
-    """The page's commands, fence by fence."""
+    """The page's commands, one string per fence."""
     return FENCE.findall((bench.SOURCE / "docs/tutorial" / page).read_text(encoding="utf-8"))
 
 
 class FirstRun(bench.BenchTest):
-    """docs/tutorial/first-run.md. Of its words only the port, the socket and the folder of runs are changed: other
-    tests run beside it; and the bounds of time are those of a busy machine."""
+    """docs/tutorial/first-run.md. Only the port, the socket and the folder of runs are changed in its text, because
+    other tests run at the same time; the time limits are those of a busy machine."""
 
     def setUp(self):
         super().setUp()
@@ -42,7 +42,7 @@ class FirstRun(bench.BenchTest):
             "/tmp/softgrip-runs", f"{self.folder}/runs")
 
     def beside(self, name, words):
-        """What the page runs in a terminal of its own."""
+        """A command that the page runs in its own terminal."""
         line = f"PATH={self.environment['PATH']}; exec {self.said(words).strip()}"
         process = bench.Process(name, ["bash", "-c", line], self.folder)
         self.processes.append(process)
@@ -55,7 +55,7 @@ class FirstRun(bench.BenchTest):
         return done.stdout
 
     def status(self):
-        """Nothing while the daemon does not listen yet."""
+        """None as long as the daemon does not listen."""
         done = subprocess.run([bench.SOFTGRIP, "status", "--json"], cwd=self.folder, text=True, capture_output=True,
                               env=self.environment)
         return json.loads(done.stdout) if done.returncode == 0 else {}
@@ -101,7 +101,7 @@ class FirstRun(bench.BenchTest):
         self.check_on_paper(self.folder / "diagnosis/report.html")
 
     def check_on_paper(self, page):
-        """It is the demo's report, too."""
+        """It is also the report of the demo."""
         text = page.read_text(encoding="utf-8")
         self.assertLess(len(text.encode()), 1_500_000)
         sheets = printing.sheets(page, self.folder)
@@ -116,8 +116,8 @@ class FirstRun(bench.BenchTest):
 
 
 class ForeignLog(bench.BenchTest):
-    """docs/tutorial/foreign-log.ipynb: its cells, one after the other, in one Python. That is what a kernel does with
-    cells without magic, and it needs none of the fifty packages of a kernel."""
+    """docs/tutorial/foreign-log.ipynb: its cells are run one after the other in one Python process. A kernel does the
+    same with cells without magic commands, but would need fifty packages."""
 
     def test_the_notebook_goes_from_a_foreign_file_to_a_figure(self):
         notebook = json.loads((bench.SOURCE / "docs/tutorial/foreign-log.ipynb").read_text(encoding="utf-8"))

@@ -1,4 +1,4 @@
-"""A rig from -40 to 60 kPa on the emulated board: whatever ends a vacuum ends it at the rest pressure of 0 kPa."""
+"""A rig from -40 to 60 kPa on the emulated board: whatever ends a vacuum, it ends at the rest pressure of 0 kPa."""
 
 import os
 import signal
@@ -8,7 +8,7 @@ import time
 import bench
 
 VACUUM_KPA = -30
-# The emulated valve is as fine as a float.
+# The emulated valve has the resolution of a float.
 EQUAL_KPA = 1e-3
 
 
@@ -40,7 +40,7 @@ class Vacuum(bench.BenchTest):
             self.assertAlmostEqual(kpa, VACUUM_KPA, delta=EQUAL_KPA)
 
     def wait_for_rest(self):
-        """It is reached, and not passed: 0 kPa is the highest pressure on the way back from a vacuum."""
+        """The rest pressure is reached and not passed: 0 kPa is the highest pressure on the way back from a vacuum."""
         highest_kpa = -1e9
         end = time.monotonic() + bench.PATIENCE_S
         while time.monotonic() < end:
@@ -108,7 +108,7 @@ class Vacuum(bench.BenchTest):
         self.evacuate()
         self.softgripd.kill()
         time.sleep(1)
-        self.assertLess(max(self.board.commands_kpa()), -20)  # nobody vents by himself
+        self.assertLess(max(self.board.commands_kpa()), -20)  # the board does not vent on its own
         ended = subprocess.run([bench.SOFTGRIPD, "--config", self.rig_path, "--safe-outputs"], capture_output=True,
                                text=True, timeout=bench.PATIENCE_S, check=False,
                                env={**os.environ, "SERVICE_RESULT": "signal"})

@@ -1,4 +1,4 @@
-"""softgrip watch on a terminal: what it shows, what its keys do, and that it gives the terminal back."""
+"""softgrip watch on a terminal: what it shows, what its keys do, and that it restores the terminal."""
 
 import os
 import signal
@@ -83,7 +83,7 @@ class Watch(bench.BenchTest):
         watched.wait_for("fault F202 of left")
         self.emulated.ask("clear blind")
         screen = watched.wait_for("The cause is gone")
-        # What was too long for its line goes on in the next one: the remedy's last word is there, too.
+        # A text that is too long for its line continues in the next one, so the remedy's last word is visible, too.
         self.assertIn("measure the signal.", " ".join(screen.split()))
         self.assertIn("s stop  v vent  r release  a acknowledge  g start  q quit", screen)
 

@@ -1,4 +1,5 @@
-"""The service manager's watchdog: fed while loop, bus and service thread go on, starved as soon as one of them hangs."""
+"""The service manager's watchdog is notified while loop, bus and service thread run; the notices end as soon as one of
+them hangs."""
 
 import contextlib
 import os
@@ -11,7 +12,7 @@ import time
 import bench
 
 HANG_THREAD = pathlib.Path(__file__).parent / "vm/drive/hang_thread.py"
-WATCHDOG_S = 0.4  # the daemon feeds four times in it
+WATCHDOG_S = 0.4  # the daemon sends four notices in it
 
 
 class Watchdog(bench.BenchTest):
@@ -54,10 +55,10 @@ class Watchdog(bench.BenchTest):
         self.addCleanup(self.daemon_.kill)
         if hang.stdout.readline() != "hangs\n":
             self.skipTest("this user may not trace another process")
-        self.notices_for(patience_s)  # the daemon's patience, and what was on its way
+        self.notices_for(patience_s)  # the daemon's patience, and notices that were already sent
         notices = self.notices_for(2)
         self.assertNotIn("WATCHDOG=1", notices)
-        self.assertTrue(self.daemon_.running())  # it is the service manager that ends it
+        self.assertTrue(self.daemon_.running())  # only the service manager ends it
 
     def test_a_hung_loop_starves_it(self):
         self.starves_when("softgrip-loop")

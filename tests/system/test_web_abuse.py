@@ -1,4 +1,4 @@
-"""What softgrip-web does with clients that mean no good: nothing but refusals, and the daemon does not notice."""
+"""Hostile clients of softgrip-web get only refusals, and the daemon is not affected."""
 
 import contextlib
 import random
@@ -21,7 +21,7 @@ class Abuse(web.WebTest):
         (self.folder / "runs" / "one" / "picture.svg").write_text("<svg/>")
 
     def check_recordings(self):
-        """There are none but that of a test."""
+        """There are no recordings, except the one that a test makes."""
 
     def connect(self):
         client = socket.create_connection(("127.0.0.1", self.told.port))
@@ -30,10 +30,11 @@ class Abuse(web.WebTest):
         return client
 
     def say(self, data):
-        """All that comes back to these bytes, which are the last."""
+        """The complete answer to these bytes, after which nothing is sent."""
         with socket.create_connection(("127.0.0.1", self.told.port)) as client:
             client.settimeout(bench.PATIENCE_S)
-            with contextlib.suppress(OSError):  # whoever is refused halfway is cut off: EPIPE, ECONNRESET, ENOTCONN
+            # the server may close the connection before everything is sent: EPIPE, ECONNRESET, ENOTCONN
+            with contextlib.suppress(OSError):
                 client.sendall(data)
                 client.shutdown(socket.SHUT_WR)
             answer = b""
@@ -47,7 +48,7 @@ class Abuse(web.WebTest):
         return int(answer.split()[1]) if answer else 0
 
     def assert_well(self):
-        """It answers, and the daemon's loop has gone on."""
+        """softgrip-web answers, and the daemon's loop has continued."""
         def well():
             with contextlib.suppress(OSError):
                 return self.told.ask("/api/status")[0] == 200
@@ -110,7 +111,7 @@ class Abuse(web.WebTest):
                     except (BrokenPipeError, ConnectionResetError):
                         gone.add(client)
             if time.monotonic() - began < 1:
-                self.assert_well()  # whoever asks has a place all the same
+                self.assert_well()  # a client that sends requests still gets a place
             time.sleep(0.1)
         self.assertEqual(len(gone), len(slow))
         self.assert_well()

@@ -1,4 +1,4 @@
-"""Limits of softgrip-web: one viewer cannot exhaust what an operator needs for a stop or a vent."""
+"""Limits of softgrip-web: a viewer cannot use up what an operator needs for a stop or a vent."""
 
 import contextlib
 import os
@@ -15,12 +15,13 @@ import web
 STUCK_DISK = bench.BUILD / "tests" / "system" / "libstuck_disk.so"
 MIB_IN_KIB = 1024
 LARGEST_FILE = 16 << 20
-# Of the unit (systemd/softgrip-web.service.in), which stops the process beyond it.
+# The limit of the unit (systemd/softgrip-web.service.in), which ends the process beyond it.
 MEMORY_OF_UNIT_KIB = 128 * MIB_IN_KIB
 
 
 def processor_s(pid):
-    """The processor time that a process has used: unlike the time of day it does not depend on other processes."""
+    """The processor time that a process has used. Other processes have no influence on it, unlike on the elapsed
+    time."""
     fields = pathlib.Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
     return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
@@ -36,7 +37,7 @@ class Limits(web.WebTest):
         """The tests of this file record nothing, or fill the folder themselves."""
 
     def send(self, told, path, receive_buffer=None):
-        """A connection that asks for something and does not read the answer."""
+        """A connection that sends a request and does not read the answer."""
         client = socket.socket()
         self.addCleanup(client.close)
         client.settimeout(bench.PATIENCE_S)
@@ -59,7 +60,7 @@ class Limits(web.WebTest):
         return headers["Set-Cookie"].partition(";")[0]
 
     def assert_heard(self, told):
-        """A stop, a vent and the metrics get through. Nobody tries twice: the first request counts."""
+        """A stop, a vent and the metrics are answered at the first request."""
         status, answer = told.command("stop")
         self.assertEqual((status, answer["details"]["refusal"]["name"]), (409, "nothing_to_stop"), "by the daemon")
         status, answer = told.command("vent")
@@ -101,7 +102,7 @@ class Limits(web.WebTest):
         held = []
         for number in range(600):
             path = ("/recordings/one/run.csv", "/api/stream", "/api/recordings", "/chart.js")[number % 4]
-            with contextlib.suppress(OSError):  # one for whom there is no place may be cut off while it asks
+            with contextlib.suppress(OSError):  # a connection without a place may be closed while it sends
                 held.append(self.send(told, path, receive_buffer=4096))
             if number % 50 == 49:
                 self.assertEqual(told.metrics()["softgrip_up"], 1)
@@ -136,7 +137,7 @@ class Limits(web.WebTest):
         self.assertEqual(told.metrics()["softgrip_web_pages"], 6)
 
     def test_a_list_is_made_once_for_all_who_ask(self):
-        """20,000 folders, six viewers: the processor time of the lists, which decides how long others wait."""
+        """20,000 folders, six viewers: the processor time for the lists, which determines how long others wait."""
         for number in range(20_000):
             (self.runs / f"run-{number:06}").mkdir()
         (self.runs / "run-999999").mkdir()
@@ -209,7 +210,7 @@ class Limits(web.WebTest):
         time.sleep(4)
         self.assertLess(processor_s(told.child.pid) - before, 0.4, "of 4 s")
         self.assertIn(b"event: state", page.recv(1 << 20), "an open page goes on")
-        self.assert_heard(told)  # those who ask nothing are shown out
+        self.assert_heard(told)  # connections without a request are closed
 
     def test_a_limit_of_descriptors_that_is_lowered_ends_nothing_but_pages(self):
         told = self.start_web()

@@ -1,4 +1,4 @@
-"""Starts from a browser whose outcome nobody hears: softgrip-web stops each by its id, and no other sequence."""
+"""Starts from a browser that does not receive the answer: softgrip-web stops each by its id, and no other sequence."""
 
 import json
 import signal
@@ -25,7 +25,7 @@ class WebStarts(quiet_rig.QuietRigTest):
         self.processes.append(self.web)
 
     def open_start(self):
-        """A browser that has asked for a start and waits."""
+        """A browser that has sent a start and waits."""
         browser = socket.create_connection(("127.0.0.1", self.web.port))
         self.addCleanup(browser.close)
         browser.sendall(REQUEST)

@@ -1,11 +1,12 @@
-"""The wire is cut in the middle of a grip: what latches and when, what the outputs do, what it takes to go on."""
+"""The wire is cut in the middle of a grip: which fault latches and when, what the outputs do, and what is needed to
+continue."""
 
 import bench
 
 
 class Wire(bench.BenchTest):
     def holding(self, *emulator_arguments, changes=()):
-        """A daemon that holds a stone in both fingers."""
+        """A daemon that holds a stone with both fingers."""
         self.rig_process = self.emulator("--object", "stone", *emulator_arguments)
         self.rig_file = self.rig(self.rig_process.port, changes)
         daemon = self.daemon(self.rig_file)
@@ -18,7 +19,7 @@ class Wire(bench.BenchTest):
         return daemon
 
     def check_cycles_to_fault(self, recording):
-        """The fault came after as many cycles without a good exchange as the rig file allows, not later."""
+        """The fault occurs after the number of cycles without a good exchange that the rig file allows, not later."""
         rows = self.rows(recording, "left")
         faulted = next(i for i, row in enumerate(rows) if row["state"] == "faulted")
         missed = 0
@@ -28,7 +29,8 @@ class Wire(bench.BenchTest):
         self.assertGreaterEqual(missed, bench.BUS_DOWN_CYCLES // 2)
 
     def check_nothing_moves_until_started(self, daemon, rig_process, sequence="pick_stone"):
-        """The connection is back: the rig stays vented and faulted through acknowledge, until a new start."""
+        """The connection is restored: the rig stays vented and faulted until it is acknowledged, and nothing moves
+        until a new start."""
         bench.wait_for("the bus", lambda: daemon.status()["bus"]["connected"])
         for _ in range(20):
             self.assertEqual(daemon.status()["state"], "faulted")
@@ -63,8 +65,8 @@ class Wire(bench.BenchTest):
         daemon.wait_for_event("fault_latched", code="F101")
         bench.wait_for("the end of the recording", lambda: not daemon.status()["recording"]["active"])
         self.check_cycles_to_fault(self.recordings()[0])
-        # The new emulator's fingers never moved, so the creep that the daemon's model remembers is not in them: a
-        # sequence that detects objects would rightly wait. One that only presses goes ahead.
+        # The new emulator's fingers never moved, so they do not have the creep that the daemon's model still expects. A
+        # sequence that detects objects would therefore wait. A sequence that only presses starts at once.
         again = self.emulator("--object", "stone", port=port, name="softgrip-rig-again")
         self.check_nothing_moves_until_started(daemon, again, "pressure_staircase")
 

@@ -1,9 +1,9 @@
-"""Every fault of the wire that the emulator knows: short ones are survived, lasting ones latch by their name."""
+"""Every fault of the wire that the emulator knows: short faults cause no stop, lasting faults latch with their code."""
 
 import bench
 
-# Which fault latches when it lasts. A reply that makes no sense ends the session; whether the next session or the
-# nonsense is what the daemon saw last is a matter of moments.
+# Which daemon fault latches when the wire fault lasts. A reply that makes no sense ends the session; it depends on the
+# moment whether the daemon last saw the failed next session or the reply.
 WIRE = {
     "lost_request": ("", ("F101", "F102")),
     "no_reply": ("", ("F101", "F102")),
@@ -41,7 +41,7 @@ class WireFaults(bench.BenchTest):
     def test_one_bad_reply_is_survived(self):
         for kind in (*WIRE, "repeated_reply"):
             if kind == "disconnect":
-                continue  # it lasts until it is cleared: a cable is not out for one reply
+                continue  # it lasts until it is cleared: a cable is not disconnected for only one reply
             with self.subTest(kind):
                 before = self.softgripd.result("statistics")["bus"]["exchanges"]
                 self.emulated.ask(f"fault {kind}_once")
@@ -49,7 +49,7 @@ class WireFaults(bench.BenchTest):
                                lambda: self.softgripd.result("statistics")["bus"]["exchanges"] > before + 10)
                 self.fresh_readings()
                 self.assertEqual(self.softgripd.status()["state"], "idle", self.softgripd.errors())
-                # A late or repeated reply must not shift later ones: the reading is still the finger's.
+                # A late or repeated reply must not shift later replies: the reading is still that of the finger.
                 for channel in self.softgripd.status()["channels"]:
                     self.assertAlmostEqual(channel["displacement_mm"], 0, delta=0.3)
 

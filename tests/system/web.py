@@ -1,4 +1,4 @@
-"""softgrip-web beside the other processes of a test."""
+"""softgrip-web with the other processes of a test."""
 
 import json
 import re
@@ -12,7 +12,8 @@ LOOK, OPERATE = "look-" + "a" * 20, "operate-" + "b" * 20
 
 
 class Web(bench.Process):
-    """On a free port, in front of the test's daemon; `access` is what the file says there, `operate` the socket for commands."""
+    """On a free port, for the test's daemon; `access` is the text of the access file, `operate` the socket for
+    commands."""
 
     def __init__(self, folder, access="without_token: operate", name="softgrip-web", port=0, most=64, environment=None,
                  operate=None):
@@ -35,7 +36,7 @@ class Web(bench.Process):
         return found and found.group(1)
 
     def ask(self, path, body=None, method=None, token=None, headers=()):
-        """(status, text, headers) of a request as the page makes it, or as whoever has a token does."""
+        """(status, text, headers) of a request as the page sends it, or with a token."""
         request = urllib.request.Request(self.address + path, method=method,
                                          data=None if body is None else json.dumps(body).encode())
         if body is not None:
@@ -57,7 +58,7 @@ class Web(bench.Process):
         return status, json.loads(text)
 
     def metrics(self):
-        """Values by name with labels, as they stand in the text."""
+        """The values by name with labels, as in the text."""
         status, text, _ = self.ask("/metrics")
         if status != 200:
             raise AssertionError(f"/metrics: {status} {text}")
@@ -66,7 +67,7 @@ class Web(bench.Process):
 
 
 class WebTest(bench.BenchTest):
-    """A test with a rig, its daemon, and softgrip-web in front of it."""
+    """A test with a rig, its daemon, and softgrip-web."""
 
     def start_web(self, **keys):
         process = Web(self.folder, **keys)

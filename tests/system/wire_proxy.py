@@ -1,7 +1,8 @@
-"""A Modbus TCP wire between daemon and board that can be spoiled, and that is a witness of what was written.
+"""A Modbus TCP wire between daemon and board that can be disturbed, and that records what was written.
 
-It knows the shipped ADAM-6024 map: six inputs from 0, two outputs from 10, input status from 20. What it does to a
-message is named by a kind (KINDS); fault_matrix.yaml describes each by the class it stands for.
+It knows the shipped ADAM-6024 map: six inputs from 0, two outputs from 10, input status from 20. A disturbance of a
+message has the name of a kind (KINDS); fault_matrix.yaml describes each kind by the class of faults that it
+represents.
 """
 
 import contextlib
@@ -18,7 +19,7 @@ INPUTS, OUTPUTS, STATUS = 0, 10, 20
 RAW_PER_MM = 65535 / 20 * 10 / 50
 RAW_PER_KPA = 4095 / 100
 HIGHEST_INPUT = 65535
-# What a read-back may be off (tolerance_raw of the board map).
+# The permitted difference of a read-back (tolerance_raw of the board map).
 TOLERATED_RAW = 1
 
 
@@ -40,14 +41,14 @@ class Frame:
         return struct.unpack(">H", self.pdu[1:3])[0]
 
     def words(self):
-        """Of a reply that read registers."""
+        """The words of a reply to a register read."""
         return list(struct.unpack(f">{self.pdu[1] // 2}H", self.pdu[2:2 + self.pdu[1]]))
 
     def set_words(self, words):
         self.pdu[2:] = struct.pack(f">{len(words)}H", *words)
 
     def written(self):
-        """Of a request that writes several registers."""
+        """The words of a request that writes several registers."""
         return list(struct.unpack(f">{self.pdu[5] // 2}H", self.pdu[6:6 + self.pdu[5]]))
 
     def set_written(self, words):
@@ -55,7 +56,7 @@ class Frame:
 
 
 class Fault:
-    """What goes wrong while it is active. `times`: only for so many messages."""
+    """What goes wrong while the fault is active. `times`: only for so many messages."""
 
     def __init__(self, kind, times=None, seed=1, **keys):
         self.kind = KINDS[kind]
@@ -66,7 +67,7 @@ class Fault:
         self.memory = {}  # what a kind must remember
 
     def touch(self):
-        """True if this message is one of those to be spoiled."""
+        """True if this message is one of those to be changed."""
         if self.left <= 0:
             return False
         self.left -= 1
@@ -74,7 +75,7 @@ class Fault:
         return True
 
     def differs(self):
-        """A message is now other than it should be."""
+        """The message now differs from what it should be."""
         if self.first_touch is None:
             self.first_touch = time.monotonic()
 
@@ -83,7 +84,7 @@ class Fault:
 
 
 class Session:
-    """One connection of the daemon and its own one to the board."""
+    """One connection of the daemon and the proxy's own connection to the board."""
 
     def __init__(self, proxy, client):
         self.proxy = proxy
@@ -91,7 +92,7 @@ class Session:
         self.board = socket.create_connection(("127.0.0.1", proxy.board_port), 10)
         for end in (self.client, self.board):
             end.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-        self.previous = None  # reply
+        self.previous = None  # the previous reply
 
     def read(self, end):
         header = self.read_exactly(end, 7)
@@ -134,7 +135,7 @@ class Session:
         self.send(reply.bytes())
 
     def wait_until_gone(self):
-        """Nothing more is said or heard; ends when the daemon gives the session up."""
+        """Sends and answers nothing more; ends when the daemon closes the session."""
         while not self.proxy.closed:
             ready, _, _ = select.select([self.client], [], [], 0.05)
             if ready and not self.client.recv(4096):
@@ -145,7 +146,7 @@ class Session:
             end.close()
 
 
-# What can be done to a request and its reply. True: dealt with; False: it was not meant.
+# What can be done to a request and its reply. True: the message is done; False: the fault was not for this message.
 
 def noticeable(words, others):
     return any(abs(a - b) > TOLERATED_RAW for a, b in zip(words, others))
@@ -187,12 +188,12 @@ def repeated(session, fault, request):
 
 
 def replayed(session, fault, request):
-    """Old contents in a new frame, as a gateway with a cache gives them."""
+    """Old contents in a new frame, as a gateway with a cache returns them."""
     reply = session.ask_board(request)
     session.proxy.note(request)
     if request.function == 4:
         old = fault.memory.setdefault((request.address(), len(reply.pdu)), bytes(reply.pdu))
-        # The sensors' noise is not what anybody could notice; outputs that do not follow are.
+        # Old sensor readings within the noise cannot be noticed; outputs that do not follow can.
         true = reply.words()
         reply.pdu = bytearray(old)
         if request.address() == OUTPUTS and noticeable(true, reply.words()):
@@ -213,7 +214,7 @@ def inserted(session, fault, request):
 
 
 def other_function(session, fault, request):
-    """A well-formed answer to a question that nobody asked."""
+    """A well-formed answer to a different request."""
     if not fault.touch():
         return False
     reply = session.ask_board(request)
@@ -224,7 +225,7 @@ def other_function(session, fault, request):
 
 
 def twin(session, fault, request):
-    """Another board of the same kind answers, at rest and vented; nothing in the form gives it away."""
+    """Another board of the same kind answers, at rest and vented; the form of its messages is correct."""
     reply = session.ask_board(request)
     session.proxy.note(request)
     if request.function == 4 and fault.touch():
@@ -259,7 +260,7 @@ def from_other_unit(session, fault, request):
 
 
 def out_of_order(session, fault, request):
-    """Each question is answered by the answer to the one before."""
+    """Each request is answered by the answer to the previous one."""
     if not fault.touch():
         return False
     reply = session.ask_board(request)
@@ -292,7 +293,7 @@ def corrupted_header(session, fault, request):
 
 
 def changed_words(session, fault, request, change):
-    """Passes on with what `change` makes of the words of an input read."""
+    """Passes the reply to a read of the inputs on after `change` has changed its words."""
     reply = session.ask_board(request)
     session.proxy.note(request)
     if is_read_of(request, INPUTS) and len(reply.pdu) > 2 and reply.function == 4 and fault.touch():
@@ -335,7 +336,7 @@ def sensor_noise(session, fault, request):
 
 
 def sensor_dropout(session, fault, request):
-    """Every so often the signal is gone for a reading."""
+    """From time to time the signal is missing for a reading."""
     def change(words):
         fault.memory["n"] = fault.memory.get("n", 0) + 1
         if fault.memory["n"] % fault.key("every", 3) == 0:
@@ -374,21 +375,21 @@ def changed_write(session, fault, request, change):
 
 
 def asymmetric(session, fault, request):
-    """The left output gets another number than was sent, the right one what was sent."""
+    """The left output gets another number than was sent, the right output the one that was sent."""
     def change(words):
         words[0] = min(4095, round(words[0] + fault.key("by_kpa", 10) * RAW_PER_KPA))
     return changed_write(session, fault, request, change)
 
 
 def received_by_some(session, fault, request):
-    """Only the right output hears; the left one keeps what it had when this began."""
+    """Only the right output takes the value; the left one keeps the value from when this began."""
     def change(words):
         words[0] = fault.memory.setdefault("word", words[0])
     return changed_write(session, fault, request, change)
 
 
 def blocked(session, fault, request):
-    """Somebody talks without a pause; no answer gets through."""
+    """Another sender talks without a pause, so no answer gets through."""
     if not fault.touch():
         return False
     session.ask_board(request)
@@ -408,7 +409,7 @@ def reset(session, fault, request):
 
 
 def half_open(session, fault, request):
-    """This session is dead and nobody says so; new ones are as good as any."""
+    """This session is dead without a message; new sessions work normally."""
     sessions = fault.memory.setdefault("dead", set())
     if not sessions:
         sessions.add(id(session))
@@ -420,7 +421,7 @@ def half_open(session, fault, request):
 
 
 def silent(session, fault, request):
-    """Sessions stand, new ones are accepted, nothing is ever answered."""
+    """Sessions stay open and new ones are accepted, but no request is answered."""
     if not fault.touch():
         return False
     session.wait_until_gone()
@@ -449,7 +450,7 @@ def stalled(session, fault, request):
 
 
 def exception(session, fault, request):
-    """Nothing is carried out."""
+    """No request is carried out."""
     if not fault.touch():
         return False
     request.pdu = bytearray([request.function | 0x80, fault.key("code", 4)])
@@ -458,7 +459,7 @@ def exception(session, fault, request):
 
 
 def refused(session, fault, request):
-    """Sessions end, new ones end at once."""
+    """Sessions end, and new ones end at once."""
     if not fault.touch():
         return False
     raise ConnectionError("refused")
@@ -472,7 +473,8 @@ KINDS = {f.__name__: f for f in (
 
 
 class Proxy:
-    """Listens for the daemon, talks to the board. `writes` are (time.monotonic(), [raw outputs]) that it passed on."""
+    """Accepts the daemon and connects to the board. `writes` are (time.monotonic(), [raw outputs]) that it passed
+    on."""
 
     def __init__(self, board_port):
         self.board_port = board_port

@@ -1,4 +1,4 @@
-"""Workbooks (.xlsx) for tests, written here and not by the library that reads them (ECMA-376, part 1)."""
+"""Writes workbooks (.xlsx) for tests, without the library that reads them (ECMA-376, part 1)."""
 
 import io
 import zipfile
@@ -44,7 +44,7 @@ def letters(column):
 
 
 def sheet(rows, strings, first_row=1, first_column=0, below="", row_attributes=""):
-    """Rows of cells; None is no cell, and a row that is None is not in the file. Texts go into `strings`."""
+    """Rows of cells. None is no cell; a row that is None is not in the file. Texts go into `strings`."""
     lines = []
     for number, row in enumerate(rows, first_row):
         if row is None:

@@ -1,8 +1,7 @@
-"""A rig at work for months, in virtual time: grips recorded by `softgrip run` on fingers that change.
+"""A rig that works for months, in virtual time: grips recorded by `softgrip run` on fingers that change.
 
-What happens to a finger goes into its plant, never into the recording: another gain of the model that stands for it, a
-line that leaks, a sensor that is off. Only the time of day is written into run.json afterwards, which a run in virtual
-time does not have.
+A change is made in the simulated plant, never in the recording: another gain of the model, a line that leaks, a sensor
+with a wrong scale. Only the time of day is written into run.json afterwards, because a run in virtual time has none.
 """
 import dataclasses
 import json
@@ -13,7 +12,7 @@ import subprocess
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
 MODEL = SOURCE / "config/models/bench_twin.yaml"
-# What a larger gain makes larger, and what it makes smaller.
+# The parameters that a larger gain makes larger, and those that it makes smaller.
 GAINS = {"alpha_mm_per_kpa": 0.21105, "beta_mm_per_kpa": 0.1713}
 STIFFNESSES = {"k0_kpa_per_mm": 325.9, "k1_kpa_per_mm": 18.16, "c1_kpa_s_per_mm": 299.8, "k2_kpa_per_mm": 2.761,
                "c2_kpa_s_per_mm": 1.621}
@@ -24,7 +23,7 @@ THERMOMETER_NOISE_C = 0.2
 
 @dataclasses.dataclass(frozen=True)
 class Finger:
-    """What became of it."""
+    """The changes of a finger."""
     gain: float = 1
     zero_mm: float = 0
     leak: float = 0  # share of the pressure
@@ -38,9 +37,9 @@ class Grip:
     seed: int
     fingers: dict  # by name
     sequence: str = "pick_stone"
-    part_mm: float = 12  # where the part stands
+    part_mm: float = 12  # where the part is
     temperature_c: float = 20
-    thermometer: bool = False  # the rig has one, which all channels share
+    thermometer: bool = False  # the rig has one thermometer for all channels
 
 
 class Rig:
@@ -53,7 +52,7 @@ class Rig:
         self.recordings.mkdir(parents=True, exist_ok=True)
 
     def baseline(self):
-        """Logs of the healthy finger and what `softgrip baseline` makes of them."""
+        """The logs of the healthy finger, and the result of `softgrip baseline` for them."""
         logs = []
         for signal in ("tp1", "steps", "sp2"):
             logs.append(self.folder / f"{signal}.csv")
@@ -65,7 +64,7 @@ class Rig:
         return self.recordings / f"{grip.at.replace(':', '-')}_{grip.sequence}"
 
     def has(self, grip):
-        """Whether it was played whole."""
+        """True if it was played completely."""
         story = self._run_of(grip) / "run.json"
         return story.exists() and "started_at" in json.loads(story.read_text())
 

@@ -1,4 +1,4 @@
-"""The workflow over a handful of small logs: a bad row, a killed run that goes on, what is run again and what is not."""
+"""The workflow with a few small logs: a bad row, a killed run that continues, and which steps are run again."""
 
 import json
 import os
@@ -14,7 +14,7 @@ SOURCE = pathlib.Path(__file__).resolve().parents[2]
 BUILD = pathlib.Path(os.environ.get("SOFTGRIP_BUILD", SOURCE / "build" / "release"))
 RUN = SOURCE / "workflows/run.py"
 TWIN = SOURCE / "config/models/bench_twin.yaml"
-SLOW = "--starts 250"  # long enough to be killed in
+SLOW = "--starts 250"  # long enough to be killed in it
 
 
 class Workflow(unittest.TestCase):
@@ -103,7 +103,7 @@ class Workflow(unittest.TestCase):
         self.run_table(table)
         after = self.written()
         self.assertEqual(len(after), len(names))
-        # What had just ended, on either core, may be unknown to Snakemake.
+        # Snakemake may not know a step that had just ended, on either core.
         self.assertLessEqual(sum(after[name] != when for name, when in before.items()), 2, "what was done is done")
         self.assertEqual(list((self.folder / "out").glob("*/*/running-*")), [])
 

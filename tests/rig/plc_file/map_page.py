@@ -1,4 +1,4 @@
-"""The tables of docs/reference/plc-map.md out of config/plc.yaml: map_page.py --check | --write"""
+"""Writes the tables of docs/reference/plc-map.md from config/plc.yaml: map_page.py --check | --write"""
 
 import pathlib
 import re

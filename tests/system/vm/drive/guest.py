@@ -1,4 +1,4 @@
-"""What the steps in the guest stand on: commands, the service, the emulator, and a printed verdict per step."""
+"""The basis of the steps in the guest: commands, the service, the emulator, and a printed verdict per step."""
 
 import json
 import os
@@ -16,12 +16,12 @@ RIG = CONFIGURATION / "rig_service.yaml"
 UNIT = "softgripd.service"
 SOCKET = "/run/softgrip/softgripd.sock"
 RUNS = pathlib.Path("/var/lib/softgrip/runs")
-# Generous: the guest is emulated. Where a step has a bound, it says so itself.
+# Generous, because the guest is emulated. A step that has its own limit states it.
 PATIENCE_S = 40
 
 
 class Failed(Exception):
-    """What a step expected and did not see."""
+    """Something that a step expected did not happen."""
 
 
 def expect(condition, what):
@@ -39,7 +39,7 @@ def sh(command, check=True):
 
 
 def wait_for(what, condition, patience_s=PATIENCE_S, pause_s=0.1):
-    """The first true result of condition() and the seconds that it took."""
+    """The first true result of condition(), and the seconds that it took."""
     begin = time.monotonic()
     while True:
         result = condition()
@@ -51,7 +51,7 @@ def wait_for(what, condition, patience_s=PATIENCE_S, pause_s=0.1):
 
 
 def ask(path, line):
-    """One line to a Unix socket, one line back; nothing if nobody answers."""
+    """Sends one line to a Unix socket and returns one line; None if there is no answer."""
     try:
         with socket.socket(socket.AF_UNIX, socket.SOCK_STREAM) as connection:
             connection.settimeout(PATIENCE_S)
@@ -65,7 +65,7 @@ def ask(path, line):
 
 
 class Emulator:
-    """softgrip-rig behind the installed rig file. Its board has no watchdog: what is vented, was vented by us."""
+    """softgrip-rig behind the installed rig file. Its board has no watchdog, so only softgrip can have vented it."""
 
     control = "/run/emulator.sock"
     process = None
@@ -74,7 +74,8 @@ class Emulator:
         self.start()
 
     def start(self):
-        """With fingers that never moved; a used finger would creep back for half a minute before a start is taken."""
+        """Starts it with fingers that never moved. A used finger would creep back for half a minute before a start is
+        accepted."""
         if self.process:
             self.process.kill()
             self.process.wait()
@@ -91,7 +92,7 @@ class Emulator:
         return took_s
 
     def expect_still(self, seconds):
-        """Nothing is commanded for so long."""
+        """No pressure is commanded for so long."""
         end = time.monotonic() + seconds
         while time.monotonic() < end:
             expect(max(self.commands_kpa()) == 0, f"the outputs moved: {self.commands_kpa()}")
@@ -99,7 +100,8 @@ class Emulator:
 
 
 class Lines:
-    """A chip of simulated GPIO lines, pulled from outside, that the rig file names already; and one that it does not."""
+    """A chip of simulated GPIO lines that the rig file names and the test switches, and a chip that the rig file does
+    not name."""
 
     label = "softgrip-panel"
     emergency_stop, enable = 0, 1
@@ -114,7 +116,7 @@ class Lines:
 
     @staticmethod
     def plug_in(name, label):
-        """A chip of two lines: its name and its folder."""
+        """Adds a chip of two lines; returns its name and its folder."""
         device = pathlib.Path("/sys/kernel/config/gpio-sim") / name
         bank = device / "bank"
         bank.mkdir(parents=True)
@@ -132,7 +134,7 @@ class Lines:
 
 
 class Service:
-    """softgripd.service, as systemctl, its socket and its journal show it."""
+    """softgripd.service, observed with systemctl, its socket and its journal."""
 
     @staticmethod
     def show(name):
@@ -181,14 +183,14 @@ class Service:
         raise Failed(f"no thread {name}")
 
     def start_fresh(self, emulator):
-        """Running, idle, with a clean count of restarts, on fresh fingers, whatever the last step left."""
+        """It runs, idle, with a restart count of 0 and new fingers, whatever the last step left."""
         sh(f"systemctl stop {UNIT}; systemctl reset-failed {UNIT}", check=False)
         emulator.start()
         sh(f"systemctl start {UNIT}", check=False)
         self.wait_idle()
 
     def hold(self):
-        """A stone between the fingers."""
+        """A stone is between the fingers."""
         expect(self.state() == "idle", f"the daemon is {self.state()}")
         since = self.newest_event()
         sh("softgrip start pick_stone")
@@ -201,7 +203,7 @@ class Service:
 
 
 class Steps:
-    """Runs functions in order and says of each whether it held what it says."""
+    """Runs functions in order and prints for each whether its requirements were met."""
 
     def __init__(self):
         self.failed = []
@@ -232,7 +234,7 @@ class Steps:
 
 
 def edit(path, *replacements):
-    """Replaces texts by patterns; each must be there."""
+    """Replaces texts by patterns; each pattern must match."""
     text = path.read_text()
     for pattern, replacement in replacements:
         text, count = re.subn(pattern, replacement, text)

@@ -1,5 +1,5 @@
-"""Wake-up latency of softgripd beside cyclictest, idle and loaded, in turns. In a guest whose clock counts instructions
-the host cannot be seen in it; what is left is the kernel's and the program's own. Prints a table."""
+"""Wake-up latency of softgripd and of cyclictest in turns, idle and loaded. In a guest whose clock counts instructions
+the host has no influence; what remains is caused by the kernel and the program. Prints a table."""
 
 import itertools
 import pathlib
@@ -22,7 +22,7 @@ RIG = CONFIGURATION / "rig_service.yaml"
 
 
 def histogram(lines):
-    """Counts by microsecond out of cyclictest's form."""
+    """Counts by microsecond, from the output of cyclictest."""
     counts = {}
     for line in lines:
         fields = line.split()
@@ -91,7 +91,7 @@ def with_load(function, *arguments):
 def main():
     main_guard()
     sh(f"dpkg -i {sorted(DRIVE.glob('softgrip_*.deb'))[0]}")
-    # An exchange that the load delays is a slip of the bus, not the end of the run.
+    # An exchange that the load delays counts as a missed cycle of the bus and does not end the run.
     edit(RIG, (r"host: .*", "host: 127.0.0.1"), (r"port: \d+", "port: 1502"), (r"cpus: \[1\]", "cpus: [0]"),
          (r"rate_hz: .*", f"rate_hz: {RATE_HZ}"), (r"priority: \d+", f"priority: {PRIORITY}"),
          (r"_cycles: [1-9]\d*", "_cycles: 100"), (r"max_missed_commands: \d+", "max_missed_commands: 100"))

@@ -1,6 +1,7 @@
-"""The system test inside the guest: the package installed, the service worked through its bad day, the package purged.
+"""The system test inside the guest: installs the package, takes the service through many failures, and purges the
+package.
 
-    steps.py [SEED]    draws the random moments; printed, and drawn if not given
+    steps.py [SEED]    draws the random moments; the seed is printed, and drawn if not given
 """
 
 import hashlib
@@ -17,13 +18,13 @@ from guest import (CONFIGURATION, DRIVE, RIG, RUNS, UNIT, Emulator, Failed, Line
                    wait_for)
 
 service = Service()
-# WatchdogSec=, and how long softgripd lets a thread stand still before it stops feeding.
+# WatchdogSec=, and how long softgripd accepts a standstill of a thread before it sends no more notices.
 WATCHDOG_S = 2.0
 STANDSTILL_S = {"softgrip-loop": 0.55, "softgrip-bus": 1.05, "process": 0}
-# What the emulated processor takes to start a confined program; a real one needs hundredths of a second.
+# The time in which the emulated processor starts a confined program; a real one needs hundredths of a second.
 START_S = 3.0
 DROP_IN = pathlib.Path(f"/run/systemd/system/{UNIT}.d/system-test.conf")
-# What the machine itself writes meanwhile, and what tools leave beside the user database.
+# Files that the machine itself writes during the test, and files that tools leave beside the user database.
 NOT_COMPARED = ("/proc", "/sys", "/dev", "/run", "/tmp", "/mnt", "/var/log", "/var/lib/dpkg", "/var/cache", "/var/tmp",
                 "/var/lib/systemd", "/var/lib/apt", "/root")
 USER_DATABASE = {"/etc/passwd", "/etc/group", "/etc/shadow", "/etc/gshadow"}
@@ -37,7 +38,7 @@ def packages():
 
 
 def files():
-    """Every path, and of those in /etc what is in them."""
+    """Every path, and the contents of those in /etc."""
     found = {}
     for folder, folders, names in os.walk("/"):
         folders[:] = [name for name in folders if os.path.join(folder, name) not in NOT_COMPARED]
@@ -206,7 +207,7 @@ def stopped(state):
     wall = time.time()
     sh(f"systemctl stop {UNIT}")
     after = state["emulator"].commands_kpa()
-    # The feedback goes on to the last tick; a part that is let go is at 0.
+    # The controller acts until the last tick; a part that is released would be at 0.
     expect(all(abs(now - then) < 2 for now, then in zip(after, before)), f"held with {before}, left with {after} kPa")
     expect("ended in order" in service.journal(wall - 1), "ExecStopPost= did not say so")
     expect(service.show("Result") == "success", service.show("Result"))
