@@ -30,7 +30,8 @@ SIMULATOR, MEX = ROOT / "bench/sysid_peer_simulator.c", ROOT / "bench/sysid_peer
 
 
 def said(words, folder):
-    """A program's standard output, and the processor time that it took on all cores: others run beside it."""
+    """The standard output of a program, and the processor time that it took on all cores, because other programs run
+    at the same time."""
     began = resource.getrusage(resource.RUSAGE_CHILDREN)
     done = subprocess.run([str(word) for word in words], cwd=folder, capture_output=True, text=True)
     if done.returncode != 0:
@@ -40,13 +41,13 @@ def said(words, folder):
 
 
 def repeated(runs, words, folder):
-    """The first run's output and the median processor time of `runs`."""
+    """The output of the first run and the median processor time of `runs`."""
     outputs = [said(words, folder) for _ in range(runs)]
     return outputs[0][0], statistics.median(seconds for _, seconds in outputs)
 
 
 def lines_of(*files):
-    """Lines that are neither empty nor a comment."""
+    """The lines that are neither empty nor a comment."""
     comment = ("#", "%", "/*", "*", "//", '"""')
     return sum(bool(line.strip()) and not line.strip().startswith(comment)
                for file in files for line in file.read_text().splitlines())
@@ -98,7 +99,7 @@ class Study:
         self.extended = json.loads((self.folder / "extended/validate.json").read_text())["rmse_mm"]
 
     def exports(self):
-        """The largest difference between what was exported and what each reader makes of it [mm]."""
+        """The largest difference between the exported values and those that each reader gets [mm]."""
         import pandas
         import scipy.io
         said([self.softgrip, "export", "tp1.csv", "--out", "out.mat"], self.folder)

@@ -23,7 +23,7 @@ NUMBER_OF = {"transport_delay": "delay_s", "valve_lag": "time_constant_s"}
 
 
 def demo_logs():
-    """(signals, options of `softgrip simulate`) as the demo has them."""
+    """(signals, options of `softgrip simulate`) of the demo."""
     text = (ROOT / "scripts/demo.sh").read_text()
     signals = re.search(r"for signal in ([a-z0-9 ]+); do", text)[1].split()
     options = re.search(r"--noise-mm [0-9.]+ --seed \d+ --rate-hz \d+", text)[0].split()
@@ -31,7 +31,7 @@ def demo_logs():
 
 
 def truth():
-    """The twin's delay and lag."""
+    """The true delay and lag of the twin."""
     text = (ROOT / "config/models/bench_twin.yaml").read_text()
     return {cause: float(re.search(rf"{cause}:\s+{number}: ([0-9.]+)", text)[1]) for cause, number in NUMBER_OF.items()}
 
@@ -43,7 +43,7 @@ def diagnose(softgrip, logs, out):
 
 
 def found(diagnosis):
-    """cause -> (value, low, high, inclusion) of what is named; None for a cause without a number here."""
+    """cause -> (value, low, high, inclusion) of the named causes; None for a cause without a number here."""
     rows = {}
     for cause in diagnosis["causes"]:
         number = cause["parameters"].get(NUMBER_OF.get(cause["id"]))
@@ -52,7 +52,7 @@ def found(diagnosis):
 
 
 def complaints(results, real):
-    """What is wrong with the answers, as sentences."""
+    """A sentence for each mistake in the answers."""
     wrong = []
     for subset, rows in results.items():
         for cause, row in rows.items():

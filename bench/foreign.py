@@ -35,7 +35,7 @@ PAGE, REFERENCE = ROOT / "docs/results/foreign-data.md", HERE / "reference.json"
 
 
 class Judge:
-    """Cases of a data set, the judgement of one, its words for the screen, and the summary of all."""
+    """The cases of a data set, the judgement of one case, its text for the screen, and the summary of all."""
 
     def __init__(self, cases, judge, said, summary):
         self.cases, self.judge, self.said, self.summary = cases, judge, said, summary

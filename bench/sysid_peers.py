@@ -1,4 +1,4 @@
-"""scipy's least_squares on the logs and start points of sysid_starts, with a compiled simulator."""
+"""Runs scipy's least_squares on the logs and start points of sysid_starts, with a compiled simulator."""
 import ctypes
 import sys
 import time
@@ -29,7 +29,7 @@ def simulate(x, t, p):
 
 
 def natural(z):
-    """Stiffnesses and dampings as logarithms, as softgrip fits them; the rest as they are."""
+    """Stiffnesses and dampings as logarithms, as softgrip fits them; the other parameters unchanged."""
     return np.concatenate([z[:4], np.exp(z[4:])])
 
 

@@ -1,4 +1,4 @@
-"""The page of bench/foreign.py: required and reached values, then the cases of each judge."""
+"""Writes the page of bench/foreign.py: required and reached values, then the cases of each judge."""
 import math
 import pathlib
 import sys
@@ -15,7 +15,7 @@ def table(head, rows):
 
 
 def number(value, digits=3):
-    """Significant digits; `-` for nothing."""
+    """The number with significant digits; `-` for None."""
     if value is None or not math.isfinite(value):
         return "-"
     return f"{value:.{digits}g}"
@@ -186,7 +186,7 @@ def failures_section(values):
 
 
 def meaning(values):
-    """The counts that decide whether an answer on such data can be trusted."""
+    """The counts that show whether an answer on such data can be trusted."""
     summary, parts = values.get("summary", {}), []
     if "runs" in summary.get("repeats", {}):
         part = summary["repeats"]["runs"]

@@ -1,7 +1,8 @@
-"""Logs as arrays, and the rule by which models that know nothing of softgrip predict a part that was not fitted."""
+"""Logs as arrays, and the rule by which models of other programs predict a part that was not fitted."""
 import numpy as np
 
-START_SHARE, START_S = 0.05, 2.0  # the first 5 %, at least 2 s, of a log may estimate its offset and initial state
+# The first 5 % of a log, at least 2 s, may be used to estimate its offset and initial state.
+START_SHARE, START_S = 0.05, 2.0
 
 
 def read(path):
@@ -23,11 +24,11 @@ def rmse(error):
 
 
 def beginning(time):
-    """The samples that may estimate how a log begins, as a mask."""
+    """The samples from which the offset and the initial state of a log may be estimated, as a mask."""
     return time - time[0] <= max(START_SHARE * (time[-1] - time[0]), START_S)
 
 
 def rmse_with_own_offset(time, simulated, reading):
-    """RMSE on a log that was not fitted, after the mean error of its beginning is removed."""
+    """RMSE on a log that was not fitted, after subtracting the mean error of its beginning."""
     error = simulated - reading
     return rmse(error - np.nanmean(error[beginning(time)]))

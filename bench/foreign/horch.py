@@ -25,7 +25,7 @@ def cross_correlation(u, y):
 
 
 def first_crossing(values):
-    """Place (in samples, between two of them) of the first change of sign; None if there is none."""
+    """The place of the first change of sign (in samples, between two of them); None if there is none."""
     changes = np.flatnonzero(values[:-1] * values[1:] <= 0)
     if not len(changes):
         return None

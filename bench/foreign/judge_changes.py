@@ -43,7 +43,7 @@ def plain_model(runner, data_set, healthy, later):
 
 
 def judged_label(pair, names, exceeds):
-    """The worth of an answer to a labelled change: the keys of a case of the judge `changes`."""
+    """How an answer to a labelled change is judged: the keys of a case of the judge `changes`."""
     alternatives = {rival for rivals in names["alternatives"] for rival in rivals}
     named = bool(set(pair.causes) & set(names["named"]))
     listed = named or bool(set(pair.causes) & alternatives)

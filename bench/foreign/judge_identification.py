@@ -42,7 +42,7 @@ def library(runner):
 
 
 def peer(runner, data_set, log, test, script, words):
-    """The outcome of a program that shares nothing with softgrip."""
+    """The outcome of a program that shares no code with softgrip."""
     files = [log.path, *([test.path] if test else [])]
     sources = [script, HELD_OUT, SIMULATOR]
     name = f"{script.stem} {log.name} {test.name if test else ''} {log.path.parent.name}"
@@ -88,7 +88,7 @@ def judge_fit(runner, data_set, fit):
 
 
 def held_out_percent(row, method):
-    """Of the span; None where the method failed."""
+    """The error in percent of the span; None if the method failed."""
     result = row["methods"].get(method)
     return None if result is None else 100 * result["held_out_mm"] / row["span_mm"]
 

@@ -21,7 +21,7 @@ def signals(path):
 
 
 def judged_names(names):
-    """The worth of an answer: the keys of a case."""
+    """How an answer is judged: the keys of a case."""
     alternatives = {rival for rivals in names["alternatives"] for rival in rivals}
     named, drift = bool(STICTION & set(names["named"])), DRIFT in names["named"]
     return {"stiction_named": named, "stiction_listed": named or bool(STICTION & (alternatives | set(names["partial"]))),

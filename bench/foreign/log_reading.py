@@ -11,17 +11,18 @@ from units import QUANTITIES, TIME_POINT, ZEROS, unit_in, units_of
 MISSING = {"", "nan", "na", "n/a", "#n/a", "null", "none", "-", "--", "inf", "-inf", "+inf"}
 COMMENTS = ("#", "%", "//")
 SEPARATORS = (",", ";", "\t", "|", " ")
-FAR_ENOUGH = 200  # lines among which the header is looked for
+FAR_ENOUGH = 200  # The header is searched for in so many lines.
 MOST_SAID = 5
-MOST_MISSING = 0.2  # share of samples without a displacement that `softgrip identify` takes
-# A hole, as `softgrip identify` has it: longer than this, and than so many usual intervals, the command changed.
+MOST_MISSING = 0.2  # the share of samples without a displacement that `softgrip identify` accepts
+# A hole, as in `softgrip identify`: an interval longer than this and than so many usual intervals, in which the command
+# changed.
 HOLE_S, HOLE_INTERVALS, HOLE_CHANGE = 0.5, 20, 0.02
 OUTPUT = {"command": "pressure_command_kpa", "displacement": "displacement_mm", "pressure": "pressure_kpa",
           "temperature": "temperature_c", "supply": "supply_kpa"}
 
 
 class Spoiled(Exception):
-    """The log cannot be used; says file, line and what was meant."""
+    """The log cannot be used. The message has the file, the line and what is expected."""
 
 
 @dataclasses.dataclass
@@ -81,10 +82,10 @@ class Reader:
         else:
             self.more += 1
 
-    # Where what stands
+    # The places of the columns
 
     def find_header(self):
-        """(separator, names, line of the names or 0): the first line that holds every column that has a name."""
+        """(separator, names, line of the names or 0): the first line that contains every column that has a name."""
         asked = [name for column in self.entry.columns.values() for name in column.names]
         names = [str(name) for name in asked if isinstance(name, str)]
         separators = [self.entry.separator] if self.entry.separator else SEPARATORS
@@ -98,7 +99,7 @@ class Reader:
                 if found == len(names):
                     return separator, cells, number
                 seen.append((found, len(cells), -number, cells))
-        _, _, number, cells = max(seen)  # what is most like a header
+        _, _, number, cells = max(seen)  # the line that is most similar to a header
         number = -number
         absent = next(name for name in names if name not in cells)
         if all(self.is_number(cell) for cell in cells):
@@ -127,7 +128,7 @@ class Reader:
     # Numbers
 
     def number(self, text):
-        """What a cell says; NaN: no reading; None: no number."""
+        """The value of a cell; NaN: no reading; None: no number."""
         text = text.strip().strip('"').strip()
         if text.lower() in MISSING or text.lower() in self.entry.missing:
             return math.nan
@@ -152,7 +153,7 @@ class Reader:
         return value is not None and not math.isnan(value)
 
     def moment(self, text, line):
-        """A date with time of day, in seconds."""
+        """The seconds of a date with time of day."""
         try:
             return datetime.datetime.fromisoformat(text.strip().strip('"').replace("Z", "+00:00")).timestamp()
         except ValueError:
@@ -160,7 +161,7 @@ class Reader:
             return math.nan
 
     def rows(self):
-        """(line, cells) of the samples, from the first row of numbers behind the header on."""
+        """(line, cells) of the samples, from the first row of numbers after the header."""
         first = next((i for i, (number, _) in enumerate(self.lines) if number > self.header_line), len(self.lines))
         asked = [self.places[name] for key, column in self.entry.columns.items() for name in column.names
                  if not (key == "time" and column.unit.lower() == TIME_POINT)]
@@ -196,7 +197,7 @@ class Reader:
     # Units
 
     def factor(self, column, quantity):
-        """Contract units per unit of the column, and the zero in the column's unit."""
+        """The contract units per unit of the column, and its zero in the column's unit."""
         written = {unit_in(name, column.quantity) for name in column.names} - {""}
         unit = column.unit.lower() or (written.pop() if len(written) == 1 else "")
         if column.unit and written and not {unit} >= written and unit in QUANTITIES[column.quantity]:
@@ -270,7 +271,7 @@ class Reader:
         return longest_piece(cut(log, first, len(drive)))
 
     def carried(self, values):
-        """A command that is missing is the one before."""
+        """A missing command has the value of the previous one."""
         filled, gaps = list(values), 0
         for i in range(1, len(filled)):
             if math.isnan(filled[i]) and not math.isnan(filled[i - 1]):
@@ -280,7 +281,8 @@ class Reader:
         return filled
 
     def with_readings(self, keep, readings):
-        """A sensor that is slower than the log: where many samples have no reading, only those that have one."""
+        """For a sensor that is slower than the log: if many samples have no reading, only those that have one are
+        kept."""
         read = [i for i in keep if not math.isnan(readings[i])]
         if not read or len(read) >= (1 - MOST_MISSING) * len(keep):
             return keep
@@ -288,7 +290,7 @@ class Reader:
         return read
 
     def usable(self, lines, times):
-        """The samples within the wanted stretch, each later than the one before."""
+        """The samples within the requested time range, each later than the previous one."""
         keep, repeated = [], 0
         for i, t in enumerate(times):
             if not self.entry.from_s <= t <= self.entry.to_s:
@@ -311,7 +313,7 @@ def cut(log, begin, end):
 
 
 def longest_piece(log):
-    """Between holes in which the command changed unseen, the longest piece."""
+    """The longest piece between holes in which the command changed without samples."""
     steps = [b - a for a, b in zip(log.time_s, log.time_s[1:])]
     if not steps:
         return log
@@ -331,7 +333,7 @@ def longest_piece(log):
 
 
 def read_log(entry, data):
-    """The log of the contract, or Spoiled."""
+    """The log in the format of the contract; raises Spoiled if it cannot be used."""
     if entry.problems:
         raise Spoiled("\n".join(entry.problems))
     return Reader(entry, data).read()

@@ -1,7 +1,7 @@
-"""The table that says what stands in measured logs: read and checked, every mistake with its line.
+"""Reads and checks the table that describes measured logs; every message has the line of the mistake.
 
-A mistake in what is said of one log stands in that log's `problems` and costs only its row; `Unusable` is raised where
-the table as a whole says nothing. docs/how-to/measure.md has the keys.
+A mistake in the description of one log is kept in `problems` of that log, and only its row is lost. `Unusable` is
+raised if the table as a whole cannot be read. docs/how-to/measure.md lists the keys.
 """
 import dataclasses
 import difflib
@@ -21,11 +21,11 @@ COLUMNS = ("time", "command", "pressure", "displacement", "temperature", "supply
 
 
 class Unusable(Exception):
-    """The table as a whole; says where and what was meant."""
+    """The table as a whole cannot be used. The message has the place and what is expected."""
 
 
 class Map(dict):
-    """A mapping that knows its lines."""
+    """A mapping that knows the lines of its keys."""
 
     def __init__(self, line):
         super().__init__()
@@ -34,14 +34,14 @@ class Map(dict):
 
 @dataclasses.dataclass
 class Column:
-    """Where a quantity stands and how to come to the unit of the contract; several columns are averaged."""
+    """The place of a quantity and its conversion to the unit of the contract; several columns are averaged."""
     quantity: str
     names: list = dataclasses.field(default_factory=list)  # a name, or a number that counts from 1
     unit: str = ""
     scale: float = math.nan  # contract units per unit of the column
     zero: object = None  # subtracted before scaling: a number, or "first"
-    span_mm: float = math.nan  # scaled so that the readings span as much
-    rate_hz: float = math.nan  # time only: no column
+    span_mm: float = math.nan  # the readings are scaled to this span
+    rate_hz: float = math.nan  # only for the time: there is no column
 
 
 @dataclasses.dataclass
@@ -67,7 +67,7 @@ class Table:
 
 
 def plain(loader, node):
-    """A node as plain values, mappings with their lines."""
+    """A node as plain values; mappings keep their lines."""
     if isinstance(node, yaml.MappingNode):
         loader.flatten_mapping(node)
         values = Map(node.start_mark.line + 1)
@@ -87,7 +87,7 @@ def meant(word, known):
 
 
 class EntryReader:
-    """One log's mapping; what is wrong is collected."""
+    """The mapping of one log; collects its mistakes."""
 
     def __init__(self, path, values):
         self.path, self.values, self.problems = path, values, []
@@ -183,7 +183,7 @@ class EntryReader:
 
 
 def files_of(values, data):
-    """(name, file) of every log that an entry of the table stands for."""
+    """(name, file) of every log that an entry of the table describes."""
     file = str(values.get("file", ""))
     if not file:
         return [(str(values.get("name", "?")), "")]
@@ -231,7 +231,7 @@ def refuse_what_says_nothing(path, values, known):
 
 
 def read_table(path, data, more_keys=()):
-    """The table at `path` of logs in the folder `data`; `more_keys`: of the whole table, which the caller reads."""
+    """The table at `path` of logs in the folder `data`. `more_keys`: keys of the whole table that the caller reads."""
     path, data = pathlib.Path(path), pathlib.Path(data)
     values = values_of(path)
     refuse_what_says_nothing(path, values, (*TABLE_KEYS, *more_keys))

@@ -1,4 +1,5 @@
-"""Outcomes of programs, each kept in a file with a checksum of its inputs: a repeated run only does what has changed."""
+"""Outcomes of programs, each kept in a file with a checksum of its inputs, so a repeated run only does what has
+changed."""
 import hashlib
 import json
 import os
@@ -7,12 +8,12 @@ import resource
 import subprocess
 import time
 
-NOT_ACCEPTABLE = 6  # exit code of a program that finished and wrote its answer
-UNREADABLE = (ValueError, KeyError, TypeError, IndexError, StopIteration)  # an answer of another form
+NOT_ACCEPTABLE = 6  # the exit code of a program that finished and wrote its answer
+UNREADABLE = (ValueError, KeyError, TypeError, IndexError, StopIteration)  # raised by an answer in an unexpected format
 
 
 class Failed(Exception):
-    """A program failed; the message is its own."""
+    """A program failed; the message is the one of the program."""
 
     def __init__(self, said, code=None):
         super().__init__(said)
@@ -20,7 +21,7 @@ class Failed(Exception):
 
 
 def checksum(*parts):
-    """Of files (paths) and of texts."""
+    """A checksum of files (paths) and texts."""
     whole = hashlib.sha256()
     for part in parts:
         data = part.read_bytes() if isinstance(part, pathlib.Path) else str(part).encode()
@@ -74,7 +75,7 @@ def outcome_in(folder, of, function, in_words=described):
     if known and known.get("of") == of and "result" in known:
         return known, True
     folder.mkdir(parents=True, exist_ok=True)
-    (folder / "model.yaml").unlink(missing_ok=True)  # of an earlier run
+    (folder / "model.yaml").unlink(missing_ok=True)  # written by an earlier run
     outcome = {"of": of, "load_1min": round(os.getloadavg()[0], 2)}
     began, processor = time.monotonic(), processor_s()
     try:

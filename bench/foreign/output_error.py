@@ -22,10 +22,11 @@ except ImportError as error:
 
 from held_out import beginning, first_share, read, rmse
 
-TIMES, FREQUENCIES, DAMPINGS = 7, 8, (0.05, 0.3, 0.9)  # starting points: grids over what the sampling can show
+# starting points: grids over the range that the sampling can resolve
+TIMES, FREQUENCIES, DAMPINGS = 7, 8, (0.05, 0.3, 0.9)
 NEARLY_CANCELS = 1e-4  # singular value, relative to the largest
-REFINED = 4  # best starting points from which the search goes on
-MOST_SAMPLES = 200000  # of the grid on which a log is simulated
+REFINED = 4  # the search continues from so many of the best starting points
+MOST_SAMPLES = 200000  # points of the grid on which a log is simulated
 
 
 class Signals:
@@ -45,19 +46,20 @@ class Signals:
         return np.interp(self.time, self.grid, values)
 
     def forced(self, numerator, denominator):
-        """The drive behind a transfer function in s; it is linear between samples."""
+        """The response of a transfer function in s to the drive, which is linear between samples."""
         b, a, _ = cont2discrete((numerator, denominator), self.step, "foh")
         return self.at_samples(lfilter(np.ravel(b), a, self.drive))
 
     def free(self, denominator):
-        """Motions without a drive, as many as there are poles: they span all initial states."""
+        """The responses without a drive, as many as there are poles; they span all initial states."""
         _, a, _ = cont2discrete(([1.0], denominator), self.step, "foh")
         motions = [lfilter([0.0] * k + [1.0], a, self.impulse) for k in range(len(a) - 1)]
         return [self.at_samples(motion / np.max(np.abs(motion))) for motion in motions]
 
 
 class Form:
-    """So many real poles, and a complex pair or none, as numbers of the order of 1 to 10."""
+    """A form has a number of real poles, and a complex pair or none. Its parameters are numbers of the order of 1 to
+    10."""
 
     def __init__(self, real, pair, step_s, length_s):
         self.real, self.pair = real, pair
@@ -76,7 +78,7 @@ class Form:
                 for real, w, z in itertools.product(list(reals), frequencies, DAMPINGS)]
 
     def denominators(self, numbers):
-        """(denominator, numerators) of each part that is combined linearly."""
+        """(denominator, numerators) of each part of the linear combination."""
         parts = [([tau, 1.0], [[1.0]]) for tau in np.exp(numbers[:self.real])]
         if self.pair:
             w, zeta = np.exp(numbers[-2:])
@@ -90,7 +92,7 @@ class Form:
         return np.column_stack(columns)
 
     def free(self, numbers, signals):
-        """The offset, and the motions of all initial states."""
+        """The offset, and the responses of all initial states."""
         columns = [np.ones(len(signals.time))]
         for denominator, _ in self.denominators(numbers):
             columns += signals.free(denominator)
@@ -98,7 +100,8 @@ class Form:
 
 
 def least(columns, values):
-    """The weights of the least squares; columns of any size. Combinations that nearly cancel get no weight."""
+    """The weights of the least squares; the columns may have any size. Combinations that nearly cancel get no
+    weight."""
     scale = np.linalg.norm(columns, axis=0) + 1e-300
     return np.linalg.lstsq(columns / scale, values, rcond=NEARLY_CANCELS)[0] / scale
 
@@ -121,7 +124,7 @@ class Fit:
         error = (self.simulated - reading)[self.used]
         self.fitted_mm = rmse(error)
         correlation = np.clip(error[1:] @ error[:-1] / (error @ error), 0, 0.9999)
-        # So many correlated errors are worth 1 independent one.
+        # So many correlated errors count as 1 independent error.
         self.samples_per_error = (1 + correlation) / (1 - correlation)
 
     def solve(self, numbers):
@@ -137,7 +140,7 @@ class Fit:
         return float(error @ error)
 
     def predict(self, time, drive, reading):
-        """Another log; its beginning determines offset and initial state."""
+        """Predicts another log; its beginning determines offset and initial state."""
         signals = Signals(time, drive)
         forced = self.form.forced(self.numbers, signals) @ self.residues
         free = self.form.free(self.numbers, signals)

@@ -1,11 +1,12 @@
-"""Runs softgrip on the logs of data sets. Each call is kept (outcomes.py), so that judges share identifications."""
+"""Runs softgrip on the logs of data sets. The result of each call is kept (outcomes.py), so judges share
+identifications."""
 import json
 import re
 
 from log_reading import Spoiled, read_log
 from outcomes import Failed, checksum, described, outcome_in, output_of, write_whole
 
-MOST_NAME = 100  # characters of a folder's name
+MOST_NAME = 100  # the largest number of characters of a folder's name
 
 
 def slug(text):
@@ -40,8 +41,8 @@ class PreparedLog:
         return self.path.stem
 
     def in_original(self, text):
-        """`text` with the file and the lines of the original instead of those of the prepared log."""
-        lines = [0, *self.lines]  # the header, then a sample per line
+        """`text` with the file and the lines of the original log instead of those of the prepared log."""
+        lines = [0, *self.lines]  # the header, then one line per sample
 
         def original(found):
             return f"{self.file}:{lines[min(int(found[1]), len(lines)) - 1] or 1}"
@@ -69,7 +70,7 @@ class Runner:
         return outcome
 
     def log(self, data_set, name, drive=""):
-        """The prepared log; raises Failed where the file or its entry has a mistake."""
+        """The prepared log; raises Failed if the file or its entry has a mistake."""
         key = (data_set.name, name, drive)
         if key not in self.prepared:
             folder = self.out / data_set.name / ("logs" + (f"-{drive}" if drive else ""))
@@ -112,7 +113,8 @@ class Runner:
         return folder, self.call(folder, "identify", files, options, (*logs, *validated))
 
     def diagnose(self, folder, model, logs, healthy=()):
-        """softgrip diagnose with `model` as the given model; with `healthy` logs, of what has changed since."""
+        """softgrip diagnose with `model` as the given model; with `healthy` logs it diagnoses what has changed since
+        then."""
         options = ["--model", model, "--data", *(log.path for log in logs)]
         if healthy:
             options += ["--healthy", *(log.path for log in healthy)]
@@ -129,7 +131,7 @@ def result_of(outcome):
 
 
 def names_in(diagnosis):
-    """Names, alternatives and sizes of a diagnosis, as the page and the judges use them."""
+    """The names, alternatives and sizes of a diagnosis, as the page and the judges use them."""
     return {"verdict": diagnosis["verdict"], "named": [cause["id"] for cause in diagnosis["causes"]],
             "alternatives": diagnosis["alternatives"],
             "partial": [cause["id"] for cause in diagnosis.get("partial_causes", [])],

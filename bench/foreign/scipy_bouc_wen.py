@@ -25,7 +25,7 @@ POINTER = ctypes.POINTER(ctypes.c_double)
 
 
 class Problem:
-    """In units of the fitted log's own ranges, so that every number is of the order of one."""
+    """The fit in units of the fitted log's own ranges, so that every number is of the order of one."""
 
     def __init__(self, log, fitted, library):
         self.simulator = ctypes.CDLL(library).simulate
@@ -66,8 +66,8 @@ def main():
     log = read(path)
     problem = Problem(log, first_share(log[0], 1.0 if test else float(split)), library)
     length = problem.time[-1] - problem.time[0]
-    # alpha, beta, gamma + eta (below 0 the hysteresis would run away), gamma - eta, then ln compliance and ln time
-    # constant of each branch, the zero
+    # alpha, beta, gamma + eta (below 0 the hysteresis would diverge), gamma - eta, then ln compliance and ln time
+    # constant of each branch, and the zero
     lower = np.array([-10, -10, 0, -50] + [np.log(1e-6), np.log(1e-3)] * 2 + [-10])
     upper = np.array([10, 10, 50, 50] + [np.log(10), np.log(100 * length)] * 2 + [10])
     first = problem.y[np.isfinite(problem.y)][0]

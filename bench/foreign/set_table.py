@@ -1,7 +1,7 @@
-"""A data set by its table: logs as in log_table.py, and what the judges may conclude from them.
+"""A data set and its table: logs as in log_table.py, and what the judges may conclude from them.
 
-A mistake in a log, a pair or a loop has its file and line and costs only the cases that need it. A table that says
-nothing at all raises log_table.Unusable. docs/how-to/measure.md lists the keys.
+A mistake in a log, a pair or a loop is reported with its file and line; only the cases that need it are lost. A table
+that cannot be read as a whole raises log_table.Unusable. docs/how-to/measure.md lists the keys.
 """
 import csv
 import dataclasses
@@ -30,7 +30,7 @@ class Pair:
     because: str
     group: str = "runs"
     label: str = ""
-    causes: tuple = ()  # admissible names of a labelled change
+    causes: tuple = ()  # accepted names of a labelled change
     problems: list = dataclasses.field(default_factory=list)
 
 
@@ -47,7 +47,7 @@ class Loop:
 
 @dataclasses.dataclass
 class Fit:
-    """A log that is identified: from its first part, or whole and tested on another log."""
+    """A log that is identified: from its first part, or as a whole and then tested on another log."""
     log: str
     test: str = ""
     order: int = 0  # of the linear model; 0: the default
@@ -178,7 +178,7 @@ def is_log(path):
 
 
 def set_without_table(folder, scratch):
-    """Each CSV file in the format of a log is identified; nothing is known that the other judges need."""
+    """A set without a table: each CSV file in the format of a log is identified; the other judges have no cases."""
     files = [path for path in sorted(folder.glob("*.csv")) if is_log(path)]
     if not files:
         return None
@@ -200,7 +200,7 @@ def table_of(folder, tables):
 
 
 def find_sets(roots, tables, scratch):
-    """(sets, problems): of each folder in `roots`, or of a root that holds logs itself."""
+    """(sets, problems) of each folder in `roots`, or of a root that contains logs itself."""
     sets, problems, names = [], [], set()
     for root in roots:
         folders = [root, *sorted(path for path in root.iterdir() if path.is_dir())]

@@ -1,4 +1,4 @@
-"""Units that people write, and how to come from them to those of the log contract."""
+"""The usual units, and their conversion to those of the log contract."""
 import re
 
 TIME_POINT = "datetime"  # dates with times of day, ISO 8601
@@ -11,7 +11,7 @@ QUANTITIES = {
     "displacement": {"mm": 1, "cm": 10, "m": 1000, "um": 1e-3, "µm": 1e-3, "in": 25.4, "inch": 25.4},
     "temperature": {"c": 1, "degc": 1, "°c": 1, "k": 1, "f": 5 / 9, "degf": 5 / 9, "°f": 5 / 9},
 }
-# A temperature's zero, in its own unit.
+# The zero of a temperature in its own unit.
 ZEROS = {"k": 273.15, "f": 32, "degf": 32, "°f": 32}
 
 
@@ -20,7 +20,7 @@ def units_of(quantity):
 
 
 def unit_in(name, quantity):
-    """The unit that stands in a column's name: pd1_psi, "p [bar]", "Time (ms)"; empty: none that fits."""
+    """The unit in a column's name: pd1_psi, "p [bar]", "Time (ms)"; empty if no unit fits."""
     for pattern in (r"[\[(]\s*([^\])]+?)\s*[\])]\s*$", r"[_\s./]([A-Za-zµ°]+)\s*$"):
         found = re.search(pattern, str(name))
         if found and found.group(1).lower() in QUANTITIES[quantity]:
