@@ -1,8 +1,7 @@
 """Carries out a page of docs/how-to in a copy of the source tree, and builds it.
 
 The code of the page is used as it is: a fence ```cpp file=PATH is a new file, ```diff file=PATH changes a file. The
-lines
-that a diff keeps or removes must be in the file exactly once.
+lines that a diff keeps or removes must be in the file exactly once.
 """
 
 import os

@@ -35,5 +35,5 @@ class Files(bench.BenchTest):
         try:
             import h5py
         except ImportError:
-            self.skipTest("there is no h5py")
+            self.skipTest("h5py is not installed")
         return h5py

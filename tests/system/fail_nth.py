@@ -63,7 +63,7 @@ def check_end(done, what, codes, silenced=False):
     if done.returncode not in codes:
         raise Failure(f"{what}: exit code {done.returncode}\n{done.stderr[-1500:]}")
     if done.returncode != 0 and not silenced and len((done.stdout + done.stderr).strip()) < 20:
-        raise Failure(f"{what}: exit code {done.returncode} and no sentence: {done.stderr!r}")
+        raise Failure(f"{what}: exit code {done.returncode} without a message: {done.stderr!r}")
 
 
 def check_recording(folder, what):
@@ -74,7 +74,7 @@ def check_recording(folder, what):
         rows = csv.read_text().split("\n")
         for row in rows[1:-1]:
             if row.count(",") != rows[0].count(","):
-                raise Failure(f"{what}: a torn row: {row!r}")
+                raise Failure(f"{what}: an incomplete row: {row!r}")
     about = folder / "run.json"
     if about.exists():
         json.loads(about.read_text())
@@ -87,7 +87,7 @@ def check_complete(folder, done, what):
     """With exit code 0, everything that was requested exists."""
     about = folder / "run.json"
     if not about.exists() or json.loads(about.read_text())["state"] != "complete":
-        raise Failure(f"{what}: no whole recording, and exit code 0\n{done.stderr[-1500:]}")
+        raise Failure(f"{what}: exit code 0 without a complete recording\n{done.stderr[-1500:]}")
 
 
 def numbers(call, highest):
@@ -146,13 +146,13 @@ class Scenario:
         what = f"{arguments[0]} {call} {nth}"
         check_end(done, what, VIRTUAL if happened else GOT_OVER_IT, from_then_on and call == "write")
         if happened and call in FILES and call != "open" and done.returncode not in (0, 4):
-            raise Failure(f"{what}: exit code {done.returncode} for what could not be written\n{done.stderr}")
+            raise Failure(f"{what}: exit code {done.returncode} although the output could not be written\n{done.stderr}")
         places = [out.parent] + ([out] if out.is_dir() else [])
         torn = [p.name for place in places for p in place.iterdir() if ".part" in p.name or p.name.endswith(".tmp")]
         if torn:
             raise Failure(f"{what}: left behind: {torn}")
         if out.suffix and done.returncode != 0 and out.read_text() != before:
-            raise Failure(f"{what}: exit code {done.returncode}, and the file of before is gone")
+            raise Failure(f"{what}: exit code {done.returncode}, and the previous file is gone")
         return happened
 
     def simulate(self, call, nth, from_then_on=False):
@@ -220,7 +220,8 @@ ALL = ([("virtual", call) for call in FILES] + [("simulate", call) for call in F
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("calls", nargs="*", help="only these calls")
-    parser.add_argument("--minutes-each", type=float, default=2, help="a scenario that takes longer is cut short, and says so")
+    parser.add_argument("--minutes-each", type=float, default=2,
+                        help="a longer scenario is ended early, and the output says so")
     arguments = parser.parse_args()
     if not SHIM.exists():
         parser.error(f"{SHIM} is not built")

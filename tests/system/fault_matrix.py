@@ -113,7 +113,7 @@ class Table:
         names = self.names()
         text = str(expression)
         if not re.fullmatch(r"[a-z_0-9 +*]+", text):
-            raise ValueError(f"no expression of cycles: {text}")
+            raise ValueError(f"not an expression of cycles: {text}")
         return eval(text, {"__builtins__": {}}, names)  # only letters, digits, + and *
 
 
@@ -329,7 +329,7 @@ class Cell:
         self.observe(60)  # the end of the recording
         self.clear_fault()
         if self.expected.get("for_good"):
-            require(not self.daemon.ask("acknowledge")["ok"], "it was acknowledged")
+            require(not self.daemon.ask("acknowledge")["ok"], "the fault was acknowledged although its cause remains")
         else:
             self.acknowledge()
         return fault
@@ -389,13 +389,13 @@ class Cell:
             self.daemon.wait_for_event("sequence_finished", code="done")
             require(max(self.away_kpa()) <= SETTLED_KPA, f"outputs {self.outputs_kpa()}")
         self.clear_fault()
-        require(not self.latched(), "a fault at the end")
+        require(not self.latched(), "there is still a fault at the end")
 
     def check_unseen(self):
         """There is no fault although something is wrong. The grip result is measured, but not judged."""
         self.observe()
         fault = self.latched()
-        require(not fault, f"it is seen: {fault and fault['code']}: {fault and fault['text']}")
+        require(not fault, f"a fault was detected: {fault and fault['code']}: {fault and fault['text']}")
         if self.phase in ("closing", "holding"):
             bench.wait_for("an answer", lambda: "-" not in self.daemon.results() or self.latched(), 15)
         self.measured["result"] = "/".join(self.daemon.results())
@@ -528,12 +528,15 @@ def show(result):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("cells", nargs="*", help="FAULT or FAULT/PHASE or /PHASE; without: all")
-    parser.add_argument("--jobs", type=int, default=3, help="cells at a time; they mostly wait")
+    parser.add_argument("cells", nargs="*", help="FAULT, FAULT/PHASE or /PHASE; default: all cells")
+    parser.add_argument("--jobs", type=int, default=3,
+                        help="number of cells that run at the same time; they mostly wait")
     parser.add_argument("--attempts", type=int, default=2)
-    parser.add_argument("--out", type=pathlib.Path, help="keep the results as JSON")
-    parser.add_argument("--keep", type=pathlib.Path, help="results of an earlier --out, for the cells that are not run now")
-    parser.add_argument("--vacuum", action="store_true", help="on the rig of config/vacuum, but for cells of a serial rig")
+    parser.add_argument("--out", type=pathlib.Path, help="write the results as JSON")
+    parser.add_argument("--keep", type=pathlib.Path,
+                        help="the results of an earlier --out, for the cells that this call does not run")
+    parser.add_argument("--vacuum", action="store_true",
+                        help="use the rig of config/vacuum, without the cells of a serial rig")
     parser.add_argument("--page", action="store_true", help=f"write {PAGE.relative_to(bench.SOURCE)}")
     arguments = parser.parse_args()
     table = Table()

@@ -214,11 +214,11 @@ def broken(trial, judged, allowed_kpa):
     if judged.peak_kpa > allowed_kpa + TOLERANCE_KPA:
         problems.append(f"squeezed by {judged.peak_kpa:.1f} kPa, {allowed_kpa:g} allowed")
     if trial.part is None and "HOLDING" in told:
-        problems.append("HOLDING on an empty grip")
+        problems.append("HOLDING although there is no part")
     if trial.part is not None and "NO PART" in told:
-        problems.append("NO PART on a part")
+        problems.append("NO PART although there is a part")
     if judged.slipped and "PART LOST" not in told:
-        problems.append("a part that slipped away was not missed")
+        problems.append("a part slipped away, but there was no PART LOST")
     if not all(judged.answers):
         problems.append("no answer")
     return problems

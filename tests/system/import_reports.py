@@ -52,7 +52,8 @@ def outcome(program, path, options):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder", type=pathlib.Path, nargs="?")
-    parser.add_argument("--softgrip", type=pathlib.Path, action="append", help="default: that of the build folder")
+    parser.add_argument("--softgrip", type=pathlib.Path, action="append",
+                        help="default: the program in the build folder")
     options = parser.parse_args()
     programs = options.softgrip or [BUILD / "tools/softgrip"]
     print("| file | options | " + " | ".join(f"exit code {i + 1} | result {i + 1}" for i in range(len(programs))) + " |")

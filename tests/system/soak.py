@@ -220,7 +220,7 @@ class Soak:
         if exit_code != 0:
             wrong.append(f"softgripd ended with {exit_code}")
         if self.faults:
-            wrong.append(f"{self.faults} faults or failures although nothing was wrong")
+            wrong.append(f"{self.faults} faults or failures without a cause")
         if last["dropped_rows"]:
             wrong.append(f"{last['dropped_rows']} rows dropped")
         if last["descriptors"] > settled["descriptors"]:
@@ -243,9 +243,10 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("minutes", type=float, nargs="?", default=60)
     parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("soak-output"))
-    parser.add_argument("--no-load", action="store_true", help="leave the machine to the daemon")
-    parser.add_argument("--pauses", type=int, metavar="N", help="nothing but N pauses longer than the board's watchdog")
-    parser.add_argument("--seed", type=int, default=random.SystemRandom().randrange(1 << 31), help="of the disturbances")
+    parser.add_argument("--no-load", action="store_true", help="without other work on the machine")
+    parser.add_argument("--pauses", type=int, metavar="N", help="only N pauses longer than the board's watchdog")
+    parser.add_argument("--seed", type=int, default=random.SystemRandom().randrange(1 << 31),
+                        help="the seed of the disturbances")
     arguments = parser.parse_args()
     print(f"seed {arguments.seed}", flush=True)
     arguments.out.mkdir(parents=True, exist_ok=True)

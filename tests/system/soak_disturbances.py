@@ -123,7 +123,7 @@ class Disturbances:
         if self.soak.daemon.status()["sequence"]["ended"] != "done":
             self.soak.note(f"a full disk: ended {self.soak.daemon.status()['sequence']['ended']}")
         if not any(event["kind"] == "recording_failed" for event in events):
-            self.soak.note("a full disk: nobody said that the recording failed")
+            self.soak.note("a full disk: no event says that the recording failed")
         self.runs.free()
         self.soak.remove_recordings()
 

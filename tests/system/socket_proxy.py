@@ -13,8 +13,7 @@ class SocketProxy:
     """Listens at `path` and passes what clients say to the daemon at `daemon_path`, and the answers back.
 
     `held`: the directions whose bytes wait. `refuses`: new connections are closed. let_go() passes on the bytes that
-    wait,
-    even if the client has left in the meantime, as the kernel does for a daemon that is paused.
+    wait, even if the client has left in the meantime, as the kernel does for a daemon that is paused.
     """
 
     def __init__(self, path, daemon_path):

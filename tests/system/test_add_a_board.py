@@ -38,7 +38,7 @@ class AddABoard(bench.BenchTest):
     def test_the_driver_of_the_page_keeps_to_the_interface(self):
         compiler = next(filter(None, map(shutil.which, ("c++", "g++", "clang++"))), None)
         if compiler is None:
-            self.skipTest("no compiler")
+            self.skipTest("no compiler is installed")
         path = self.write("example_board.cpp", block_of("drivers/example/example_board.h").replace("#pragma once\n", "") +
                           "softgrip::drivers::ExampleBoard board({});\n")
         subprocess.run([compiler, "-std=c++20", "-Wall", "-Wextra", "-Werror", "-fsyntax-only", "-I", bench.SOURCE, path],

@@ -54,7 +54,8 @@ class Baseline(bench.BenchTest):
         self.assertEqual([entry["file"] for entry in about["logs"] + about["second_run"]], names)
         self.assertEqual(sorted(path.name for path in (self.folder / "base").iterdir()),
                          sorted(["baseline.json", "model.yaml", *names]))
-        self.assertNotEqual(about["logs"][0]["sha256"], about["second_run"][0]["sha256"], "played, not copied")
+        self.assertNotEqual(about["logs"][0]["sha256"], about["second_run"][0]["sha256"],
+                            "the second run was played and not copied")
         again = json.loads(self.softgrip("baseline", "--check", "base", "--json", expect=None,
                                          timeout_s=ENDS_WITHIN_S).stdout)
         self.assertEqual(again["check"], about["check"])
@@ -85,7 +86,7 @@ class Baseline(bench.BenchTest):
         (self.folder / "healthy").rename(self.folder / "base")
         cause = self.found(["today/healthy_1.csv", "today/healthy_2.csv"])["causes"][0]
         self.assertEqual(cause["id"], "ageing")
-        self.assertAlmostEqual(cause["size"]["value"], -10, delta=2, msg="per cent of the gain")
+        self.assertAlmostEqual(cause["size"]["value"], -10, delta=2, msg="the gain in percent")
         log = self.folder / "base/second_2.csv"
         log.write_text(log.read_text() + "\n")
         self.assertIn("second_2.csv", self.softgrip("baseline", "--check", "base", expect=3).stderr)
@@ -184,8 +185,9 @@ class Baseline(bench.BenchTest):
                                            "left", "--out", "base", "--yes"], self.folder)
         self.processes.append(child)
         bench.wait_for("pressure", lambda: board.commands_kpa()[0] > 5)
-        self.assertNotEqual(list(self.temporary.iterdir()), [], "what is recorded is somewhere")
-        self.assertEqual(child.end(signal.SIGINT), -signal.SIGINT, "a shell goes on after an exit code")
+        self.assertNotEqual(list(self.temporary.iterdir()), [], "the recording is kept in a folder")
+        self.assertEqual(child.end(signal.SIGINT), -signal.SIGINT,
+                         "an exit code instead of a signal does not end the loop of a shell")
         self.assertIn("stopped by the user; the rig is vented", child.errors())
         self.assertEqual(board.commands_kpa(), [0, 0])
         self.check_nothing_is_left()

@@ -64,7 +64,8 @@ class Doctor(bench.BenchTest):
         self.assertIn("swap input 1 (`left`) and input 0 (`right`)", findings["sensors left, right"]["advice"])
         for name in ("finger left", "model right"):
             self.assertEqual(findings[name]["verdict"], "not_judged")
-        self.assertEqual(findings["valve left"]["verdict"], "ok", "its monitor is where it belongs")
+        self.assertEqual(findings["valve left"]["verdict"], "ok",
+                         "the pressure monitor of the left valve is connected correctly")
 
     def test_crossed_monitors_are_named_by_the_inputs_to_swap(self):
         report, findings = self.crossed(("pressure_monitor", 4, 5))
@@ -309,7 +310,8 @@ class Calibrate(bench.BenchTest):
         child = self.start(self.rig(emulator.port), "--valve", "--move", "--settle-s", "3")
         bench.wait_for("motion", lambda: emulator.commands_kpa()[0] > 5)
         child.send_signal(signal.SIGINT)
-        self.assertEqual(child.wait(bench.PATIENCE_S), -signal.SIGINT, "a shell goes on after an exit code")
+        self.assertEqual(child.wait(bench.PATIENCE_S), -signal.SIGINT,
+                         "an exit code instead of a signal does not end the loop of a shell")
         self.assertEqual(max(emulator.commands_kpa()), 0)
 
 

@@ -131,7 +131,7 @@ class Desk(bench.BenchTest):
                 self.assertEqual([path for path in own if not exit_codes.GROWING.search(path)], [], line)
                 if command.writes:
                     self.assertTrue((self.folder / "out" / command.writes).exists(), line)
-                    self.assertGreater(len(created), len(own), "it has written nothing")
+                    self.assertGreater(len(created), len(own), "the command must write something")
 
         self.each("done", check)
         self.assertEqual(list(self.folder.rglob(".softgrip-*")), [])
@@ -141,7 +141,7 @@ class Desk(bench.BenchTest):
             done = self.runner.run(command.refused)
             self.ended(done, cell)
             said = done.stderr.decode()
-            self.assertGreater(len(said.strip()), 20, "a sentence says why")
+            self.assertGreater(len(said.strip()), 20, "the command must say why in a sentence")
             self.assertNotIn("exception", said)
             self.assertNotIn("[json", said)
 
@@ -190,7 +190,7 @@ class Desk(bench.BenchTest):
                 self.assertIn("cannot write to the standard output: ", done.stderr.decode())
 
         self.each("full disk", check)
-        self.assertEqual(list(disk.folder.rglob(".softgrip-*")), [], "no part of a file is left")
+        self.assertEqual(list(disk.folder.rglob(".softgrip-*")), [], "no incomplete file may remain")
 
     def test_closed_pipe(self):
         def check(name, command, cell):
@@ -259,7 +259,7 @@ class Clients(bench.BenchTest):
             self.settle()
             for name, line in (("watch", "watch"), ("start --wait", "start pick_stone --wait")):
                 self.assertEqual(self.runner.waiting(line, number, pause_s=1), code_of(self.table[name]["signal"], number), name)
-        self.assertNotEqual(self.softgripd.status()["state"], "faulted", "the rig goes on")
+        self.assertNotEqual(self.softgripd.status()["state"], "faulted", "the rig continues")
         self.softgripd.send(signal.SIGSTOP)
         self.addCleanup(self.softgripd.send, signal.SIGCONT)
         def check(name, command, cell):

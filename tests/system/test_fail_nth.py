@@ -16,7 +16,7 @@ class FailNth(unittest.TestCase):
         for call in calls:
             with self.subTest(call):
                 failed, through = fail_nth.until_success(scenario, call, from_then_on=from_then_on)
-                self.assertTrue(through, f"after {failed} failed calls there are still more")
+                self.assertTrue(through, f"after {failed} failed calls the run has still not succeeded")
 
     def test_the_daemons_files(self):
         self.check(self.scenario.virtual, "write", "short_write", "rename", "mkdir")

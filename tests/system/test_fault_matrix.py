@@ -65,7 +65,7 @@ class FaultMatrix(unittest.TestCase):
             cell = table.cell(name, phase)
             self.assertIn(cell["ends"], ("waits", "faulted", "ridden", "unseen"), f"{name}/{phase}")
             if cell["ends"] in ("ridden", "unseen"):
-                self.assertTrue(cell.get("why"), f"{name}/{phase} does not say why")
+                self.assertTrue(cell.get("why"), f"{name}/{phase} has no reason")
             if cell["ends"] == "faulted":
                 self.assertTrue(cell["codes"])
                 if "within" in cell:

@@ -46,7 +46,7 @@ class Figures(unittest.TestCase):
         self.assertEqual([int(number) for number, _ in captions], list(range(1, len(captions) + 1)))
         self.assertGreater(len(captions), 1)
         stems = re.findall(r'download="(figure-\d+-[^"]+)\.svg"', page)
-        self.assertEqual(len(stems), len(captions), "each can be kept from the page")
+        self.assertEqual(len(stems), len(captions), "each figure of the page is also a file")
         self.assertEqual({p.name for p in figures.iterdir()},
                          {stem + ending for stem in stems for ending in (".svg", ".pdf", ".csv")})
         for stem in stems:

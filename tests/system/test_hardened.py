@@ -17,7 +17,7 @@ def cache(name):
     return found.group(2) if found else ""
 
 
-@unittest.skipIf(cache("SOFTGRIP_SANITIZE"), "sanitizers check more, each in its way")
+@unittest.skipIf(cache("SOFTGRIP_SANITIZE"), "a build with a sanitizer has its own checks")
 class Hardened(unittest.TestCase):
     def read(self, program, *what):
         return subprocess.run(["readelf", "-W", *what, program], capture_output=True, text=True, check=True).stdout

@@ -169,7 +169,7 @@ class Hearing(bench.BenchTest):
         disk = soak_disturbances.Runs(self.folder)
         self.addCleanup(disk.end)
         if not disk.mounted:
-            self.skipTest("this user may not mount a disk of its own")
+            self.skipTest("this user may not mount a disk")
         self.hold()
         disk.fill()
         self.daemon_.wait_for_event("recording_failed")
@@ -198,7 +198,7 @@ class Hearing(bench.BenchTest):
         used, began = self.serving_s(), time.monotonic()
         time.sleep(1)
         share = (self.serving_s() - used) / (time.monotonic() - began)
-        self.assertLess(share, 0.1, "the thread that serves clients turns in circles")
+        self.assertLess(share, 0.1, "the thread that serves clients uses the processor without serving")
         self.check_vent()
         self.assertEqual(len(crowd), 20)
 

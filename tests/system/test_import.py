@@ -17,7 +17,7 @@ class Matrix(bench.BenchTest):
         self.assertEqual([f"{file.name}: {wrong}" for file, (wrong, _, _) in results if wrong], [])
         self.assertGreaterEqual(len(results), 30)
         self.assertEqual(foreign_files.PAGE.read_text(), foreign_files.page(results),
-                         "docs/reference/foreign-files.md is old: tests/system/foreign_files.py --page")
+                         "docs/reference/foreign-files.md is out of date. Update it with: tests/system/foreign_files.py --page")
 
 
 class Import(bench.BenchTest):

@@ -37,7 +37,7 @@ class Investigation(bench.BenchTest):
             count = RATE_HZ * (end - begin)
             rows += [f"{begin + i / RATE_HZ:.2f},{low + (high - low) * i / count:.6g}" for i in range(count)]
         self.write("load.csv", "\n".join(rows) + "\n")
-        self.assertTrue(any(map(self.asks, NOISES)), "of none of these logs an experiment would tell more")
+        self.assertTrue(any(map(self.asks, NOISES)), "for none of these logs an experiment is suggested")
 
     def asks(self, seed):
         """Writes log.csv with this noise. True if a short experiment would separate the causes that explain it."""
@@ -57,8 +57,9 @@ class Investigation(bench.BenchTest):
     def check(self, told, end, why):
         self.assertEqual(told["end"], end, told)
         self.assertRegex(told["why"], why)
-        self.assertEqual([bool(step["experiment"]) for step in told["steps"]], [True], "one was played")
-        self.assertEqual([log["path"] for log in told["logs"]], ["log.csv"], "what was recorded is no evidence")
+        self.assertEqual([bool(step["experiment"]) for step in told["steps"]], [True], "one experiment was played")
+        self.assertEqual([log["path"] for log in told["logs"]], ["log.csv"],
+                         "the recording must not be used as evidence")
         page = (self.folder / "found/report.html").read_text()
         self.assertIn(told["why"], page)
 

@@ -12,7 +12,8 @@ class Morning(unittest.TestCase):
         played = subprocess.run([sys.executable, bench.SOURCE / "scripts/morning.py", "--build", bench.BUILD,
                                  "--check", bench.SOURCE / "docs/how-to/a-morning.md"],
                                 capture_output=True, text=True, timeout=170)
-        self.assertEqual(played.returncode, 0, f"write it again with scripts/morning.py --page:\n{played.stdout}\n"
+        self.assertEqual(played.returncode, 0,
+                         f"the page is out of date. Update it with: scripts/morning.py --page\n{played.stdout}\n"
                                                f"{played.stderr}")
 
 

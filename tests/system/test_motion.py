@@ -41,7 +41,8 @@ class MotionTest(bench.BenchTest):
 
     def wait_for_pressure(self, child, kpa):
         def reached():
-            self.assertTrue(child.running(), f"it ended before it moved: {child.errors()}\n{child.output()}")
+            self.assertTrue(child.running(),
+                            f"the command ended before it moved the finger: {child.errors()}\n{child.output()}")
             return self.board.commands_kpa()[0] > kpa
         bench.wait_for(f"{kpa} kPa", reached, pause_s=0.005)
 
@@ -55,7 +56,7 @@ class MotionTest(bench.BenchTest):
 
     def check_vented(self, samples):
         self.assertLessEqual(max(max(sample) for sample in samples), NOISE_KPA, samples[:50])
-        self.assertEqual(self.board.status()["watchdog_trips"], 1, "it is about a board that has vented")
+        self.assertEqual(self.board.status()["watchdog_trips"], 1, "the board must have vented once")
 
     def check_end(self, name, child, expected):
         code = child.wait()
@@ -138,7 +139,7 @@ class Silent(MotionTest):
     def test_calibrate_without_the_replies(self):
         """The board still receives requests and holds: its outputs may keep the last command, but no more."""
         highest, samples = self.check("calibrate", "replies_lost", 4)
-        self.assertLess(max(sample[0] for sample in samples), highest + 2, "one step of a cycle, and the noise")
+        self.assertLess(max(sample[0] for sample in samples), highest + 2, "at most one step of a cycle plus the noise")
         self.assertLessEqual(samples[-1][0], NOISE_KPA)
 
 

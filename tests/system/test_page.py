@@ -162,7 +162,7 @@ class Page(web.WebTest):
                                 "{'Content-Type': 'application/json'}, body: '{\"command\": \"vent\"}'})"
                                 ".then((a) => done(a.status))")
         self.assertEqual(status, 403)
-        self.assertEqual(seen.run("return document.cookie"), "", "no script sees the session")
+        self.assertEqual(seen.run("return document.cookie"), "", "scripts cannot read the session cookie")
         seen.driver.find_element(browser.By.CSS_SELECTOR, "#who button").click()
         seen.wait_for_state("log in first")
         self.log_in(seen, web.OPERATE)
@@ -211,7 +211,7 @@ class Page(web.WebTest):
             reached.append(seen.focused())
         for name in ("stop", "vent", "sequence", "parameter-squeeze_kpa", "events", "recordings"):
             self.assertIn(name, reached)
-        self.assertLess(reached.index("stop"), 3, "the stop comes first")
+        self.assertLess(reached.index("stop"), 3, "the stop button must come before the other controls")
         ring = seen.run("document.getElementById('stop').focus({focusVisible: true});"
                         "return getComputedStyle(document.getElementById('stop')).outlineStyle")
         self.assertEqual(ring, "solid")

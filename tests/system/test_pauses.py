@@ -1,8 +1,7 @@
 """Whatever is paused, and for however long: when it continues, no pressure rises that was not commanded.
 
 The whole process (SIGSTOP) or only its loop, its bus or its service thread (ptrace) is paused, for less than,
-exactly and
-more than the time of the board's watchdog, in every phase of a grip, over a real wire.
+exactly and more than the time of the board's watchdog, in every phase of a grip, over a real wire.
 """
 
 import os

@@ -103,7 +103,7 @@ class Leaving(quiet_rig.QuietRigTest):
                     pause()
                     try:
                         robot.status()
-                        self.fail("the daemon answers though it is silent")
+                        self.fail("the daemon answers although it is paused")
                     except softgrip.NotAnswered:
                         pass
                 self.assertIn(f"request {request}", str(raised.exception))
@@ -127,7 +127,7 @@ class Leaving(quiet_rig.QuietRigTest):
                 for request in self.starts()[len(before):]:
                     self.assertEqual(self.wait_until_ended(request), "stopped")
                 time.sleep(0.2)
-                self.assertIsNone(self.running(), "it began later")
+                self.assertIsNone(self.running(), "the sequence began later")
 
     def test_a_connection_that_was_cut(self):
         proxy = self.proxy()
@@ -153,7 +153,7 @@ class Leaving(quiet_rig.QuietRigTest):
             proxy.refuses = True
             proxy.cut()
         self.assertIn("softgrip stop", str(raised.exception))
-        self.assertEqual(self.running(), request, "nothing could be done, and this is why there is an exception")
+        self.assertEqual(self.running(), request, "no stop was possible, so there is an exception")
 
     def test_a_block_that_was_given_up_lets_its_sequence_go_on(self):
         with self.gripper() as robot:
@@ -182,9 +182,9 @@ class Leaving(quiet_rig.QuietRigTest):
                 chance = random.Random(seed)
                 self.softgripd.wait_for_state("idle")
                 self.interrupted(chance.choice((self.path, proxy.path)), chance)
-                self.assertIsNone(self.running(), "leaving the block was confirmed")
+                self.assertIsNone(self.running(), "the stop at the end of the block was confirmed")
         time.sleep(0.2)
-        self.assertIsNone(self.running(), "a start came behind its stop")
+        self.assertIsNone(self.running(), "a sequence started after its stop")
         self.assertEqual({self.ended(request) for request in self.starts()} - {"stopped"}, set())
 
     def test_tasks_that_are_cancelled_in_a_start(self):

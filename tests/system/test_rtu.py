@@ -63,7 +63,7 @@ class Line(bench.BenchTest):
         daemon.wait_for_state("faulted")
         emulator.ask("clear unplugged")
         daemon.wait_for_event("bus_recovered")
-        self.assertEqual(daemon.status()["state"], "faulted", "nothing moves until somebody acknowledges")
+        self.assertEqual(daemon.status()["state"], "faulted", "nothing moves before the fault is acknowledged")
         bench.wait_for("the bus", lambda: daemon.status()["bus"]["connected"])
         daemon.result("acknowledge")
         daemon.wait_for_state("idle")
@@ -108,10 +108,10 @@ class MbpollOnTheLine(bench.BenchTest):
         left, right = (int(v) for v in re.findall(r"\]:\s+(\d+)", done.stdout))
         self.assertGreater(left, right + 500, "millivolts: 40 kPa moves farther than 20 kPa")
         done = self.poll("-a", 2, "-t", 3, "-r", 8, "-c", 1, device)
-        self.assertNotEqual(done.returncode, 0, "an input that is not there")
+        self.assertNotEqual(done.returncode, 0, "the input does not exist")
         self.assertIn("Illegal data address", done.stdout + done.stderr)
         done = self.poll("-a", 3, "-t", 4, "-r", 0, "-c", 1, device)
-        self.assertIn("timed out", done.stdout + done.stderr, "nobody has this unit")
+        self.assertIn("timed out", done.stdout + done.stderr, "no board has this unit")
 
 
 if __name__ == "__main__":

@@ -157,7 +157,7 @@ class Hold(bench.BenchTest):
         for channel in ("left", "right"):
             daemon.wait_for_event("grip_result", code="HOLDING", channel=channel)
         self.assertEqual(daemon.end(), 0)
-        self.assertGreater(min(emulator.commands_kpa()), 10, "the hold is what the outputs end with")
+        self.assertGreater(min(emulator.commands_kpa()), 10, "the outputs end with the held pressure")
         time.sleep(1)
         return check.stdout, start, daemon.errors(), emulator.commands_kpa()
 

@@ -21,7 +21,7 @@ class Screen(bench.BenchTest):
     def test_pressure_that_stays_on_after_a_stop_is_said_everywhere_until_it_is_let_down(self):
         self.assertIsNone(self.softgripd.status()["under_pressure"])
         self.hold()
-        self.assertIsNone(self.softgripd.status()["under_pressure"], "a hold is what was asked for")
+        self.assertIsNone(self.softgripd.status()["under_pressure"], "the hold was requested, so it is not a problem")
         stopped = self.softgrip("stop").stdout
         self.assertRegex(stopped, r"stopping\nFingers are pressurised: left [\d.]+ kPa, right [\d.]+ kPa\. `softgrip release`")
         self.assertEqual(self.softgripd.status()["state"], "idle")

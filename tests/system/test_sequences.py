@@ -36,7 +36,7 @@ class WithoutADaemon(bench.BenchTest):
         started = next(event for event in asked["events"] if event["kind"] == "sequence_started")
         self.assertEqual(started["parameters"], {"squeeze_kpa": 4, "hold_s": 0.5})
         self.assertIn("begins with squeeze_kpa 4, hold_s 0.5.", started["text"])
-        self.assertLess(asked["duration_s"], plain["duration_s"] - 4, "it held for a shorter time")
+        self.assertLess(asked["duration_s"], plain["duration_s"] - 4, "with the shorter time the sequence ends earlier")
 
     def test_what_cannot_be_asked_for_is_refused_with_its_place(self):
         def refused(*settings, expect=3):

@@ -74,7 +74,7 @@ class FirstRun(bench.BenchTest):
         self.wait_for_state("idle")
         said = self.shell(self.session)
         for word in re.search(r"# (\w+), then (\w+)", self.session).groups():
-            self.assertIn(word, said, "the page says so beside `softgrip start`")
+            self.assertIn(word, said, "the page must show this with `softgrip start`")
         self.assertTrue((self.folder / "pick.svg").read_text().startswith("<svg"))
         rig.end(signal.SIGINT)
         self.wait_for_state("faulted")
@@ -124,7 +124,7 @@ class ForeignLog(bench.BenchTest):
         self.assertEqual(notebook["nbformat"], 4)
         cells = ["".join(cell["source"]) for cell in notebook["cells"] if cell["cell_type"] == "code"]
         self.assertFalse(any(cell["outputs"] for cell in notebook["cells"] if cell["cell_type"] == "code"),
-                         "outputs are made where it is run, not kept")
+                         "the notebook must be stored without outputs")
         program = self.write("cells.py", "\n\n".join(cells))
         done = subprocess.run([sys.executable, program], cwd=self.folder, text=True, capture_output=True, timeout=170,
                               env={**os.environ, "MPLBACKEND": "Agg", "PATH": f"{bench.BUILD}/tools:{os.environ['PATH']}"})

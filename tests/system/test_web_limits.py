@@ -62,7 +62,8 @@ class Limits(web.WebTest):
     def assert_heard(self, told):
         """A stop, a vent and the metrics are answered at the first request."""
         status, answer = told.command("stop")
-        self.assertEqual((status, answer["details"]["refusal"]["name"]), (409, "nothing_to_stop"), "by the daemon")
+        self.assertEqual((status, answer["details"]["refusal"]["name"]), (409, "nothing_to_stop"),
+                         "the daemon must answer")
         status, answer = told.command("vent")
         self.assertEqual(status, 200, answer)
         self.assertEqual(told.metrics()["softgrip_up"], 1)
@@ -177,7 +178,8 @@ class Limits(web.WebTest):
                 waits = pathlib.Path(f"{stuck}.waits")
                 bench.wait_for("the disk to be asked", waits.exists)
                 self.assert_heard(told)
-                self.assertEqual(told.metrics()["softgrip_health_timestamp_seconds"], 7, "it was read last")
+                self.assertEqual(told.metrics()["softgrip_health_timestamp_seconds"], 7,
+                                 "the metric must keep the last value that was read")
                 stuck.unlink()
                 waits.unlink()
                 for client in pending:
@@ -209,7 +211,7 @@ class Limits(web.WebTest):
         before = processor_s(told.child.pid)
         time.sleep(4)
         self.assertLess(processor_s(told.child.pid) - before, 0.4, "of 4 s")
-        self.assertIn(b"event: state", page.recv(1 << 20), "an open page goes on")
+        self.assertIn(b"event: state", page.recv(1 << 20), "an open page must continue")
         self.assert_heard(told)  # connections without a request are closed
 
     def test_a_limit_of_descriptors_that_is_lowered_ends_nothing_but_pages(self):

@@ -73,11 +73,11 @@ class Workflow(unittest.TestCase):
         page = (self.folder / "out/overview.html").read_text()
         self.assertIn('<a href="identify/a/result/report.html">a</a>', page)
         self.assertTrue((self.folder / "out/identify/a/result/report.html").exists())
-        self.assertNotIn("<b>at all", page, "what a log says is no markup")
+        self.assertNotIn("<b>at all", page, "text from a log must not become markup")
 
         before = self.written()
         self.run_table(table, expect=6)
-        self.assertEqual(self.written(), before, "nothing is run twice")
+        self.assertEqual(self.written(), before, "no step is run twice")
         self.small_logs("bad.csv", "gone.csv")
         (self.folder / "b.csv").write_text(self.log[:self.log.rindex("\n", 0, -1) + 1])
         table.write_text(table.read_text().replace("--starts 3", "--starts 4"))
@@ -98,13 +98,14 @@ class Workflow(unittest.TestCase):
         child.wait()
         before = self.written()
         self.assertGreaterEqual(len(before), 3)
-        self.assertLess(len(before), len(names), "it was killed in the middle")
+        self.assertLess(len(before), len(names), "the run was killed before its end")
         self.assertFalse((self.folder / "out/overview.html").exists())
         self.run_table(table)
         after = self.written()
         self.assertEqual(len(after), len(names))
         # Snakemake may not know a step that had just ended, on either core.
-        self.assertLessEqual(sum(after[name] != when for name, when in before.items()), 2, "what was done is done")
+        self.assertLessEqual(sum(after[name] != when for name, when in before.items()), 2,
+                             "finished steps are not run again")
         self.assertEqual(list((self.folder / "out").glob("*/*/running-*")), [])
 
     def test_what_is_wrong_with_a_table_is_said_at_once(self):

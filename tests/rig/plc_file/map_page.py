@@ -38,4 +38,4 @@ def page():
 if sys.argv[1:] == ["--write"]:
     PAGE.write_text(page())
 elif page() != PAGE.read_text():
-    sys.exit(f"{PAGE.relative_to(SOURCE)} is not what config/plc.yaml says: {sys.argv[0]} --write")
+    sys.exit(f"{PAGE.relative_to(SOURCE)} differs from config/plc.yaml. Update it with: {sys.argv[0]} --write")

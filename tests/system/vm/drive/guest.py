@@ -110,9 +110,10 @@ class Lines:
         sh("modprobe gpio-sim; mountpoint -q /sys/kernel/config || mount -t configfs configfs /sys/kernel/config")
         other, _ = self.plug_in("other", "not-of-softgrip")
         self.chip, self.folder = self.plug_in("panel", self.label)
-        wait_for("udev to give the chip away", lambda: sh(f"stat -c '%G %a' /dev/{self.chip}") == "softgrip 660\n")
+        wait_for("udev to give the group access to the chip", lambda: sh(f"stat -c '%G %a' /dev/{self.chip}") == "softgrip 660\n")
         sh("udevadm settle")
-        expect(sh(f"stat -c '%U %G' /dev/{other}") == "root root\n", "udev gave a chip away that no rig file names")
+        expect(sh(f"stat -c '%U %G' /dev/{other}") == "root root\n",
+               "udev gave the group access to a chip that no rig file names")
 
     @staticmethod
     def plug_in(name, label):

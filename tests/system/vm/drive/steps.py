@@ -117,7 +117,7 @@ gpio:
         sh(f"systemctl start {UNIT}")
         wait_for("a stop that starts pressed", lambda: service.state() == "faulted")
         expect(service.status()["fault"]["code"] == "F501", f"fault {service.status()['fault']}")
-        expect(lines.level(Lines.enable) == 0, "the enable output is on before anybody acknowledged")
+        expect(lines.level(Lines.enable) == 0, "the enable output is on before the acknowledgement")
         sh("softgrip acknowledge")
         service.wait_idle()
         wait_for("the enable output", lambda: lines.level(Lines.enable) == 1, 2)
@@ -239,7 +239,7 @@ def rights_removed(state):
         edit(RIG, (r"real_time: \{required: false", "real_time: {required: true"))
         wall = time.time()
         sh(f"systemctl restart {UNIT}", check=False)
-        expect(service.state() is None, "it runs although real time is required")
+        expect(service.state() is None, "the service runs although real time is required")
         expect("could not be verified" in service.journal(wall - 1), "the refusal is not in the journal")
         state["emulator"].expect_still(1)
         sh(f"systemctl stop {UNIT}", check=False)
@@ -258,7 +258,7 @@ def refused_configuration(state):
         sh(f"systemctl restart {UNIT}", check=False)
         time.sleep(5)
         expect(service.show("ActiveState") == "failed", service.show("ActiveState"))
-        expect(service.restarts() == restarts, "it was started again and again")
+        expect(service.restarts() == restarts, "the service was restarted repeatedly")
         expect(service.show("ExecMainStatus") == "3", service.show("ExecMainStatus"))
     finally:
         edit(RIG, (r"rate_khz: 20", "rate_hz: 20"))
@@ -286,7 +286,7 @@ def remove(state):
     service.hold()
     sh("dpkg -r softgrip")
     expect(service.show("ActiveState") != "active", "it still runs")
-    expect(RIG.exists() and RUNS.exists(), "removing took what only purging may")
+    expect(RIG.exists() and RUNS.exists(), "removing the package deleted files that only purging may delete")
     state["emulator"].process.kill()
     return "stopped; configuration and recordings kept"
 
