@@ -1,6 +1,6 @@
-/* The base chain (Bouc-Wen with exponent 1 plus Kelvin-Voigt branches) as a compiled simulator for other
- * people's optimisers: exact in pressure and in time for a command that is linear between samples, as ours.
- * Plain C, so that ctypes and an Octave mex file can call it. */
+/* The base chain (Bouc-Wen with exponent 1 plus Kelvin-Voigt branches) as a compiled simulator for the
+ * optimisers of other programs. Like softgrip's, it is exact in pressure and in time for a command that is linear
+ * between samples. Plain C, so that ctypes and an Octave mex file can call it. */
 #include <math.h>
 #include <stddef.h>
 
@@ -17,7 +17,7 @@ static double bouc_wen(double h, double dp, double beta, double gamma, double et
     const double kappa = gamma * sign + eta * direction;
     const double next = h + (beta - kappa * h) * dp * phi1(kappa * dp);
     if (h == 0 || next == 0 || (next > 0) == (h > 0)) return next;
-    /* h reaches zero inside: kappa * s = log(1 - kappa h / beta) */
+    /* h reaches zero within the step: kappa * s = log(1 - kappa h / beta) */
     const double s = fabs(kappa) > 0 ? log1p(-kappa * h / beta) / kappa : -h / beta;
     dp -= s;
     h = 0;

@@ -1,4 +1,4 @@
-% Octave's lsqcurvefit on the logs and start points of sysid_starts, with a compiled simulator.
+% Runs Octave's lsqcurvefit on the logs and start points of sysid_starts, with a compiled simulator.
 function sysid_peers(folder, count)
   warning('off', 'all');
   pkg load optim

@@ -1,11 +1,11 @@
 #!/bin/bash
 # Fits the same three logs from the same start points with softgrip, with scipy's least_squares and with
-# Octave's lsqcurvefit, both driving a compiled simulator of the same exactness, and prints the ratios.
+# Octave's lsqcurvefit, and prints the ratios. The last two use a compiled simulator that is as exact as softgrip's.
 #
 #   bench/sysid_peers.sh [BUILD_FOLDER [STARTS [PEER_STARTS [SAMPLES]]]]
 #
 # Needs the packages python3-scipy, octave, octave-optim, liboctave-dev (scripts/packages.txt, section bench).
-# The peers take minutes for twenty starts; PEER_STARTS lets them do the first few of the same starts.
+# The other programs take minutes for twenty starts; with PEER_STARTS they only run the first of these starts.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 build=${1:-$here/../build/release}

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Installs the library into a folder of its own, moves that, builds examples/cpp against it with find_package and one example
+# Installs the library into a folder, moves the folder, builds examples/cpp against it with find_package and one example
 # with pkg-config, and runs them: examples.sh BUILD
 set -euo pipefail
 build=$(realpath "$1")
@@ -9,7 +9,7 @@ work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT
 cd "$work"
 
 fail() { echo "examples.sh: $*" >&2; exit 1; }
-# says TEXT COMMAND...  runs the command and requires the text in what it prints
+# says TEXT COMMAND...  runs the command; its output must contain the text
 says() {
   local text=$1
   shift
@@ -37,7 +37,7 @@ says "20.0 kPa: ok, 4.0 mm" examples/board_driver
 
 "$softgrip" simulate --model "$model" --input tp1 --rate-hz 20 --noise-mm 0.05 --out one.csv >/dev/null
 "$softgrip" simulate --model "$model" --input tp2 --rate-hz 20 --noise-mm 0.05 --seed 2 --out other.csv >/dev/null
-# A file of another program: other names, bar, semicolons.
+# A file of another program: other column names, bar, semicolons.
 awk -F, 'BEGIN {print "Time [s];Pressure setpoint [bar];Displacement [mm]"}
   NR > 1 {printf "%s;%.8f;%s\n", $1, $2 / 100, $3}' one.csv >external.csv
 says "transport_delay" examples/diagnose_csv external.csv report.html

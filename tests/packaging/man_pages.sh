@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Man pages as groff and mandoc see them: man_pages.sh FOLDER. Any warning of either is a failure.
+# Checks man pages with groff and mandoc: man_pages.sh FOLDER. Any warning of either is a failure.
 set -euo pipefail
 work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT
 count=0

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# What systemd says of the files in systemd/ without starting anything: unit.sh verify|exposure|users|folders|rules UNIT SOURCE
+# Lets systemd check the files in systemd/ without starting anything: unit.sh verify|exposure|users|folders|rules UNIT SOURCE
 # UNIT is the configured unit whose ExecStart= exists; SOURCE the folder systemd/.
 set -euo pipefail
 unit=$2 source=$3
@@ -8,7 +8,7 @@ most_exposure=15
 
 case $1 in
   verify)
-    # It prints what it does not know and succeeds all the same: any output is a failure.
+    # systemd prints keys that it does not know, but returns 0: any output is a failure.
     said=$(systemd-analyze verify --man=no "$unit" 2>&1) || true
     [ -z "$said" ] || { echo "$said"; exit 1; }
     ;;
@@ -25,7 +25,7 @@ case $1 in
     grep '^dialout:x:20:softgrip$' "$root/etc/group"
     ;;
   folders)
-    # As root the folders are made and one that is old is emptied; without, reading the file must do.
+    # As root, the folders are created and an old one is emptied. Without root, the file is only read.
     root=$(mktemp -d) && trap 'rm -rf "$root"' EXIT
     mkdir "$root/etc"
     printf 'softgrip:x:%s:%s::/:/\n' "$(id -u)" "$(id -g)" >"$root/etc/passwd"
@@ -36,7 +36,7 @@ case $1 in
     mkdir "$runs/kept" && touch "$runs/kept/run.csv" "$runs/health/notes.yaml"
     systemd-tmpfiles --root="$root" --clean "$source/softgrip.tmpfiles"
     [ -f "$runs/kept/run.csv" ]
-    # What is a second old is old enough for this copy of the file.
+    # In this copy of the file, an age of one second is old enough.
     sed 's/90d$/1s/' "$source/softgrip.tmpfiles" >"$root/etc/softgrip.conf"
     sleep 1.5
     systemd-tmpfiles --root="$root" --clean "$root/etc/softgrip.conf"
@@ -44,7 +44,7 @@ case $1 in
     [ -f "$runs/health/notes.yaml" ]
     ;;
   rules)
-    # Every line that gives a chip or a converter away asks the daemon first if the rig file names it.
+    # Every rule that gives the group access to a chip or a converter first asks the daemon if the rig file names it.
     rules=$source/softgrip.rules.in
     asks='PROGRAM="@CMAKE_INSTALL_FULL_BINDIR@/softgripd --config @SOFTGRIP_CONFIGURATION@/rig_service.yaml --device %k"'
     grep -E 'SUBSYSTEM=="(gpio|iio)"' "$rules" >/dev/null

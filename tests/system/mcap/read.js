@@ -1,4 +1,4 @@
-// Prints what @mcap/core finds in an MCAP file: by its index, and once more from the beginning with every checksum.
+// Prints what @mcap/core reads from an MCAP file: first with its index, then from the beginning with every checksum.
 const {McapIndexedReader, McapStreamReader} = require("@mcap/core");
 
 const bytes = require("fs").readFileSync(process.argv[2]);

@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# Boots the guest of prepare.sh, with a folder as its second drive whose program `run` it executes; then it powers off.
+# Boots the guest of prepare.sh with a folder as its second drive. The guest executes `run` of the folder and powers off.
 #   boot.sh WORK FOLDER LOG
-# What `run` prints goes to the standard output and to LOG, the guest's console to LOG.console. The disk is not changed.
+# The output of `run` goes to the standard output and to LOG, the guest's console to LOG.console. The disk is not changed.
 # TCG emulates one processor, so neither KVM nor root is needed, and its clock counts instructions (8 ns each), not time:
-# what the host does meanwhile cannot be seen in the guest, and sleeping takes no time at all.
+# the guest does not notice what the host does meanwhile, and sleeping takes no time.
 set -euo pipefail
 work=$(realpath "$1") folder=$(realpath "$2") log=$3
 kernel=$(cat "$work/release")

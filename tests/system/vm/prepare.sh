@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Prepares what the system test boots: a Debian 12 guest with the PREEMPT_RT kernel, systemd and simulated GPIO lines.
+# Prepares the guest of the system test: Debian 12 with the PREEMPT_RT kernel, systemd and simulated GPIO lines.
 #   prepare.sh WORK PACKAGE.deb
-# WORK then holds release, kernel/, gpio/, root.tar, disk.ext4 and initrd.gz. What is there already is not made again;
-# the root file system is made anew when the package asks for other packages. Needs root and Debian's archive.
+# WORK then holds release, kernel/, gpio/, root.tar, disk.ext4 and initrd.gz. Existing files are not made again;
+# the root file system is made again if the dependencies of the package have changed. Needs root and Debian's archive.
 set -euo pipefail
 work=$(realpath -m "$1")
 package=$(realpath "$2")
@@ -10,7 +10,7 @@ here=$(dirname "$(realpath "$0")")
 mkdir -p "$work"
 say() { printf '   guest: %s\n' "$*"; }
 
-# Sets `kernel` to the release of the archive's PREEMPT_RT kernel; asked once per WORK.
+# Sets `kernel` to the release of the archive's PREEMPT_RT kernel; determined once per WORK.
 find_kernel() {
   if [ ! -s "$work/release" ]; then
     apt-cache depends linux-image-rt-amd64 |
@@ -30,7 +30,7 @@ fetch() {
   mv "$folder" "$2"
 }
 
-# Debian's kernels come without gpio-sim, and without the simulated interrupts that it stands on. Both are built from
+# Debian's kernels have neither gpio-sim nor the simulated interrupts that it needs. Both are built from
 # Debian's own kernel source against Debian's headers, as one module.
 build_gpio() {
   local build=$work/gpio.part source
@@ -41,7 +41,7 @@ build_gpio() {
     '*/drivers/gpio/gpiolib.h' '*/kernel/irq/irq_sim.c'
   cp "$work/source/drivers/gpio/gpiolib.h" "$build/"
   cp "$work/source/drivers/gpio/gpio-sim.c" "$build/lines.c"
-  # irq_to_desc() is not exported to modules; generic_handle_irq() does the same and is.
+  # irq_to_desc() is not exported to modules; generic_handle_irq() does the same and is exported.
   sed 's/handle_simple_irq(irq_to_desc(\(.*\)));/generic_handle_irq(\1);/' "$work/source/kernel/irq/irq_sim.c" \
     >"$build/interrupts.c"
   printf 'obj-m := gpio-sim.o\ngpio-sim-objs := lines.o interrupts.o\n' >"$build/Kbuild"
@@ -51,8 +51,8 @@ build_gpio() {
   mv "$build" "$work/gpio"
 }
 
-# The root file system as a tar file: what a technician's computer has, and what the package depends on, since the
-# guest has no network.
+# The root file system as a tar file: the packages of a technician's computer, and the dependencies of the package,
+# because the guest has no network.
 build_root() {
   local needs wanted
   needs=$(dpkg-deb -f "$package" Depends | tr ',' '\n' | sed 's/[|(].*//; s/ //g' | grep -v '^$' | sort -u | paste -sd,)
@@ -65,7 +65,7 @@ build_root() {
   echo "$wanted" >"$work/root.packages"
 }
 
-# modules NAME ...: the files of these modules and of what they need, in the order in which they load
+# modules NAME ...: the files of these modules and of their dependencies, in the order in which they load
 modules() {
   local name
   for name in "$@"; do
@@ -97,7 +97,7 @@ build_disk() {
   rm -rf "$root"
 }
 
-# As little as finds the disk: busybox, the modules in their order, and a script.
+# Only what is needed to find the disk: busybox, the modules in their order, and a script.
 build_initrd() {
   local folder=$work/initrd file
   rm -rf "$folder" && mkdir -p "$folder"/{bin,modules,proc,sys,dev,root}
