@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
-"""One place opens files for reading (base/files.cpp) and one place writes them (base/file_writing.cpp).
+"""Checks that one place opens files for reading (base/files.cpp) and one place writes them (base/file_writing.cpp).
 
-Every other call in the programs' C++ that opens, creates or renames a file stands in file_calls.txt with its reason:
+Every other call in the programs' C++ that opens, creates or renames a file is listed in file_calls.txt with its reason:
 
     PATH: COUNT CALL: REASON
 
-The list only shrinks: a line without such a call must leave it. Not counted are calls that open a folder.
+The list may only become shorter: an entry whose call does not exist any more must be deleted. Calls that open a folder
+are not counted.
 """
 
 import pathlib
@@ -17,7 +18,7 @@ from tree import ROOT
 
 LIST = pathlib.Path(__file__).with_name("file_calls.txt")
 THE_PLACES = ("base/files.cpp", "base/file_writing.cpp")
-# By the name under which the list has it. open() without :: is the call of the system if it has a flag of the system.
+# By the name in the list. open() without :: is the system call if it has a flag of the system.
 CALLS = {
     "fstream": r"\bstd::(?:basic_)?[io]?f(?:stream|ilebuf)\b",
     "fopen": r"\b(?:fopen|fopen64|freopen|fdopen|tmpfile)\s*\(",
@@ -74,7 +75,7 @@ def findings_in(sources, allowed):
 
 
 def check_itself():
-    """Every kind of call is found in a program that has it, and not in a comment or a text."""
+    """Every kind of call is found in a program that contains it, and not in a comment or a text."""
     examples = {"fstream": "std::ofstream file(path);", "fopen": "std::fopen(path, mode);",
                 "open": "int file = open(path.c_str(),\n  O_WRONLY | O_CREAT);", "mkstemp": "::mkstemp(name);",
                 "rename": "fs::rename(from, to, error);", "copy": "fs::copy_file(from, to);", "resize": "ftruncate(file, 0);",

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""The table of docs/explanation/libraries.md says which libraries the programs are linked with: libraries.py --build BUILD_DIR
+"""Checks that the table of docs/explanation/libraries.md has the linked libraries: libraries.py --build BUILD_DIR
 
-What a program loads is a part of that (--as-needed).
+A program may load fewer libraries (--as-needed).
 """
 
 import argparse

@@ -1,5 +1,6 @@
-"""Two types of one name in one namespace, in headers that do not know of each other, compile, link and crash: the linker takes
-one destructor for both. Names each pair; exit code 1 where there is one.
+"""Finds two types with the same name in the same namespace, in headers that do not include each other. Such types
+compile and link, but crash: the linker uses one destructor for both. Prints each pair; exit code 1 if there is
+one.
 
     one_definition.py
 """
@@ -9,13 +10,13 @@ import subprocess
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-# Of these headers a build sees one.
+# A build uses only one of these headers.
 ALTERNATIVES = {"drivers/gpio/libgpiod_1.h", "drivers/gpio/libgpiod_2.h"}
 DECLARED = re.compile(r"^(?:struct|class|enum class) (?:\[\[\w+\]\] )?(\w+)(?: final)?(?: :.*)? \{", re.M)
 
 
 def types_of(text):
-    """(namespace, name) of every type that begins a line; the namespace is the last one opened before it."""
+    """(namespace, name) of every type that begins a line; its namespace is the last one that was opened before it."""
     for found in DECLARED.finditer(text):
         opened = re.findall(r"^namespace ([\w:]+) \{", text[:found.start()], re.M)
         yield (opened[-1] if opened else "", found[1])

@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
-"""Every file, link and program that the documents name exists, and no page has a heading twice: paths.py [--build BUILD_DIR]
+"""Checks that every file, link and program that the documents name exists, and that no page has the same heading
+twice: paths.py [--build BUILD_DIR]
 
-Read are the pages of the top folder and docs/. A word of inline code or of a code block is taken for a path of the project where its first
-folder is one; BUILD_DIR's ninja file says which programs there are under build/. `*`, `{a,b}` and CAPITALS (what the
-reader puts in) match whatever fits.
+It reads the pages of the top folder and docs/. A word of inline code or of a code block is a path of the project if its
+first part is a folder of the project. The programs below build/ are read from BUILD_DIR's ninja file. `*`, `{a,b}` and
+CAPITALS (the reader's own values) match everything that fits.
 """
 
 import argparse
@@ -28,7 +29,7 @@ def names_and_folders():
 
 
 def programs(build):
-    """What ninja makes, relative to the build folder; None where it does not say."""
+    """The files that ninja makes, relative to the build folder; None without a build."""
     file = build / "build.ninja" if build else None
     if file is None or not file.exists():
         return None
@@ -43,12 +44,12 @@ def alternatives(word):
 
 
 def pattern_of(word):
-    """What the reader puts in matches anything."""
+    """The reader's own values match anything."""
     return re.sub(r"<[^<>]*>|\b[A-Z][A-Z_]+\b(?![.])", "*", word)
 
 
 def lines_of(text):
-    """(line number, line, whether it stands in a code block)"""
+    """(line number, line, whether it is in a code block)"""
     inside = False
     for number, line in enumerate(text.splitlines(), 1):
         if line.lstrip().startswith("```"):
@@ -66,7 +67,7 @@ def words_of(text):
 
 
 def made_by_the_reader(document, text):
-    """What a page that says how to add something has its reader make: the files of its code blocks, and examples."""
+    """The files that a how-to page lets its reader make: those of its code blocks, and examples."""
     if not document.name.startswith("add-"):
         return lambda word: False
     files = set(re.findall(r"^```\w+ file=(\S+)", text, re.MULTILINE))
@@ -107,7 +108,8 @@ class Judge:
         return word in self.names
 
     def program_exists(self, word):
-        """build/PRESET/path/to/program, or a folder of programs; deeper inside build/ lies what programs write"""
+        """build/PRESET/path/to/program, or a folder of programs. Deeper paths below build/ are files that programs
+        write."""
         parts = word.split("/", 2)
         if len(parts) < 3 or self.programs is None:
             return True
@@ -136,7 +138,7 @@ class Judge:
             self.findings.append(f"{place}: the link `{target}`: that page has no such heading")
 
     def headings(self, document, text):
-        """A heading that stands twice makes its link ambiguous, and shows text that was pasted twice."""
+        """A repeated heading makes its link ambiguous, and is a sign of text that was pasted twice."""
         seen = {}
         for number, heading in headings_of(text):
             if heading in seen:

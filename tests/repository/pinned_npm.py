@@ -1,5 +1,5 @@
-"""What npm installs is pinned: exact versions, a hash of each package, and no address that it comes from, so that the
-machine's own registry is asked."""
+"""Checks that npm packages are pinned: exact versions, a hash of each package, and no address of a registry, so that
+the registry of the machine is used."""
 
 import json
 import pathlib

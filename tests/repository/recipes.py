@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The edits of a how-to page still fit the sources: in a copy, without building what `ctest -L recipe` builds."""
+"""Checks that the edits of a how-to page fit the sources: in a copy, without the builds of `ctest -L recipe`."""
 
 import pathlib
 import sys
@@ -13,7 +13,7 @@ import recipe  # noqa: E402
 
 
 def edits_of_the_cause(folder):
-    """How many edits the page of causes has; each is made, or an AssertionError says which does not fit."""
+    """The number of edits on the page about causes. Each is made; an AssertionError names the one that does not fit."""
     add_a_cause.copy_of(ROOT, folder)
     made = 0
     for language, info, body in add_a_cause.FENCE.findall((ROOT / add_a_cause.PAGE).read_text()):

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Each page of docs/results begins with the meaning of its result and a table of version, date, command and conditions, and each page
-of docs/ is linked from docs/README.md or docs/results/README.md."""
+"""Checks that each page of docs/results begins with the meaning of its result and a table of version, date, command
+and conditions, and that each page of docs/ is linked from docs/README.md or docs/results/README.md."""
 
 import re
 import sys

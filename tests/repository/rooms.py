@@ -1,8 +1,8 @@
-"""The rooms of cmake/rooms.cmake, held against the code and against docs/explanation/architecture.md.
+"""Compares the rooms of cmake/rooms.cmake with the code and with docs/explanation/architecture.md.
 
-    rooms.py            fails where a folder with code is no room, where an arrow is drawn that no include needs, or
-                        where the page's table does not say what rooms.cmake says
-    rooms.py --write    brings the page's first and last column up to date; the content of a room is written by hand
+    rooms.py            fails if a folder with code is no room, if no include needs an arrow, or if the table of the
+                        page differs from rooms.cmake
+    rooms.py --write    updates the first and the last column of the page; the content of a room is written by hand
 """
 
 import pathlib
@@ -41,7 +41,7 @@ def included_by(folders):
 
 
 def table(known):
-    """The page's table; `known` is the content of each room, by folder."""
+    """The table of the page; `known` is the content of each room, by folder."""
     lines = ["| room | content | may include |\n", "|---|---|---|\n"]
     for folder, _, uses in rooms():
         lines.append(f"| `{folder}` | {known.get(folder, '')} | {', '.join(uses)} |\n")

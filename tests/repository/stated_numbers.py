@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Numbers and names that documents state are those of the sources: threads, fingers, worlds, files that include Ceres,
-and the figures of README.md those of the pages that it links."""
+"""Checks that numbers and names in documents agree with the sources: threads, fingers, worlds, and files that
+include Ceres. The figures of README.md must be on the pages that it links."""
 
 import re
 import sys
@@ -25,7 +25,8 @@ def sources(folder):
 
 
 def threads():
-    """The threads that softgripd names in its sources, its first one, and the writer of the log's lines."""
+    """The named threads in the sources of softgripd, the first thread, and the thread that writes the lines of the
+    log."""
     daemon = [text(name) for name in sources("daemon/")]
     made = {name for one in daemon for name in re.findall(r'\.name = "(softgrip-[a-z]+)"', one)}
     pools = sum(one.count("make_shared<spdlog::details::thread_pool>") for one in daemon)
@@ -48,7 +49,7 @@ def fingers():
 
 
 def worlds():
-    """Lines of the tables that tests/blind makes tests of: of every run, and of --all."""
+    """The numbers of lines in the tables from which tests/blind makes tests: in every run, and with --all."""
     counts = {"": 0, "more_": 0}
     for more in counts:
         for folder, name, world in (("", "fixed_worlds", WORLD), ("textbook/", "fixed_worlds", WORLD),
@@ -69,7 +70,7 @@ def includes_of_ceres():
 
 
 def front_page():
-    """Each version, and each figure that counts or compares, is in a page to which its row or sentence links."""
+    """Each version, and each figure that counts or compares, is on a page that its row or sentence links."""
     body = text("README.md").split("## Four results")[1]
     for part in re.split(r"\n(?=[|-]|\n)", body):
         linked = " ".join(one_line(re.sub(r"#.*", "", link)) for link in re.findall(r"\]\(([^)]+\.md[^)]*)\)", part))

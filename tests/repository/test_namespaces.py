@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""The names of every *_test.cpp stand in a namespace of its file's name, so that CI can compile many tests as one file without
-two helpers of one name meeting (softgrip_compile_together in cmake/targets.cmake). Names each that does otherwise; exit
-code 1 where there is one.
+"""Checks that the names of every *_test.cpp are in a namespace with the name of the file. So CI can compile many
+tests as one file without a conflict of two helpers (softgrip_compile_together in cmake/targets.cmake). Prints
+each other file; exit code 1 if there is one.
 """
 
 import pathlib

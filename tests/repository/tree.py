@@ -1,4 +1,4 @@
-"""The files of the project, as git knows them; in a tarball, all but what is built."""
+"""The files of the project in git; in a tarball, all files except those of a build."""
 
 import pathlib
 import subprocess

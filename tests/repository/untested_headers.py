@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Every header of the project is reached by the includes of a test, or stands with the reason in untested_headers.txt.
+"""Checks that the includes of a test reach every header, or that untested_headers.txt has the header with a reason.
 
-The list only shrinks: a header on it that a test reaches, or that is gone, must leave it.
+The list may only become shorter: a header that a test reaches, or that was deleted, must be removed from it.
 """
 
 import pathlib
