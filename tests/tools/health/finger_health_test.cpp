@@ -243,7 +243,7 @@ TEST(HealthPage, TellsTheVerdictTheAlarmAndWhatWasMended) {
   const FingerHealth health = judged(changed({{HealthNumber::gain, -2}, {HealthNumber::pressure_loss, 2}}),
                                      {{day_text(5), "left", "sensor <clamped> again"}});
   const std::string html = health_page(health, suspicion_of(health), {"finger-3", base, {}}).to_html();
-  for (const char* text : {"pressure is lost while it should hold", "soapy water", "finger-3",
+  for (const char* text : {"the pressure falls while it should be constant", "soapy water", "finger-3",
                            "sensor &lt;clamped&gt; again", "gain (at full pressure)", "one in 3650 points"})
     EXPECT_NE(html.find(text), std::string::npos) << text;
   EXPECT_EQ(html.find("<clamped>"), std::string::npos);
