@@ -138,8 +138,8 @@ def stiction_section(values):
 
 IDENTIFICATION_TEXT = [
     "The values are held-out RMSE in % of the span of the log. Of a single log, the first half is fitted, and the second half is",
-    "predicted from the start of the log. `A -> B`: A is fitted, and B is predicted. *plain* is `softgrip identify`, *auto* is `softgrip identify",
-    "--structure auto`. *output error* is a linear output-error model of order 3 (`bench/foreign/output_error.py`): the",
+    "predicted from the start of the log. `A -> B`: A is fitted, and B is predicted. *plain* is `softgrip identify`, *auto* is",
+    "`softgrip identify --structure auto`. *output error* is a linear output-error model of order 3 (`bench/foreign/output_error.py`): the",
     "published element also has 3 states. *SciPy* is Bouc-Wen with 2 Kelvin-Voigt branches, fitted by `least_squares`",
     "(`bench/foreign/scipy_bouc_wen.py`). For B, the last 2 estimate only the offset, from the first 5 % (at least 2 s).",
     "With the drive *command* the measured pressure is withheld from every method; with *measured* it is the input of every model.",

@@ -24,9 +24,8 @@ class PseudoElasticSoftening {
                  "The finger is softer the further the pressure is below the largest load (Mullins effect).",
                  "q = p (1 + softening m tanh((m - q)/range)), m = largest pressure so far");
   static constexpr std::array parameters{
-      parameter("softening_per_kpa", "1/kPa",
-                "relative increase of the gain per pressure of the largest load", Typical{0.002},
-                Within{0.0, 1.0}, Scale{0.001}, Neutral{0.0}),
+      parameter("softening_per_kpa", "1/kPa", "relative increase of the gain per kPa of the largest load",
+                Typical{0.002}, Within{0.0, 1.0}, Scale{0.001}, Neutral{0.0}),
       parameter("range_kpa", "kPa", "pressure range below the largest load over which it sets in",
                 Typical{15.0}, Within{0.01, 10000.0}, Scale{5.0})};
 

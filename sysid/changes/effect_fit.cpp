@@ -17,12 +17,12 @@ namespace {
 
 constexpr int most_effect_steps = 9;
 constexpr std::size_t followed = 2;
-/// Of the sum of all curvatures, in what numbers are counted in.
+/// Smallest damping of a number, as a share of the sum of all curvatures.
 constexpr double least_curvature = 0.01;
-/// More starts than these are so dense that none needs another size.
+/// More starts than this are dense: none of them is scaled.
 constexpr std::size_t most_sized = 16;
 
-/// Time constants of the transient after a start that no healthy record shows [s].
+/// Time constants of the transient after a start that no healthy record has [s].
 constexpr auto transient_lags_s = std::span(finger_lags_s).last<slow_lags>();
 
 bool begins_as_a_healthy_one(const Base& base, const Record& record) {
@@ -38,7 +38,7 @@ std::vector<double> transient(std::size_t bins, double bin_s, double lag_s) {
   return series;
 }
 
-/// A gain is free within what another run of an unchanged finger may have; beyond, it is a change.
+/// Largest gain that another run of an unchanged finger may have. A larger one is a change.
 double free_gain(const Base& base) {
   return t_quantile(static_cast<double>(base.units.count() - 1)) * base.gain_spread;
 }
@@ -69,7 +69,7 @@ class Fit {
     return fit;
   }
 
-  /// The better of a start and of what it would be if it were of the right size.
+  /// Returns the better of a start and of the same effect with the size that fits best.
   [[nodiscard]] EffectFit sized(EffectFit fit, const Eigen::VectorXd& without) const {
     if (!std::isfinite(fit.sum_of_squares)) return fit;
     const Eigen::VectorXd change = fit.white - without;
@@ -125,7 +125,8 @@ class Fit {
   }
 
  private:
-  /// Where the number does nothing; of a bound far away, where it just begins to.
+  /// Value at which the number has no effect; if this is far outside the data, the value at which its effect
+  /// begins.
   [[nodiscard]] double limit_of_nothing(std::size_t i) const {
     const double nothing = effect_.nothing[i];
     double reach = std::numeric_limits<double>::infinity();
@@ -381,7 +382,7 @@ EffectFit fit_effect(const LaterReadings& readings, const Effect& effect,
   std::vector<EffectFit> looks;
   for (const std::vector<double>& start : effect.starts) {
     EffectFit first = fit.at(within(effect, start));
-    // A base that cannot show the effect at all shows it from no other start.
+    // If the base does not respond to the effect, no other start changes that.
     if (!effect.free_form && looks.empty() && first.white == without) return first;
     looks.push_back(dense ? std::move(first) : fit.sized(std::move(first), without));
   }

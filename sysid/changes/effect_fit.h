@@ -1,5 +1,5 @@
 #pragma once
-// One effect fitted to what a frozen base leaves of later records.
+// Fits one effect to the residual of later records after a frozen base.
 
 #include <vector>
 
@@ -11,42 +11,43 @@
 
 namespace softgrip::sysid {
 
-/// An effect with numbers.
+/// An effect with its numbers.
 struct FittedEffect {
   Effect effect;
   std::vector<double> numbers;
 };
 
-/// Residuals of later records after the base, without the differences that are no change: the zero, and a
+/// Residuals of later records after the base, without the differences that are not a change: the zero, and a
 /// gain within the variation of the healthy logs.
 class LaterReadings {
  public:
-  /// @param later  thinned_for() the base. @param left  what the base leaves of them, in bins.
+  /// @param later  thinned_for() the base. @param left  their residual after the base, in bins.
   LaterReadings(const Base& base, std::vector<Record> later, Binned left);
-  /// The readings of one unit, or all but those of it.
+  /// Returns the readings of one unit, or those of all other units.
   [[nodiscard]] LaterReadings only(const Units& units, std::size_t unit) const;
   [[nodiscard]] LaterReadings without(const Units& units, std::size_t unit) const;
 
-  /// Whitened residual of the base with these effects, without what zero and gain take; a few rows more than
-  /// rows(), for what zero and gain cost.
+  /// Returns the whitened residual of the base with these effects, after the fit of zero and gain. It has a
+  /// few rows more than rows(): the penalties of zero and gain.
   [[nodiscard]] Eigen::VectorXd white(const std::vector<FittedEffect>& effects) const;
-  /// white(), and behind it the gain that counts as no change, in units of how much the healthy logs vary.
+  /// Returns white() and, as the last row, the gain that is not a change, in units of the variation of the
+  /// healthy logs.
   [[nodiscard]] Eigen::VectorXd white_and_gain(const std::vector<FittedEffect>& effects) const;
   [[nodiscard]] const WhiteRows& rows() const { return rows_; }
   [[nodiscard]] const Base& base() const { return base_; }
   [[nodiscard]] const std::vector<Record>& records() const { return later_; }
-  /// Names of the records that begin as no healthy record does: under pressure, or without pressure. The
-  /// healthy records do not show their slow transient, so it is no change, either.
+  /// Returns the names of the records whose start no healthy record has: under pressure, or without pressure.
+  /// The healthy records do not show the slow transient of such a start, so it is not a change.
   [[nodiscard]] std::vector<std::string> other_starts() const;
   [[nodiscard]] const Binned& left() const { return left_; }
   /// Prediction of the unchanged base, in bins.
   [[nodiscard]] const Binned& plain() const { return plain_; }
   /// Difference of the prediction with and without the effects, in bins.
   [[nodiscard]] Binned added(const std::vector<FittedEffect>& effects) const;
-  /// Root mean square of what is left of the readings with these effects, as they are and not whitened;
-  /// every record's zero and the common gain each at their best.
+  /// Returns the root mean square of the residual with these effects, not whitened. The zero of each record
+  /// and the common gain are fitted.
   [[nodiscard]] double plain_rms(const std::vector<FittedEffect>& effects) const;
-  /// Zero and gain that go with the effects: common zero [mm], relative gain.
+  /// Zero and gain that are fitted beside the effects: common zero [mm], relative gain.
   struct Nuisance {
     double zero_mm = 0, gain = 0;
   };
@@ -74,13 +75,13 @@ class LaterReadings {
   std::vector<Driven> driven_;
   WhiteRows rows_;
   Eigen::VectorXd target_;
-  /// Columns of zeros and of transients after other starts; what turns a residual into their sizes.
+  /// Columns of zeros and of transients after other starts, and the matrix that gives their sizes.
   Eigen::MatrixXd nuisance_, solver_;
-  Eigen::VectorXd price_;                 ///< root of what each costs
-  Eigen::VectorXd motion_, motion_left_;  ///< the base's own motion, whole and without what zeros take
+  Eigen::VectorXd price_;                 ///< root of the penalty of each
+  Eigen::VectorXd motion_, motion_left_;  ///< motion of the base, complete and after the fit of the zeros
 };
 
-/// The base's own records with what it leaves of each unit that is left out.
+/// Returns the records of the base with its residual for each unit that is left out of the fit.
 [[nodiscard]] LaterReadings healthy_readings(const Base& base);
 
 /// @param records  at full rate. @param left  residuals_of() them.
@@ -93,12 +94,12 @@ struct EffectFit {
   Eigen::VectorXd white;
 };
 
-/// From the best of its starts, the effects so far kept as they are.
+/// Fits an effect from the best of its starts. The other effects are fixed.
 /// @param without  readings.white(others).
 [[nodiscard]] EffectFit fit_effect(const LaterReadings& readings, const Effect& effect,
                                    const std::vector<FittedEffect>& others, const Eigen::VectorXd& without);
 
-/// By how much a number of an effect is moved for a slope: little of what it is or usually is, and not out of
+/// Returns the difference of a number for a derivative: a small share of its value or of its usual value, within
 /// its bounds.
 [[nodiscard]] double small_move(const FittedEffect& fitted, std::size_t number);
 

@@ -15,7 +15,7 @@ namespace {
 
 constexpr Eigen::Index numbers = 8;
 constexpr int most_regulator_steps = 15;
-/// Difference for a derivative, and longest move of a step, both of the logarithms.
+/// Difference of a logarithm for its derivative, and its largest change in one step.
 constexpr double beside_by = 0.03, longest_move = 1.5;
 /// Bound of the logarithms: a factor of 400.
 constexpr double largest_logarithm = 6;
@@ -25,7 +25,7 @@ constexpr double least_progress = 0.003;
 /// keeps its usual value.
 constexpr double prior_share = 0.003;
 
-/// The search's numbers are logarithms, 0 where it starts.
+/// The coordinates are logarithms, 0 at the start.
 Regulator regulator_at(const Eigen::VectorXd& t, double largest_kpa) {
   const auto times = [&](Eigen::Index i) { return std::exp(t(i)); };
   return {0.002 * largest_kpa * times(0),
@@ -39,7 +39,7 @@ Regulator regulator_at(const Eigen::VectorXd& t, double largest_kpa) {
           0};
 }
 
-/// The readings in bins, and what a finger behind a regulator could read.
+/// The readings in bins, and the columns that a finger behind a regulator could give.
 class BinnedReadings {
  public:
   BinnedReadings(const std::vector<Record>& records, double largest_kpa, ReadBy read_by)

@@ -10,11 +10,11 @@ namespace softgrip::sysid {
 
 /// The sensor behind a regulator.
 enum class ReadBy {
-  gauge,   ///< the pressure itself, but for its gain and zero
+  gauge,   ///< the pressure, except for gain and zero
   finger,  ///< a bank of plays and lags, whose weights are fitted again for each regulator
 };
 
-/// The regulator behind which least is left of the readings.
+/// Returns the regulator with the smallest residual of the readings.
 /// @param records  driven by the command.
 [[nodiscard]] Regulator fit_regulator(const std::vector<Record>& records, double largest_kpa,
                                       ReadBy read_by = ReadBy::finger);

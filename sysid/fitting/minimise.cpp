@@ -15,7 +15,7 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Ceres reports through glog; what matters of it is in the solver's summary.
+/// Ceres reports through glog. The summary of the solver contains the relevant part.
 void quieten_log() {
   static std::once_flag once;
   std::call_once(once, [] {
@@ -24,9 +24,9 @@ void quieten_log() {
   });
 }
 
-/// All residuals as one block. Huber's loss is put into the residuals themselves, sample by sample, since
-/// Ceres would apply it to the block: f = sign(r) sqrt(2 d |r| - d^2) beyond d has Huber's cost as its
-/// square.
+/// All residuals as one block. Ceres would apply a loss function to the whole block. Huber's loss is
+/// therefore applied to each residual: the square of f = sign(r) sqrt(2 d |r| - d^2), for |r| > d, is Huber's
+/// cost.
 class WholeTrajectory final : public ceres::CostFunction {
  public:
   WholeTrajectory(const Residuals& residuals, double huber_mm) : residuals_(residuals), huber_mm_(huber_mm) {
@@ -110,8 +110,8 @@ Minimum minimise(const Residuals& residuals, std::vector<double> z, const Minimi
   solver.parameter_tolerance = 1e-10;
   solver.gradient_tolerance = 0;
   solver.initial_trust_region_radius = 1e3;
-  // With bounds Ceres would search along every step, with the derivatives once more at each trial: steps are
-  // cut at the bounds all the same.
+  // With bounds, Ceres would search along each step and compute the derivatives at each trial. Without this
+  // search, it still limits the steps to the bounds.
   solver.max_num_line_search_step_size_iterations = 0;
   ceres::Solver::Summary summary;
   ceres::Solve(solver, &problem, &summary);

@@ -1,5 +1,5 @@
 #pragma once
-// Least squares with bounds from a given point, by Ceres' trust region.
+// Least squares with bounds from a given start, with the trust region method of Ceres.
 
 #include <cstddef>
 #include <functional>
@@ -14,12 +14,12 @@ namespace softgrip::sysid {
 
 struct MinimiseOptions {
   int most_iterations = 60;
-  /// Residuals beyond it count linearly instead of by their square (Huber); infinity: never.
+  /// Residuals above this limit have a linear cost instead of a quadratic one (Huber). Infinity: none.
   double huber_mm = std::numeric_limits<double>::infinity();
-  /// Index of a parameter that keeps its value.
+  /// Index of a parameter that is fixed.
   std::optional<std::size_t> held;
-  /// Normal equations instead of an orthogonal factorisation: several times faster, half the digits. Enough
-  /// where a fit is judged by its error, not by its last digits.
+  /// Normal equations instead of an orthogonal factorisation. They are several times faster and have half the
+  /// digits, which is sufficient if only the error of the fit is used.
   bool normal_equations = false;
   /// Relative change of the cost at which the search ends.
   double tolerance = 1e-10;
@@ -27,17 +27,17 @@ struct MinimiseOptions {
 
 struct Minimum {
   std::vector<double> z;
-  double rmse_mm = 0;  ///< of the residuals as they are, without Huber
-  double cost = 0;     ///< half the sum of squares, beyond huber_mm the linear part
+  double rmse_mm = 0;  ///< of the residuals without Huber's loss
+  double cost = 0;     ///< half the sum of squares, or of Huber's loss
   int iterations = 0;
   bool converged = false;
 };
 
-/// @param z  the start, brought within the bounds first.
+/// @param z  the start; it is first limited to the bounds.
 [[nodiscard]] Minimum minimise(const Residuals& residuals, std::vector<double> z,
                                const MinimiseOptions& options = {});
 
-/// Fills `r` at the point `p`.
+/// Computes the residuals `r` at the point `p`.
 using PlainResiduals = std::function<void(std::span<const double> p, std::span<double> r)>;
 
 struct PlainMinimum {
@@ -45,8 +45,8 @@ struct PlainMinimum {
   double sum_of_squares = 0;
 };
 
-/// Of a few numbers, or none, without bounds that are no model's, with differences for derivatives.
-/// @param count  how many residuals.
+/// Minimises over a few parameters, or none, without bounds. Derivatives are central differences.
+/// @param count  number of residuals.
 /// @param tolerance  relative change of the cost at which the search ends.
 [[nodiscard]] PlainMinimum minimise_plain(const PlainResiduals& residuals, std::size_t count,
                                           std::vector<double> start, double tolerance = 1e-12);

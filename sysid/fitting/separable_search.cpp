@@ -16,7 +16,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Sums up the Gram matrix of the columns that pass by.
+/// Accumulates the Gram matrix of the columns, block by block.
 class GramSink final : public SeparableRecord::Sink {
  public:
   explicit GramSink(Index columns) : gram_(MatrixXd::Zero(columns, columns)) {}
@@ -105,7 +105,7 @@ NormalEquations SeparableSearch::normal(const SeparablePoint& point, const Linea
       }
     }
   }
-  // What the free linear parameters take over: curvature - cross' G^-1 cross.
+  // Curvature of the reduced problem: curvature - cross' G^-1 cross, with the free linear parameters.
   std::vector<Index> free;
   for (Index i = 0; i < n; ++i) {
     if (!linear.at_bound[static_cast<std::size_t>(i)]) free.push_back(i);

@@ -1,10 +1,10 @@
 #pragma once
-// Searching a separable chain's parameters from bad starts: variable projection (Golub and Pereyra 1973, with
-// Kaufman's simplification 1975) and Levenberg's and Marquardt's damping.
+// Search for the parameters of a separable chain from poor starts: variable projection (Golub and Pereyra
+// 1973, with the simplification by Kaufman 1975) and damped steps (descent.h).
 //
-// For given nonlinear parameters the linear ones follow from normal equations with bounds. One walk over the
-// data gives the Gram matrix of all columns, from which cost, gradient and Gauss-Newton matrix of the reduced
-// problem follow; nothing of the size of the data is kept.
+// For given nonlinear parameters, the linear ones follow from normal equations with bounds. Reading the
+// data once gives the Gram matrix of all columns. The cost, the gradient and the Gauss-Newton matrix of the
+// reduced problem follow from it. No array has the size of the data.
 
 #include <memory>
 #include <optional>
@@ -18,7 +18,7 @@
 
 namespace softgrip::sysid {
 
-/// Where one search ended.
+/// End of one search.
 struct SearchResult {
   FitPoint point;
   double rmse_mm = 0;
@@ -26,23 +26,23 @@ struct SearchResult {
   bool converged = false;
 };
 
-/// Prepared for many starts; searching is thread-safe.
+/// A search that is prepared for many starts. run() is thread-safe.
 class SeparableSearch {
  public:
-  /// nullopt unless the chain is separable, all its linear parameters are free in `space` (alpha or k0, beta,
-  /// every k with its c) and gamma and eta are both free or both fixed.
+  /// Returns nullopt unless the chain is separable, all its linear parameters are free in `space` (alpha or
+  /// k0, beta, each k with its c), and gamma and eta are both free or both fixed.
   /// @param records  must outlive the search.
   [[nodiscard]] static std::optional<SeparableSearch> make(const std::vector<Record>& records,
                                                            const FitSpace& space);
 
-  /// From the nonlinear parameters of `start`; its linear ones do not matter.
-  /// @param damping  at first: small goes straight for the nearest minimum of a parabola, large creeps
-  /// downhill.
+  /// Starts from the nonlinear parameters of `start`. Its linear ones have no effect.
+  /// @param damping  of the first step: a small value gives a Gauss-Newton step, a large one a short step
+  /// along the gradient.
   [[nodiscard]] SearchResult run(const FitPoint& start, int most_iterations, double damping = 1e-3) const;
 
  private:
-  /// A nonlinear parameter of the search and its bounds, in the search's own scale: growing and eta, delay,
-  /// lag and peak by a typical size, rates as logarithms.
+  /// A nonlinear parameter and its bounds, in the scale of the search: growing, eta, delay, lag and peak are
+  /// divided by a typical size, rates are logarithms.
   struct Coordinate {
     enum class Kind { growing, eta, rate, delay, lag, peak };
     Kind kind;
@@ -51,7 +51,7 @@ class SeparableSearch {
     double lower = 0;
     double upper = 0;
   };
-  /// The best linear parameters at a point.
+  /// Optimal linear parameters at a point.
   struct Linear {
     Eigen::VectorXd values;
     std::vector<bool> at_bound;
@@ -69,18 +69,18 @@ class SeparableSearch {
   [[nodiscard]] SeparablePoint moved(SeparablePoint point, const Eigen::VectorXd& q) const;
   void set_linear(SeparablePoint& point, const Eigen::VectorXd& values) const;
   [[nodiscard]] Linear project(const SeparablePoint& point) const;
-  /// Of the reduced problem.
+  /// Returns the normal equations of the reduced problem.
   [[nodiscard]] NormalEquations normal(const SeparablePoint& point, const Linear& linear) const;
   [[nodiscard]] Eigen::MatrixXd coordinate_map(const SeparablePoint& point, std::size_t record) const;
   [[nodiscard]] FitPoint to_fit_point(FitPoint start, const SeparablePoint& point) const;
-  /// Where the linear columns of a record stand among all linear parameters; -1: fixed.
+  /// Indices of the linear columns of a record among all linear parameters; -1: fixed.
   [[nodiscard]] std::vector<Eigen::Index> places(std::size_t record) const;
 
   std::shared_ptr<const FitSpace> space_;
   SeparableShape shape_;
   std::vector<SeparableRecord> records_;
   std::vector<Coordinate> coordinates_;
-  std::vector<Eigen::Index> first_own_;  ///< by record: where its own linear parameters begin
+  std::vector<Eigen::Index> first_own_;  ///< by record: index of its first own linear parameter
   std::vector<bool> offset_free_;        ///< by record
   std::vector<double> lower_;            ///< of the linear parameters
   std::vector<double> upper_;

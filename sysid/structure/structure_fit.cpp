@@ -17,26 +17,26 @@
 namespace softgrip::sysid {
 namespace {
 
-/// What a squared deviation by one of its widths costs a number, in the logarithm of the mean square.
+/// Penalty for a number that deviates by one of its widths, in the logarithm of the mean square.
 constexpr double prior = 0.05;
-/// What follows the pressure at once has at least this share of the finger's gain over all pressures.
+/// Smallest share of the instantaneous elastic gain in the gain of the finger over all pressures.
 constexpr double least_elastic_share = 0.01;
-/// Share of the largest pressure that a regulator's dead band has at most; data sheets say 0.005 to 0.02.
+/// Largest dead band of a regulator, as a share of the largest pressure. Data sheets state 0.005 to 0.02.
 constexpr double widest_of_a_regulator = 0.03;
-/// Of envelopes: with a width of twice as much they imitate a sensor that saturates, and hide it (textbook
-/// worlds).
+/// Width of the prior for the bend of an envelope. With twice this width, envelopes fit the saturation of a
+/// sensor and hide it (textbook campaign).
 constexpr double usual_bend = 0.05;
-/// From one time constant of the ladder to the next.
+/// Ratio of neighbouring time constants of the ladder.
 constexpr double ladder_ratio = 3;
 
-/// A nonlinear number as the search sees it: t, of the order of one.
+/// A nonlinear number in the coordinate t of the search, which is of the order of one.
 struct Coordinate {
   std::function<double(const NonlinearNumbers&)> get;
   std::function<void(NonlinearNumbers&, double)> set;
   double centre = 0;
   double lower = -std::numeric_limits<double>::infinity();
   double upper = std::numeric_limits<double>::infinity();
-  bool drives = false;  ///< the pressure in the finger depends on it: dear to move
+  bool drives = false;  ///< the pressure in the finger depends on it: its derivative is expensive
 };
 
 Coordinate straight(double NonlinearNumbers::*member, double width, double centre, double lower,
@@ -107,7 +107,7 @@ class Search {
     const auto n = static_cast<Eigen::Index>(coordinates_.size());
     Eigen::MatrixXd jacobian(state.residual.size(), n);
     NormalEquations normal;
-    // First those that leave the pressure in the finger where the last look has left it.
+    // First the coordinates that leave the pressure in the finger as it was last computed.
     for (const bool drives : {false, true}) {
       for (Eigen::Index k = 0; k < n; ++k) {
         const Coordinate& c = coordinates_[static_cast<std::size_t>(k)];
@@ -178,7 +178,7 @@ class Search {
     }
     if (structure_.lag && structure_.second_lag) add_driving(logarithmic(&N::second_s, 1.5, 0.1, 1e-4, 10));
     if (structure_.lag && structure_.regulator) {
-      // A wider one is no regulator's: a backlash would be taken for it.
+      // A wider band is not that of a regulator: the search would fit a backlash with it.
       const double widest_kpa = widest_of_a_regulator * grid_.largest_kpa;
       add_driving(straight(&N::pilot_band_kpa, 1, 0, 0, widest_kpa));
       add_driving(straight(&N::overlap_kpa, 1, 0, 0, widest_kpa));
@@ -230,7 +230,7 @@ std::vector<NonlinearNumbers> starts_for(const std::vector<Record>& records, con
                             .trained_kpa = trained * grid.largest_kpa,
                             .peak_before_kpa = peaks};
   };
-  // A quick valve, dead time in its place, and a slow one.
+  // A fast valve, a dead time instead of a lag, and a slow valve.
   return {start(0.02, 0.15, 0.15, 2, 0), start(0.15, 0.05, 0.05, 6, 1.2), start(0.1, 0.5, 1.5, 3, 0.5)};
 }
 

@@ -1,6 +1,6 @@
 #pragma once
-// A structure fitted to records: its few nonlinear numbers are searched, all weights follow (variable
-// projection).
+// Fits a structure to records by variable projection: the few nonlinear numbers are searched, and all weights
+// follow from them.
 
 #include <vector>
 
@@ -15,10 +15,10 @@ namespace softgrip::sysid {
 struct StructureFitOptions {
   double ridge = 1e-5;           ///< see ProjectionProblem
   int most_iterations = 40;      ///< from each start
-  std::size_t most_rows = 2500;  ///< readings that the search looks at; the weights are then fitted to all
+  std::size_t most_rows = 2500;  ///< readings of the search; the weights are then fitted to all
 };
 
-/// A structure with numbers.
+/// A structure with its numbers.
 struct FittedStructure {
   BaseStructure structure;
   StructureGrid grid;
@@ -27,24 +27,25 @@ struct FittedStructure {
   double mean_square_mm2 = 0;
   double ridge = 0;
   bool converged = false;
-  std::vector<double> start_rmse_mm;  ///< where the search from each start ended
+  std::vector<double> start_rmse_mm;  ///< by start: the error at the end of the search
 };
 
-/// Thresholds, time constants and hinges for these records. With few cycles of data there are fewer plays.
+/// Returns thresholds, time constants and hinges for these records. Few cycles of data give fewer play
+/// operators.
 [[nodiscard]] StructureGrid grid_for(const std::vector<Record>& records);
 
-/// The numbers with a regulator's in the place of the lag's, where a search for them may begin: overlap and
-/// error of a fully open port by the pressures that there are.
+/// Returns a start for the search of a regulator, in which the numbers of the lag are replaced. Its overlap
+/// and its error with a fully open port are shares of the largest pressure.
 [[nodiscard]] NonlinearNumbers with_usual_regulator(NonlinearNumbers numbers, const StructureGrid& grid);
 
-/// From several starts of its own, or from `near`, where numbers are known already; a structure with a
-/// regulator is fitted from `near` alone, see with_usual_regulator().
+/// Fits from several starts of its own, or from `near` if numbers are known. A structure with a regulator
+/// needs `near`, see with_usual_regulator().
 [[nodiscard]] FittedStructure fit_form(const std::vector<Record>& records, const BaseStructure& structure,
                                        const StructureGrid& grid, const StructureFitOptions& options,
                                        const NonlinearNumbers* near = nullptr);
 
-/// The readings without what their zeros do besides what the finger does: the structure with wandering zeros
-/// fitted, and those taken away.
+/// Removes the drift of the zero from the readings: fits the structure with a drifting zero for each record
+/// and subtracts the fitted zeros.
 [[nodiscard]] std::vector<Record> without_wandering(std::vector<Record> records, BaseStructure structure,
                                                     const StructureFitOptions& options);
 

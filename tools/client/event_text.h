@@ -8,8 +8,8 @@
 
 namespace softgrip::tools {
 
-/// "   12.340 s  warning  left: Grip result: NO PART." of an event as the socket API tells it; of one
-/// that carries the time of day, "2026-11-21 09:32:05.123  warning  ..." in local time.
+/// "   12.340 s  warning  left: Grip result: NO PART." of an event as the socket API reports it; for an event
+/// with the time of day, "2026-11-21 09:32:05.123  warning  ..." in local time.
 [[nodiscard]] std::string line_of_event(const nlohmann::ordered_json& event);
 
 /// Replaces the control characters of a text line by line, so that a terminal does not execute them.

@@ -15,19 +15,19 @@
 namespace softgrip::sysid::foreign_file_test {
 namespace {
 
-TEST(ArrayCollector, MatricesBecomeColumnsWhicheverWayTheyLie) {
+TEST(ArrayCollector, TallAndWideMatricesBecomeColumns) {
   ArrayCollector arrays("f");
-  arrays.add("stands", "", 3, 2, {1, 2, 3, 4, 5, 6});
-  arrays.add("lies", "", 2, 3, {1, 4, 2, 5, 3, 6});
+  arrays.add("tall", "", 3, 2, {1, 2, 3, 4, 5, 6});
+  arrays.add("wide", "", 2, 3, {1, 4, 2, 5, 3, 6});
   arrays.add("row", "psi", 1, 3, {7, 8, 9});
   arrays.add("other", "", 1, 5, {0, 0, 0, 0, 0});
   document::Problems problems;
   const auto table = arrays.table("test", problems);
   ASSERT_TRUE(table);
   ASSERT_EQ(table->columns.size(), 5U);
-  EXPECT_EQ(table->columns[1].name, "stands(:,2)");
+  EXPECT_EQ(table->columns[1].name, "tall(:,2)");
   EXPECT_EQ(table->columns[1].values, (std::vector<double>{4, 5, 6}));
-  EXPECT_EQ(table->columns[2].name, "lies(1,:)");
+  EXPECT_EQ(table->columns[2].name, "wide(1,:)");
   EXPECT_EQ(table->columns[2].values, (std::vector<double>{1, 2, 3}));
   EXPECT_EQ(table->columns[4].unit, "psi");
   EXPECT_EQ(table->notes, std::vector<std::string>{"'other' is skipped: 5 values where others have 3"});

@@ -107,7 +107,7 @@ def main():
             for program, counts in rows.items():
                 cells = [quantile(counts, share) for share in (0.5, 0.99, 0.999, 1)] + [sum(counts.values())]
                 print(f"| {program}, {name} | " + " | ".join(str(cell) for cell in cells) + " |", flush=True)
-            print(f"softgripd {name}: {slips} slips, {failed} failed exchanges", flush=True)
+            print(f"softgripd {name}: {slips} overruns, {failed} failed exchanges", flush=True)
             if slips > 0 or quantile(rows["softgripd"], 1) > MOST_US:
                 beyond.append(name)
     terminate(emulator.process)
