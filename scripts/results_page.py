@@ -9,7 +9,7 @@ import subprocess
 
 
 def version_of(build):
-    """Returns `softgrip 0.1.0+COMMIT` of a build folder."""
+    """Returns `softgrip 0.2.0+COMMIT` of a build folder."""
     program = pathlib.Path(build) / "tools/softgrip"
     return subprocess.run([program, "--version"], check=True, capture_output=True, text=True).stdout.strip()
 

@@ -99,8 +99,8 @@ struct EffectFit {
 [[nodiscard]] EffectFit fit_effect(const LaterReadings& readings, const Effect& effect,
                                    const std::vector<FittedEffect>& others, const Eigen::VectorXd& without);
 
-/// Returns the difference of a number for a derivative: a small share of its value or of its usual value, within
-/// its bounds.
+/// Returns the difference of a number for a derivative: a small share of its value or of its usual value,
+/// within its bounds.
 [[nodiscard]] double small_move(const FittedEffect& fitted, std::size_t number);
 
 [[nodiscard]] Extension extension_of(const std::vector<FittedEffect>& effects);

@@ -25,7 +25,7 @@ def findings_of(name, text):
         if len(cells) != 4 or not all(cells):
             yield f"{name}: a cell of the table of versions is empty: {row}"
         elif not re.search(r"softgrip \d+\.\d+\.\d+", cells[0]) or not re.fullmatch(r"\d{4}-\d\d-\d\d", cells[1]):
-            yield f"{name}: not a version and a date (softgrip 0.1.0+COMMIT, YYYY-MM-DD): {row}"
+            yield f"{name}: not a version and a date (softgrip 0.2.0+COMMIT, YYYY-MM-DD): {row}"
 
 
 def unlinked():

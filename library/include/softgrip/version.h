@@ -8,7 +8,7 @@
 
 namespace softgrip {
 
-/// Returns the version of the loaded library, with the commit: "0.1.0+1a2b3c4". The part before `+` follows
+/// Returns the version of the loaded library, with the commit: "0.2.0+1a2b3c4". The part before `+` follows
 /// semantic versioning. Before 1.0.0, a new minor version may change the interface.
 [[nodiscard]] SOFTGRIP_API std::string version();
 
