@@ -30,6 +30,15 @@ std::uint32_t cycles(MapReader& reader, std::string_view key, std::int64_t lower
   return static_cast<std::uint32_t>(reader.integer(key, lower, 100'000));
 }
 
+/// `slipped_cycles` is the deprecated name of `overrun_cycles`.
+std::uint32_t overrun_cycles(MapReader& reader) {
+  if (!reader.has("slipped_cycles")) return cycles(reader, "overrun_cycles", 0);
+  const std::uint32_t number = cycles(reader, "slipped_cycles", 0);
+  if (reader.optional_integer("overrun_cycles", 0, 100'000))
+    reader.report("slipped_cycles", "this repeats overrun_cycles", "overrun_cycles alone");
+  return number;
+}
+
 /// Reads processor numbers without repetition.
 std::vector<int> read_cpus(Context& context, MapReader& reader) {
   std::vector<int> cpus;
@@ -151,7 +160,7 @@ void read_faults(Context& context, MapReader& top) {
   faults.readback_tolerance_kpa = reader.number("readback_tolerance_kpa", {0.001, 1000});
   faults.readback_delay_s = reader.number("readback_delay_s", {0, 10});
   read_pressure_fault(context, reader);
-  faults.overrun_cycles = cycles(reader, "slipped_cycles", 0);  // words-ok: the key of the file
+  faults.overrun_cycles = overrun_cycles(reader);
   faults.model_unfit_is_fault = reader.boolean("model_unfit_is_fault");
   faults.unsteady_is_fault = reader.optional_boolean("unsteady_is_fault").value_or(false);
 }

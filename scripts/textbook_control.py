@@ -52,7 +52,7 @@ safety:
   max_missed_commands: 20
 faults: {{bus_down_cycles: 20, invalid_reading_cycles: 10, displacement_cycles: 10, readback_cycles: 20,
   readback_tolerance_kpa: 1, readback_delay_s: 0.1, pressure_cycles: 200, pressure_tolerance_kpa: 20,
-  pressure_delay_s: 0.5, slipped_cycles: 0, model_unfit_is_fault: false, unsteady_is_fault: false}}
+  pressure_delay_s: 0.5, overrun_cycles: 0, model_unfit_is_fault: false, unsteady_is_fault: false}}
 plausibility: {{max_age_s: 0.1, max_speed_mm_per_s: 500, jump_margin_mm: 0.5, frozen_after_s: 1.0, frozen_band_mm: 0,
   frozen_command_kpa: 10}}
 detection: {{margin_mm: 1.0}}

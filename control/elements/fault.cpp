@@ -88,7 +88,7 @@ constexpr std::array faults{
               "no real-time scheduling, an overloaded machine",
               "Check the start-up report and the loop statistics.",
               "max_missed_commands exchanges without the loop; 1 cycle, if "
-              "slipped_cycles is not 0"},  // words-ok: the key of the rig file
+              "overrun_cycles is not 0"},
     FaultInfo{FaultCode::not_finite, "F902", "not_finite", "A computed command was not a finite number.",
               "a model or gains that diverge", "Keep the recording; it is a defect or an unusable model.",
               "1 cycle"},

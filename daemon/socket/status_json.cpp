@@ -87,7 +87,8 @@ Json json_of_channel(const control::ChannelSettings& settings, const control::Ch
           {"feedforward_kpa", number(channel.feedforward_kpa)},
           {"feedback_kpa", number(channel.feedback_kpa)},
           {"residual_mm", number(channel.residual_mm)},
-          {"deficit_mm", number(channel.shortfall_mm)},  // words-ok: a documented key
+          {"shortfall_mm", number(channel.shortfall_mm)},
+          {"deficit_mm", number(channel.shortfall_mm)},
           {"squeeze_kpa", number(channel.squeeze_kpa)},
           {"free_kpa", number(channel.free_kpa)},
           {"age_s", channel.validity == model::Validity::none_yet ? Json(nullptr) : number(channel.age_s)},
@@ -225,9 +226,10 @@ Json status_json(const StatusSources& sources) {
   }
   json["bus"] = json_of_bus(sources, snapshot.bus);
   const Histogram::Summary wake_up = sources.loop.wake_up.summary();
+  const auto overruns = sources.loop.overruns_woken_late.value() + sources.loop.overruns_took_long.value();
   json["loop"] = {{"ticks", snapshot.ticks},
-                  {"slips",  // words-ok: a documented key
-                   sources.loop.overruns_woken_late.value() + sources.loop.overruns_took_long.value()},
+                  {"overruns", overruns},
+                  {"slips", overruns},
                   {"wake_up_p99_us", static_cast<double>(wake_up.p99_ns) * us_per_ns},
                   {"wake_up_max_us", static_cast<double>(wake_up.max_ns) * us_per_ns}};
   json["recording"] = json_of(sources.recorder.status());
@@ -242,8 +244,10 @@ Json statistics_json(const StatusSources& sources, const std::vector<EventCount>
   const BusStatistics& bus = sources.bus;
   return {{"loop",
            {{"ticks", loop.ticks.value()},
-            {"slips_woken_late", loop.overruns_woken_late.value()},  // words-ok: a documented key
-            {"slips_took_long", loop.overruns_took_long.value()},    // words-ok: a documented key
+            {"overruns_woken_late", loop.overruns_woken_late.value()},
+            {"overruns_took_long", loop.overruns_took_long.value()},
+            {"slips_woken_late", loop.overruns_woken_late.value()},
+            {"slips_took_long", loop.overruns_took_long.value()},
             {"wake_up", json_of(loop.wake_up, with_histograms)},
             {"compute", json_of(loop.compute, with_histograms)},
             {"reading_age", json_of(loop.reading_age, with_histograms)}}},
@@ -251,7 +255,8 @@ Json statistics_json(const StatusSources& sources, const std::vector<EventCount>
            {{"exchanges", bus.exchanges.value()},
             {"failures", bus.failures.value()},
             {"sessions", bus.sessions.value()},
-            {"slips", bus.overruns.value()},  // words-ok: a documented key
+            {"overruns", bus.overruns.value()},
+            {"slips", bus.overruns.value()},
             {"wake_up", json_of(bus.wake_up, with_histograms)},
             {"exchange", json_of(bus.exchange, with_histograms)}}},
           {"events", json_of(events)}};

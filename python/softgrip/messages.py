@@ -87,6 +87,11 @@ class Channel(_AsSaid):
     limit: Optional[str]
     health: str
 
+    @property
+    def shortfall_mm(self) -> Optional[float]:
+        """The displacement of free motion minus the reading; `deficit_mm` is the deprecated name."""
+        return self.deficit_mm
+
 
 @dataclasses.dataclass(frozen=True)
 class SequenceState(_AsSaid):

@@ -10,6 +10,7 @@
 #include <fstream>
 #include <functional>
 #include <set>
+#include <sstream>
 
 #include "base/clock.h"
 #include "base/scratch_folder.h"
@@ -73,6 +74,26 @@ TEST(RigFile, OfTheBenchHoldsWhatTheFileSays) {
   EXPECT_EQ(rig.recorder.mode, rig::RecorderSettings::Mode::sequences);
   EXPECT_EQ(rig.inputs.size(), 3U);
   EXPECT_EQ(rig.seed, std::nullopt);
+}
+
+TEST(RigFile, TheDeprecatedNameOfAKeyIsReadAndNotRepeated) {
+  std::ostringstream shipped_text;
+  shipped_text << std::ifstream(shipped("rig.yaml")).rdbuf();
+  const std::string line = "  overrun_cycles: 0 ";
+  const auto read = [&](const std::string& lines, Problems& problems) {
+    std::string text = shipped_text.str();
+    text.replace(text.find(line), line.size(), lines + " ");
+    return rig::read_rig(document::parse(shipped("rig.yaml"), text, problems), problems);
+  };
+  for (const char* key : {"overrun_cycles", "slipped_cycles"}) {
+    Problems problems;
+    const auto rig = read(std::string("  ") + key + ": 7", problems);
+    ASSERT_TRUE(rig) << problems.format();
+    EXPECT_EQ(rig->settings.faults.overrun_cycles, 7U) << key;
+  }
+  Problems problems;
+  EXPECT_FALSE(read("  slipped_cycles: 7\n  overrun_cycles: 7", problems));
+  EXPECT_NE(problems.format().find("this repeats overrun_cycles"), std::string::npos) << problems.format();
 }
 
 TEST(RigFile, OfTheSimulatedRigHoldsItsPlants) {

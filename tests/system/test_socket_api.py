@@ -195,6 +195,15 @@ class SocketApi(bench.BenchTest):
             ids = [line["event"]["id"] for line in told if "event" in line]
         self.assertEqual(ids, list(range(1, newest + 1)))
 
+    def test_deprecated_names_have_the_values_of_their_successors(self):
+        status, statistics = self.softgripd.status(), self.softgripd.result("statistics")
+        for channel in status["channels"]:
+            self.assertEqual(channel["deficit_mm"], channel["shortfall_mm"])
+        self.assertEqual(status["loop"]["slips"], status["loop"]["overruns"])
+        for kind in ("woken_late", "took_long"):
+            self.assertEqual(statistics["loop"][f"slips_{kind}"], statistics["loop"][f"overruns_{kind}"])
+        self.assertEqual(statistics["bus"]["slips"], statistics["bus"]["overruns"])
+
 
 class Thermometer(bench.BenchTest):
     def test_what_is_measured_is_told_by_status_and_screen(self):

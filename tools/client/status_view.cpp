@@ -261,11 +261,11 @@ void add_board(std::vector<std::string>& lines, const Json& status, const ViewSt
 
 void add_machinery(std::vector<std::string>& lines, const Json& status, const ViewStyle& style) {
   const Json& loop = object_at(status, "loop");
-  const auto slips = number_at(loop, "slips");  // words-ok: API key
+  const auto overruns = number_at(loop, "slips");
   std::vector<Span> timing{
       {with_decimals(number_at(status, "rate_hz"), 0) + " Hz, ", Tone::plain},
       {with_decimals(number_at(loop, "ticks"), 0) + " ticks, ", Tone::plain},
-      {with_decimals(slips, 0) + " overruns, ", slips.value_or(0) > 0 ? Tone::doubtful : Tone::plain},
+      {with_decimals(overruns, 0) + " overruns, ", overruns.value_or(0) > 0 ? Tone::doubtful : Tone::plain},
       {"wake-up p99 " + with_decimals(number_at(loop, "wake_up_p99_us"), 0) + " us, ", Tone::plain},
       {"max " + with_decimals(number_at(loop, "wake_up_max_us"), 0) + " us", Tone::plain}};
   if (object_at(status, "real_time").value("degraded", false))

@@ -44,9 +44,10 @@ void report(const RunOptions& options, const daemon::Outcome& outcome) {
   const bool began = daemon::reached_the_board(outcome.ending);
   if (options.json) {
     const Json safe_state_confirmed = began ? Json(outcome.safe_state_confirmed) : Json(nullptr);
-    Json json{{"sequence_end", end},      {"left_safely", safe_state_confirmed},
-              {"ticks", outcome.ticks},   {"slips", outcome.overruns},  // words-ok: API key
-              {"wall_s", outcome.wall_s}, {"results", Json::object()}};
+    Json json{{"sequence_end", end},       {"left_safely", safe_state_confirmed},
+              {"ticks", outcome.ticks},    {"overruns", outcome.overruns},
+              {"slips", outcome.overruns}, {"wall_s", outcome.wall_s},
+              {"results", Json::object()}};
     for (std::size_t i = 0; i < channels.size(); ++i) json["results"][channels[i]] = title(i);
     print_json(json);
     return;

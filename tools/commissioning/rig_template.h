@@ -52,7 +52,7 @@ faults:                            # consecutive cycles before each is a fault
   readback_cycles: 10
   readback_tolerance_kpa: 1
   readback_delay_s: $readback_delay$
-$pressure_fault$  slipped_cycles: 0                # 0: missed cycles are only counted
+$pressure_fault$  overrun_cycles: 0                # 0: missed cycles are only counted
   model_unfit_is_fault: false
   unsteady_is_fault: true          # a sensor that jumps back and forth four times within 1 s
 

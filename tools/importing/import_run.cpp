@@ -231,7 +231,8 @@ ordered_json json_of(const Job& job) {
           {"rows", account_json(job.result.account)},
           {"warnings", job.warnings},
           {"notes", notes_of(job)},
-          {"doubts", job.plausibility}};  // words-ok: a published key
+          {"plausibility_warnings", job.plausibility},
+          {"doubts", job.plausibility}};
 }
 
 void report(const std::vector<Job>& jobs, const ImportOptions& options) {

@@ -76,8 +76,8 @@ void tell_loop(const Json& loop, MetricText& metrics) {
   tell_one(metrics, "softgrip_loop_ticks_total", counter, "Ticks of the control loop.",
            number(loop, "ticks"));
   metrics.family("softgrip_loop_overruns_total", counter, "Missed cycles of the control loop, by cause.");
-  metrics.sample({{"cause", "woken_late"}}, number(loop, "slips_woken_late"));  // words-ok: API key
-  metrics.sample({{"cause", "took_long"}}, number(loop, "slips_took_long"));    // words-ok: API key
+  metrics.sample({{"cause", "woken_late"}}, number(loop, "slips_woken_late"));
+  metrics.sample({{"cause", "took_long"}}, number(loop, "slips_took_long"));
   tell_durations(metrics, "softgrip_loop_wake_up_seconds",
                  "Wake-up latency: from the scheduled time to the beginning of the tick.",
                  member(loop, "wake_up"));
@@ -94,7 +94,7 @@ void tell_bus(const Json& bus, MetricText& metrics) {
   tell_one(metrics, "softgrip_bus_sessions_total", counter, "Sessions that were opened with the board.",
            number(bus, "sessions"));
   tell_one(metrics, "softgrip_bus_overruns_total", counter, "Missed cycles of the bus.",
-           number(bus, "slips"));  // words-ok: API key
+           number(bus, "slips"));
   tell_durations(metrics, "softgrip_bus_exchange_seconds", "Duration of successful exchanges.",
                  member(bus, "exchange"));
 }
