@@ -106,8 +106,8 @@ void compare_monitor(const document::Document& document, const RigFile& rig, std
       place != nullptr ? place->at : document.root.at,
       channel.pressure_measured
           ? "the measured pressure of channel `" + channel.name +
-                "` is not compared with its command: a burst line is not detected"
-          : "channel `" + channel.name + "` has no `pressure_monitor`: a burst line is not detected",
+                "` is not compared with its command, so a burst line would not be detected"
+          : "channel `" + channel.name + "` has no `pressure_monitor`, so a burst line would not be detected",
       remedy(rig, index)));
 }
 

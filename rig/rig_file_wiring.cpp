@@ -249,7 +249,7 @@ drivers::OutputWiring read_valve(Context& context, const Node& node, const std::
   const auto power_loss_kpa = reader.optional_number("on_power_loss_kpa", {-200, 10'000});
   facts.power_loss_kpa = power_loss_kpa.value_or(0);
   if (power_loss_kpa && reader.good("on_power_loss") && facts.on_power_loss == PowerLoss::holds) {
-    reader.report("on_power_loss_kpa", "a valve that holds its pressure without power has no other pressure",
+    reader.report("on_power_loss_kpa", "`on_power_loss: holds` excludes another pressure on power loss",
                   "leave `on_power_loss_kpa` out, or write `on_power_loss: vents`");
   }
   reader.finish();

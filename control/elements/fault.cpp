@@ -58,7 +58,7 @@ constexpr std::array faults{
               "The board's output differs from the written value.",
               "another Modbus client, a board in manual mode, a wrong scaling of the output",
               "Read the output register with another Modbus client.",
-              "readback_cycles, for differences larger than the motion of readback_delay_s"},
+              "readback_cycles, for differences larger than the motion during readback_delay_s"},
     FaultInfo{FaultCode::write_refused, "F302", "write_refused", "The board rejected the write.",
               "output in a locked or manual mode, a latched trip of the board", "Clear the board's own trip.",
               "1 cycle"},

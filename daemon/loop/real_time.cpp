@@ -103,7 +103,7 @@ bool may_lock_without_limit() {
 RealTimeStep lock_memory(bool wanted) {
   RealTimeStep step{
       "memory lock", Outcome::not_asked, "",
-      "the first use of a page, or its return from swap, stops the loop for up to milliseconds"};
+      "the first use of a page, or its return from swap, can stop the loop for several milliseconds"};
   if (!wanted) return step;
   step.outcome = Outcome::failed;
   // Under a limit, the lock might succeed now, and later mappings could be refused.

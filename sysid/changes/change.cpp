@@ -438,7 +438,7 @@ void warn(const std::vector<Log>& healthy, const std::vector<Log>& later,
 }
 
 std::string unused_pressure(const DriveChoice& choice) {
-  return "The command predicts left-out healthy runs better than the measured pressure (" +
+  return "Left-out healthy runs are predicted better from the command than from the measured pressure (" +
          significant(choice.by_command_mm, 2) + " and " + significant(choice.by_pressure_mm, 2) +
          " mm RMS): pressure_kpa is not used";
 }

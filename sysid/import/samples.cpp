@@ -99,7 +99,9 @@ std::string about_repeats(const std::vector<double>& time_s, std::size_t repeate
     steps.push_back(time_s[i] - time_s[i - 1]);
     changes.push_back(i);
   }
-  if (steps.empty()) return "all rows have one time; --rate-hz R in place of --time counts the rows";
+  if (steps.empty())
+    return "all rows have the same time; use --rate-hz R in place of --time to derive the times from the row "
+           "numbers";
   // The first and the last time stamp may have fewer rows than the others, so they are not used for the rate.
   const std::size_t rows = changes.size() > 1 ? changes.back() - changes.front() : time_s.size() - 1;
   const double rows_s =

@@ -360,7 +360,7 @@ TEST(RestPressure, IsComparedWithTheValveThatHasNoPower) {
   EXPECT_FALSE(
       edited("rig.yaml", {{"on_power_loss: vents", "on_power_loss: holds, on_power_loss_kpa: 5"}}, problems)
           .accepted);
-  EXPECT_NE(problems.format().find("a valve that holds its pressure without power has no other pressure"),
+  EXPECT_NE(problems.format().find("`on_power_loss: holds` excludes another pressure on power loss"),
             std::string::npos)
       << problems.format();
 }

@@ -305,7 +305,8 @@ void add_calibrate(CLI::App& program, ExitCode& outcome) {
   command->add_flag("--dead-zone", options->dead_zone,
                     "Find the lowest command that the valve follows; needs --move");
   command->add_flag("--move", options->move,
-                    "Consent to move the finger within the limits; otherwise you place the target by hand");
+                    "Allow softgrip to move the finger within the limits; without this option you place the "
+                    "target by hand");
   command->add_flag("--manometer", options->manometer,
                     "Use a manometer although there is a pressure monitor");
   command

@@ -274,9 +274,9 @@ void add_diagnose(CLI::App& program, ExitCode& outcome) {
       "--gauge", options->gauge,
       "Readings of the sensor at positions that a gauge measured (CSV: gauge_mm,displacement_mm)");
   command
-      ->add_option(
-          "--nulls", options->diagnosis.null_campaigns,
-          "Number of simulated data sets without a cause that calibrate the search (19 show p = 0.05)")
+      ->add_option("--nulls", options->diagnosis.null_campaigns,
+                   "Number of data sets that are simulated without any cause, to calibrate the search (with "
+                   "19, the smallest p is 0.05)")
       ->capture_default_str();
   command->add_option("--seed", options->diagnosis.seed, "Seed of starts and resampling")
       ->capture_default_str();

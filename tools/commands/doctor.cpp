@@ -189,8 +189,9 @@ void add_doctor(CLI::App& program, ExitCode& outcome) {
       "doctor",
       "Check that the rig is ready: computer, board, sensors, disk. Each check is ok, warn or fail");
   command->add_option("--rig", options->rig, "Rig file [that of the running daemon]");
-  command->add_flag("--move", options->move,
-                    "Consent to move each finger a little, within its limits, to check that it follows");
+  command->add_flag(
+      "--move", options->move,
+      "Allow softgrip to move each finger a little, within its limits, to check that it follows");
   command->add_option("--socket", options->socket, "Socket of a running daemon [the rig file's]");
   command->add_flag("--json", options->json, "Print the findings as JSON");
   command->footer(

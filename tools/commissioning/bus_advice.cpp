@@ -28,7 +28,7 @@ constexpr std::array<BusAdvice, 5> bus_advices{{
     {BusStatus::bad_reply,
      "look for another Modbus client or a gateway that mixes up responses; check `unit` in the rig file"},
     {BusStatus::exception,
-     "the board responds but rejects the request: compare function, address and count in the board "
+     "the board responds but rejects the request: compare the function code, address and count in the board "
      "map with its manual"},
 }};
 

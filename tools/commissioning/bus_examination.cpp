@@ -151,8 +151,9 @@ class BusInquiry {
         return findings.fail(name_, heard.detail,
                              "the board responds and reports an internal failure: look at its display");
     }
-    findings.fail(name_, heard.detail,
-                  "compare function, address and count in the board map with its manual");
+    findings.fail(
+        name_, heard.detail,
+        "compare the function code, address and count in the board map with the manual of the board");
   }
 
   /// A board offers its inputs either as holding registers (function 3) or as input registers (function 4).

@@ -266,9 +266,9 @@ void examine_rig(const rig::RigFile& rig, drivers::Board& board, const Clock& cl
   }
   if (!move && may_hold_a_part(rig)) {
     findings.ok("board", board.describe() + " responds");
-    return findings.warn("sensors",
-                         "not read: reading writes the rest pressures, and a part may still be held",
-                         "take the part out, then run it with --move");
+    return findings.warn(
+        "sensors", "not read: an exchange would also write the rest pressures, and a part may still be held",
+        "take the part out, then run it with --move");
   }
   const auto rest = session.sample(settings.look_s);
   if (!rest) {

@@ -111,7 +111,7 @@ std::vector<ControlScheme> schemes_of(const ControlStudy& study) {
                                       {},
                                       {}},
                                      {"planned_extended",
-                                      "plan by the extended structure, identified + PID",
+                                      "plan from the identified extended structure, with PID",
                                       FeedforwardKind::planned,
                                       twin,
                                       study.extended,

@@ -30,12 +30,13 @@ struct Cause {
 
 /// Settings of diagnose() and diagnose_change().
 struct DiagnoseOptions {
-  std::uint64_t seed = 1;          ///< seed of starting points and resampling
-  unsigned threads = 0;            ///< number of threads; 0: one per processor
-  std::size_t null_campaigns = 0;  ///< simulated campaigns without a cause that calibrate the search
-  LogUse use = {};                 ///< interpretation of the logs
-  Progress progress = {};          ///< callback; may be empty
-  std::stop_token stop = {};       ///< can end the computation early
+  std::uint64_t seed = 1;  ///< seed of starting points and resampling
+  unsigned threads = 0;    ///< number of threads; 0: one per processor
+  std::size_t null_campaigns =
+      0;                      ///< number of campaigns to simulate without any cause, to calibrate the search
+  LogUse use = {};            ///< interpretation of the logs
+  Progress progress = {};     ///< callback; may be empty
+  std::stop_token stop = {};  ///< can end the computation early
 };
 
 /// Result of diagnose().

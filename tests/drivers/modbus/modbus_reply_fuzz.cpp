@@ -1,5 +1,5 @@
-// Fuzz target: arbitrary bytes as the response of a board, up to the reading. The first bytes choose the
-// request and the kind of register; the remaining bytes are the response.
+// Fuzz target: takes arbitrary bytes as the response of a board and processes them until a reading results.
+// The first bytes choose the request and the kind of register; the remaining bytes are the response.
 //
 //   cmake --preset fuzz && cmake --build --preset fuzz --target modbus_reply_fuzz
 //   build/fuzz/tests/drivers/modbus_reply_fuzz -max_total_time=660 -max_len=512

@@ -15,7 +15,7 @@ struct RunningRigSettings {
   std::vector<drivers::BoardMap> maps;  ///< one per module
   std::vector<std::string> names;       ///< names of the modules
   Wire wire = Wire::tcp;                ///< on a network every module is a separate host
-  drivers::SerialLine line;             ///< settings of a serial line; its device is created
+  drivers::SerialLine line;             ///< settings of a serial line; RunningRig creates its pseudo-terminal
   std::size_t channels = 2;
   std::vector<FaultSpec> habits{};  ///< faults that are present from the start
   bool rtu_over_tcp = false;        ///< on a network: use RTU frames

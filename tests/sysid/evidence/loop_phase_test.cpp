@@ -14,7 +14,7 @@ struct Signals {
   std::vector<double> command, reading;
 };
 
-/// A flow behind a valve that a PI controller holds at 0.
+/// A PI controller keeps the flow behind a valve at 0.
 /// @param band  change of the command at which the valve breaks free and jumps.
 /// @param wave  amplitude of a disturbance of the flow.
 Signals loop(double band, double wave, double proportional, double integral, unsigned seed) {

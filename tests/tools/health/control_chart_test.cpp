@@ -177,8 +177,8 @@ TEST(ControlChart, NoticesWhatIsLargeAtOnceAndWhatStaysSoon) {
   EXPECT_GT(noticed_after(2, 40), noticed_after(4, 40));
 }
 
-/// The chart must not learn points of a possible change. Otherwise as many changed values would outweigh the
-/// 8 healthy ones.
+/// The chart must not learn points of a possible change. Otherwise the changed values would have the
+/// same weight as the 8 healthy ones.
 TEST(ControlChart, NoticesAChangeThatComesSoonAfterTheStart) {
   int noticed = 0;
   for (unsigned seed = 0; seed < 100; ++seed) {
