@@ -80,7 +80,7 @@ ExitCode run(const PlotOptions& options) {
   for (const std::string& path : options.recordings) {
     document::Problems problems;
     const auto recording = read_recording(path, problems);
-    if (!recording) return problems.empty() ? recording.error() : refuse_logs(problems);
+    if (!recording) return problems.empty() ? fail(ExitCode::io, recording.error()) : refuse_logs(problems);
     auto part = part_of(*recording, options.channel, options.from_s, options.to_s);
     if (!part) return fail(ExitCode::usage, part.error());
     recordings.push_back(std::move(*part));

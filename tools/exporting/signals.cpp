@@ -70,7 +70,8 @@ tl::expected<std::vector<SignalGroup>, ExitCode> read_signals(const std::string&
   std::vector<SignalGroup> groups;
   if (table->is_text && sysid::column_index(*table, "pressure_command_kpa") < table->columns.size()) {
     const auto recording = read_recording(path, problems);
-    if (!recording) return tl::unexpected(problems.empty() ? recording.error() : refuse_logs(problems));
+    if (!recording)
+      return tl::unexpected(problems.empty() ? fail(ExitCode::io, recording.error()) : refuse_logs(problems));
     for (const sysid::Log& log : recording->channels) groups.push_back(group_of(log));
     return groups;
   }

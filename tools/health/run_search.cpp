@@ -41,8 +41,7 @@ void score_one(const std::string& path, const BaseOf& base_of, RunScores& scores
   const std::string name = name_of(path);
   const auto recording = read_recording(path, problems);
   if (!recording) {
-    scores.skipped.push_back(
-        {name, problems.empty() ? "it cannot be read" : problems.list().front().message});
+    scores.skipped.push_back({name, problems.empty() ? recording.error() : problems.list().front().message});
     return;
   }
   if (recording->unfinished) {

@@ -8,7 +8,6 @@
 #include "base/files.h"
 #include "base/json_text.h"
 #include "base/numbers.h"
-#include "tools/command_line/command.h"
 
 namespace softgrip::tools {
 namespace {
@@ -59,11 +58,11 @@ void read_story(const std::string& path, Recording& recording) {
 
 }  // namespace
 
-tl::expected<Recording, ExitCode> read_recording(const std::string& path, document::Problems& problems) {
+tl::expected<Recording, std::string> read_recording(const std::string& path, document::Problems& problems) {
   const bool folder = is_folder(path);
   const std::string csv = folder ? (fs::path(path) / "run.csv").string() : path;
   const auto text = read_file(csv, longest_log);
-  if (!text) return tl::unexpected{fail(ExitCode::io, text.error())};
+  if (!text) return tl::unexpected(text.error());
 
   Recording recording;
   const fs::path named = fs::path(path).lexically_normal();
@@ -76,7 +75,7 @@ tl::expected<Recording, ExitCode> read_recording(const std::string& path, docume
   for (const std::string& channel : channels) {
     options.channel = channel;
     auto log = sysid::parse_log(csv, *text, problems, options);
-    if (!log) return tl::unexpected{ExitCode::input_refused};
+    if (!log) return tl::unexpected(std::string());
     recording.channels.push_back(std::move(*log));
   }
   if (folder) read_story((fs::path(path) / "run.json").string(), recording);

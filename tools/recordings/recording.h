@@ -6,7 +6,6 @@
 
 #include <tl/expected.hpp>
 
-#include "base/exit_code.h"
 #include "document/problem.h"
 #include "sysid/logs/log.h"
 
@@ -32,10 +31,10 @@ struct Recording {
   std::vector<RecordedEvent> events;
 };
 
-/// Reads a recording's folder or a single log. Problems are added to `problems`. If a file cannot be read,
-/// prints a message and returns ExitCode::io.
-[[nodiscard]] tl::expected<Recording, ExitCode> read_recording(const std::string& path,
-                                                               document::Problems& problems);
+/// Reads a recording's folder, or a log by itself. The error is a sentence if a file cannot be opened. It is
+/// empty if the log has problems, which are all added to `problems`.
+[[nodiscard]] tl::expected<Recording, std::string> read_recording(const std::string& path,
+                                                                  document::Problems& problems);
 
 /// Returns a column outside the log contract as numbers. A cell that is not a number is NaN. Empty: no such
 /// column.

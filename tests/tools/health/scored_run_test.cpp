@@ -122,6 +122,15 @@ TEST_F(FoundRuns, WhatIsNotFinishedAndWhatIsOfNoSequenceIsLeftOut) {
   EXPECT_NE(found.skipped[1].why.find("no sequence"), std::string::npos);
 }
 
+TEST_F(FoundRuns, OneThatIsNotThereIsLeftOutWithTheReason) {
+  const FingerBase base{score_base(sysid::loaded("bench_twin"), 60), "b"};
+  const std::string missing = (folder / "missing").string();
+  const RunScores found = score_runs(find_runs({missing}), [&](const std::string&) { return &base; }, {});
+  ASSERT_EQ(found.skipped.size(), 1U);
+  EXPECT_EQ(found.skipped[0].run, "missing");
+  EXPECT_NE(found.skipped[0].why.find(missing), std::string::npos) << found.skipped[0].why;
+}
+
 TEST(ScoredRun, OnlyScoresByTodaysBaselineCountAndTheLastOfThem) {
   const FingerBase replaced{{}, "new"};
   const FingerBase kept_since{{}, "old"};

@@ -35,7 +35,7 @@ class RecordingTest : public ::testing::Test {
   void write(const std::string& name, const std::string& text) const {
     ASSERT_TRUE(write_file(folder / name, text));
   }
-  [[nodiscard]] tl::expected<Recording, ExitCode> read() const {
+  [[nodiscard]] tl::expected<Recording, std::string> read() const {
     document::Problems problems;
     return read_recording(folder, problems);
   }
@@ -134,9 +134,9 @@ TEST_F(RecordingTest, APlainLogHasAPictureToo) {
 }
 
 TEST_F(RecordingTest, WhatIsNoRecordingIsRefused) {
-  EXPECT_EQ(read().error(), ExitCode::io) << "no run.csv";
+  EXPECT_NE(read().error().find("run.csv"), std::string::npos) << "no run.csv";
   write("run.csv", "hello\n");
-  EXPECT_EQ(read().error(), ExitCode::input_refused);
+  EXPECT_EQ(read().error(), "") << "the problems say why";
 }
 
 /// If the reader waited for a writer of the pipe, this test would not end.
@@ -148,7 +148,7 @@ TEST_F(RecordingTest, APipeInsteadOfAFileIsNotWaitedFor) {
   ASSERT_EQ(::mkfifo((folder / "run.csv").c_str(), 0600), 0);
   const auto recording = read();
   ASSERT_FALSE(recording);
-  EXPECT_EQ(recording.error(), ExitCode::io);
+  EXPECT_NE(recording.error().find("run.csv"), std::string::npos) << recording.error();
 }
 
 }  // namespace
