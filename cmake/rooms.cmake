@@ -63,6 +63,7 @@ softgrip_room(daemon/service
 
 # From a log to the reason.
 softgrip_room(sysid/logs USES base document model)
+softgrip_room(sysid/recordings USES base document sysid/logs LIBRARIES nlohmann_json::nlohmann_json)
 softgrip_room(sysid/import USES base document model sysid/logs LIBRARIES nlohmann_json::nlohmann_json)
 # Nobody else is to be compiled against them.
 target_link_libraries(${softgrip_room_target} PRIVATE ZLIB::ZLIB PkgConfig::matio PkgConfig::hdf5 PkgConfig::libzip PkgConfig::pugixml)
@@ -103,6 +104,11 @@ softgrip_room(sysid/diagnosis/report
   USES base model model/file sysid/logs sysid/pages sysid/fitting sysid/identification sysid/diagnosis/causes
        sysid/diagnosis/evidence sysid/diagnosis/gauge sysid/diagnosis/verdict
   LIBRARIES nlohmann_json::nlohmann_json)
+# Recorded grips as indicators, their charts, and the content of an alarm.
+softgrip_room(sysid/health
+  USES base document model control/elements sysid/logs sysid/recordings sysid/pages sysid/fitting sysid/diagnosis/causes
+       sysid/changes sysid/diagnosis/experiments
+  LIBRARIES Eigen3::Eigen nlohmann_json::nlohmann_json)
 # The innermost loops of a fit; GCC 12 fails at them with -O3 and sanitizers.
 if(NOT SOFTGRIP_SANITIZE)
   softgrip_flags_of(sysid/fitting -O3 chain_residuals.cpp separable.cpp separable_pressure.cpp separable_search.cpp)
@@ -127,21 +133,15 @@ endif()
 # Separate from tools/command_line: the gateways, which a network reaches, do not link the readers of foreign files.
 softgrip_room(tools/log_input USES base document model sysid/logs sysid/import sysid/diagnosis/gauge tools/command_line
   LIBRARIES CLI11::CLI11)
-softgrip_room(tools/recordings USES base document sysid/logs sysid/pages tools/command_line
-  LIBRARIES nlohmann_json::nlohmann_json)
-# A recorded grip as numbers, their charts, and what an alarm says.
-softgrip_room(tools/health
-  USES base document model control/elements sysid/logs sysid/pages sysid/fitting sysid/diagnosis/causes sysid/changes
-       sysid/diagnosis/experiments tools/recordings
-  LIBRARIES Eigen3::Eigen nlohmann_json::nlohmann_json)
+softgrip_room(tools/recordings USES base sysid/logs sysid/recordings sysid/pages)
 # By itself: librsvg wants -pthread, with which the headers of all rooms were not compiled.
 softgrip_room(tools/figures USES base sysid/pages PRECOMPILE <string> <vector>)
 target_link_libraries(${softgrip_room_target} PRIVATE PkgConfig::librsvg)
 softgrip_room(tools/importing USES base document sysid/logs sysid/import tools/command_line
   LIBRARIES nlohmann_json::nlohmann_json)
 softgrip_room(tools/exporting
-  USES base document model model/file control/elements control/feedforward sysid/logs sysid/import tools/command_line
-       tools/log_input tools/recordings
+  USES base document model model/file control/elements control/feedforward sysid/logs sysid/recordings sysid/import
+       tools/command_line tools/log_input
   LIBRARIES nlohmann_json::nlohmann_json)
 target_link_libraries(${softgrip_room_target} PRIVATE ZLIB::ZLIB PkgConfig::matio)
 # What moves a rig by hand: doctor and calibrate.
@@ -151,8 +151,8 @@ softgrip_room(tools/commissioning
   LIBRARIES nlohmann_json::nlohmann_json)
 softgrip_room(tools/investigation
   USES base document model model/file control/elements control/feedforward control/tuning simulation/plant rig
-       daemon/service daemon/socket sysid/logs sysid/pages sysid/identification sysid/diagnosis/causes
-       sysid/diagnosis/verdict sysid/diagnosis/experiments sysid/diagnosis/report tools/recordings
+       daemon/service daemon/socket sysid/logs sysid/recordings sysid/pages sysid/identification sysid/diagnosis/causes
+       sysid/diagnosis/verdict sysid/diagnosis/experiments sysid/diagnosis/report
   LIBRARIES nlohmann_json::nlohmann_json)
 # A report computed again.
 softgrip_room(tools/verification USES base document model model/file sysid/logs LIBRARIES nlohmann_json::nlohmann_json)
@@ -163,10 +163,10 @@ softgrip_room(tools/studies
 softgrip_room(tools/baseline
   USES base daemon/service sysid/logs sysid/identification sysid/diagnosis/experiments tools/investigation tools/studies)
 softgrip_room(tools/commands
-  USES base model/file control/feedforward control/tuning rig daemon/service daemon/socket sysid/logs sysid/pages
-       sysid/fitting sysid/identification sysid/structure sysid/instrument sysid/changes sysid/diagnosis/verdict
-       sysid/diagnosis/report tools/command_line tools/client
-       tools/log_input tools/recordings tools/health tools/figures tools/importing tools/exporting tools/commissioning tools/investigation tools/verification
+  USES base model/file control/feedforward control/tuning rig daemon/service daemon/socket sysid/logs sysid/recordings
+       sysid/pages sysid/fitting sysid/identification sysid/structure sysid/instrument sysid/changes sysid/diagnosis/verdict
+       sysid/diagnosis/report sysid/health tools/command_line tools/client
+       tools/log_input tools/recordings tools/figures tools/importing tools/exporting tools/commissioning tools/investigation tools/verification
        tools/studies tools/baseline
   LIBRARIES CLI11::CLI11 nlohmann_json::nlohmann_json
   PRECOMPILE <CLI/CLI.hpp>)

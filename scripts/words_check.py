@@ -169,7 +169,7 @@ RULES = [
     Rule("slack", r"\b(?:slack(?:_\w*)?|Slack\w*)\b", EVERYWHERE, "nuisance offset and gain; backlash",
          "struct Slack", "slackness", paths=r"^sysid/", flags=0),
     word(r"mates?|mates_\w+|has_mates", COMMENT, STRING, PROSE, CODE, name="mate", advice="peer finger",
-         hit="beside its mates", miss="estimate", paths=r"^(tools/health|docs)/"),
+         hit="beside its mates", miss="estimate", paths=r"^(sysid/health|docs)/"),
     word(r"doubts?|doubts?_\w+", COMMENT, STRING, CODE, name="doubt", advice="plausibility warning",
          hit="doubts_among(logs)", miss="doubtful", paths=r"^(sysid|tools)/"),
     Rule("sight", r"\b(?:sighted_?|without sight|with sight|loses? sight)\b", EVERYWHERE,

@@ -13,20 +13,21 @@
 #include "base/sha256.h"
 #include "base/version.h"
 #include "base/wall_clock.h"
+#include "sysid/health/health_json.h"
+#include "sysid/health/health_page.h"
+#include "sysid/health/run_search.h"
 #include "tools/command_line/command.h"
 #include "tools/command_line/model_input.h"
 #include "tools/command_line/output.h"
 #include "tools/commands/baseline_folder.h"
 #include "tools/commands/commands.h"
-#include "tools/health/health_json.h"
-#include "tools/health/health_page.h"
-#include "tools/health/run_search.h"
 #include "tools/log_input/log_input.h"
 
 namespace softgrip::tools {
 namespace {
 
 namespace fs = std::filesystem;
+namespace health = sysid::health;
 using Json = nlohmann::ordered_json;
 
 /// Scores of another kind than before have another name.

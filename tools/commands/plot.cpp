@@ -9,11 +9,11 @@
 #include <utility>
 #include <vector>
 
+#include "sysid/recordings/recording.h"
 #include "tools/command_line/output.h"
 #include "tools/commands/commands.h"
 #include "tools/figures/picture_format.h"
 #include "tools/log_input/log_input.h"
-#include "tools/recordings/recording.h"
 #include "tools/recordings/recording_picture.h"
 #include "tools/recordings/recording_tracking.h"
 
@@ -30,7 +30,7 @@ struct PlotOptions {
   bool json = false;
 };
 
-nlohmann::ordered_json told_of(const PlotOptions& options, const Recording& recording) {
+nlohmann::ordered_json told_of(const PlotOptions& options, const sysid::Recording& recording) {
   std::FILE* const stream = report_stream(options.out);
   nlohmann::ordered_json channels = nlohmann::ordered_json::array();
   for (const sysid::Log& log : recording.channels) {
@@ -56,7 +56,7 @@ nlohmann::ordered_json told_of(const PlotOptions& options, const Recording& reco
   return channels;
 }
 
-void report(const PlotOptions& options, const std::vector<Recording>& recordings) {
+void report(const PlotOptions& options, const std::vector<sysid::Recording>& recordings) {
   std::FILE* const stream = report_stream(options.out);
   nlohmann::ordered_json json{{"out", options.out}};
   json["channels"] = told_of(options, recordings.front());
@@ -76,10 +76,10 @@ ExitCode run(const PlotOptions& options) {
                                      ", selected by the extension: " + options.out + " has none of them");
   if (const auto code = refuse_overwriting({options.out}, options.recordings)) return *code;
   if (!(options.from_s < options.to_s)) return fail(ExitCode::usage, "--from must be below --to");
-  std::vector<Recording> recordings;
+  std::vector<sysid::Recording> recordings;
   for (const std::string& path : options.recordings) {
     document::Problems problems;
-    const auto recording = read_recording(path, problems);
+    const auto recording = sysid::read_recording(path, problems);
     if (!recording) return problems.empty() ? fail(ExitCode::io, recording.error()) : refuse_logs(problems);
     auto part = part_of(*recording, options.channel, options.from_s, options.to_s);
     if (!part) return fail(ExitCode::usage, part.error());

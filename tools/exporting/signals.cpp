@@ -10,9 +10,9 @@
 #include "sysid/import/foreign_file.h"
 #include "sysid/logs/csv_text.h"
 #include "sysid/logs/log_columns.h"
+#include "sysid/recordings/recording.h"
 #include "tools/command_line/command.h"
 #include "tools/log_input/log_input.h"
-#include "tools/recordings/recording.h"
 
 namespace softgrip::tools {
 namespace {
@@ -69,7 +69,7 @@ tl::expected<std::vector<SignalGroup>, ExitCode> read_signals(const std::string&
   }
   std::vector<SignalGroup> groups;
   if (table->is_text && sysid::column_index(*table, "pressure_command_kpa") < table->columns.size()) {
-    const auto recording = read_recording(path, problems);
+    const auto recording = sysid::read_recording(path, problems);
     if (!recording)
       return tl::unexpected(problems.empty() ? fail(ExitCode::io, recording.error()) : refuse_logs(problems));
     for (const sysid::Log& log : recording->channels) groups.push_back(group_of(log));

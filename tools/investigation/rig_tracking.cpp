@@ -5,7 +5,7 @@
 
 #include "base/numbers.h"
 #include "control/feedforward/invertibility.h"
-#include "tools/recordings/recording.h"
+#include "sysid/recordings/recording.h"
 
 namespace softgrip::tools {
 namespace {
@@ -47,8 +47,8 @@ tl::expected<double, NotPlayed> rmse_of(const std::string& recording, const std:
   const sysid::Campaign campaign = sysid::read_campaign({recording}, problems, options);
   if (campaign.logs.empty()) return tl::unexpected(NotPlayed{false, problems.format()});
   const sysid::Log& log = campaign.logs.front();
-  const std::vector<double> reference = numbers_of(log, "reference_mm");
-  const std::vector<std::string> steps = texts_of(log, "step");
+  const std::vector<double> reference = sysid::numbers_of(log, "reference_mm");
+  const std::vector<std::string> steps = sysid::texts_of(log, "step");
   double began_s = std::nan(""), square = 0, count = 0;
   for (std::size_t i = 0; i < std::min(reference.size(), steps.size()); ++i) {
     if (steps[i] != track_step || !std::isfinite(reference[i])) continue;

@@ -50,9 +50,9 @@ Chart chart(std::string title, std::string y_label, int height) {
 }
 
 /// Returns the grip results and faults of a channel as vertical lines in its charts.
-std::vector<Mark> marks_of(const Recording& recording, const std::string& channel) {
+std::vector<Mark> marks_of(const sysid::Recording& recording, const std::string& channel) {
   std::vector<Mark> marks;
-  for (const RecordedEvent& event : recording.events) {
+  for (const sysid::RecordedEvent& event : recording.events) {
     const bool told = event.kind == "grip_result" || event.kind == "fault_latched";
     if (!told || (!event.channel.empty() && event.channel != channel)) continue;
     marks.push_back({Mark::Direction::vertical, event.time_s, event.code});
@@ -71,11 +71,11 @@ Chart pressure_chart(const sysid::Log& log) {
   return pressure;
 }
 
-Chart displacement_chart(const Recording& recording, const sysid::Log& log) {
+Chart displacement_chart(const sysid::Recording& recording, const sysid::Log& log) {
   Chart displacement = chart(title_of(model::in_unit("displacement", log.output_unit), log),
                              model::in_unit("displacement [mm]", log.output_unit), tall);
   displacement.series.push_back(line("measured", log, log.displacement_mm, Colour::measured));
-  if (std::vector<double> reference = numbers_of(log, "reference_mm"); any_number(reference)) {
+  if (std::vector<double> reference = sysid::numbers_of(log, "reference_mm"); any_number(reference)) {
     Series wanted = line("reference", log, std::move(reference), Colour::model);
     wanted.dash = sysid::Dash::dashed;
     displacement.series.push_back(std::move(wanted));
@@ -104,7 +104,7 @@ Chart error_chart(const sysid::Log& log, const std::vector<double>& errors) {
 
 /// Adds a text column as steps between named levels, in order of first appearance.
 void add_words(Chart& chart, const sysid::Log& log, const std::string& column) {
-  const std::vector<std::string> words = texts_of(log, column);
+  const std::vector<std::string> words = sysid::texts_of(log, column);
   if (words.empty()) return;
   std::vector<double> levels(words.size(), nothing);
   for (std::size_t i = 0; i < words.size(); ++i) {
@@ -118,13 +118,13 @@ void add_words(Chart& chart, const sysid::Log& log, const std::string& column) {
   chart.series.push_back(std::move(steps));
 }
 
-void add_states(const Recording& recording, std::vector<Chart>& charts) {
+void add_states(const sysid::Recording& recording, std::vector<Chart>& charts) {
   Chart states = chart("state", "", low);
   add_words(states, recording.channels.front(), "state");
   if (!states.series.empty()) charts.push_back(std::move(states));
 }
 
-std::vector<Chart> charts_of(const Recording& recording) {
+std::vector<Chart> charts_of(const sysid::Recording& recording) {
   std::vector<Chart> charts;
   for (const sysid::Log& log : recording.channels) {
     charts.push_back(pressure_chart(log));
@@ -137,7 +137,7 @@ std::vector<Chart> charts_of(const Recording& recording) {
   return charts;
 }
 
-std::string called(const Recording& recording) {
+std::string called(const sysid::Recording& recording) {
   return recording.sequence.empty() ? recording.name : recording.sequence + ", " + recording.name;
 }
 
@@ -169,13 +169,13 @@ void lay_over(Chart& below, Chart above, const std::string& name) {
 
 }  // namespace
 
-sysid::Figure figure_of(const Recording& recording) {
+sysid::Figure figure_of(const sysid::Recording& recording) {
   std::vector<Chart> charts = charts_of(recording);
   charts.front().title = called(recording) + " · " + charts.front().title;
   return {called(recording), "Recording " + called(recording) + ".", sysid::stacked(std::move(charts))};
 }
 
-sysid::Figure figure_of(const Recording& first, const Recording& second, Pairing pairing) {
+sysid::Figure figure_of(const sysid::Recording& first, const sysid::Recording& second, Pairing pairing) {
   std::vector<Chart> charts = charts_of(first);
   std::vector<Chart> others = charts_of(second);
   sysid::Figure figure{called(first) + " and " + called(second), {}, {}};
@@ -212,9 +212,9 @@ sysid::Figure figure_of(const Recording& first, const Recording& second, Pairing
   return figure;
 }
 
-tl::expected<Recording, std::string> part_of(const Recording& recording, const std::string& channel,
-                                             double from_s, double to_s) {
-  Recording part = recording;
+tl::expected<sysid::Recording, std::string> part_of(const sysid::Recording& recording,
+                                                    const std::string& channel, double from_s, double to_s) {
+  sysid::Recording part = recording;
   part.channels.clear();
   std::string known;
   for (const sysid::Log& log : recording.channels) {
@@ -235,7 +235,8 @@ tl::expected<Recording, std::string> part_of(const Recording& recording, const s
   if (part.channels.empty())
     return tl::unexpected(recording.name + " has no channel " + channel +
                           (known.empty() ? "" : "; it has " + known));
-  std::erase_if(part.events, [&](const RecordedEvent& e) { return e.time_s < from_s || e.time_s > to_s; });
+  std::erase_if(part.events,
+                [&](const sysid::RecordedEvent& e) { return e.time_s < from_s || e.time_s > to_s; });
   return part;
 }
 

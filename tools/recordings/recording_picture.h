@@ -4,21 +4,22 @@
 #include <string>
 
 #include "sysid/pages/figure.h"
-#include "tools/recordings/recording.h"
+#include "sysid/recordings/recording.h"
 
 namespace softgrip::tools {
 
-[[nodiscard]] sysid::Figure figure_of(const Recording& recording);
+[[nodiscard]] sysid::Figure figure_of(const sysid::Recording& recording);
 
 /// The arrangement of two recordings: in separate columns, or drawn over each other by channel. Both keep
 /// their own times.
 enum class Pairing { beside, over };
-[[nodiscard]] sysid::Figure figure_of(const Recording& first, const Recording& second, Pairing pairing);
+[[nodiscard]] sysid::Figure figure_of(const sysid::Recording& first, const sysid::Recording& second,
+                                      Pairing pairing);
 
 /// Returns the part of a recording from `from_s` to `to_s` with its original times. An empty `channel`
 /// selects all channels. The error is a sentence.
-[[nodiscard]] tl::expected<Recording, std::string> part_of(const Recording& recording,
-                                                           const std::string& channel, double from_s,
-                                                           double to_s);
+[[nodiscard]] tl::expected<sysid::Recording, std::string> part_of(const sysid::Recording& recording,
+                                                                  const std::string& channel, double from_s,
+                                                                  double to_s);
 
 }  // namespace softgrip::tools

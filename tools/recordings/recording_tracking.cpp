@@ -4,20 +4,20 @@
 #include <cmath>
 
 #include "base/numbers.h"
-#include "tools/recordings/recording.h"
+#include "sysid/recordings/recording.h"
 
 namespace softgrip::tools {
 
 std::vector<double> errors_of(const sysid::Log& log) {
-  std::vector<double> errors = numbers_of(log, "reference_mm");
+  std::vector<double> errors = sysid::numbers_of(log, "reference_mm");
   for (std::size_t i = 0; i < errors.size(); ++i) errors[i] -= log.displacement_mm[i];
   return errors;
 }
 
 std::vector<char> gripping_of(const sysid::Log& log) {
   std::vector<char> gripping(log.size(), 0);
-  const std::vector<std::string> steps = texts_of(log, "step");
-  const std::vector<std::string> results = texts_of(log, "result");
+  const std::vector<std::string> steps = sysid::texts_of(log, "step");
+  const std::vector<std::string> results = sysid::texts_of(log, "result");
   if (steps.empty() || results.empty()) return gripping;
   for (std::size_t begin = 0; begin < steps.size();) {
     std::size_t end = begin;
@@ -35,7 +35,7 @@ std::vector<char> gripping_of(const sysid::Log& log) {
 
 Tracking tracking_of(const sysid::Log& log) {
   Tracking tracking;
-  tracking.grips_known = !texts_of(log, "step").empty() && !texts_of(log, "result").empty();
+  tracking.grips_known = !sysid::texts_of(log, "step").empty() && !sysid::texts_of(log, "result").empty();
   const std::vector<double> errors = errors_of(log);
   const std::vector<char> gripping = gripping_of(log);
   double squares = 0;

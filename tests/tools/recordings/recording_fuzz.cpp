@@ -13,9 +13,9 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "sysid/recordings/recording.h"
 #include "tools/client/event_text.h"
 #include "tools/client/status_view.h"
-#include "tools/recordings/recording.h"
 
 namespace {
 
@@ -67,7 +67,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string text(reinterpret_cast<const char*>(data), size);
   std::ofstream(folder.path() + "/run.json", std::ios::binary) << text;
   document::Problems problems;
-  const auto recording = tools::read_recording(folder.path(), problems);
+  const auto recording = sysid::read_recording(folder.path(), problems);
   // The rows are complete, so the recording opens with any run.json.
   if (!recording || recording->channels.size() != 1 || recording->channels.front().size() != 3) std::abort();
   show(nlohmann::ordered_json::parse(text, nullptr, false));

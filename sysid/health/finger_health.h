@@ -1,0 +1,102 @@
+#pragma once
+// Describes the health of a finger: its recorded grips as points in time, the reference of every indicator,
+// and the significant changes. judge_rig() (rig_health.h) computes it.
+//
+// A point is a day of a finger (UTC): the median of its runs of a recipe. Thus changes within a day, mainly
+// of the temperature, do not count as random variation between grips. Each run without a known time is its
+// own point. A repair restarts all charts of the finger.
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sysid/health/control_chart.h"
+#include "sysid/health/grip_score.h"
+#include "sysid/health/notes_file.h"
+
+namespace softgrip::sysid::health {
+
+struct HealthOptions {
+  /// Mean number of points of a healthy finger between two false alarms of any of its charts; at least 20.
+  double false_alarm_points = 3650;
+  bool by_day = true;  ///< false: every run is a point
+
+  [[nodiscard]] ChartLimits limits() const {
+    return ChartLimits::for_run_length(false_alarm_points * static_cast<double>(sysid::health_numbers));
+  }
+};
+
+struct HealthPoint {
+  std::string label;                                                  ///< "2026-11-22", or the run's name
+  std::size_t grips = 0;                                              ///< runs
+  std::size_t epoch = 0;                                              ///< number of earlier repairs
+  std::array<ChartValues, sysid::health_numbers> values;              ///< medians by recipe
+  std::array<std::optional<double>, sysid::health_numbers> judged{};  ///< standard normal
+  /// Change relative to the peer fingers on the same runs, compared with the reference; absent without peers.
+  std::array<std::optional<double>, sysid::health_numbers> beside{};
+  std::optional<double> temperature_c;  ///< median of its runs
+};
+
+/// An alarm of one number.
+struct HealthAlarm {
+  sysid::HealthNumber number = sysid::HealthNumber::gain;
+  std::size_t epoch = 0;
+  std::size_t noticed = 0;  ///< index of a point
+  std::size_t since = 0;
+  double change = 0;      ///< in the number's unit
+  std::size_t grips = 0;  ///< from the change to when it was noticed
+  /// Peer fingers, if the alarm is of the difference from them; empty: of the finger's own indicator.
+  std::vector<std::string> beside;
+  /// Point from which the change of the difference was reported without an assigned finger; `noticed` if
+  /// never.
+  std::size_t warned = 0;
+};
+
+/// Reference of an indicator since the last maintenance record.
+struct HealthReference {
+  std::string recipe;  ///< the one with most points
+  double mean = 0;
+  double spread = 0;
+  std::size_t points = 0;
+  std::optional<TemperatureSlope> slope;  ///< allowed for; absent: none is known
+
+  /// Returns the expected value of the indicator. @param temperature_c  absent: not recorded
+  [[nodiscard]] double at(std::optional<double> temperature_c) const {
+    return slope && temperature_c ? slope->at(*temperature_c) : mean;
+  }
+};
+
+enum class FingerState : std::uint8_t {
+  learning,  ///< too few points to judge any number since the last note
+  steady,
+  alarm,
+};
+[[nodiscard]] const char* name_of(FingerState state);
+
+struct FingerHealth {
+  std::string finger;
+  FingerState state = FingerState::learning;
+  model::OutputUnit output_unit = model::OutputUnit::mm;  ///< of every number that is called mm
+  std::vector<HealthPoint> points;
+  std::vector<HealthAlarm> alarms;  ///< of all epochs, in the order in which they were noticed
+  /// Changed differences from the peer fingers since the last maintenance record that are not attributed to a
+  /// finger.
+  std::vector<HealthAlarm> unclear;
+  std::array<std::optional<HealthReference>, sysid::health_numbers> references{};
+  std::vector<std::pair<std::size_t, Note>> notes;  ///< before which point
+
+  /// Returns the alarms that are still active.
+  [[nodiscard]] std::vector<HealthAlarm> standing() const;
+  [[nodiscard]] std::size_t epoch() const { return points.empty() ? 0 : points.back().epoch; }
+  /// Returns the median of an indicator at the last point that has it; empty if no point has it.
+  [[nodiscard]] std::optional<double> latest(sysid::HealthNumber number) const;
+};
+
+/// Numbers that alarm at all of several fingers in the same direction: what they share comes before what each
+/// of them is. None of a single finger.
+[[nodiscard]] std::vector<sysid::HealthNumber> shared_changes(
+    const std::vector<const FingerHealth*>& fingers);
+
+}  // namespace softgrip::sysid::health

@@ -1,0 +1,48 @@
+#include "sysid/health/notes_file.h"
+
+#include <algorithm>
+
+#include "document/reader.h"
+
+namespace softgrip::sysid::health {
+namespace {
+
+/// '0' stands for any digit.
+bool looks_like(const std::string& text, std::string_view shape) {
+  return text.size() == shape.size() &&
+         std::equal(text.begin(), text.end(), shape.begin(), [](char have, char want) {
+           return want == '0' ? have >= '0' && have <= '9' : have == want;
+         });
+}
+
+/// `mended` is the deprecated name of `action`.
+std::string action_of(document::MapReader& reader) {
+  const std::optional<std::string> deprecated = reader.optional_text("mended");
+  if (!deprecated) return reader.text("action");
+  if (reader.optional_text("action")) reader.report("mended", "this repeats action", "action alone");
+  return *deprecated;
+}
+
+}  // namespace
+
+std::optional<std::vector<Note>> read_notes(const std::string& path, std::string text,
+                                            document::Problems& problems) {
+  const document::Document document = document::parse(path, std::move(text), problems);
+  if (!problems.empty()) return std::nullopt;
+  std::vector<Note> notes;
+  document::MapReader top(document, document.root, problems, "the notes");
+  for (const document::Node* item : top.sequence("notes", true)) {
+    document::MapReader reader(document, *item, problems, "a note");
+    Note note{reader.text("date"), reader.optional_text("finger").value_or(""), action_of(reader)};
+    if (reader.good("date") && !looks_like(note.date, "0000-00-00") &&
+        !looks_like(note.date, "0000-00-00T00:00:00Z"))
+      reader.report("date", "this is no date in UTC", "2026-11-03, or 2026-11-03T14:30:00Z");
+    notes.push_back(std::move(note));
+  }
+  top.finish();
+  if (!problems.empty()) return std::nullopt;
+  std::stable_sort(notes.begin(), notes.end(), [](const Note& a, const Note& b) { return a.date < b.date; });
+  return notes;
+}
+
+}  // namespace softgrip::sysid::health

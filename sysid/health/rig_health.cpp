@@ -1,0 +1,69 @@
+#include "sysid/health/rig_health.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/enumerated.h"
+#include "base/numbers.h"
+#include "sysid/health/number_watch.h"
+
+namespace softgrip::sysid::health {
+
+RigHealth judge_rig(std::vector<FingerRuns> fingers, const std::vector<Note>& notes,
+                    const HealthOptions& options) {
+  std::vector<FingerTrack> tracks;
+  for (FingerRuns& finger : fingers) {
+    std::stable_sort(finger.runs.begin(), finger.runs.end(),
+                     [](const ScoredRun& a, const ScoredRun& b) { return a.started_at < b.started_at; });
+    tracks.push_back(track_of(finger.finger, finger.runs, notes, finger.base, options.by_day));
+  }
+  const std::size_t moments = place_in_time(tracks);
+  RigHealth rig;
+  for (std::size_t i = 0; i < sysid::health_numbers; ++i) {
+    for (SharedChange& shared : NumberWatch(i, tracks, options).run(moments))
+      rig.shared.push_back(std::move(shared));
+  }
+  // A change of one finger changes the time to grip of all fingers.
+  const bool alarm = std::any_of(tracks.begin(), tracks.end(), [](const FingerTrack& track) {
+    return track.health.state == FingerState::alarm;
+  });
+  for (SharedChange& shared : rig.shared) {
+    if (shared.number == sysid::HealthNumber::time_to_grip && alarm) shared.stands = false;
+  }
+  for (FingerTrack& track : tracks) {
+    std::stable_sort(track.health.alarms.begin(), track.health.alarms.end(),
+                     [](const HealthAlarm& a, const HealthAlarm& b) { return a.noticed < b.noticed; });
+    rig.fingers.push_back(std::move(track.health));
+  }
+  return rig;
+}
+
+FingerHealth judge_finger(const std::string& finger, std::vector<ScoredRun> runs,
+                          const std::vector<Note>& notes, const ScoreBase& base,
+                          const HealthOptions& options) {
+  std::vector<FingerRuns> alone;
+  alone.push_back({finger, std::move(runs), base});
+  return std::move(judge_rig(std::move(alone), notes, options).fingers.front());
+}
+
+std::string change_text(sysid::HealthNumber number, double change, model::OutputUnit unit) {
+  const sysid::HealthNumberInfo& info = sysid::info_of(number);
+  return std::string(info.title) + (change > 0 ? " +" : " -") + significant(std::abs(change), 2) + " " +
+         model::in_unit(info.unit, unit);
+}
+
+std::string unclear_sentence(const FingerHealth& health, const HealthAlarm& unclear) {
+  return "Since " + health.points[unclear.since].label + " " + health.finger + " differs from " +
+         with_commas(unclear.beside) +
+         " otherwise than before: " + change_text(unclear.number, unclear.change, health.output_unit) +
+         ". Whose change it is, their own numbers do not tell yet.";
+}
+
+std::string shared_sentence(const SharedChange& shared) {
+  return "Since " + shared.since + " the fingers of the rig have changed alike: " +
+         change_text(shared.number, shared.change, shared.output_unit) + ". Look first at what they share: " +
+         (shared.temperature_recorded ? "" : "the temperature (it is not recorded), ") +
+         "the supply, the line before the fingers, the parts.";
+}
+
+}  // namespace softgrip::sysid::health

@@ -1,0 +1,129 @@
+#include "sysid/health/suspicion.h"
+
+#include <algorithm>
+#include <map>
+
+#include "base/numbers.h"
+#include "sysid/changes/next_steps.h"
+#include "sysid/diagnosis/causes/cause.h"
+#include "sysid/diagnosis/experiments/experiment_advice.h"
+
+namespace softgrip::sysid::health {
+namespace {
+
+using sysid::HealthNumber;
+using sysid::HealthSign;
+using sysid::Moves;
+
+/// The weight against a cause of a sign that is missing, and of an alarm that the cause does not explain, in
+/// signs.
+constexpr double missing_sign = 0.25;
+constexpr double unexplained_alarm = 0.75;
+/// The weight against a cause if the recordings of grips lack the column that is needed to judge it.
+constexpr double lacks_column = 0.05;
+/// Causes that are so near explain as much.
+constexpr double as_much = 0.1;
+constexpr std::size_t most_suspects = 4;
+
+bool agrees(Moves moves, double change) {
+  if (moves == Moves::either_way) return true;
+  return moves == (change > 0 ? Moves::up : Moves::down);
+}
+
+/// Returns the alarms by number. The time to the grip is used only if no other number alarms, because every
+/// change affects it.
+std::map<HealthNumber, double> changes_of(const FingerHealth& health,
+                                          const std::vector<SharedChange>& shared) {
+  std::map<HealthNumber, double> changes;
+  std::string latest;
+  for (const HealthAlarm& alarm : health.standing()) {
+    changes[alarm.number] = alarm.change;
+    latest = std::max(latest, health.points[alarm.since].label);
+  }
+  for (const SharedChange& one : shared) {
+    if (one.stands && !changes.empty() && one.since <= latest) changes.emplace(one.number, one.change);
+  }
+  if (changes.size() > 1) changes.erase(HealthNumber::time_to_grip);
+  return changes;
+}
+
+/// How much of the alarms a cause with these signs explains; 0: nothing.
+double explained(const sysid::HealthSigns& signs, const std::map<HealthNumber, double>& changes,
+                 const FingerHealth& health) {
+  double worth = 0;
+  std::size_t hits = 0;
+  for (const HealthSign& sign : signs) {
+    if (sign.moves == Moves::not_at_all) continue;
+    const auto change = changes.find(sign.number);
+    const bool seen = change != changes.end() && agrees(sign.moves, change->second);
+    const bool judged = health.references[static_cast<std::size_t>(sign.number)].has_value();
+    hits += seen ? 1 : 0;
+    worth += seen ? 1 : judged ? -missing_sign : 0;
+  }
+  const auto unexplained = static_cast<double>(changes.size() - hits);
+  return hits == 0 ? 0 : worth - unexplained_alarm * unexplained;
+}
+
+/// Returns true if a number in alarm is compared at the temperature of the day.
+bool allows_for_temperature(const FingerHealth& health) {
+  const std::vector<HealthAlarm> alarms = health.standing();
+  return std::any_of(alarms.begin(), alarms.end(), [&](const HealthAlarm& alarm) {
+    const auto& reference = health.references[static_cast<std::size_t>(alarm.number)];
+    return reference && reference->slope;
+  });
+}
+
+}  // namespace
+
+Suspicion suspicion_of(const FingerHealth& health, const std::vector<SharedChange>& shared) {
+  const std::map<HealthNumber, double> changes = changes_of(health, shared);
+  std::vector<std::pair<double, std::string_view>> found;
+  for (const std::string_view id : sysid::changes()) {
+    const double worth = explained(sysid::signs_of(id), changes, health);
+    const auto cause = sysid::find_cause(id);
+    if (cause && cause->needs == sysid::Column::temperature_c && allows_for_temperature(health)) continue;
+    const bool not_recorded = cause && cause->needs != sysid::Column::none;
+    if (worth > 0) found.emplace_back(not_recorded ? worth - lacks_column : worth, id);
+  }
+  std::stable_sort(found.begin(), found.end(),
+                   [](const auto& a, const auto& b) { return a.first > b.first; });
+  Suspicion suspicion;
+  for (const auto& [worth, id] : found) {
+    if (worth < found.front().first - as_much || suspicion.suspects.size() == most_suspects) break;
+    const auto steps = sysid::next_steps(id);
+    suspicion.suspects.push_back({std::string(id),
+                                  std::string(sysid::plain_words(id)),
+                                  {std::string(steps[0]), std::string(steps[1])}});
+  }
+  const auto measured = static_cast<std::size_t>(HealthNumber::pressure_loss);
+  for (std::size_t i = 1; i < suspicion.suspects.size(); ++i) {
+    sysid::AdviceFacts facts;
+    facts.separable = true;
+    facts.temperature_varies = health.points.back().temperature_c.has_value();
+    facts.pressure_recorded = health.references[measured].has_value();
+    for (std::string& advice :
+         sysid::advice_for(suspicion.suspects.front().id, suspicion.suspects[i].id, facts)) {
+      if (std::find(suspicion.advice.begin(), suspicion.advice.end(), advice) == suspicion.advice.end())
+        suspicion.advice.push_back(std::move(advice));
+    }
+  }
+  return suspicion;
+}
+
+std::string health_sentence(const FingerHealth& health, const Suspicion& suspicion) {
+  const std::vector<HealthAlarm> alarms = health.standing();
+  if (health.state == FingerState::learning)
+    return "Too few grips yet to say what is usual of " + health.finger + ".";
+  if (alarms.empty()) return "Nothing has changed at " + health.finger + ".";
+  std::string sentence =
+      health.finger + " has changed since " + health.points[alarms.front().since].label + ": ";
+  for (std::size_t i = 0; i < alarms.size(); ++i)
+    sentence += (i > 0 ? ", " : "") + change_text(alarms[i].number, alarms[i].change, health.output_unit);
+  if (suspicion.suspects.empty()) return sentence + ". No cause in the library shows such signs.";
+  sentence += ". Suspected: " + suspicion.suspects.front().words;
+  for (std::size_t i = 1; i < suspicion.suspects.size(); ++i)
+    sentence += ", or " + suspicion.suspects[i].words;
+  return sentence + ".";
+}
+
+}  // namespace softgrip::sysid::health

@@ -1,0 +1,99 @@
+#include "sysid/recordings/recording.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "base/files.h"
+#include "base/json_text.h"
+#include "base/numbers.h"
+
+namespace softgrip::sysid {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+constexpr std::size_t longest_log = std::size_t{512} << 20U;
+constexpr std::size_t longest_story = std::size_t{64} << 20U;
+
+std::string text_at(const json& object, const char* key) {
+  const auto found = object.find(key);
+  return found != object.end() && found->is_string() ? found->get<std::string>() : std::string();
+}
+
+/// Formats a recipe: "pick_stone 4419590a hold_s=5 squeeze_kpa=5".
+std::string recipe_of(const json& sequence) {
+  std::string recipe = text_at(sequence, "name") + " " + text_at(sequence, "sha256").substr(0, 8);
+  const auto parameters = sequence.find("parameters");
+  if (parameters == sequence.end() || !parameters->is_object()) return recipe;
+  for (const auto& [name, value] : parameters->items()) {
+    if (value.is_number()) recipe += " " + name + "=" + significant(value.get<double>(), 6);
+  }
+  return recipe;
+}
+
+/// Adds the data of run.json. A missing or truncated run.json is no error.
+void read_story(const std::string& path, Recording& recording) {
+  const auto text = read_file(path, longest_story);
+  if (!text) return;
+  const json story = parse_json<json>(*text);
+  if (!story.is_object()) return;
+  recording.software_version = text_at(story, "software_version");
+  recording.started_at = text_at(story, "started_at");
+  recording.unfinished = text_at(story, "state") == "recording";
+  if (const auto sequence = story.find("sequence"); sequence != story.end() && sequence->is_object()) {
+    recording.sequence = text_at(*sequence, "name");
+    recording.recipe = recipe_of(*sequence);
+  }
+  const auto events = story.find("events");
+  if (events == story.end() || !events->is_array()) return;
+  for (const json& event : *events) {
+    if (!event.is_object() || !event.contains("time_s") || !event["time_s"].is_number()) continue;
+    recording.events.push_back({event["time_s"].get<double>(), text_at(event, "kind"),
+                                text_at(event, "channel"), text_at(event, "code"), text_at(event, "text")});
+  }
+}
+
+}  // namespace
+
+tl::expected<Recording, std::string> read_recording(const std::string& path, document::Problems& problems) {
+  const bool folder = is_folder(path);
+  const std::string csv = folder ? (fs::path(path) / "run.csv").string() : path;
+  const auto text = read_file(csv, longest_log);
+  if (!text) return tl::unexpected(text.error());
+
+  Recording recording;
+  const fs::path named = fs::path(path).lexically_normal();
+  recording.name = (named.has_filename() ? named : named.parent_path()).filename().string();
+  LogOptions options;
+  options.require_motion = false;
+  options.need_readings = false;
+  std::vector<std::string> channels = channels_of(*text);
+  if (channels.empty()) channels.emplace_back();
+  for (const std::string& channel : channels) {
+    options.channel = channel;
+    auto log = parse_log(csv, *text, problems, options);
+    if (!log) return tl::unexpected(std::string());
+    recording.channels.push_back(std::move(*log));
+  }
+  if (folder) read_story((fs::path(path) / "run.json").string(), recording);
+  return recording;
+}
+
+std::vector<double> numbers_of(const Log& log, const std::string& column) {
+  std::vector<double> numbers;
+  for (const std::string& cell : texts_of(log, column)) {
+    numbers.push_back(to_number(cell).value_or(std::numeric_limits<double>::quiet_NaN()));
+  }
+  return numbers;
+}
+
+std::vector<std::string> texts_of(const Log& log, const std::string& column) {
+  const auto found = std::find_if(log.others.begin(), log.others.end(),
+                                  [&](const auto& other) { return other.name == column; });
+  return found == log.others.end() ? std::vector<std::string>{} : found->cells;
+}
+
+}  // namespace softgrip::sysid

@@ -1,0 +1,147 @@
+#include "sysid/health/grip_score.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "sysid/health/grip_parts.h"
+#include "tests/sysid/health/grip_fixture.h"
+#include "tests/sysid/simulated.h"
+
+namespace softgrip::sysid::health::grip_score_test {
+namespace {
+
+using sysid::HealthNumber;
+
+GripScore scored(const GripWorld& world) {
+  return score_of(grip_of(world), 0, score_base(sysid::loaded("bench_twin"), 60));
+}
+
+TEST(GripScore, OfAHealthyGripSaysThatNothingIsBesideTheBase) {
+  const ScoreBase base = score_base(sysid::loaded("bench_twin"), 60);
+  EXPECT_NEAR(base.full_mm, 25, 10);
+  const GripScore score = scored({});
+  EXPECT_NEAR(score[HealthNumber::gain], base.full_mm, 0.01 * base.full_mm);
+  EXPECT_NEAR(score[HealthNumber::zero], 0, 0.02);
+  EXPECT_NEAR(score[HealthNumber::lag], 0, 0.003);
+  EXPECT_NEAR(score[HealthNumber::creep], 0, 0.02);
+  EXPECT_NEAR(score[HealthNumber::loop_width], 0, 0.1);
+  EXPECT_NEAR(score[HealthNumber::pressure_loss], 0, 0.05);
+  EXPECT_NEAR(score[HealthNumber::leak], 0, 0.05);
+  EXPECT_NEAR(score[HealthNumber::contact], 12.15, 0.05);  // detected after the object has yielded a little
+  EXPECT_GT(score[HealthNumber::time_to_grip], 2.9);
+}
+
+struct Changed {
+  const char* what;
+  GripWorld world;
+  HealthNumber number;
+  double by;
+  double tolerance;
+};
+
+class ScoredChange : public ::testing::TestWithParam<Changed> {};
+
+TEST_P(ScoredChange, IsSeenInItsNumberWithItsSize) {
+  const Changed& changed = GetParam();
+  const GripScore before = scored({}), after = scored(changed.world);
+  EXPECT_NEAR(after[changed.number] - before[changed.number], changed.by, changed.tolerance);
+}
+
+TEST_P(ScoredChange, IsSeenInNoOtherNumberThatItDoesNotMove) {
+  const Changed& changed = GetParam();
+  const ScoreBase base = score_base(sysid::loaded("bench_twin"), 60);
+  const GripScore before = scored({}), after = scored(changed.world);
+  for (std::size_t i = 0; i < sysid::health_numbers; ++i) {
+    const auto number = static_cast<HealthNumber>(i);
+    if (number == changed.number || number == HealthNumber::contact) continue;
+    if (number == HealthNumber::loop_width && changed.number == HealthNumber::lag) continue;
+    EXPECT_NEAR(after[number], before[number], 6 * least_difference(number, base))
+        << changed.what << " in " << sysid::info_of(number).id;
+  }
+}
+
+const double full_mm = score_base(sysid::loaded("bench_twin"), 60).full_mm;
+
+INSTANTIATE_TEST_SUITE_P(
+    OfAGrip, ScoredChange,
+    testing::Values(Changed{"gain", {.gain = 0.95}, HealthNumber::gain, -0.05 * full_mm, 0.006 * full_mm},
+                    Changed{"zero", {.zero_mm = 0.4}, HealthNumber::zero, 0.4, 0.02},
+                    Changed{"lag", {.lag_s = 0.05}, HealthNumber::lag, 0.05, 0.005},
+                    Changed{"creep", {.extra_creep_mm = 0.2}, HealthNumber::creep, 0.2, 0.06},
+                    Changed{"loop", {.loop_mm = 0.3}, HealthNumber::loop_width, 0.3, 0.05},
+                    Changed{"loss", {.loss_kpa = 2}, HealthNumber::pressure_loss, 2, 0.05},
+                    Changed{"contact", {.object_mm = 11}, HealthNumber::contact, -1, 0.05}),
+    [](const auto& test) { return test.param.what; });
+
+TEST(GripScore, ALeakLowersThePressureWhileItHolds) {
+  const GripScore before = scored({}), after = scored({.leak_kpa_per_s = 0.5});
+  EXPECT_NEAR(after[HealthNumber::leak] - before[HealthNumber::leak], 0.5, 0.03);
+  EXPECT_NEAR(after[HealthNumber::gain], before[HealthNumber::gain], 1e-9);
+}
+
+TEST(GripScore, WhatARecordingDoesNotCarryIsAbsent) {
+  const GripScore blind = scored({.measures_pressure = false});
+  EXPECT_TRUE(std::isnan(blind[HealthNumber::pressure_loss]));
+  EXPECT_TRUE(std::isnan(blind[HealthNumber::leak]));
+  const GripScore empty = scored({.object_mm = std::numeric_limits<double>::infinity()});
+  EXPECT_TRUE(std::isnan(empty[HealthNumber::contact]));
+  EXPECT_TRUE(std::isnan(empty[HealthNumber::time_to_grip]));
+  EXPECT_TRUE(std::isnan(empty[HealthNumber::leak]));
+  EXPECT_TRUE(std::isfinite(empty[HealthNumber::gain]));
+  // A motion of 0.5 mm is too small to estimate the gain.
+  const GripScore near = scored({.object_mm = 0.5});
+  EXPECT_TRUE(std::isnan(near[HealthNumber::gain]));
+  EXPECT_TRUE(std::isnan(near[HealthNumber::lag]));
+  EXPECT_TRUE(std::isfinite(near[HealthNumber::contact]));
+}
+
+TEST(GripScore, WithoutReadingsNothingIsGuessed) {
+  Recording recording = grip_of({.measures_pressure = false});
+  for (double& reading : recording.channels[0].displacement_mm) reading = NAN;
+  const GripScore score = score_of(recording, 0, score_base(sysid::loaded("bench_twin"), 60));
+  for (const auto number : {HealthNumber::gain, HealthNumber::zero, HealthNumber::lag, HealthNumber::creep,
+                            HealthNumber::loop_width, HealthNumber::contact})
+    EXPECT_TRUE(std::isnan(score[number])) << sysid::info_of(number).id;
+}
+
+TEST(GripParts, HeldIsFromHoldingUntilTheCommandLetsGo) {
+  const Recording grip = grip_of({});
+  const std::vector<double> predicted(grip.channels[0].size(), 0.0);
+  const GripParts parts = parts_of(grip, 0, predicted, 60);
+  double held_from = NAN, held_to = NAN;
+  for (std::size_t i = 0; i < parts.at.size(); ++i) {
+    if (parts.at[i] != Part::held) continue;
+    if (std::isnan(held_from)) held_from = grip.channels[0].time_s[i];
+    held_to = grip.channels[0].time_s[i];
+  }
+  EXPECT_NEAR(held_from, parts.holding_s, 0.011);
+  EXPECT_NEAR(held_to, 7.5, 0.03);
+  EXPECT_EQ(parts.at.front(), Part::rest);
+}
+
+TEST(GripParts, NothingIsFreeAfterAFault) {
+  Recording grip = grip_of({});
+  grip.events.insert(grip.events.begin() + 1, {1.0, "fault_latched", "left", "F201", ""});
+  const std::vector<double> predicted(grip.channels[0].size(), 0.0);
+  const GripParts parts = parts_of(grip, 0, predicted, 60);
+  for (std::size_t i = 0; i < parts.at.size(); ++i) {
+    if (grip.channels[0].time_s[i] > 1.01) {
+      ASSERT_EQ(parts.at[i], Part::neither);
+    }
+  }
+}
+
+TEST(GripParts, AStepThatEndedInHoldingWithoutATouchIsNotFree) {
+  Recording grip = grip_of({});
+  std::erase_if(grip.events, [](const RecordedEvent& event) { return event.kind == "contact"; });
+  grip.events.insert(grip.events.begin() + 1, {2.0, "step_started", "", "1", ""});
+  const std::vector<double> predicted(grip.channels[0].size(), 0.0);
+  const GripParts parts = parts_of(grip, 0, predicted, 60);
+  EXPECT_EQ(parts.at[150], Part::free);
+  EXPECT_EQ(parts.at[250], Part::neither);
+}
+
+}  // namespace
+}  // namespace softgrip::sysid::health::grip_score_test

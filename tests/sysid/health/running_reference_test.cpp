@@ -1,0 +1,132 @@
+#include "sysid/health/running_reference.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+namespace softgrip::sysid::health::running_reference_test {
+namespace {
+
+constexpr double least = 1e-9;
+
+/// A number that follows the temperature with a slope of 0.1 per °C and has a standard deviation of 0.05.
+class Warm {
+ public:
+  explicit Warm(unsigned seed) : random_(seed) {}
+  double at(double temperature_c) { return 30 + 0.1 * (temperature_c - 20) + 0.05 * normal_(random_); }
+  double temperature_c() { return 20 + 2 * normal_(random_); }
+
+ private:
+  std::mt19937_64 random_;
+  std::normal_distribution<double> normal_;
+};
+
+RunningReference learnt(Warm& warm, int values) {
+  RunningReference reference;
+  for (int i = 0; i < values; ++i) {
+    const double temperature_c = warm.temperature_c();
+    reference.learn(warm.at(temperature_c), temperature_c);
+  }
+  return reference;
+}
+
+TEST(RunningReference, FindsHowTheNumberFollowsTheTemperature) {
+  Warm warm(3);
+  const RunningReference reference = learnt(warm, 60);
+  ASSERT_TRUE(reference.slope());
+  EXPECT_NEAR(reference.slope()->per_c, 0.1, 3 * reference.slope()->standard_error);
+  EXPECT_NEAR(reference.slope()->standard_error, 0.05 / 2 / std::sqrt(60.0), 0.002);
+  EXPECT_NEAR(reference.spread(), 0.05, 0.015);
+  EXPECT_NEAR(reference.expected(25), 30.5, 0.05);
+  EXPECT_NEAR(reference.expected(), reference.mean(), 1e-12);
+  EXPECT_LT(reference.slope()->lowest_c, 18);
+  EXPECT_GT(reference.slope()->highest_c, 22);
+}
+
+// Brown, Durbin and Evans: the recursive residuals of a line through all earlier values are independent and
+// have Student's t distribution.
+TEST(RunningReference, HealthyValuesThatFollowTheTemperatureBecomeStandardNormalOnes) {
+  double sum = 0, squares = 0, products = 0, count = 0;
+  for (unsigned seed = 0; seed < 1500; ++seed) {
+    Warm warm(100 + seed);
+    RunningReference reference = learnt(warm, 12);
+    double before = 0;
+    for (int i = 0; i < 20; ++i) {
+      // Stay within the observed temperatures: beyond them the reference adds an uncertainty that a truly
+      // linear dependence does not need.
+      const double temperature_c = 20 + std::sin(i);
+      const double value = warm.at(temperature_c);
+      if (reference.slope()) {
+        const double z = reference.judge(value, least, temperature_c).value_or(NAN);
+        sum += z;
+        squares += z * z;
+        products += z * before;
+        before = z;
+        count += 1;
+      }
+      reference.learn(value, temperature_c);
+    }
+  }
+  EXPECT_GT(count, 25000);
+  EXPECT_NEAR(sum / count, 0, 0.03);
+  EXPECT_NEAR(squares / count, 1, 0.05);
+  EXPECT_NEAR(products / count, 0, 0.03);
+}
+
+TEST(RunningReference, ASlopeThatMayBeChanceIsNone) {
+  std::mt19937_64 random(7);
+  std::normal_distribution<double> normal;
+  int found = 0;
+  for (int run = 0; run < 1000; ++run) {
+    RunningReference reference;
+    for (int i = 0; i < 30; ++i) reference.learn(30 + 0.05 * normal(random), 20 + 2 * normal(random));
+    found += reference.slope() ? 1 : 0;
+  }
+  EXPECT_LE(found, 12);  // the stated rate is 2.7
+}
+
+TEST(RunningReference, TemperaturesThatHardlyDifferTellNoSlope) {
+  RunningReference reference;
+  for (int i = 0; i < 40; ++i) {
+    const double temperature_c = 20 + 0.1 * (i % 3);
+    reference.learn(30 + 0.1 * temperature_c, temperature_c);
+  }
+  EXPECT_FALSE(reference.slope());
+}
+
+TEST(RunningReference, BeyondTheTemperaturesSeenHalfOfWhatTheLineAddsIsDoubted) {
+  Warm warm(11);
+  const RunningReference reference = learnt(warm, 200);
+  ASSERT_TRUE(reference.slope());
+  const double far_c = reference.slope()->highest_c + 10;
+  const double beyond = 10 * reference.slope()->per_c;
+  const double z = reference.judge(reference.expected(far_c) + beyond, least, far_c).value_or(0);
+  EXPECT_NEAR(z, 2, 0.05);
+  // At an observed temperature the same deviation is more than 10 standard deviations.
+  EXPECT_GT(reference.judge(reference.expected(20) + beyond, least, 20).value_or(0), 10);
+}
+
+TEST(RunningReference, AValueWithoutATemperatureIsComparedWithAll) {
+  Warm warm(13);
+  const RunningReference reference = learnt(warm, 50);
+  const double spread = 0.2;  // 2 °C with 0.1 per °C
+  const double z = reference.judge(reference.mean() + 3 * spread, least).value_or(0);
+  EXPECT_NEAR(z, 3, 0.6);
+}
+
+TEST(RunningReference, FindsThePersistenceOfWhatTheTemperatureLeaves) {
+  std::mt19937_64 random(17);
+  std::normal_distribution<double> normal;
+  RunningReference reference;
+  double weather = 0;
+  for (int i = 0; i < 3000; ++i) {
+    weather = 0.8 * weather + 0.6 * normal(random);
+    reference.learn(300 + 0.1 * weather + 0.05 * normal(random), 20 + weather);
+  }
+  ASSERT_TRUE(reference.slope());
+  EXPECT_NEAR(reference.persistence(), 0, 0.03);
+}
+
+}  // namespace
+}  // namespace softgrip::sysid::health::running_reference_test

@@ -1,0 +1,152 @@
+#include "sysid/health/scored_run.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "base/files.h"
+#include "sysid/health/run_search.h"
+#include "tests/sysid/simulated.h"
+
+namespace softgrip::sysid::health::scored_run_test {
+namespace {
+
+ScoredRun example(const std::string& run, const std::string& finger, const std::string& baseline) {
+  ScoredRun scored{run, finger, "2026-11-22T01:02:03Z", "pick 12345678 hold_s=5", baseline, {}};
+  scored.score[sysid::HealthNumber::gain] = 31.25;
+  return scored;
+}
+
+TEST(ScoredRun, ALineReadsBackAsItWasAndWhatIsAbsentStaysAbsent) {
+  const std::string line = line_of(example("run-1", "left", "1-abc"));
+  EXPECT_EQ(line.back(), '\n');
+  const auto read = read_scores(line);
+  ASSERT_EQ(read.size(), 1U);
+  EXPECT_EQ(read[0].run, "run-1");
+  EXPECT_EQ(read[0].finger, "left");
+  EXPECT_EQ(read[0].started_at, "2026-11-22T01:02:03Z");
+  EXPECT_EQ(read[0].recipe, "pick 12345678 hold_s=5");
+  EXPECT_EQ(read[0].baseline, "1-abc");
+  EXPECT_EQ(read[0].score[sysid::HealthNumber::gain], 31.25);
+  EXPECT_TRUE(std::isnan(read[0].score[sysid::HealthNumber::zero]));
+}
+
+TEST(ScoredRun, ATemperatureIsKeptAndALineWithoutOneHasNone) {
+  ScoredRun warm = example("run-1", "left", "1-abc");
+  EXPECT_EQ(line_of(warm).find("temperature_c"), std::string::npos);
+  EXPECT_TRUE(std::isnan(read_scores(line_of(warm))[0].temperature_c));
+  warm.temperature_c = 23.5;
+  EXPECT_EQ(read_scores(line_of(warm))[0].temperature_c, 23.5);
+}
+
+TEST(ScoredRun, ALineThatWasCutOffCostsItselfAlone) {
+  const std::string first = line_of(example("run-1", "left", "a"));
+  const std::string second = line_of(example("run-2", "left", "a"));
+  for (std::size_t cut = 0; cut + 1 < first.size(); ++cut) {
+    const auto read = read_scores(first.substr(0, cut) + "\n" + second);
+    ASSERT_EQ(read.size(), 1U) << cut;
+    EXPECT_EQ(read[0].run, "run-2");
+  }
+  EXPECT_TRUE(read_scores("").empty());
+  EXPECT_TRUE(read_scores("null\n[]\n3\n").empty());
+}
+
+class FoundRuns : public ::testing::Test {
+ protected:
+  ~FoundRuns() override { std::filesystem::remove_all(folder); }
+  FoundRuns() = default;
+  FoundRuns(const FoundRuns&) = delete;
+  FoundRuns& operator=(const FoundRuns&) = delete;
+  FoundRuns(FoundRuns&&) = delete;
+  FoundRuns& operator=(FoundRuns&&) = delete;
+
+  /// Writes a recording with this run.json and returns its folder.
+  [[nodiscard]] std::string run(const std::string& name, const std::string& story) const {
+    const std::filesystem::path path = folder / name;
+    std::string csv = "time_s,channel,pressure_command_kpa,displacement_mm\n";
+    for (int i = 0; i < 200; ++i)
+      csv += std::to_string(0.01 * i) + ",left," + std::to_string(0.1 * i) + ",0.1\n";
+    EXPECT_TRUE(write_file((path / "run.csv").string(), csv));
+    if (!story.empty()) {
+      EXPECT_TRUE(write_file((path / "run.json").string(), story));
+    }
+    return path.string();
+  }
+  [[nodiscard]] RunScores scores() const {
+    const FingerBase base{score_base(sysid::loaded("bench_twin"), 60), "b"};
+    return score_runs(find_runs({folder.string()}), [&](const std::string&) { return &base; }, {});
+  }
+
+  std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / ("softgrip_found_runs_" + std::to_string(::getpid()));
+};
+
+TEST_F(FoundRuns, AreThoseInAFolderByNameAndNothingElse) {
+  (void)run("b", "");
+  (void)run("a", "");
+  ASSERT_TRUE(write_file((folder / "health/health.json").string(), "{}"));
+  const auto found = find_runs({folder.string(), (folder / "b").string()});
+  ASSERT_EQ(found.size(), 3U);
+  EXPECT_EQ(found[0], (folder / "a").string());
+  EXPECT_EQ(found[1], (folder / "b").string());
+  EXPECT_EQ(found[2], (folder / "b").string());
+}
+
+TEST_F(FoundRuns, HaveTheMedianOfTheirTemperatures) {
+  const std::string path = run("a", "");
+  std::string csv = "time_s,channel,pressure_command_kpa,displacement_mm,temperature_c\n";
+  for (int i = 0; i < 200; ++i) {
+    csv += std::to_string(0.01 * i) + ",left," + std::to_string(0.1 * i) + ",0.1,";
+    csv += (i % 2 == 0 ? std::to_string(21.5 + 0.001 * (i - 100)) : "") + "\n";
+  }
+  ASSERT_TRUE(write_file(path + "/run.csv", csv));
+  const RunScores found = scores();
+  ASSERT_EQ(found.runs.size(), 1U);
+  EXPECT_NEAR(found.runs[0].temperature_c, 21.5, 0.01);
+}
+
+TEST_F(FoundRuns, WhatIsNotFinishedAndWhatIsOfNoSequenceIsLeftOut) {
+  const std::string of_sequence =
+      R"("software_version": "1", "sequence": {"name": "pick", "sha256": "0123456789"})";
+  (void)run("1-good", "{" + of_sequence + R"(, "state": "complete"})");
+  (void)run("2-running", "{" + of_sequence + R"(, "state": "recording"})");
+  (void)run("3-fault", R"({"software_version": "1", "sequence": null, "state": "complete"})");
+  const RunScores found = scores();
+  ASSERT_EQ(found.runs.size(), 1U);
+  EXPECT_EQ(found.runs[0].run, "1-good");
+  EXPECT_EQ(found.runs[0].recipe, "pick 01234567");
+  ASSERT_EQ(found.skipped.size(), 2U);
+  EXPECT_EQ(found.skipped[0].why, "it is not finished");
+  EXPECT_NE(found.skipped[1].why.find("no sequence"), std::string::npos);
+}
+
+TEST_F(FoundRuns, OneThatIsNotThereIsLeftOutWithTheReason) {
+  const FingerBase base{score_base(sysid::loaded("bench_twin"), 60), "b"};
+  const std::string missing = (folder / "missing").string();
+  const RunScores found = score_runs(find_runs({missing}), [&](const std::string&) { return &base; }, {});
+  ASSERT_EQ(found.skipped.size(), 1U);
+  EXPECT_EQ(found.skipped[0].run, "missing");
+  EXPECT_NE(found.skipped[0].why.find(missing), std::string::npos) << found.skipped[0].why;
+}
+
+TEST(ScoredRun, OnlyScoresByTodaysBaselineCountAndTheLastOfThem) {
+  const FingerBase replaced{{}, "new"};
+  const FingerBase kept_since{{}, "old"};
+  const BaseOf base_of = [&](const std::string& finger) -> const FingerBase* {
+    if (finger == "middle") return nullptr;
+    return finger == "left" ? &replaced : &kept_since;
+  };
+  ScoredRun again = example("run-1", "right", "old");
+  again.score[sysid::HealthNumber::gain] = 30;
+  const auto kept = current({example("run-1", "left", "old"), example("run-1", "right", "old"),
+                             example("run-2", "left", "new"), example("run-2", "middle", "old"), again},
+                            base_of);
+  ASSERT_EQ(kept.size(), 2U);
+  EXPECT_EQ(kept[0].score[sysid::HealthNumber::gain], 30);
+  EXPECT_EQ(kept[1].run, "run-2");
+}
+
+}  // namespace
+}  // namespace softgrip::sysid::health::scored_run_test

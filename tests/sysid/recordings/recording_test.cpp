@@ -1,0 +1,55 @@
+#include "sysid/recordings/recording.h"
+
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <filesystem>
+
+#include "base/files.h"
+
+namespace softgrip::sysid::recording_test {
+namespace {
+
+const std::string csv = "time_s,pressure_command_kpa,displacement_mm\n0,0,0\n0.1,5,1\n0.2,9,2\n";
+
+class RecordingTest : public ::testing::Test {
+ protected:
+  RecordingTest() { std::filesystem::create_directories(folder); }
+  ~RecordingTest() override { std::filesystem::remove_all(folder); }
+  RecordingTest(const RecordingTest&) = delete;
+  RecordingTest& operator=(const RecordingTest&) = delete;
+  RecordingTest(RecordingTest&&) = delete;
+  RecordingTest& operator=(RecordingTest&&) = delete;
+
+  void write(const std::string& name, const std::string& text) const {
+    ASSERT_TRUE(write_file(folder / name, text));
+  }
+  [[nodiscard]] tl::expected<Recording, std::string> read() const {
+    document::Problems problems;
+    return read_recording(folder, problems);
+  }
+
+  std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / ("softgrip_recording_" + std::to_string(::getpid()));
+};
+
+TEST_F(RecordingTest, WhatIsNoRecordingIsRefused) {
+  EXPECT_NE(read().error().find("run.csv"), std::string::npos) << "no run.csv";
+  write("run.csv", "hello\n");
+  EXPECT_EQ(read().error(), "") << "the problems say why";
+}
+
+TEST_F(RecordingTest, APipeInsteadOfAFileIsNotWaitedFor) {
+  write("run.csv", csv);
+  ASSERT_EQ(::mkfifo((folder / "run.json").c_str(), 0600), 0);
+  EXPECT_TRUE(read()) << "a recording without run.json is still a recording";
+  std::filesystem::remove(folder / "run.csv");
+  ASSERT_EQ(::mkfifo((folder / "run.csv").c_str(), 0600), 0);
+  const auto recording = read();
+  ASSERT_FALSE(recording);
+  EXPECT_NE(recording.error().find("run.csv"), std::string::npos) << recording.error();
+}
+
+}  // namespace
+}  // namespace softgrip::sysid::recording_test
