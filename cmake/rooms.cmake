@@ -106,7 +106,7 @@ softgrip_room(sysid/diagnosis/report
   LIBRARIES nlohmann_json::nlohmann_json)
 # Recorded grips as indicators, their charts, and the content of an alarm.
 softgrip_room(sysid/health
-  USES base document model control/elements sysid/logs sysid/recordings sysid/pages sysid/fitting sysid/diagnosis/causes
+  USES base document model model/file control/elements sysid/logs sysid/recordings sysid/pages sysid/fitting sysid/diagnosis/causes
        sysid/changes sysid/diagnosis/experiments
   LIBRARIES Eigen3::Eigen nlohmann_json::nlohmann_json)
 # The innermost loops of a fit; GCC 12 fails at them with -O3 and sanitizers.

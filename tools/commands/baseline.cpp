@@ -16,6 +16,7 @@
 #include "base/sha256.h"
 #include "base/version.h"
 #include "base/wall_clock.h"
+#include "sysid/changes/baseline_folder.h"
 #include "sysid/changes/change.h"
 #include "sysid/identification/validate.h"
 #include "sysid/structure/identify_structure.h"
@@ -221,7 +222,7 @@ ExitCode keep(const BaselineOptions& options, Runs runs, const std::vector<std::
 /// Checks an existing baseline: its files, and the comparison of its second run with its first.
 ExitCode checked_again(BaselineOptions options) {
   const std::string folder = options.check.front();
-  const auto baseline = read_baseline(folder);
+  const auto baseline = sysid::read_baseline(folder);
   if (!baseline) return fail(ExitCode::input_refused, baseline.error());
   if (baseline->second.empty())
     return fail(ExitCode::input_refused,

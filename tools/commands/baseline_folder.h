@@ -1,7 +1,5 @@
 #pragma once
-// The folder that `softgrip baseline` writes and `softgrip diagnose --baseline` reads. It contains
-// healthy_1.csv ..., second_1.csv ... of the second run, gauge.csv, model.yaml, and baseline.json with their
-// origin.
+// Writes the folder of `softgrip baseline`, which sysid/changes/baseline_folder.h reads.
 
 #include <optional>
 #include <string>
@@ -14,13 +12,6 @@
 #include "sysid/changes/change.h"
 
 namespace softgrip::tools {
-
-struct Baseline {
-  std::vector<std::string> logs;    ///< paths inside the folder, in order
-  std::vector<std::string> second;  ///< logs of the second run; empty: there was none
-  std::string model;                ///< path of model.yaml
-  std::string gauge;                ///< path of gauge.csv; empty: the sensor was not checked
-};
 
 /// A file for the folder.
 struct BaselineFile {
@@ -50,9 +41,5 @@ struct BaselineContents {
 [[nodiscard]] tl::expected<std::string, std::string> write_baseline(const std::string& folder,
                                                                     const BaselineContents& contents,
                                                                     nlohmann::ordered_json about);
-
-/// Reads baseline.json and compares the hashes of the files that it names. The error is a sentence if the
-/// folder is not a baseline or if a file was changed.
-[[nodiscard]] tl::expected<Baseline, std::string> read_baseline(const std::string& folder);
 
 }  // namespace softgrip::tools

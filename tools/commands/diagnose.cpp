@@ -13,6 +13,7 @@
 
 #include "base/files.h"
 #include "base/numbers.h"
+#include "sysid/changes/baseline_folder.h"
 #include "sysid/diagnosis/report/report.h"
 #include "sysid/diagnosis/report/report_tables.h"
 #include "sysid/diagnosis/verdict/diagnosis.h"
@@ -21,7 +22,6 @@
 #include "tools/command_line/output.h"
 #include "tools/command_line/progress_line.h"
 #include "tools/command_line/terminal.h"
-#include "tools/commands/baseline_folder.h"
 #include "tools/commands/commands.h"
 #include "tools/commands/diagnose_change.h"
 #include "tools/commands/series_output.h"
@@ -194,7 +194,7 @@ std::optional<ExitCode> refuse_own_inputs(const DiagnoseOptions& options) {
 
 ExitCode run(DiagnoseOptions options, const std::vector<std::string>& call) {
   if (!options.baseline.empty()) {
-    const auto baseline = read_baseline(options.baseline);
+    const auto baseline = sysid::read_baseline(options.baseline);
     if (!baseline) return fail(ExitCode::input_refused, baseline.error());
     options.healthy = baseline->logs;
     if (options.model.empty()) options.model = baseline->model;

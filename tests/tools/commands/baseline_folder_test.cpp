@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "base/files.h"
+#include "sysid/changes/baseline_folder.h"
 #include "tests/daemon/temporary_folder.h"
 #include "tools/commands/diagnose_change.h"
 
@@ -27,7 +28,7 @@ class BaselineFolder : public ::testing::Test {
 
 TEST_F(BaselineFolder, WhatIsWrittenIsReadBack) {
   ASSERT_TRUE(write_baseline(folder_ + "/base", contents_, {{"schema", 1}}));
-  const auto baseline = read_baseline(folder_ + "/base");
+  const auto baseline = sysid::read_baseline(folder_ + "/base");
   ASSERT_TRUE(baseline) << baseline.error();
   ASSERT_EQ(baseline->logs.size(), 1U);
   EXPECT_EQ(*read_file(baseline->logs[0], 100), "a log\n");
@@ -40,13 +41,13 @@ TEST_F(BaselineFolder, TheSecondRunAndTheGaugeAreKeptAndWatchedOver) {
   contents_.gauge = BaselineFile{"blocks.csv", "gauge_mm,displacement_mm\n"};
   for (const char* const name : {"second_1.csv", "gauge.csv"}) {
     ASSERT_TRUE(write_baseline(folder_ + "/base", contents_, {{"schema", 1}}));
-    const auto baseline = read_baseline(folder_ + "/base");
+    const auto baseline = sysid::read_baseline(folder_ + "/base");
     ASSERT_TRUE(baseline) << baseline.error();
     ASSERT_EQ(baseline->second.size(), 1U);
     EXPECT_EQ(*read_file(baseline->second[0], 100), "another log\n");
     EXPECT_EQ(*read_file(baseline->gauge, 100), "gauge_mm,displacement_mm\n");
     ASSERT_TRUE(write_file(folder_ + "/base/" + name, "touched"));
-    const auto touched = read_baseline(folder_ + "/base");
+    const auto touched = sysid::read_baseline(folder_ + "/base");
     ASSERT_FALSE(touched);
     EXPECT_NE(touched.error().find(name), std::string::npos) << touched.error();
   }
@@ -64,7 +65,7 @@ TEST_F(BaselineFolder, WhatCannotBeWrittenWholeLeavesNothing) {
 TEST_F(BaselineFolder, WhatWasChangedIsRefusedByName) {
   ASSERT_TRUE(write_baseline(folder_ + "/base", contents_, {{"schema", 1}}));
   ASSERT_TRUE(write_file(folder_ + "/base/model.yaml", "another"));
-  const auto baseline = read_baseline(folder_ + "/base");
+  const auto baseline = sysid::read_baseline(folder_ + "/base");
   ASSERT_FALSE(baseline);
   EXPECT_NE(baseline.error().find("model.yaml"), std::string::npos) << baseline.error();
 }
@@ -72,7 +73,7 @@ TEST_F(BaselineFolder, WhatWasChangedIsRefusedByName) {
 TEST_F(BaselineFolder, AnotherFilesJsonIsRefused) {
   for (const char* const text : {"", "[]", "{\"logs\": 3}", "{\"logs\": [{}], \"model\": {}}"}) {
     ASSERT_TRUE(write_file(folder_ + "/baseline.json", text));
-    EXPECT_FALSE(read_baseline(folder_)) << text;
+    EXPECT_FALSE(sysid::read_baseline(folder_)) << text;
   }
 }
 

@@ -1,0 +1,174 @@
+#include "sysid/health/recorded_health.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <utility>
+
+#include "base/files.h"
+#include "base/sha256.h"
+#include "base/version.h"
+#include "base/wall_clock.h"
+#include "model/file/model_file.h"
+#include "sysid/changes/baseline_folder.h"
+#include "sysid/health/health_json.h"
+#include "sysid/logs/command_before.h"
+#include "sysid/logs/log.h"
+
+namespace softgrip::sysid::health {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+/// Scores of another kind than before have another name.
+constexpr const char* scoring = "1-";
+constexpr std::size_t id_letters = 12;
+constexpr std::size_t largest_baseline = std::size_t{512} * 1024 * 1024;
+
+/// DIR/FINGER where that is a baseline, else DIR itself.
+class Baselines {
+ public:
+  explicit Baselines(std::string folder) : folder_(std::move(folder)) {}
+
+  /// Null: it has none. It lives as long as this.
+  const FingerBase* of(const std::string& finger) {
+    const auto [base, is_new] = bases_.try_emplace(finger);
+    if (is_new) base->second = read(folder_of(finger));
+    return base->second ? &*base->second : nullptr;
+  }
+  [[nodiscard]] std::string folder_of(const std::string& finger) const {
+    const fs::path own = fs::path(folder_) / finger;
+    return !finger.empty() && is_there(own / "baseline.json") ? own.string() : folder_;
+  }
+  /// Baselines that exist and are refused.
+  [[nodiscard]] const std::vector<RefusedBaseline>& refused() const { return refused_; }
+
+ private:
+  std::optional<FingerBase> read(const std::string& folder) {
+    const std::string file = (fs::path(folder) / "baseline.json").string();
+    const auto bytes = read_file(file, largest_baseline);
+    if (!bytes) return std::nullopt;
+    const auto baseline = read_baseline(folder);
+    if (!baseline) return refuse({baseline.error(), {}});
+    document::Problems problems;
+    const auto model = model::load_model(baseline->model, problems);
+    if (!model) return refuse({{}, problems});
+    LogOptions options;
+    options.output_unit = model->output_unit;
+    options.output_unit_of = "the model " + model->name;
+    Campaign campaign = read_campaign(baseline->logs, problems, options);
+    if (!problems.empty()) return refuse({{}, problems, campaign.unreadable});
+    begin_before_first_command(campaign.logs, false);
+    const double full_kpa = largest_command_kpa(campaign.logs);
+    if (!(full_kpa > 0)) return refuse({folder + ": its logs know no pressure", {}});
+    return FingerBase{score_base(*model, full_kpa), scoring + sha256(*bytes).substr(0, id_letters)};
+  }
+  std::nullopt_t refuse(RefusedBaseline refused) {
+    refused_.push_back(std::move(refused));
+    return std::nullopt;
+  }
+
+  std::string folder_;
+  std::map<std::string, std::optional<FingerBase>> bases_;
+  std::vector<RefusedBaseline> refused_;
+};
+
+void judge(const std::vector<ScoredRun>& runs, const HealthQuestion& question, Baselines& baselines,
+           RecordedHealth& all) {
+  std::map<std::string, std::vector<ScoredRun>> by_finger;
+  for (const ScoredRun& run : runs) by_finger[run.finger].push_back(run);
+  std::vector<FingerRuns> fingers;
+  fingers.reserve(by_finger.size());
+  for (auto& [finger, own] : by_finger)
+    fingers.push_back({finger, std::move(own), baselines.of(finger)->base});
+  RigHealth rig = judge_rig(std::move(fingers), question.notes, question.options);
+  all.shared = std::move(rig.shared);
+  for (FingerHealth& health : rig.fingers) {
+    const HealthSource source{baselines.folder_of(health.finger), baselines.of(health.finger)->base,
+                              question.options, all.shared};
+    Suspicion suspicion = suspicion_of(health, all.shared);
+    all.fingers.push_back({std::move(health), std::move(suspicion), source});
+  }
+}
+
+/// Numbers that the fingers share a change of.
+std::vector<HealthNumber> shared_numbers(const RecordedHealth& rig) {
+  std::vector<const FingerHealth*> all;
+  for (const JudgedFinger& finger : rig.fingers) all.push_back(&finger.health);
+  std::vector<HealthNumber> numbers = shared_changes(all);
+  for (const SharedChange& shared : rig.shared) {
+    if (shared.stands && std::find(numbers.begin(), numbers.end(), shared.number) == numbers.end())
+      numbers.push_back(shared.number);
+  }
+  return numbers;
+}
+
+}  // namespace
+
+bool RecordedHealth::alarm() const {
+  return std::any_of(fingers.begin(), fingers.end(),
+                     [](const JudgedFinger& finger) { return finger.health.state == FingerState::alarm; });
+}
+
+tl::expected<RecordedHealth, std::vector<RefusedBaseline>> recorded_health(const HealthQuestion& question) {
+  Baselines baselines(question.baseline);
+  const BaseOf base_of = [&](const std::string& finger) { return baselines.of(finger); };
+  RecordedHealth all{question.baseline, question.options, {}, {}, {}, question.scores};
+  if (!all.scores.empty() && all.scores.back() != '\n') all.scores += '\n';
+  std::vector<ScoredRun> runs = read_scores(all.scores);
+  RunScores scores = score_runs(find_runs(question.recordings), base_of, runs);
+  if (!baselines.refused().empty()) return tl::unexpected(baselines.refused());
+  for (const ScoredRun& scored : scores.runs) {
+    all.scores += line_of(scored);
+    runs.push_back(scored);
+  }
+  all.skipped = std::move(scores.skipped);
+  judge(current(runs, base_of), question, baselines, all);
+  return all;
+}
+
+std::vector<std::string> warnings_of(const RecordedHealth& health) {
+  std::vector<std::string> warnings;
+  for (const SharedChange& shared : health.shared) {
+    if (shared.stands) warnings.push_back(shared_sentence(shared));
+  }
+  for (const JudgedFinger& finger : health.fingers) {
+    for (const HealthAlarm& unclear : finger.health.unclear)
+      warnings.push_back(unclear_sentence(finger.health, unclear));
+  }
+  return warnings;
+}
+
+Json json_of(const RecordedHealth& health, Nanoseconds now) {
+  const ChartLimits limits = health.options.limits();
+  Json json{
+      {"schema", 1},
+      {"made", utc_text(now)},
+      {"made_unix_s", now / 1'000'000'000},
+      {"software_version", std::string(software_version())},
+      {"baseline", health.baseline},
+      {"state", health.alarm() ? "alarm" : "steady"},
+      {"false_alarm_points", health.options.false_alarm_points},
+      {"limits", {{"allowance", limits.allowance}, {"cusum", limits.cusum}, {"single", limits.single}}}};
+  json["fingers"] = Json::array();
+  for (const JudgedFinger& finger : health.fingers)
+    json["fingers"].push_back(json_of(finger.health, finger.suspicion));
+  json["shared"] = Json::array();
+  for (const HealthNumber number : shared_numbers(health)) json["shared"].push_back(info_of(number).id);
+  json["shared_changes"] = Json::array();
+  for (const SharedChange& shared : health.shared) json["shared_changes"].push_back(json_of(shared));
+  json["warnings"] = warnings_of(health);
+  json["skipped"] = Json::array();
+  for (const SkippedRun& skipped : health.skipped)
+    json["skipped"].push_back({{"run", skipped.run}, {"why", skipped.why}});
+  return json;
+}
+
+std::string health_json_text(const Json& json) {
+  return json.dump(2, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace softgrip::sysid::health

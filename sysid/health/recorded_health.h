@@ -1,0 +1,65 @@
+#pragma once
+// The answer of `softgrip health`: scores recordings by the baselines of their fingers and judges all scores.
+
+#include <string>
+#include <vector>
+
+#include <nlohmann/json_fwd.hpp>
+#include <tl/expected.hpp>
+
+#include "base/time.h"
+#include "document/problem.h"
+#include "sysid/health/health_page.h"
+#include "sysid/health/run_search.h"
+
+namespace softgrip::sysid::health {
+
+struct HealthQuestion {
+  std::vector<std::string> recordings;  ///< recordings, or folders of recordings
+  /// Folder of `softgrip baseline`. If it has a baseline in a folder FINGER, that finger has its own.
+  std::string baseline;
+  std::vector<Note> notes;
+  HealthOptions options;
+  std::string scores;  ///< text of earlier scores; their recordings are not read again
+};
+
+/// A finger of the rig, judged.
+struct JudgedFinger {
+  FingerHealth health;
+  Suspicion suspicion;
+  HealthSource source;
+};
+
+struct RecordedHealth {
+  std::string baseline;
+  HealthOptions options;
+  std::vector<JudgedFinger> fingers;  ///< by name; empty: no recording can be compared with the baseline
+  std::vector<SharedChange> shared;
+  std::vector<SkippedRun> skipped;
+  std::string scores;  ///< those of the question and those of the new recordings
+
+  /// Returns true if an alarm of a finger is active.
+  [[nodiscard]] bool alarm() const;
+};
+
+/// Reason why a baseline is refused.
+struct RefusedBaseline {
+  std::string why;              ///< a sentence; empty: the problems state the reason
+  document::Problems problems;  ///< of its model or its logs
+  bool unreadable = false;      ///< a file cannot be opened
+};
+
+/// Scores the recordings that `scores` does not have, and judges all fingers. The error has at least one
+/// refused baseline.
+[[nodiscard]] tl::expected<RecordedHealth, std::vector<RefusedBaseline>> recorded_health(
+    const HealthQuestion& question);
+
+/// Returns facts that are no alarm of a finger but should be known.
+[[nodiscard]] std::vector<std::string> warnings_of(const RecordedHealth& health);
+
+/// Returns the content of health.json. @param now  time that it states as that of its making.
+[[nodiscard]] nlohmann::ordered_json json_of(const RecordedHealth& health, Nanoseconds now);
+/// The text of health.json, without the last line break.
+[[nodiscard]] std::string health_json_text(const nlohmann::ordered_json& json);
+
+}  // namespace softgrip::sysid::health

@@ -1,0 +1,115 @@
+#include "sysid/health/recorded_health.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "base/files.h"
+#include "base/sha256.h"
+#include "model/file/model_file.h"
+#include "tests/sysid/simulated.h"
+
+namespace softgrip::sysid::health::recorded_health_test {
+namespace {
+
+class Recorded : public ::testing::Test {
+ protected:
+  Recorded() { write_baseline("baseline", 20); }
+  ~Recorded() override { std::filesystem::remove_all(folder); }
+  Recorded(const Recorded&) = delete;
+  Recorded& operator=(const Recorded&) = delete;
+  Recorded(Recorded&&) = delete;
+  Recorded& operator=(Recorded&&) = delete;
+
+  [[nodiscard]] std::string at(const std::string& name) const { return (folder / name).string(); }
+  [[nodiscard]] static std::string rows(const std::string& finger, double largest_kpa) {
+    std::string csv = "time_s,channel,pressure_command_kpa,displacement_mm\n";
+    for (int i = 0; i < 200; ++i) {
+      const double share = 0.005 * i;
+      csv += std::to_string(0.01 * i) + "," + finger + "," + std::to_string(share * largest_kpa) + "," +
+             std::to_string(10 * share) + "\n";
+    }
+    return csv;
+  }
+  void write(const std::string& name, const std::string& text) const {
+    ASSERT_TRUE(write_file(at(name), text));
+  }
+  void write_baseline(const std::string& name, double largest_kpa) const {
+    const std::string log = rows("left", largest_kpa);
+    const std::string model = model::to_yaml(loaded("bench_twin"));
+    write(name + "/healthy_1.csv", log);
+    write(name + "/model.yaml", model);
+    const nlohmann::ordered_json about{{"logs", {{{"file", "healthy_1.csv"}, {"sha256", sha256(log)}}}},
+                                       {"model", {{"file", "model.yaml"}, {"sha256", sha256(model)}}}};
+    write(name + "/baseline.json", about.dump());
+  }
+  [[nodiscard]] HealthQuestion question() const {
+    HealthQuestion asked;
+    asked.recordings = {at("recordings")};
+    asked.baseline = at("baseline");
+    return asked;
+  }
+
+  std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / ("softgrip_recorded_health_" + std::to_string(::getpid()));
+};
+
+TEST_F(Recorded, AFingerHasItsOwnBaselineOrThatOfTheRig) {
+  write("recordings/one/run.csv", rows("left", 20));
+  write("recordings/two/run.csv", rows("right", 20));
+  write_baseline("baseline/right", 25);
+  const auto found = recorded_health(question());
+  ASSERT_TRUE(found);
+  ASSERT_EQ(found->fingers.size(), 2U);
+  EXPECT_EQ(found->fingers[0].source.baseline, at("baseline"));
+  EXPECT_NEAR(found->fingers[0].source.base.full_kpa, 19.9, 1e-9);
+  EXPECT_EQ(found->fingers[1].source.baseline, at("baseline/right"));
+  EXPECT_NEAR(found->fingers[1].source.base.full_kpa, 24.875, 1e-9);
+  EXPECT_FALSE(found->alarm());
+  const auto json = json_of(*found, 1'000'000'000);
+  EXPECT_EQ(json["made_unix_s"], 1);
+  EXPECT_EQ(json["fingers"][1]["finger"], "right");
+}
+
+TEST_F(Recorded, ScoresThatAreThereAreKeptAndTheirRecordingsAreNotRead) {
+  write("recordings/one/run.csv", rows("left", 20));
+  const auto first = recorded_health(question());
+  ASSERT_TRUE(first);
+  write("recordings/one/run.csv", "");
+  write("recordings/two/run.csv", rows("left", 20));
+  HealthQuestion again = question();
+  again.scores = first->scores.substr(0, first->scores.size() - 1);
+  const auto second = recorded_health(again);
+  ASSERT_TRUE(second);
+  EXPECT_TRUE(second->skipped.empty());
+  EXPECT_EQ(second->scores.rfind(first->scores, 0), 0U);
+  EXPECT_EQ(read_scores(second->scores).size(), 2U);
+}
+
+TEST_F(Recorded, WithoutABaselineThereIsNoFinger) {
+  write("recordings/one/run.csv", rows("left", 20));
+  HealthQuestion asked = question();
+  asked.baseline = at("nothing");
+  const auto found = recorded_health(asked);
+  ASSERT_TRUE(found);
+  EXPECT_TRUE(found->fingers.empty());
+  ASSERT_EQ(found->skipped.size(), 1U);
+}
+
+TEST_F(Recorded, ARefusedBaselineIsAnError) {
+  write("recordings/one/run.csv", rows("left", 20));
+  write("baseline/model.yaml", "changed");
+  const auto changed = recorded_health(question());
+  ASSERT_FALSE(changed);
+  ASSERT_EQ(changed.error().size(), 1U);
+  EXPECT_NE(changed.error()[0].why.find("model.yaml"), std::string::npos);
+  write_baseline("baseline", 0);
+  const auto without_pressure = recorded_health(question());
+  ASSERT_FALSE(without_pressure);
+  EXPECT_FALSE(without_pressure.error()[0].why.empty() && without_pressure.error()[0].problems.empty());
+}
+
+}  // namespace
+}  // namespace softgrip::sysid::health::recorded_health_test
