@@ -175,7 +175,7 @@ softgrip_room(tools/commands
 softgrip_room(library FOLDERS library/include/softgrip
   USES base document model model/file control/elements control/feedforward control/tick drivers/board simulation/plant
        sysid/logs sysid/import sysid/fitting sysid/identification sysid/instrument sysid/diagnosis/report
-       sysid/diagnosis/verdict sysid/changes tools/studies
+       sysid/diagnosis/verdict sysid/changes sysid/health tools/studies
   LIBRARIES nlohmann_json::nlohmann_json)
 softgrip_public_headers(library/include)
 

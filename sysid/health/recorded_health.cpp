@@ -119,7 +119,12 @@ tl::expected<RecordedHealth, std::vector<RefusedBaseline>> recorded_health(const
   RecordedHealth all{question.baseline, question.options, {}, {}, {}, question.scores};
   if (!all.scores.empty() && all.scores.back() != '\n') all.scores += '\n';
   std::vector<ScoredRun> runs = read_scores(all.scores);
-  RunScores scores = score_runs(find_runs(question.recordings), base_of, runs);
+  OnRecording on_recording;
+  if (question.progress)
+    on_recording = [&](std::size_t index, std::size_t count) {
+      question.progress("recording " + std::to_string(index) + " of " + std::to_string(count));
+    };
+  RunScores scores = score_runs(find_runs(question.recordings), base_of, runs, on_recording);
   if (!baselines.refused().empty()) return tl::unexpected(baselines.refused());
   for (const ScoredRun& scored : scores.runs) {
     all.scores += line_of(scored);

@@ -1,6 +1,7 @@
 #pragma once
 // The answer of `softgrip health`: scores recordings by the baselines of their fingers and judges all scores.
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,7 @@ struct HealthQuestion {
   std::vector<Note> notes;
   HealthOptions options;
   std::string scores;  ///< text of earlier scores; their recordings are not read again
+  std::function<void(const std::string&)> progress = {};  ///< text about the present recording; may be empty
 };
 
 /// A finger of the rig, judged.

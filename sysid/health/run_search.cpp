@@ -8,6 +8,7 @@
 #include <set>
 #include <utility>
 
+#include "base/cancellation.h"
 #include "base/statistics.h"
 #include "sysid/recordings/recording.h"
 
@@ -108,7 +109,7 @@ std::vector<ScoredRun> current(const std::vector<ScoredRun>& runs, const BaseOf&
 }
 
 RunScores score_runs(const std::vector<std::string>& paths, const BaseOf& base_of,
-                     const std::vector<ScoredRun>& known) {
+                     const std::vector<ScoredRun>& known, const OnRecording& on_recording) {
   std::set<std::pair<std::string, std::string>> stale;
   for (const ScoredRun& run : known) stale.emplace(run.run, run.finger);
   std::set<std::string> done;
@@ -117,9 +118,15 @@ RunScores score_runs(const std::vector<std::string>& paths, const BaseOf& base_o
     done.insert(run.run);
   }
   for (const auto& [run, finger] : stale) done.erase(run);
-  RunScores scores;
+  std::vector<std::string> unread;
   for (const std::string& path : paths) {
-    if (!done.contains(name_of(path))) score_one(path, base_of, scores);
+    if (!done.contains(name_of(path))) unread.push_back(path);
+  }
+  RunScores scores;
+  for (std::size_t i = 0; i < unread.size(); ++i) {
+    end_if_cancelled();
+    if (on_recording) on_recording(i + 1, unread.size());
+    score_one(unread[i], base_of, scores);
   }
   return scores;
 }

@@ -25,15 +25,19 @@ struct SkippedRun {
   std::string run, why;
 };
 
+/// Called before each recording that is read: its index from 1, and their number.
+using OnRecording = std::function<void(std::size_t index, std::size_t count)>;
+
 struct RunScores {
   std::vector<ScoredRun> runs;  ///< one per run and finger
   std::vector<SkippedRun> skipped;
 };
 
 /// Scores the recordings that `known` does not have by today's baselines. One that cannot be used, or is not
-/// finished, is skipped and named; the others count.
+/// finished, is skipped and named; the others count. A cancelled computation ends with the next recording.
+/// @param on_recording  may be empty
 [[nodiscard]] RunScores score_runs(const std::vector<std::string>& paths, const BaseOf& base_of,
-                                   const std::vector<ScoredRun>& known);
+                                   const std::vector<ScoredRun>& known, const OnRecording& on_recording = {});
 
 /// Of each run and finger the last line that was scored by today's baseline.
 [[nodiscard]] std::vector<ScoredRun> current(const std::vector<ScoredRun>& runs, const BaseOf& base_of);

@@ -14,6 +14,7 @@
 #include <thread>
 
 #include "library/include/softgrip/diagnose.h"
+#include "library/include/softgrip/health.h"
 #include "library/include/softgrip/identify.h"
 #include "library/include/softgrip/log.h"
 #include "library/include/softgrip/softgrip.h"
@@ -60,14 +61,15 @@ class LibraryAndCommand : public testing::Test {
     return json;
   }
 
-  std::string model_;
-
- private:
   static std::string text_of(const std::string& path) {
     std::ostringstream text;
     text << std::ifstream(path).rdbuf();
     return text.str();
   }
+
+  std::string model_;
+
+ private:
   std::filesystem::path folder_ =
       std::filesystem::path(testing::TempDir()) /
       ("library_commands_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
@@ -196,6 +198,51 @@ TEST_F(LibraryAndCommand, AStopEndsLongComputationsWithinASecond) {
   }
   ASSERT_EQ(times_s.size(), 8U);
   for (const double time_s : times_s) EXPECT_LT(time_s, 1);
+}
+
+TEST_F(LibraryAndCommand, HealthOfRecordings) {
+  run("baseline --data " + path("one.csv") + " " + path("two.csv") + " --model " + model_ + " --out " +
+      path("base"));
+  const std::vector<std::string> recordings{path("one.csv"), path("two.csv"), path("three.csv")};
+  const Json expected =
+      plain(run("health " + recordings[0] + " " + recordings[1] + " " + recordings[2] + " --baseline " +
+                path("base") + " --points run --json --out " + path("health")),
+            {"made", "made_unix_s"});
+  HealthOptions options;
+  options.points = HealthPoints::run;
+  options.scores = path("scores.jsonl");
+  std::vector<std::string> stages;
+  options.progress = [&](const std::string& stage) { stages.push_back(stage); };
+  const Health found = health(recordings, path("base"), options);
+  EXPECT_EQ(plain(found.json, {"made", "made_unix_s"}), expected);
+  EXPECT_EQ(text_of(options.scores), text_of(path("health/health-scores.jsonl")));
+  ASSERT_EQ(found.fingers.size(), 1U);
+  EXPECT_EQ(found.fingers[0].html, text_of(path("health/health.html")));
+  EXPECT_EQ(found.fingers[0].points.size(), 3U);
+  ASSERT_EQ(found.fingers[0].indicators.size(), 9U);
+  EXPECT_EQ(found.fingers[0].indicators[0].values.size(), 3U);
+  EXPECT_EQ(found.fingers[0].indicators[0].value,
+            expected["fingers"][0]["numbers"]["gain_mm"]["value"].get<double>());
+  EXPECT_EQ(stages.back(), "recording 3 of 3");
+  stages.clear();
+  (void)health(recordings, path("base"), options);
+  EXPECT_TRUE(stages.empty()) << "the scores have all recordings";
+}
+
+TEST_F(LibraryAndCommand, HealthIsRefusedOrStopped) {
+  run("baseline --data " + path("one.csv") + " --model " + model_ + " --out " + path("base"));
+  const std::vector<std::string> recordings{path("one.csv")};
+  EXPECT_THROW((void)health({}, path("base")), InvalidArgument);
+  EXPECT_THROW((void)health(recordings, ""), InvalidArgument);
+  EXPECT_THROW((void)health(recordings, path("base"), {.false_alarm_points = 19}), InvalidArgument);
+  EXPECT_THROW((void)health(recordings, path("nothing")), Refused);
+  EXPECT_THROW((void)health(recordings, path("base"), {.notes = path("nothing")}), FileError);
+  EXPECT_THROW((void)health(recordings, path("base"), {.scores = path("base")}), FileError);
+  std::stop_source stop;
+  stop.request_stop();
+  EXPECT_THROW((void)health(recordings, path("base"), {.stop = stop.get_token()}), Cancelled);
+  std::ofstream(path("base/model.yaml")) << "changed\n";
+  EXPECT_THROW((void)health(recordings, path("base")), FileError);
 }
 
 TEST_F(LibraryAndCommand, RefusalsAreExceptions) {

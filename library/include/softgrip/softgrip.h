@@ -6,6 +6,7 @@
 #include <softgrip/control.h>   // IWYU pragma: export
 #include <softgrip/diagnose.h>  // IWYU pragma: export
 #include <softgrip/error.h>     // IWYU pragma: export
+#include <softgrip/health.h>    // IWYU pragma: export
 #include <softgrip/identify.h>  // IWYU pragma: export
 #include <softgrip/log.h>       // IWYU pragma: export
 #include <softgrip/model.h>     // IWYU pragma: export
