@@ -229,7 +229,7 @@ Controller::Controller(const ControllerSettings& settings) {
   library::require_between("tick_s", settings.tick_s, shortest_tick_s, longest_tick_s, "s");
   library::require_between("extra_latency_s", settings.extra_latency_s, 0, 1, "s");
   library::require_positive("sensor_noise", settings.sensor_noise, name_of(settings.model.unit()));
-  library::require_positive("reading_max_age_s", settings.reading_max_age_s, "s");
+  library::require_between("reading_max_age_s", settings.reading_max_age_s, 1e-4, 60, "s");
   control::ChannelSettings channel;
   channel.name = settings.model.name();
   channel.model = settings.model.parts().value;

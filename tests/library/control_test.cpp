@@ -126,6 +126,7 @@ TEST(LibraryControl, RefusesSettingsByName) {
   };
   EXPECT_EQ(refused([](auto&) {}), "");
   EXPECT_EQ(refused([](auto& s) { s.tick_s = 0; }), "tick_s");
+  EXPECT_EQ(refused([](auto& s) { s.reading_max_age_s = 4e9; }), "reading_max_age_s");
   EXPECT_EQ(refused([](auto& s) { s.limits.pressure_max_kpa = -1; }), "pressure_max_kpa");
   EXPECT_EQ(refused([](auto& s) { s.limits.rest_kpa = nan; }), "rest_kpa");
   EXPECT_EQ(refused([](auto& s) { s.pid.kp_kpa_per_mm = nan; }), "kp_kpa_per_mm");

@@ -185,7 +185,7 @@ struct ControllerSettings {
   double extra_latency_s = 0;       ///< latency from a command to the output of the board [s], 0 to 1
   double tick_s = 0.005;            ///< period of tick() [s], 0.0001 to 1
   double sensor_noise = 0.05;       ///< standard deviation of a reading, in the unit of the model, > 0
-  double reading_max_age_s = 0.05;  ///< largest age of a reading that is used [s], > 0
+  double reading_max_age_s = 0.05;  ///< largest age of a reading that is used [s], 0.0001 to 60
 };
 
 /// Result of Controller::tick(). NaN: not available.
