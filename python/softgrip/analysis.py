@@ -6,8 +6,9 @@ from collections.abc import Callable, Iterable
 from typing import Any, Optional, Union
 
 from . import _core
+from .arguments import text_of
 from .errors import InvalidArgument
-from .models import Log, Model, _number, _text, _whole
+from .models import Log, Model, _flag, _number, _whole
 from .results import Cause, Change, Diagnosis, Estimate, Identification, Prediction, Validation
 
 Logs = Union[Log, Iterable[Log]]
@@ -42,7 +43,7 @@ def _names(argument: str, names: Iterable[str]) -> list[str]:
     if isinstance(names, str):
         raise InvalidArgument(argument, f"{argument}: a list of names is required, not a text")
     try:
-        return [_text(argument, one) for one in names]
+        return [text_of(argument, one) for one in names]
     except TypeError as error:
         raise InvalidArgument(argument, f"{argument}: a list of names is required") from error
 
@@ -82,10 +83,10 @@ def identify(logs: Logs, structure: str = "start", *, start: Optional[Model] = N
     True
     """
     found = _core.identify(
-        _columns("logs", logs), _text("structure", structure), None if start is None else _model("start", start),
+        _columns("logs", logs), text_of("structure", structure), None if start is None else _model("start", start),
         _whole("branches", branches), _names("fixed", fixed), _names("free", free), _whole("starts", starts),
-        _whole("seed", seed), bool(robust), _number("fit_share", fit_share), _whole("threads", threads, _MOST_THREADS),
-        _text("drive", drive), _text("begin", begin), bool(held), _columns("validation", validation),
+        _whole("seed", seed), _flag("robust", robust), _number("fit_share", fit_share), _whole("threads", threads, _MOST_THREADS),
+        text_of("drive", drive), text_of("begin", begin), _flag("held", held), _columns("validation", validation),
         _callback(progress))
     found.update({key: _estimates(found[key]) for key in ("parameters", "combinations")})
     found.update({key: _predictions(found[key]) for key in ("fit", "held_out", "validation")})
@@ -95,8 +96,8 @@ def identify(logs: Logs, structure: str = "start", *, start: Optional[Model] = N
 
 def validate(model: Model, logs: Logs, *, drive: str = "command", begin: str = "auto", held: bool = False) -> Validation:
     """Predicts logs with a model, as `softgrip validate` does."""
-    found = _core.validate(_model("model", model), _columns("logs", logs), _text("drive", drive), _text("begin", begin),
-                           bool(held))
+    found = _core.validate(_model("model", model), _columns("logs", logs), text_of("drive", drive), text_of("begin", begin),
+                           _flag("held", held))
     found.update(predictions=_predictions(found["predictions"]), warnings=tuple(found["warnings"]))
     return Validation(**found)
 
@@ -112,11 +113,11 @@ def diagnose(model: Model, logs: Logs, healthy: Optional[Logs] = None, *, seed: 
     threads = _whole("threads", threads, _MOST_THREADS)
     if healthy is None:
         found = _core.diagnose(core, columns, seed, threads, _whole("null_campaigns", null_campaigns),
-                               _text("drive", drive), _text("begin", begin), bool(held), _callback(progress))
+                               text_of("drive", drive), text_of("begin", begin), _flag("held", held), _callback(progress))
         found.update(causes=_causes(found["causes"]), warnings=tuple(found["warnings"]),
                      refitted=Model(found["refitted"]), extended=Model(found["extended"]))
         return Diagnosis(**found)
-    found = _core.diagnose_change(core, _columns("healthy", healthy), columns, seed, threads, bool(held),
+    found = _core.diagnose_change(core, _columns("healthy", healthy), columns, seed, threads, _flag("held", held),
                                   _callback(progress))
     found.update(causes=_causes(found["causes"]), warnings=tuple(found["warnings"]))
     return Change(**found)

@@ -4,17 +4,17 @@ from __future__ import annotations
 
 import dataclasses
 import html
-import os
+import operator
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any, Optional, Union
+from typing import TYPE_CHECKING, Any, Optional
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _core
+from .arguments import Path, path_of, text_of, texts_of
 from .errors import InvalidArgument
 
-Path = Union[str, "os.PathLike[str]"]
 Vector = npt.NDArray[np.float64]
 _EMPTY: Vector = np.empty(0)
 
@@ -23,6 +23,8 @@ def _vector(argument: str, values: npt.ArrayLike, unit: str) -> Vector:
     """Converts an argument to a vector of numbers. Raises InvalidArgument for anything else."""
     wanted = f"a vector of numbers in {unit} is required"
     try:
+        if isinstance(values, np.ma.MaskedArray):
+            values = np.where(values.mask, np.nan, values.data)  # masked: no reading
         array = np.asarray(values)
     except Exception as error:
         raise InvalidArgument(argument, f"{argument}: {wanted}: {error}") from error
@@ -30,11 +32,12 @@ def _vector(argument: str, values: npt.ArrayLike, unit: str) -> Vector:
         raise InvalidArgument(argument, f"{argument}: type {array.dtype}; {wanted}")
     if array.ndim != 1:
         raise InvalidArgument(argument, f"{argument}: shape {array.shape}; one dimension, {wanted}")
-    return np.ascontiguousarray(array, dtype=np.float64)
+    return np.ascontiguousarray(array, dtype=np.float64) if array.size else np.empty(0)
 
 
 def _number(argument: str, value: float, unit: str = "") -> float:
-    if isinstance(value, (bool, str, bytes)):
+    if isinstance(value, (bool, str, bytes)) or getattr(value, "ndim", False) or \
+            getattr(getattr(value, "dtype", None), "kind", "f") not in "fiu":
         raise InvalidArgument(argument, f"{argument}: {value!r} is not a number{' in ' + unit if unit else ''}")
     try:
         return float(value)
@@ -45,28 +48,18 @@ def _number(argument: str, value: float, unit: str = "") -> float:
 
 def _whole(argument: str, value: int, largest: int = 2**63 - 1) -> int:
     try:
-        number = value.__index__()
-    except (AttributeError, TypeError) as error:
+        number = operator.index(value)
+    except TypeError as error:
         raise InvalidArgument(argument, f"{argument}: {value!r} is not a whole number") from error
     if not 0 <= number <= largest:
         raise InvalidArgument(argument, f"{argument}: {number} is not between 0 and {largest}")
     return number
 
 
-def _text(argument: str, value: object) -> str:
-    if not isinstance(value, str):
-        raise InvalidArgument(argument, f"{argument}: {value!r} is not a text")
-    return value
-
-
-def _path(argument: str, value: Path) -> str:
-    try:
-        path = os.fspath(value)
-    except TypeError as error:
-        raise InvalidArgument(argument, f"{argument}: {value!r} is not a path") from error
-    if not isinstance(path, str) or "\0" in path:
-        raise InvalidArgument(argument, f"{argument}: {value!r} is not a path")
-    return path
+def _flag(argument: str, value: object) -> bool:
+    if isinstance(value, (bool, np.bool_)):
+        return bool(value)
+    raise InvalidArgument(argument, f"{argument}: {value!r} is not True or False")
 
 
 @dataclasses.dataclass(frozen=True)
@@ -109,16 +102,16 @@ class Model:
     @classmethod
     def load(cls, path: Path) -> Model:
         """Reads a model file. `MalformedFile` names each problem with line and column."""
-        return cls(_core.Model.load(_path("path", path)))
+        return cls(_core.Model.load(path_of("path", path)))
 
     @classmethod
     def parse(cls, yaml: str, name: str = "model") -> Model:
         """Reads the text of a model file; `name` is for messages."""
-        return cls(_core.Model.parse(_text("yaml", yaml), _text("name", name)))
+        return cls(_core.Model.parse(text_of("yaml", yaml), text_of("name", name)))
 
     def save(self, path: Path) -> None:
         """Writes a model file, which `load()` reads back without loss."""
-        self._core.save(_path("path", path))
+        self._core.save(path_of("path", path))
 
     @property
     def yaml(self) -> str:
@@ -152,7 +145,7 @@ class Model:
         >>> model.parameters["transport_delay.delay_s"].value
         0.2
         """
-        return Model(self._core.with_parameter(_text("name", name), _number("value", value)))
+        return Model(self._core.with_parameter(text_of("name", name), _number("value", value)))
 
     def simulate(self, t: npt.ArrayLike, pressure: npt.ArrayLike, *, held: bool = False, noise: float = 0,
                  seed: int = 1, supply: Optional[npt.ArrayLike] = None,
@@ -169,7 +162,7 @@ class Model:
         softgrip.errors.InvalidArgument: pressure: 3 values, but there are 2 times. One value per time is required, in kPa
         """
         return self._core.simulate(
-            _vector("t", t, "s"), _vector("pressure", pressure, "kPa"), bool(held), _number("noise", noise, self.unit),
+            _vector("t", t, "s"), _vector("pressure", pressure, "kPa"), _flag("held", held), _number("noise", noise, self.unit),
             _whole("seed", seed), _EMPTY if supply is None else _vector("supply", supply, "kPa"),
             _EMPTY if temperature is None else _vector("temperature", temperature, "degrees Celsius"))
 
@@ -248,7 +241,7 @@ class Log:
                      sha256: str = "", notes: Sequence[str] = ()) -> None: ...
 
     def __post_init__(self) -> None:
-        if _text("unit", self.unit) not in ("mm", "deg"):
+        if text_of("unit", self.unit) not in ("mm", "deg"):
             raise InvalidArgument("unit", f"unit: {self.unit!r} is not 'mm' or 'deg'")
         for argument, unit in (("t", "s"), ("command", "kPa"), ("displacement", self.unit), ("pressure", "kPa"),
                                ("temperature", "degrees Celsius"), ("supply", "kPa")):
@@ -262,7 +255,7 @@ class Log:
                 values.flags.writeable = False
             object.__setattr__(self, argument, values)
         for argument in ("name", "path", "sha256"):
-            _text(argument, getattr(self, argument))
+            text_of(argument, getattr(self, argument))
 
     @classmethod
     def read(cls, path: Path, *, channel: str = "", columns: Optional[Mapping[str, str]] = None,
@@ -274,10 +267,9 @@ class Log:
         columns: by role (time, command, pressure, displacement, temperature, supply), a name or a number from 1. units: by
         role, if the file does not state them. rate_hz: samples per second of a file without times.
         """
-        named = {_text("columns", key): _text("columns", value) for key, value in dict(columns or {}).items()}
-        united = {_text("units", key): _text("units", value) for key, value in dict(units or {}).items()}
-        found = _core.read_log(_path("path", path), _text("channel", channel), bool(import_file), named, united,
-                               None if rate_hz is None else _number("rate_hz", rate_hz, "Hz"), _text("sheet", sheet))
+        found = _core.read_log(path_of("path", path), text_of("channel", channel), _flag("import_file", import_file),
+                               texts_of("columns", columns), texts_of("units", units),
+                               None if rate_hz is None else _number("rate_hz", rate_hz, "Hz"), text_of("sheet", sheet))
         return cls(found["time_s"], found["pressure_command_kpa"], found["displacement"], found["pressure_kpa"],
                    found["temperature_c"], found["supply_kpa"], found["unit"], found["name"], found["path"],
                    found["sha256"], tuple(found["notes"]))
@@ -299,7 +291,7 @@ class Log:
 
     def write(self, path: Path) -> None:
         """Writes a log file, which `read()` reads back without loss."""
-        _core.write_log(_path("path", path), self._columns())
+        _core.write_log(path_of("path", path), self._columns())
 
     def check(self) -> None:
         """Raises `InvalidArgument` if `identify()` would refuse the log."""

@@ -11,14 +11,14 @@ import os
 import pathlib
 import stat
 from collections.abc import Mapping
-from typing import Any, Union
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
+from .arguments import Path, file_path_of
 from .errors import MalformedFile
 
-Path = Union[str, os.PathLike[str]]
 Array = npt.NDArray[Any]
 
 
@@ -36,6 +36,7 @@ def _check(about: os.stat_result, path: Path, largest: int) -> None:
 def _text(path: Path, largest: int) -> str:
     """Returns the text of a regular file. Raises OSError for a device, a pipe (it would block) or a file that is too
     large."""
+    path = file_path_of("path", path)
     _check(os.stat(path), path, largest)  # check this first: opening some devices starts them
     with open(os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_NOCTTY | os.O_CLOEXEC), "rb") as file:
         _check(os.fstat(file.fileno()), path, largest)  # another process may have replaced it
@@ -112,7 +113,7 @@ class Recording:
 
     @classmethod
     def read(cls, folder: Path) -> Recording:
-        folder = pathlib.Path(folder)
+        folder = pathlib.Path(file_path_of("folder", folder))
         columns = read_columns(folder / "run.csv")
         about = _json_object(folder / "run.json")
         if "channel" not in columns:

@@ -160,6 +160,13 @@ class Objects(unittest.TestCase):
         with self.assertRaises(ValueError):
             log.command[0] = 1
 
+    def test_a_masked_value_is_no_reading(self):
+        t, pressure = sine()
+        masked = np.ma.masked_array(pressure, mask=t > 10)
+        np.testing.assert_array_equal(np.isnan(Log(t, pressure, masked).displacement), t > 10)
+        with self.assertRaisesRegex(softgrip.InvalidArgument, "^pressure: value 201 is nan"):
+            Model.load(MODEL).simulate(t, masked)
+
     def test_an_exception_pickles(self):
         with self.assertRaises(softgrip.InvalidArgument) as caught:
             Model.load(MODEL).simulate([0, 1], [0, np.nan])
@@ -284,6 +291,20 @@ class HostileArguments(unittest.TestCase):
             with self.assertRaisesRegex(softgrip.InvalidArgument, f"^{name}: ") as caught:
                 call()
             self.assertEqual(caught.exception.argument, name)
+
+    def test_flags_mappings_and_encodings(self):
+        model, t, log = Model.load(MODEL), [0.0, 0.01], simulated()
+        for name, call in (("held", lambda: model.simulate(t, t, held=np.array([True, False]))),
+                           ("robust", lambda: identify(log, starts=1, robust="no")),
+                           ("import_file", lambda: Log.read("x.csv", import_file=[1, 2])),
+                           ("columns", lambda: Log.read("x.csv", columns=3)),
+                           ("units", lambda: Log.read("x.csv", units=b"3")),
+                           ("path", lambda: Model.load("\ud800")), ("name", lambda: model.with_parameter("\ud800", 1)),
+                           ("noise", lambda: model.simulate(t, t, noise=np.array([1.0]))),
+                           ("noise", lambda: model.simulate(t, t, noise=np.complex128(1))),
+                           ("seed", lambda: model.simulate(t, t, seed=np.float64(1)))):
+            with self.assertRaisesRegex(softgrip.InvalidArgument, f"^{name}: "):
+                call()
 
     def test_read_only_and_strided_arrays(self):
         model = Model.load(MODEL)

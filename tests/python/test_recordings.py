@@ -47,6 +47,12 @@ class Recordings(unittest.TestCase):
         self.assertEqual(left["result"].tolist(), ["none", "holding"])
         self.assertNotIn("channel", left)
 
+    def test_what_is_no_path_is_refused(self):
+        for call in (read_columns, read_report, Recording.read):
+            for bad in (0, None, b"run.csv", "\ud800", "a\0b"):
+                with self.assertRaises(softgrip.InvalidArgument):
+                    call(bad)
+
     def test_a_line_that_a_kill_cut_off_is_left_out(self):
         self.write(RUN + "1,left,1")
         self.assertEqual(len(read_columns(self.folder / "run.csv")["time_s"]), 4)
