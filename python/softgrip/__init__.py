@@ -1,8 +1,8 @@
 """Client of softgripd, the controller of soft pneumatic grippers; also reads its files and computes models.
 
 `Gripper` blocks, and `AsyncGripper` is for asyncio. Both use version 1 of the daemon's socket API and need only Python.
-`Recording` and the `read_*` functions need NumPy. `Model`, `Log`, `identify()`, `validate()` and `diagnose()` need NumPy and
-the shared library. They are loaded at their first use.
+`Recording` and the `read_*` functions need NumPy. `Model`, `Log`, `identify()`, `validate()`, `diagnose()` and `health()` need
+NumPy and the shared library. They are loaded at their first use.
 """
 
 from __future__ import annotations
@@ -18,16 +18,18 @@ from .messages import (Channel, Checked, Event, Fault, Grip, Hello, Parameter, P
                        SequenceState, State, Status)
 
 if TYPE_CHECKING:
-    from .analysis import diagnose, identify, validate
+    from .analysis import diagnose, health, identify, validate
     from .models import Inverse, Log, Model, Parameter as ModelParameter
-    from .results import Cause, Change, Diagnosis, Estimate, Identification, Prediction, Validation
+    from .results import (Cause, Change, Diagnosis, Estimate, FingerHealth, Health, HealthAlarm, HealthIndicator,
+                          Identification, Prediction, Suspect, Validation)
 
 # Names that are loaded at their first use: the module of each, and its name in this module.
-_ON_USE = {name: ("analysis", name) for name in ("diagnose", "identify", "validate")}
+_ON_USE = {name: ("analysis", name) for name in ("diagnose", "health", "identify", "validate")}
 _ON_USE |= {name: ("models", name) for name in ("Inverse", "Log", "Model")}
 _ON_USE |= {"ModelParameter": ("models", "Parameter")}
 _ON_USE |= {name: ("results", name) for name in
-            ("Cause", "Change", "Diagnosis", "Estimate", "Identification", "Prediction", "Validation")}
+            ("Cause", "Change", "Diagnosis", "Estimate", "FingerHealth", "Health", "HealthAlarm", "HealthIndicator",
+             "Identification", "Prediction", "Suspect", "Validation")}
 
 
 def __getattr__(name: str) -> Any:
@@ -51,8 +53,9 @@ def __dir__() -> list[str]:
 
 __all__ = [
     "AsyncGripper", "Cause", "Change", "Channel", "Checked", "ConnectionLost", "Diagnosis", "Estimate", "Event", "Fault",
-    "Grip", "GripFailed", "Gripper", "Hello", "Identification", "InvalidArgument", "Inverse", "Log", "MalformedFile",
-    "Model", "ModelParameter", "NoDaemon", "NoResult", "NotAnswered", "Owned", "Parameter", "Prediction", "Problem",
-    "ProtocolError", "Refused", "Result", "Sequence", "SequenceEnd", "SequenceRefused", "SequenceState", "SoftgripError",
-    "State", "Status", "StopNotConfirmed", "Validation", "diagnose", "identify", "validate",
+    "FingerHealth", "Grip", "GripFailed", "Gripper", "Health", "HealthAlarm", "HealthIndicator", "Hello",
+    "Identification", "InvalidArgument", "Inverse", "Log", "MalformedFile", "Model", "ModelParameter", "NoDaemon",
+    "NoResult", "NotAnswered", "Owned", "Parameter", "Prediction", "Problem", "ProtocolError", "Refused", "Result",
+    "Sequence", "SequenceEnd", "SequenceRefused", "SequenceState", "SoftgripError", "State", "Status", "StopNotConfirmed",
+    "Suspect", "Validation", "diagnose", "health", "identify", "validate",
 ]

@@ -1,15 +1,18 @@
-"""Identification, validation and diagnosis of logs. The functions give the same results as the commands."""
+"""Identification, validation and diagnosis of logs, and health of recordings. The functions give the same results as the
+commands."""
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Iterable
 from typing import Any, Optional, Union
 
 from . import _core
-from .arguments import text_of
+from .arguments import Path, path_of, text_of
 from .errors import InvalidArgument
 from .models import Log, Model, _flag, _number, _whole
-from .results import Cause, Change, Diagnosis, Estimate, Identification, Prediction, Validation
+from .results import (Cause, Change, Diagnosis, Estimate, FingerHealth, Health, HealthAlarm, HealthIndicator, Identification,
+                      Prediction, Suspect, Validation)
 
 Logs = Union[Log, Iterable[Log]]
 Progress = Optional[Callable[[str], object]]
@@ -121,3 +124,30 @@ def diagnose(model: Model, logs: Logs, healthy: Optional[Logs] = None, *, seed: 
                                   _callback(progress))
     found.update(causes=_causes(found["causes"]), warnings=tuple(found["warnings"]))
     return Change(**found)
+
+
+def health(recordings: Union[Path, Iterable[Path]], baseline: Path, *, points: str = "day", false_alarm_points: float = 3650,
+           notes: Optional[Path] = None, scores: Optional[Path] = None, progress: Progress = None) -> Health:
+    """Reports which fingers have changed in recordings of ordinary grips, as `softgrip health` does.
+
+    recordings: folders of recordings, or folders that contain them. baseline: folder of `softgrip baseline`. points: a point of
+    a control chart is a "day" or a "run". false_alarm_points: mean number of points between two false alarms of a healthy
+    finger. notes: file of maintenance records. scores: file of the indicators so far, which is read if it exists, and replaced;
+    its recordings are not read again.
+    """
+    if isinstance(recordings, (str, os.PathLike)):
+        recordings = [recordings]
+    try:
+        paths = [path_of("recordings", one) for one in recordings]
+    except TypeError as error:
+        raise InvalidArgument("recordings", f"recordings: {recordings!r} is no path and no list of paths") from error
+    found = _core.health(paths, path_of("baseline", baseline), text_of("points", points),
+                         _number("false_alarm_points", false_alarm_points), "" if notes is None else path_of("notes", notes),
+                         "" if scores is None else path_of("scores", scores), _callback(progress))
+    for one in found["fingers"]:
+        one.update(indicators=tuple(HealthIndicator(**inner) for inner in one["indicators"]),
+                   alarms=tuple(HealthAlarm(**inner) for inner in one["alarms"]),
+                   suspects=tuple(Suspect(**inner) for inner in one["suspects"]))
+    found.update(fingers=tuple(FingerHealth(**one) for one in found["fingers"]), warnings=tuple(found["warnings"]),
+                 skipped=tuple(found["skipped"]))
+    return Health(**found)

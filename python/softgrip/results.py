@@ -1,4 +1,4 @@
-"""Results of identification, validation and diagnosis: typed values, a table for notebooks, and plots."""
+"""Results of identification, validation, diagnosis and health: typed values, a table for notebooks, and plots."""
 
 from __future__ import annotations
 
@@ -173,9 +173,13 @@ def _cause_rows(causes: Sequence[Cause]) -> list[tuple[str, ...]]:
             for cause in causes for one in cause.parameters]
 
 
+def _one_axes(axes: Any) -> Any:
+    """The given matplotlib axes, or new ones."""
+    return _pyplot().subplots(layout="constrained")[1] if axes is None else axes
+
+
 def _plotted_causes(causes: Sequence[Cause], axes: Any) -> Any:
-    if axes is None:
-        _, axes = _pyplot().subplots(layout="constrained")
+    axes = _one_axes(axes)
     with_reduction = [one for one in causes if np.isfinite(one.error_reduction_percent)]
     for row, one in enumerate(with_reduction):
         lower, upper = one.error_reduction_ci95
@@ -230,3 +234,133 @@ class Change(_Reported):
     def _repr_html_(self) -> str:
         return _table(self.sentence, self.warnings, ("cause", "size", "value", "95 % interval", "alternatives"),
                       _cause_rows(self.causes))
+
+    def plot(self, axes: Any = None) -> Any:
+        """Draws the size of each change with its 95 % interval on matplotlib axes, and returns them. Sizes have different units,
+        so each is drawn as a share of the largest absolute value of its interval; the labels state the values."""
+        axes = _one_axes(axes)
+        sizes = [(cause.id, one) for cause in self.causes for one in cause.parameters]
+        for row, (_, one) in enumerate(sizes):
+            lower, upper = one.ci95 or (one.value, one.value)
+            scale = max(abs(lower), abs(upper), abs(one.value)) or 1.0
+            axes.plot([lower / scale, upper / scale], [row, row], color="tab:blue")
+            axes.plot([one.value / scale], [row], "o", color="tab:blue")
+        axes.axvline(0, color="tab:gray", linewidth=1)
+        axes.set_yticks(range(len(sizes)), [f"{cause}\n{one.value:.3g} {one.unit}" for cause, one in sizes])
+        axes.set_xlabel("size of the change, as a share of its largest value, 95 % interval")
+        return axes
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class HealthIndicator:
+    """An indicator of a finger. `value` is that of the last point, `reference` and `spread` (mean and standard deviation) are
+    those since the last maintenance record; each is None if unknown. `values` has one value per point, NaN: none."""
+
+    id: str
+    title: str
+    unit: str
+    value: Optional[float]
+    reference: Optional[float]
+    spread: Optional[float]
+    values: Vector
+
+
+@dataclasses.dataclass(frozen=True)
+class HealthAlarm:
+    """A significant change of an indicator, in its unit. `since` and `noticed` are points. A maintenance record ends it."""
+
+    indicator: str
+    change: float
+    since: str
+    noticed: str
+    grips_until_noticed: int
+    active: bool
+
+
+@dataclasses.dataclass(frozen=True)
+class Suspect:
+    """A possible cause of the active alarms, and the checks that confirm it, the quickest first."""
+
+    id: str
+    words: str
+    next_steps: Sequence[str]
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class FingerHealth:
+    """The health of one finger. `state` is "learning", "steady" or "alarm"; `points` are days or names of recordings."""
+
+    finger: str
+    state: str
+    sentence: str
+    unit: str
+    grips: int
+    points: Sequence[str]
+    indicators: Sequence[HealthIndicator]
+    alarms: Sequence[HealthAlarm]
+    suspects: Sequence[Suspect]
+    advice: Sequence[str]
+    html: str = dataclasses.field(repr=False)
+
+    def indicator(self, name: str) -> HealthIndicator:
+        """The indicator of an id, such as "gain_mm"."""
+        for one in self.indicators:
+            if one.id == name:
+                return one
+        raise InvalidArgument("indicator", f"indicator: {name!r} is not one of {', '.join(one.id for one in self.indicators)}")
+
+    def plot(self, indicator: Optional[str] = None, axes: Any = None) -> Any:
+        """Draws an indicator over the points, with its reference and 3 standard deviations, on matplotlib axes, and returns them.
+        By default, it is that of the first active alarm, or else the gain."""
+        active = [one.indicator for one in self.alarms if one.active]
+        shown = self.indicator(indicator if indicator is not None else active[0] if active else "gain_mm")
+        axes = _one_axes(axes)
+        x = np.arange(len(self.points))
+        axes.plot(x, shown.values, "o", markersize=4)
+        if shown.reference is not None:
+            axes.axhline(shown.reference, color="tab:gray", linewidth=1)
+            if shown.spread is not None:
+                axes.axhspan(shown.reference - 3 * shown.spread, shown.reference + 3 * shown.spread, color="tab:gray", alpha=0.2)
+        for alarm in self.alarms:
+            if alarm.indicator == shown.id and alarm.noticed in self.points:
+                axes.axvline(self.points.index(alarm.noticed), color="tab:red", linewidth=1)
+        ticks = x[::max(1, len(x) // 6)]
+        axes.set_xticks(ticks, [self.points[one] for one in ticks], rotation=30, ha="right")
+        axes.set_ylabel(f"{shown.title} [{shown.unit}]")
+        axes.set_title(f"{self.finger}: {self.state}")
+        return axes
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class Health:
+    """The result of `health()`. `alarm` is True while an alarm of a finger is active. `warnings` are changes that are not
+    attributed to a finger. `skipped` has the name of each recording that was not used, and the reason."""
+
+    alarm: bool
+    fingers: Sequence[FingerHealth]
+    warnings: Sequence[str]
+    skipped: Sequence[tuple[str, str]]
+    json: str = dataclasses.field(repr=False)
+
+    @functools.cached_property
+    def report(self) -> Mapping[str, Any]:
+        """The complete result: health.json as Python values."""
+        return json.loads(self.json)  # type: ignore[no-any-return]
+
+    def finger(self, name: str) -> FingerHealth:
+        """The health of a finger by its name."""
+        for one in self.fingers:
+            if one.finger == name:
+                return one
+        raise InvalidArgument("finger", f"finger: {name!r} is not one of {', '.join(one.finger for one in self.fingers)}")
+
+    def _repr_html_(self) -> str:
+        rows = [(one.finger, one.state, one.sentence, ", ".join(suspect.id for suspect in one.suspects))
+                for one in self.fingers]
+        return _table("alarm" if self.alarm else "steady", self.warnings, ("finger", "state", "health", "suspects"), rows)
+
+    def plot(self, finger: Optional[str] = None, indicator: Optional[str] = None, axes: Any = None) -> Any:
+        """Draws an indicator of a finger over time. By default, it is the first finger in alarm, or else the first one."""
+        alarmed = [one for one in self.fingers if one.state == "alarm"]
+        shown = self.finger(finger) if finger is not None else (alarmed or self.fingers)[0]
+        return shown.plot(indicator, axes)

@@ -120,6 +120,12 @@ class EqualToTheCommands(unittest.TestCase):
         self.assertEqual(plain(found.report, "wall_s"), plain(expected, "wall_s", "made_of"))
         self.assertIsInstance(found, softgrip.Change)
         self.assertIn(found.causes[0].id, found._repr_html_())
+        import matplotlib
+        matplotlib.use("Agg")
+        labels = [one.get_text() for one in found.plot().get_yticklabels()]
+        self.assertEqual([one.splitlines()[0] for one in labels], [cause.id for cause in found.causes])
+        self.assertIn(found.causes[0].parameters[0].unit, labels[0])
+        matplotlib.pyplot.close("all")
 
 
 class Objects(unittest.TestCase):
