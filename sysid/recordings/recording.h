@@ -21,13 +21,13 @@ struct RecordedEvent {
 };
 
 struct Recording {
-  std::string name;                  ///< name of the folder or file
-  std::string sequence;              ///< empty if unknown
-  std::string software_version;      ///< software that recorded it; empty if unknown
-  std::string started_at;            ///< UTC, empty if unknown or in virtual time
-  std::string recipe;                ///< equal for two runs of the same sequence, text and parameters
-  bool unfinished = false;           ///< the recording continues, or its daemon was killed
-  std::vector<Log> channels;         ///< as read with LogOptions::need_readings = false
+  std::string name;              ///< name of the folder or file
+  std::string sequence;          ///< empty if unknown
+  std::string software_version;  ///< software that recorded it; empty if unknown
+  std::string started_at;        ///< UTC, empty if unknown or in virtual time
+  std::string recipe;            ///< equal for two runs of the same sequence, text and parameters
+  bool unfinished = false;       ///< the recording continues, or its daemon was killed
+  std::vector<Log> channels;     ///< as read with LogOptions::need_readings = false
   std::vector<RecordedEvent> events;
 };
 
