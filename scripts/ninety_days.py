@@ -163,7 +163,7 @@ def grips_until(event, day):
 
 def judged_common(softgrip, folder, view, event):
     said = health(softgrip, folder, view, NOTES, event.mended)
-    found = [one for one in said["shared_changes"] if one["stands"] and one["number"] in event.causes and
+    found = [one for one in said["shared_changes"] if one["active"] and one["number"] in event.causes and
              day_of(one["noticed"]) >= event.day]
     if not found:
         return None
@@ -177,7 +177,7 @@ def judged_event(softgrip, folder, view, event):
     if event.finger == BOTH:
         return judged_common(softgrip, folder, view, event)
     said = finger_in(health(softgrip, folder, view, NOTES, event.mended), event.finger)
-    alarms = [alarm for alarm in said["alarms"] if alarm["stands"] and day_of(alarm["noticed"]) >= event.day]
+    alarms = [alarm for alarm in said["alarms"] if alarm["active"] and day_of(alarm["noticed"]) >= event.day]
     if not alarms:
         return None
     noticed = min(day_of(alarm["noticed"]) for alarm in alarms)

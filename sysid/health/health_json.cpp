@@ -8,13 +8,10 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json json_of_alarm(const FingerHealth& health, const HealthAlarm& alarm) {
-  return {{"number", sysid::info_of(alarm.number).id},
-          {"change", alarm.change},
-          {"since", health.points[alarm.since].label},
-          {"noticed", health.points[alarm.noticed].label},
-          {"grips_until_noticed", alarm.grips},
-          {"stands", alarm.epoch == health.epoch()},
-          {"beside", alarm.beside},
+  return {{"number", sysid::info_of(alarm.number).id},  {"change", alarm.change},
+          {"since", health.points[alarm.since].label},  {"noticed", health.points[alarm.noticed].label},
+          {"grips_until_noticed", alarm.grips},         {"active", alarm.epoch == health.epoch()},
+          {"stands", alarm.epoch == health.epoch()},    {"beside", alarm.beside},
           {"warned", health.points[alarm.warned].label}};
 }
 
@@ -84,6 +81,7 @@ Json json_of(const SharedChange& shared) {
           {"noticed", shared.noticed},
           {"fingers", shared.fingers},
           {"temperature_recorded", shared.temperature_recorded},
+          {"active", shared.stands},
           {"stands", shared.stands}};
 }
 

@@ -60,8 +60,8 @@ void add_reference(const FingerHealth& health, std::size_t number, sysid::Chart&
   const auto& reference = health.references[number];
   if (!reference || reference->points < 2) return;
   sysid::Series band;
-  band.label = reference->slope ? "usual at that temperature, three spreads"
-                                : "usual since the last note, three spreads";
+  band.label = reference->slope ? "reference at this temperature, ± 3 standard deviations"
+                                : "reference since the last maintenance, ± 3 standard deviations";
   band.style = sysid::Series::Style::band;
   band.colour = sysid::Colour::faint;
   for (std::size_t p = 0; p < health.points.size(); ++p) {
@@ -118,7 +118,7 @@ std::optional<sysid::Chart> chart_of(const FingerHealth& health, std::size_t num
 std::optional<sysid::Chart> chart_beside(const FingerHealth& health, std::size_t number) {
   const sysid::HealthNumberInfo& info = sysid::health_number_infos[number];
   sysid::Series series;
-  series.label = "beyond the usual difference";
+  series.label = "deviation from the usual difference";
   series.style = sysid::Series::Style::points;
   series.width = 2;
   for (std::size_t p = 0; p < health.points.size(); ++p) {
@@ -128,7 +128,7 @@ std::optional<sysid::Chart> chart_beside(const FingerHealth& health, std::size_t
   }
   if (series.x.empty()) return std::nullopt;
   sysid::Chart chart;
-  chart.title = std::string(info.title) + ", beside the other fingers";
+  chart.title = std::string(info.title) + ", compared with the other fingers";
   chart.x = time_axis(health);
   chart.y.label = "[" + model::in_unit(info.unit, health.output_unit) + "]";
   chart.height = 130;
@@ -142,12 +142,12 @@ std::string slope_text(const FingerHealth& health, std::size_t number) {
   const TemperatureSlope& slope = *health.references[number]->slope;
   std::string text = std::string(info.title) + ": " + significant(slope.per_c, 3) + " " +
                      model::in_unit(info.unit, health.output_unit) + " per °C, standard error " +
-                     significant(slope.standard_error, 2) + ", seen from " + fixed(slope.lowest_c, 1) +
+                     significant(slope.standard_error, 2) + ", measured from " + fixed(slope.lowest_c, 1) +
                      " to " + fixed(slope.highest_c, 1) + " °C";
   const auto& now_c = health.points.back().temperature_c;
   if (now_c && (*now_c < slope.lowest_c || *now_c > slope.highest_c))
-    text += "; the last point's " + fixed(*now_c, 1) +
-            " °C are beyond, where half of what the line adds is doubted";
+    text += "; the temperature of the last point, " + fixed(*now_c, 1) +
+            " °C, is outside, so half of the extrapolated correction counts as its uncertainty";
   return text;
 }
 
@@ -160,21 +160,22 @@ bool has_peers(const FingerHealth& health) {
 }
 
 void add_allowances(sysid::Page& page, const FingerHealth& health, const std::vector<SharedChange>& shared) {
-  page.section("What was allowed for");
+  page.section("Corrections");
   std::vector<std::string> lines;
   for (std::size_t i = 0; i < sysid::health_numbers; ++i) {
     if (health.references[i] && health.references[i]->slope) lines.push_back(slope_text(health, i));
   }
   const bool warm = !health.points.empty() && health.points.back().temperature_c.has_value();
   if (!warm)
-    lines.emplace_back("The temperature is not recorded, so nothing is known of what it does.");
+    lines.emplace_back("The temperature is not recorded, so its effect is unknown.");
   else if (lines.empty())
-    lines.emplace_back("The temperature is recorded; no number is known to follow it.");
+    lines.emplace_back("The temperature is recorded. No indicator is known to depend on it.");
   lines.emplace_back(
       has_peers(health)
-          ? "What the other fingers on the same runs do alike is no change of this one."
-          : "There is no healthy finger on the same runs to compare it with: weather that is not "
-            "recorded may pass for a change.");
+          ? "A change that the other fingers show in the same recordings is not a change of this finger."
+          : "The same recordings contain no healthy finger for a comparison, so a change of the weather that "
+            "is not "
+            "recorded may look like a change of the finger.");
   page.list(lines);
   for (const SharedChange& change : shared) {
     if (change.stands) page.paragraph(shared_sentence(change));
@@ -183,19 +184,19 @@ void add_allowances(sysid::Page& page, const FingerHealth& health, const std::ve
 }
 
 void add_suspicion(sysid::Page& page, const Suspicion& suspicion, const std::string& baseline) {
-  page.section("What is suspected, and what settles it");
+  page.section("Possible causes and how to confirm them");
   for (const Suspect& suspect : suspicion.suspects) {
     page.subsection(suspect.id + ": " + suspect.words);
     page.list(suspect.next_steps);
   }
   if (!suspicion.advice.empty()) page.list(suspicion.advice);
-  page.paragraph("Record the commissioning experiment again and ask what changed:");
+  page.paragraph("Record the commissioning experiment again and diagnose the change:");
   page.code(settling_command(baseline));
 }
 
 void add_alarms(sysid::Page& page, const FingerHealth& health) {
   sysid::Table table{"All alarms, including those closed by a repair",
-                     {"number", "change", "since", "noticed", "grips until then", "stands"},
+                     {"indicator", "change", "since", "noticed", "grips until then", "active"},
                      {false, true, false, false, true, false},
                      {}};
   for (const HealthAlarm& alarm : health.alarms) {
@@ -209,8 +210,8 @@ void add_alarms(sysid::Page& page, const FingerHealth& health) {
 }
 
 void add_numbers(sysid::Page& page, const FingerHealth& health) {
-  sysid::Table table{"The last point beside what is usual since the last note",
-                     {"number", "last", "usual", "spread", "points", "unit"},
+  sysid::Table table{"Latest value and reference since the last maintenance",
+                     {"indicator", "latest", "reference", "standard deviation", "points", "unit"},
                      {false, true, true, true, true, false},
                      {}};
   for (std::size_t i = 0; i < sysid::health_numbers; ++i) {
@@ -241,31 +242,30 @@ sysid::Page health_page(const FingerHealth& health, const Suspicion& suspicion, 
   const ChartLimits limits = source.options.limits();
   page.provenance({{"software", sysid::software_and_version()},
                    {"baseline", source.baseline},
-                   {"full pressure", significant(source.base.full_kpa, 4) + " kPa, where the base comes to " +
+                   {"full pressure", significant(source.base.full_kpa, 4) + " kPa; the baseline reaches " +
                                          significant(source.base.full_mm, 4) + " " +
                                          std::string(name_of(health.output_unit))},
                    {"false alarms", "one in " + significant(source.options.false_alarm_points, 4) +
-                                        " points of a healthy finger, over all its numbers"},
+                                        " points of a healthy finger, over all its indicators"},
                    {"limits", "CUSUM " + significant(limits.cusum, 3) + " with allowance " +
                                   significant(limits.allowance, 2) + ", single value " +
                                   significant(limits.single, 3) + " standard deviations"}});
   if (!suspicion.suspects.empty()) add_suspicion(page, suspicion, source.baseline);
-  page.section("The numbers");
+  page.section("Indicators");
   add_alarms(page, health);
   add_numbers(page, health);
   add_allowances(page, health, source.shared);
-  page.section("Over time");
+  page.section("Trends");
   for (std::size_t i = 0; i < sysid::health_numbers; ++i) {
     auto chart = chart_of(health, i);
     if (!chart) continue;
     const sysid::HealthNumberInfo& info = sysid::health_number_infos[i];
     std::vector<sysid::Chart> charts{std::move(*chart)};
-    std::string caption = std::string(info.title) + (has_days(health) ? ", the median of each day by recipe."
-                                                                      : ", of each grip by recipe.");
+    std::string caption = std::string(info.title) + (has_days(health) ? ": median of each day, by recipe."
+                                                                      : ": value of each grip, by recipe.");
     if (auto beside = chart_beside(health, i)) {
       charts.push_back(std::move(*beside));
-      caption +=
-          " Below: how much more than the other fingers on the same runs, beyond the usual difference.";
+      caption += " Below: difference to the other fingers in the same recordings, minus its usual value.";
     }
     page.figure({std::string(info.id), caption, sysid::stacked(std::move(charts))});
   }

@@ -55,15 +55,15 @@ std::string change_text(sysid::HealthNumber number, double change, model::Output
 std::string unclear_sentence(const FingerHealth& health, const HealthAlarm& unclear) {
   return "Since " + health.points[unclear.since].label + " " + health.finger + " differs from " +
          with_commas(unclear.beside) +
-         " otherwise than before: " + change_text(unclear.number, unclear.change, health.output_unit) +
-         ". Whose change it is, their own numbers do not tell yet.";
+         " in another way than before: " + change_text(unclear.number, unclear.change, health.output_unit) +
+         ". The indicators of the fingers do not yet show which finger has changed.";
 }
 
 std::string shared_sentence(const SharedChange& shared) {
-  return "Since " + shared.since + " the fingers of the rig have changed alike: " +
-         change_text(shared.number, shared.change, shared.output_unit) + ". Look first at what they share: " +
+  return "Since " + shared.since + " all fingers of the rig show the same change: " +
+         change_text(shared.number, shared.change, shared.output_unit) + ". Check first what they share: " +
          (shared.temperature_recorded ? "" : "the temperature (it is not recorded), ") +
-         "the supply, the line before the fingers, the parts.";
+         "the supply, the line before the fingers, and the parts.";
 }
 
 }  // namespace softgrip::sysid::health

@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The folder's or file's own, also of "runs/" and of "runs/.".
+/// Returns the name of the folder or file, also for "runs/" and "runs/.".
 std::string name_of(const std::string& path) {
   return fs::path(path).lexically_normal().filename().string();
 }
@@ -51,7 +51,9 @@ void score_one(const std::string& path, const BaseOf& base_of, RunScores& scores
   }
   // Of a fault, or of a day and a night: nothing in it can be compared with another one.
   if (recording->recipe.empty() && !recording->software_version.empty()) {
-    scores.skipped.push_back({name, "it is of no sequence (recorder: mode: sequences records one each)"});
+    scores.skipped.push_back({name,
+                              "it does not belong to a sequence (with `mode: sequences`, the recorder writes "
+                              "one recording per sequence)"});
     return;
   }
   for (std::size_t c = 0; c < recording->channels.size(); ++c) {

@@ -113,14 +113,14 @@ Suspicion suspicion_of(const FingerHealth& health, const std::vector<SharedChang
 std::string health_sentence(const FingerHealth& health, const Suspicion& suspicion) {
   const std::vector<HealthAlarm> alarms = health.standing();
   if (health.state == FingerState::learning)
-    return "Too few grips yet to say what is usual of " + health.finger + ".";
+    return "There are too few grips to determine the usual values of " + health.finger + ".";
   if (alarms.empty()) return "Nothing has changed at " + health.finger + ".";
   std::string sentence =
       health.finger + " has changed since " + health.points[alarms.front().since].label + ": ";
   for (std::size_t i = 0; i < alarms.size(); ++i)
     sentence += (i > 0 ? ", " : "") + change_text(alarms[i].number, alarms[i].change, health.output_unit);
-  if (suspicion.suspects.empty()) return sentence + ". No cause in the library shows such signs.";
-  sentence += ". Suspected: " + suspicion.suspects.front().words;
+  if (suspicion.suspects.empty()) return sentence + ". No known cause has these signs.";
+  sentence += ". Possible cause: " + suspicion.suspects.front().words;
   for (std::size_t i = 1; i < suspicion.suspects.size(); ++i)
     sentence += ", or " + suspicion.suspects[i].words;
   return sentence + ".";

@@ -163,7 +163,7 @@ class Told(web.WebTest):
         self.assertNotIn("health", self.softgrip("status").stdout)
         self.assertNotIn("softgrip_health_state", told.ask("/metrics")[1])
         self.judge()
-        self.assertIn("Suspected: the pressure falls while it should be constant.", self.softgrip("status").stdout)
+        self.assertIn("Possible cause: the pressure falls while it should be constant.", self.softgrip("status").stdout)
         status = json.loads(self.softgrip("status", "--json").stdout)
         self.assertEqual(status["health"]["state"], "alarm")
         self.assertLess(status["health"]["age_s"], 600)

@@ -72,7 +72,7 @@ void print(const health::JudgedFinger& finger) {
   }
   for (const std::string& advice : finger.suspicion.advice) std::printf("  - %s\n", advice.c_str());
   if (!finger.suspicion.suspects.empty())
-    std::printf("  it settles it to record the commissioning experiment again:\n      %s\n",
+    std::printf("  to confirm it, record the commissioning experiment again:\n      %s\n",
                 health::settling_command(finger.source.baseline).c_str());
 }
 
@@ -113,10 +113,9 @@ ExitCode run(HealthOptions options) {
   const auto rig = health::recorded_health(question);
   if (!rig) return refuse_baselines(rig.error());
   for (const health::SkippedRun& skipped : rig->skipped)
-    std::fprintf(stderr, "softgrip: %s is left out: %s\n", skipped.run.c_str(), skipped.why.c_str());
+    std::fprintf(stderr, "softgrip: %s is skipped: %s\n", skipped.run.c_str(), skipped.why.c_str());
   if (rig->fingers.empty())
-    return fail(ExitCode::input_refused,
-                "there is no recording that could be compared with " + options.baseline);
+    return fail(ExitCode::input_refused, "no recording can be compared with " + options.baseline);
   const std::string json = health::health_json_text(health::json_of(*rig, wall_time_now()));
   if (!options.out.empty()) {
     if (const auto written = write_results(options.out, *rig, json); !written)
@@ -136,26 +135,32 @@ ExitCode run(HealthOptions options) {
 void add_health(CLI::App& program, ExitCode& outcome) {
   auto options = std::make_shared<HealthOptions>();
   CLI::App* command = program.add_subcommand(
-      "health", "What the recordings of a working day say of the fingers: what has changed, since when");
+      "health", "Report which fingers have changed, and since when, from the recordings of ordinary work");
   command->add_option("runs", options->runs, "Recordings, or folders of recordings")->required();
   command
-      ->add_option("--baseline", options->baseline,
-                   "Folder of `softgrip baseline`; with a folder per finger in it, each has its own")
+      ->add_option(
+          "--baseline", options->baseline,
+          "Folder that `softgrip baseline` wrote; if it contains one folder per finger, each finger is "
+          "compared with its own baseline")
       ->required();
-  command->add_option("--notes", options->notes, "What was mended, and when [notes.yaml beside the results]");
-  command->add_option("--out", options->out,
-                      "Folder for health.json, a page per finger, and the numbers of all recordings so far");
-  command->add_option("--points", options->points, "What is judged as one: a day's grips, or each by itself")
+  command->add_option("--notes", options->notes, "Maintenance records [notes.yaml in the folder of --out]");
+  command->add_option(
+      "--out", options->out,
+      "Folder for health.json, a page per finger, and the indicators of all recordings so far");
+  command
+      ->add_option("--points", options->points,
+                   "Unit that is evaluated: all grips of a day together, or each grip separately")
       ->check(CLI::IsMember({"day", "run"}))
       ->capture_default_str();
   command
       ->add_option("--false-alarm-points", options->judge.false_alarm_points,
-                   "A healthy finger alarms once in so many points, on the mean")
+                   "Mean number of points between two false alarms of a healthy finger")
       ->check(CLI::Range(20.0, 1e9))
       ->capture_default_str();
   command->add_flag("--json", options->json, "Print health.json");
   command->footer(
-      "Exit codes: 0 nothing has changed, 6 an alarm stands, 3 notes, baseline or recordings are refused,\n"
+      "Exit codes: 0 nothing has changed, 6 an alarm is active, 3 notes, baseline or recordings are "
+      "refused,\n"
       "4 a file cannot be read or written.");
   command->callback([options, &outcome] { outcome = run(*options); });
 }

@@ -306,7 +306,7 @@ TEST(RigHealth, ADifferenceThatHasNoOwnerYetIsNoAlarm) {
       ++unclear;
       EXPECT_LE(finger.unclear[0].warned, finger.unclear[0].noticed);
       EXPECT_GE(finger.unclear[0].warned, 60U);
-      EXPECT_NE(unclear_sentence(finger, finger.unclear[0]).find("do not tell yet"), std::string::npos);
+      EXPECT_NE(unclear_sentence(finger, finger.unclear[0]).find("do not yet show"), std::string::npos);
     }
   }
   EXPECT_GE(unclear, 30);
