@@ -332,7 +332,7 @@ def word_at(text, offset):
     start = re.search(r"\w*$", text[:offset]).start()
     name = re.match(r"\w*", text[start:]).group(0)
     rest = text[start + len(name):]
-    return name if "_" in name or name == text.strip() or rest.startswith(('"', ":", "[")) else ""
+    return name if "_" in name or name == text.strip() or rest.startswith(('"', ":", "[", "`")) else ""
 
 
 # ---------------------------------------------------------------------------------------------------------- reporting
