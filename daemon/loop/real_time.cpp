@@ -68,7 +68,7 @@ RealTimeStep prepare_heap(std::size_t bytes) {
   } else {
     step.outcome = Outcome::failed;
     step.detail = accepted ? fmt::format("{} page faults in a block that was touched before", faults)
-                           : "the allocator does not take M_TRIM_THRESHOLD and M_MMAP_MAX";
+                           : "the allocator does not accept M_TRIM_THRESHOLD and M_MMAP_MAX";
   }
   return step;
 }
@@ -83,7 +83,8 @@ std::string doubt_of_a_new_mapping() {
   munmap(page, bytes);
   if (error != 0) {
     return fmt::format(
-        "whether pages mapped afterwards are resident could not be asked: {} (mincore in SystemCallFilter=)",
+        "it is unknown whether pages that are mapped afterwards are resident: {} (SystemCallFilter= must "
+        "permit mincore)",
         text_of_errno(error));
   }
   return (resident & 1) != 0 ? "" : "a page mapped afterwards was not resident";
@@ -140,7 +141,7 @@ RealTimeStep request_processor_latency(std::optional<int> latency_us, int& descr
       pread(descriptor, &in_force, sizeof in_force, 0) != sizeof in_force) {
     step.detail = fmt::format("/dev/cpu_dma_latency: {}", text_of_errno(errno));
   } else if (in_force > wanted) {
-    step.detail = fmt::format("{} us asked, {} us in force", wanted, in_force);
+    step.detail = fmt::format("{} us requested, {} us in force", wanted, in_force);
   } else {
     step.outcome = Outcome::verified;
     step.detail = fmt::format("at most {} us", in_force);
@@ -159,8 +160,8 @@ RealTimeStep set_processors(const std::vector<int>& cpus, std::string_view who) 
     if (cpu >= 0 && cpu < CPU_SETSIZE) CPU_SET(static_cast<std::size_t>(cpu), &wanted);
   }
   if (sched_setaffinity(0, sizeof wanted, &wanted) != 0) {
-    step.detail = fmt::format("{}: processors {} (there are {})", text_of_errno(errno), fmt::join(cpus, ", "),
-                              sysconf(_SC_NPROCESSORS_ONLN));
+    step.detail = fmt::format("{}: processors {} (this computer has {})", text_of_errno(errno),
+                              fmt::join(cpus, ", "), sysconf(_SC_NPROCESSORS_ONLN));
     return step;
   }
   cpu_set_t in_force;

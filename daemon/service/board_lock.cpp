@@ -157,8 +157,9 @@ std::string without_right(const std::string& board, const std::optional<Peer>& h
   if (holder && holder->trusted) return standing_still(board, holder->process);
   const std::string who =
       holder ? fmt::format("user {}{}", holder->user, in_brackets(holder->process)) : "an unknown program";
-  return fmt::format("{}: {} occupies the name of its lock without the right to it; this is ignored", board,
-                     who);
+  return fmt::format(
+      "{}: {} uses the name of the board's lock but may not control the board; the lock is ignored", board,
+      who);
 }
 
 }  // namespace

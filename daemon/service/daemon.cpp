@@ -220,7 +220,7 @@ tl::expected<std::unique_ptr<Daemon>, std::string> Daemon::create(rig::RigFile r
   if (options.virtual_time) {
     if (!std::holds_alternative<simulation::SimulatedBoardSettings>(rig.board)) {
       return tl::unexpected(
-          std::string("virtual time needs a simulated board; a real one keeps its own time"));
+          std::string("virtual time needs a simulated board, because a real board runs in real time"));
     }
     if (rig.gpio) {
       return tl::unexpected(std::string("virtual time has no digital lines: this rig file has `gpio`"));

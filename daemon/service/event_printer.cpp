@@ -127,12 +127,13 @@ void EventPrinter::print_end(const Outcome& outcome) {
   logger_->info("{} ticks, {} overruns, {:.3f} s", outcome.ticks, outcome.overruns, outcome.wall_s);
   if (!reached_the_board(outcome.ending)) return;
   if (!outcome.recording_error.empty())
-    logger_->error("the recording is not whole: {}", outcome.recording_error);
+    logger_->error("the recording is incomplete: {}", outcome.recording_error);
   if (outcome.safe_state_confirmed) {
     logger_->info("the board confirmed the safe outputs");
     if (outcome.vents_after_s > 0)
-      logger_->warn("they hold only until the board's watchdog vents them, {:g} s from now",
-                    outcome.vents_after_s);
+      logger_->warn(
+          "the outputs keep these values only until the board's watchdog vents them, {:g} s from now",
+          outcome.vents_after_s);
   } else {
     logger_->error("the board did NOT confirm the safe outputs");
   }

@@ -304,7 +304,8 @@ void RealRun::look_after() {
 
 /// A blocked thread cannot be joined, and without it no orderly end is possible.
 void RealRun::end_without(const char* hangs, ExitCode code) {
-  parts_.tell("internal_error", Severity::error, fmt::format("{}; the process ends without it.", hangs));
+  parts_.tell("internal_error", Severity::error,
+              fmt::format("{}; the process ends without waiting for it.", hangs));
   parts_.deliver_events();
   std::_Exit(static_cast<int>(code));
 }
@@ -356,8 +357,10 @@ void RealRun::note_and_keep(const BoardLock& lock) {
   for (const std::string& remark : lock.remarks()) parts_.tell("board_lock", Severity::warning, remark + ".");
   const auto kept = keep_rig(parts_.rig);
   if (kept) return;
-  parts_.tell("rig_not_kept", Severity::warning,
-              fmt::format("{}; after a crash the safe outputs depend on the rig file.", kept.error()));
+  parts_.tell(
+      "rig_not_kept", Severity::warning,
+      fmt::format("{}; after a crash, the safe outputs are taken from the rig file, even if it has changed.",
+                  kept.error()));
 }
 
 /// While a finger may be pressurised, the safe outputs need the rig of this run.

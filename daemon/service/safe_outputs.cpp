@@ -74,9 +74,9 @@ SafeOutputsReport write_safe_outputs(const rig::RigFile& rig, drivers::Board& bo
     failure = fmt::format("{} ({})", drivers::name_of(status), board.detail());
     sleep_until(clock.now() + rig.reconnect.first_pause.count());
   } while (clock.now() < give_up);
-  return {
-      SafeOutputsEnd::board_silent,
-      fmt::format("{}: not confirmed: {}. Only its own watchdog can vent it now", board.describe(), failure)};
+  return {SafeOutputsEnd::board_silent,
+          fmt::format("{}: not confirmed: {}. Only the board's own watchdog can vent the fingers now",
+                      board.describe(), failure)};
 }
 
 bool safe_outputs_needed(const std::string& service_result) noexcept {

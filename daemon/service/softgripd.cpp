@@ -53,14 +53,13 @@ void declare(CLI::App& program, Arguments& arguments) {
       "vent: connect to the board, write the rest pressure of every channel until the board confirms "
       "it, and end. For ExecStopPost= of the unit: no action if $SERVICE_RESULT is success");
   program
-      .add_option(
-          "--device", arguments.device,
-          "for the udev rule: end with 0 if the rig file names this device of the computer, else with 6. "
-          "Prints the attributes of a converter that the daemon writes")
+      .add_option("--device", arguments.device,
+                  "for the udev rule: end with 0 if the rig file names this device of the computer, else "
+                  "with 6; if the device is a converter, print its attributes that the daemon writes")
       ->type_name("gpiochipN|iio:deviceN");
   program.add_flag("--virtual-time", arguments.virtual_time,
-                   "as fast as possible on a simulated board, repeatable bit by bit; ends with --sequence or "
-                   "--duration-s");
+                   "run as fast as possible on a simulated board, with identical results in every run; "
+                   "requires --sequence or --duration-s");
   program.add_option("--seed", arguments.seed, "seed of a simulated board instead of the rig file's")
       ->type_name("N");
   program
@@ -132,14 +131,14 @@ ExitCode safe_outputs(const Arguments& arguments) {
   const char* result = std::getenv("SERVICE_RESULT");
   if (!daemon::safe_outputs_needed(result == nullptr ? "" : result)) {
     return end_of_safe_outputs(
-        {daemon::SafeOutputsEnd::not_needed, "softgripd ended in order; its last outputs stay"});
+        {daemon::SafeOutputsEnd::not_needed, "softgripd ended normally; the board keeps its last outputs"});
   }
   document::Problems problems;
   const auto kept = daemon::kept_rig(arguments.config);
   const auto rig = kept ? kept : rig::load_rig(arguments.config, problems);
   if (!rig || !problems.empty()) return refuse(problems);
   daemon::SafeOutputsReport report = daemon::vent_rig(*rig);
-  if (kept) report.text += "; with the rig file as the last softgripd read it";
+  if (kept) report.text += "; the rig file was used as the last softgripd had read it";
   const bool safe = daemon::exit_code_of(report.end) == ExitCode::done;
   if (kept && safe) daemon::forget_rig(arguments.config);
   return end_of_safe_outputs(report);

@@ -36,8 +36,9 @@ std::string watchdog_line(const rig::RigFile& rig, const drivers::Board& board, 
     const auto& actions = rig.settings.safety.safe_action;
     if (rig.settings.safety.board_vents_when_silent &&
         std::find(actions.begin(), actions.end(), control::SafeAction::hold) != actions.end())
-      text += fmt::format("hold: while {} runs; {:g} s after its end, the watchdog vents the held part\n",
-                          program, time_s);
+      text += fmt::format(
+          "hold: a part is held only while {} runs; {:g} s after its end, the watchdog vents the fingers\n",
+          program, time_s);
     return text;
   }
   return fmt::format("watchdog: NONE on the board; accepted in the rig file: \"{}\"\n",
@@ -72,9 +73,8 @@ std::string gpio_lines(const rig::RigFile& rig) {
   const double period_s = 1 / rig.settings.rate_hz;
   const double latched_s = gpio.debounce_s + period_s;
   return text + fmt::format(
-                    "emergency stop: latched {:.3g} ms after the contact (debounce {:.3g} ms, one cycle), "
-                    "written to "
-                    "the board {:.3g} ms later; acknowledge before the first start\n",
+                    "emergency stop: latched {:.3g} ms after the contact switches (debounce {:.3g} ms, one "
+                    "cycle), written to the board {:.3g} ms later; acknowledge before the first start\n",
                     latched_s * ms_per_s, gpio.debounce_s * ms_per_s,
                     rig.loop.bus_offset_fraction * period_s * ms_per_s);
 }

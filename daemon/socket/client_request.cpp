@@ -47,7 +47,7 @@ SortedJson parse_object(std::string_view line, std::string& problem) {
     const bool object = event == SortedJson::parse_event_t::object_start;
     const bool nested = object || event == SortedJson::parse_event_t::array_start;
     const bool expected = object && depth == 1 && !keys[0].empty() && keys[0].back() == nested_key;
-    if (nested && depth > 0 && !expected) problem = "a request is one flat JSON object";
+    if (nested && depth > 0 && !expected) problem = "a request must be one flat JSON object";
     if (event == SortedJson::parse_event_t::key && (depth == 1 || depth == 2)) {
       std::vector<std::string>& seen = keys[depth == 1 ? 0 : 1];
       const auto key = parsed.get<std::string>();
@@ -73,7 +73,7 @@ class Reader {
     if (given.is_null()) return;
     if (!given.is_number_unsigned() || given.get<std::uint64_t>() < lower ||
         given.get<std::uint64_t>() > upper) {
-      fail(fmt::format("'{}' is a whole number from {} to {}", key, lower, upper));
+      fail(fmt::format("'{}' must be a whole number from {} to {}", key, lower, upper));
       return;
     }
     value = given.get<std::uint64_t>();
@@ -82,7 +82,7 @@ class Reader {
     const SortedJson given = take(key);
     if (given.is_null()) return;
     if (!given.is_number() || !(given.get<double>() >= lower) || !(given.get<double>() <= upper)) {
-      fail(fmt::format("'{}' is a number from {} to {}", key, lower, upper));
+      fail(fmt::format("'{}' must be a number from {} to {}", key, lower, upper));
       return;
     }
     value = given.get<double>();
@@ -91,7 +91,7 @@ class Reader {
     const SortedJson given = take(key);
     if (given.is_null()) return;
     if (!given.is_string() || given.get_ref<const std::string&>().empty()) {
-      fail(fmt::format("'{}' is a text that is not empty", key));
+      fail(fmt::format("'{}' must be a text that is not empty", key));
       return;
     }
     value = given.get<std::string>();
@@ -103,14 +103,14 @@ class Reader {
       return static_cast<unsigned char>(letter) < 0x20 || letter == 0x7f;
     });
     if (value.size() > longest_name || !printable) {
-      fail(fmt::format("'{}' has at most {} bytes and no control characters", key, longest_name));
+      fail(fmt::format("'{}' must have at most {} bytes and no control characters", key, longest_name));
     }
   }
   void boolean(const char* key, bool& value) {
     const SortedJson given = take(key);
     if (given.is_null()) return;
     if (!given.is_boolean()) {
-      fail(fmt::format("'{}' is true or false", key));
+      fail(fmt::format("'{}' must be true or false", key));
       return;
     }
     value = given.get<bool>();
@@ -119,14 +119,14 @@ class Reader {
     const SortedJson given = take(key);
     if (given.is_null()) return;
     if (!given.is_object() || given.size() > most_parameters) {
-      fail(fmt::format("'{}' is an object of at most {} numbers", key, most_parameters));
+      fail(fmt::format("'{}' must be an object of at most {} numbers", key, most_parameters));
       return;
     }
     for (const auto& [name, value] : given.items()) {
       if (value.is_number()) {
         values.push_back({name, value.get<double>()});
       } else {
-        fail(fmt::format("the parameter '{}' is a number", name));
+        fail(fmt::format("the parameter '{}' must be a number", name));
       }
     }
   }
@@ -169,7 +169,7 @@ void read_arguments(Reader& reader, ClientRequest& request) {
       reader.name("start_id", request.start_id);
       if (request.sequence.empty()) reader.fail("'start' needs the key 'sequence'");
       if (request.dry_run && !request.start_id.empty())
-        reader.fail("a dry run starts nothing that 'start_id' could name");
+        reader.fail("'start_id' is not allowed in a dry run, because a dry run starts nothing");
       break;
     case Command::stop:
       reader.whole("request", 1, largest_request, request.request);

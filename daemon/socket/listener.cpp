@@ -80,10 +80,11 @@ Descriptor connect_to(const std::string& path) {
 tl::expected<Listener, std::string> Listener::open(const rig::SocketFile& file) {
   const auto address = address_of(file.path);
   if (!address) {
-    return Failure(fmt::format("{}: the path of a socket has at most {} bytes", file.path,
+    return Failure(fmt::format("{}: the path of a socket may have at most {} bytes", file.path,
                                sizeof address->sun_path - 1));
   }
-  if (!clear_away(*address)) return Failure(fmt::format("{}: another softgripd answers there", file.path));
+  if (!clear_away(*address))
+    return Failure(fmt::format("{}: another softgripd already uses this socket", file.path));
   std::error_code ignored;
   std::filesystem::create_directories(std::filesystem::path(file.path).parent_path(), ignored);
 

@@ -35,7 +35,7 @@ constexpr std::string_view ending = ".yaml";
 /// Returns the most similar name, or the list of names.
 std::string hint_of(const std::string& name, const std::string& directory,
                     const std::vector<std::string>& names) {
-  if (names.empty()) return fmt::format("there is none in {}", directory);
+  if (names.empty()) return fmt::format("there are no sequences in {}", directory);
   const std::string near = document::nearest(name, names);
   return fmt::format("{}in {}: {}", near.empty() ? "" : fmt::format("did you mean '{}'? ", near), directory,
                      fmt::join(names, ", "));
@@ -61,8 +61,9 @@ SequenceLoader::Result SequenceLoader::load_named(const std::string& name, Argum
     return tl::unexpected(std::move(problems));
   };
   if (!is_plain_name(name)) {
-    return refused(name, "this is no name of a file in the daemon's sequence directory",
-                   fmt::format("a file of {}, or send the text itself", directory_));
+    return refused(
+        name, "this is not the name of a file in the daemon's sequence directory",
+        fmt::format("give the name of a file in {}, or send the text of the sequence", directory_));
   }
   std::string path = directory_ + "/" + name;
   std::error_code ignored;
@@ -121,9 +122,9 @@ SequenceLoader::Result SequenceLoader::fit(std::optional<control::Sequence> sequ
         {sequence->file,
          {},
          "",
-         fmt::format("planning took {:.1f} s for {:.1f} s of motion: every start of this sequence is "
-                     "late by that",
-                     took.count(), prepared->planned_s),
+         fmt::format(
+             "planning took {:.1f} s for {:.1f} s of motion: this time delays every start of the sequence",
+             took.count(), prepared->planned_s),
          "channels with the same model and limits are planned together"});
   }
   auto loaded = std::make_shared<LoadedSequence>();

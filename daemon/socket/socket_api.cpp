@@ -237,7 +237,7 @@ void SocketApi::start(ClientId client, const ClientRequest& request, Nanoseconds
 /// Returns null if a start may have this id; otherwise the error.
 Json SocketApi::refusal_of_id(const std::string& start_id) const {
   if (starts_.is_forbidden(start_id))
-    return error_json("abandoned", "a stop that names this start came before it");
+    return error_json("abandoned", "a stop of this start arrived before the start");
   if (starts_.request_of(start_id))
     return error_json("bad_request", "an earlier start has this 'start_id' already");
   return nullptr;
@@ -343,8 +343,7 @@ void SocketApi::wait_for(std::optional<std::uint32_t> number, Asked asked) {
   if (number) {
     asked_.insert({*number, std::move(asked)});
   } else {
-    fail(asked.client, asked.id,
-         error_json("busy", "the loop has not yet taken the requests before this one"));
+    fail(asked.client, asked.id, error_json("busy", "the loop has not yet processed the previous requests"));
   }
 }
 

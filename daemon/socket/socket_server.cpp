@@ -170,9 +170,9 @@ bool SocketServer::displace_one(Role role, bool any) {
 }
 
 std::string SocketServer::too_many() const {
-  return error_line(std::nullopt, "too_many_clients",
-                    fmt::format("at most {} clients at a time; stop and vent are heard nevertheless",
-                                settings_.max_clients));
+  return error_line(
+      std::nullopt, "too_many_clients",
+      fmt::format("at most {} clients at a time; stop and vent are still accepted", settings_.max_clients));
 }
 
 void SocketServer::hear(std::uint64_t id, Client& client, std::string_view line) {
@@ -225,7 +225,7 @@ void SocketServer::take_lines(std::uint64_t id, Client& client) {
   if (std::min(client.input.find('\n'), client.input.size()) > settings_.max_line_bytes) {
     send(id,
          error_line(std::nullopt, "too_long",
-                    fmt::format("a line has at most {} bytes", settings_.max_line_bytes)),
+                    fmt::format("a line may have at most {} bytes", settings_.max_line_bytes)),
          false);
     client.input.clear();
     client.closing = true;

@@ -98,7 +98,7 @@ class EditedRig(bench.BenchTest):
                 self.assertGreater(min(self.board.commands_kpa()), 10)
                 ended = self.safe_outputs(0, SERVICE_RESULT="signal")
                 self.assertIn("vented and confirmed", ended.stdout)
-                self.assertIn("as the last softgripd read it", ended.stdout)
+                self.assertIn("as the last softgripd had read it", ended.stdout)
                 self.assertEqual(max(self.board.commands_kpa()), 0)
                 path.write_bytes(whole)
 
@@ -118,8 +118,8 @@ class EditedRig(bench.BenchTest):
 
     def test_once_the_board_is_safe_the_file_counts_again(self):
         self.under_pressure().kill()
-        self.assertIn("as the last softgripd read it", self.safe_outputs(0).stdout)
-        self.assertNotIn("as the last softgripd read it", self.safe_outputs(0).stdout)
+        self.assertIn("as the last softgripd had read it", self.safe_outputs(0).stdout)
+        self.assertNotIn("as the last softgripd had read it", self.safe_outputs(0).stdout)
         self.rig_path.write_text("name: half")
         self.safe_outputs(3)
 
@@ -164,10 +164,10 @@ class Hold(bench.BenchTest):
     def test_the_boards_watchdog_ends_it_and_that_is_said(self):
         emulator = self.emulator("--object", "stone")
         check, start, end, outputs_kpa = self.ends_holding(emulator, self.rig(emulator.port))
-        sentence = "hold: while softgripd runs; 0.5 s after its end, the watchdog vents the held part"
+        sentence = "hold: a part is held only while softgripd runs; 0.5 s after its end, the watchdog vents the fingers"
         self.assertIn(sentence, check)
         self.assertIn(sentence, start)
-        self.assertIn("they hold only until the board's watchdog vents them, 0.5 s from now", end)
+        self.assertIn("the outputs keep these values only until the board's watchdog vents them, 0.5 s from now", end)
         self.assertEqual(max(outputs_kpa), 0)
 
     def test_a_board_without_a_watchdog_holds_by_itself(self):
@@ -177,8 +177,8 @@ class Hold(bench.BenchTest):
         self.addCleanup(emulator.control.close)
         check, start, end, outputs_kpa = self.ends_holding(emulator, rig)
         for text in (check, start, end):
-            self.assertNotIn("vents the held part", text)
-            self.assertNotIn("hold only until", text)
+            self.assertNotIn("the watchdog vents the fingers", text)
+            self.assertNotIn("keep these values only until", text)
         self.assertGreater(min(outputs_kpa), 10)
 
 
