@@ -138,10 +138,10 @@ tl::expected<LineFacts, Failure> find_line(gpiod_chip* chip, const GpioLineSetti
         "another program or the kernel uses it: `gpioinfo` shows which"});
   }
   if (is_input(settings.role) && facts->output) {
-    return tl::unexpected(
-        refused("the line is an output now, and `" + std::string(name_of(settings.role)) + "` is an input",
-                "the rig file names a wrong line, or a program changed it: `gpioget` with this chip and line "
-                "makes it an input"));
+    return tl::unexpected(refused(
+        "the line is configured as an output, but `" + std::string(name_of(settings.role)) + "` is an input",
+        "the rig file names a wrong line, or a program changed it: `gpioget` with this chip and line "
+        "makes it an input"));
   }
   return *facts;
 }

@@ -356,7 +356,7 @@ BusStatus IioBoard::exchange(std::span<const double> commands_kpa, std::span<Rea
   if (!parts.open) return BusStatus::disconnected;
   if (commands_kpa.size() != channels() || readings.size() != channels() || channels() > most_channels) {
     std::snprintf(parts.detail.data(), parts.detail.size(),
-                  "the numbers of commands, readings and channels differ");
+                  "the commands, readings and channels differ in number");
     return BusStatus::write_refused;
   }
   for (const double command : commands_kpa) {

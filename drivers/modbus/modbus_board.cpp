@@ -202,7 +202,7 @@ BusStatus ModbusBoard::exchange(std::span<const double> commands_kpa, std::span<
   const Nanoseconds until = monotonic_now() + deadline.count();
   for (ModbusModule& module : parts.modules) module.forget_found();
   if (commands_kpa.size() != channels() || readings.size() != channels()) {
-    return parts.say(BusStatus::write_refused, "the numbers of commands, readings and channels differ");
+    return parts.say(BusStatus::write_refused, "the commands, readings and channels differ in number");
   }
   // The reason why the session ended remains in `detail`, because it is more useful than "disconnected".
   if (!parts.is_open()) return BusStatus::disconnected;

@@ -104,7 +104,7 @@ BusStatus ModbusLink::ended(const char* what) noexcept {
   if (!on_network_) return fail(BusStatus::disconnected, what, "the device is gone");
   if (answered_) return fail(BusStatus::disconnected, what, "the other end is gone");
   return fail(BusStatus::closed_at_once, what,
-              "the other end took the connection and closed it before its first answer: it may serve no "
+              "the other end accepted the connection and closed it before its first answer: it may accept no "
               "further client");
 }
 

@@ -226,7 +226,7 @@ TEST_F(Libgpiod, RefusesALineBehindTheLast) {
 TEST_F(Libgpiod, RefusesAnInputThatIsAnOutput) {
   chips()[0].lines[0].output = true;
   EXPECT_EQ(failure({line(GpioRole::emergency_stop, 0)}).message,
-            "the line is an output now, and `emergency_stop` is an input");
+            "the line is configured as an output, but `emergency_stop` is an input");
 }
 
 TEST_F(Libgpiod, NamesWhoHoldsALine) {
