@@ -156,7 +156,7 @@ class BoardReader {
     terminals(in, map_.outputs, {fc_write_register, fc_write_registers}, drivers::max_fc23_write_registers);
     const drivers::RegisterBlock& registers = map_.outputs.registers;
     if (registers.function == fc_write_register && words_of(registers.kind) > 1) {
-      in.report("function", "function 6 writes one register, these outputs have two each", "use 16");
+      in.report("function", "function 6 writes one register, but each of these outputs has two", "use 16");
     }
   }
 
@@ -296,8 +296,8 @@ class BoardReader {
     const std::uint8_t used = map_.has_fc23 ? std::uint8_t{23} : map_.outputs.registers.function;
     if (used < fc_write_register) return;  // the error has been reported at the outputs
     if (std::find(functions.begin(), functions.end(), used) == functions.end()) {
-      in.report("functions",
-                "the outputs are written by function " + std::to_string(used) + ", which does not feed it");
+      in.report("functions", "the outputs are written by function " + std::to_string(used) +
+                                 ", which does not feed the watchdog");
     }
   }
 

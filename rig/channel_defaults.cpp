@@ -65,8 +65,9 @@ ChannelDefaults::ChannelDefaults(Context& context, MapReader& top) : context_(co
     if (!name && entry.key != "plausibility" && entry.key != "model_health") return false;
     context.problems.add(context.document.problem(
         entry.key_at,
-        name ? "channels cannot share a name" : "`" + entry.key + "` is shared at the top of the file",
-        name ? "give each channel its own" : "move it out of `channel_defaults`"));
+        name ? "channels cannot share a name"
+             : "`" + entry.key + "` for all channels belongs at the top of the file",
+        name ? "give each channel its own name" : "move it out of `channel_defaults`"));
     spoiled_ = true;
     return true;
   });

@@ -65,12 +65,12 @@ void compare_reach(const document::Document& document, const control::ChannelSet
     if (allowed_mm == 0 || !(times > most_times_too_far)) continue;
     const double enough_kpa = control::FreeCurve(channel.model, limits).command_kpa(reach.limit_mm);
     const std::string pressure = reach.pressure;
-    problems.warn(document.problem(place_of(document, index, "limits", pressure),
-                                   "at `" + pressure + "` the model of channel `" + channel.name +
-                                       "` goes to " + about(reach.end_mm) + " mm, " + about(times) +
-                                       " times as far as `" + reach.displacement + "` (" +
-                                       significant(reach.limit_mm, 6) + " mm) allows",
-                                   pressure + ": " + about(enough_kpa) + " is where the model reaches it"));
+    problems.warn(document.problem(
+        place_of(document, index, "limits", pressure),
+        "at `" + pressure + "` the model of channel `" + channel.name + "` goes to " + about(reach.end_mm) +
+            " mm, " + about(times) + " times as far as `" + reach.displacement + "` (" +
+            significant(reach.limit_mm, 6) + " mm) allows",
+        pressure + ": " + about(enough_kpa) + " is where the model reaches this displacement"));
   }
 }
 
@@ -84,7 +84,7 @@ void compare_speed(const document::Document& document, const control::ChannelSet
                                      "` can do within its slew limits (" + about(motion.fastest_mm_per_s) +
                                      " mm/s): jumps of the sensor count as motion",
                                  "max_speed_mm_per_s: " + about(3 * motion.fastest_mm_per_s) +
-                                     " leaves room for a finger that loses its part"));
+                                     " still permits the jump of a finger that loses its part"));
 }
 
 /// Returns the change of the rig file or of the wiring that makes a burst line detectable.

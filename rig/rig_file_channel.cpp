@@ -67,7 +67,7 @@ void read_rest_pressure(MapReader& reader, const std::string& who, control::Limi
                 "`rest_kpa` must be in [" + written(limits.pressure_min_kpa) + ", " +
                     written(limits.pressure_max_kpa) + "], the pressure limits of " + who + ", found " +
                     written(*rest_kpa),
-                "it is the pressure of every safe state");
+                "`rest_kpa` is the pressure of every safe state");
 }
 
 /// Reads the name first, because the messages of all other keys contain it.
@@ -197,10 +197,10 @@ void read_channels(Context& context, MapReader& top) {
   ChannelDefaults defaults(context, top);
   const std::vector<const Node*> channels = top.sequence("channels", true);
   if (top.has("channels") && channels.empty() && context.document.complete) {
-    top.report("channels", "a rig has at least one channel");
+    top.report("channels", "a rig must have at least one channel");
   }
   if (channels.size() > control::max_channels) {
-    top.report("channels", "a rig has at most " + std::to_string(control::max_channels) +
+    top.report("channels", "a rig may have at most " + std::to_string(control::max_channels) +
                                " channels, found " + std::to_string(channels.size()));
   }
   for (std::size_t i = 0; i < std::min(channels.size(), control::max_channels); ++i) {

@@ -107,7 +107,7 @@ void check_budget(Context& context, MapReader& top) {
   const bool serial = context.board_key == "modbus_rtu";
   if (serial && budget.exchange_s > context.rig.loop.exchange_deadline_s) {
     top.report("board", "an exchange takes longer than `exchange_deadline_s` allows: " + budget.explanation,
-               "a longer deadline, a higher `baud`, or fewer terminals");
+               "set a longer deadline or a higher `baud`, or use fewer terminals");
   }
   if (context.rig.accept_over_budget || budget.exchange_s <= context.period_s()) return;
   top.report(

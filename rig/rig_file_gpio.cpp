@@ -42,7 +42,7 @@ void read_which_line(MapReader& reader, GpioLineSettings& line, const std::vecto
   }
   if (reader.has("line") == reader.has("offset") && !reader.keys().empty()) {
     reader.report(reader.has("line") ? "offset" : "chip",
-                  what + " needs either `line`, its name, or `offset`, its number in the chip",
+                  what + " needs either `line` (its name) or `offset` (its number in the chip)",
                   "`gpioinfo` lists both");
   }
 }
@@ -53,10 +53,11 @@ void check_broken_wire(MapReader& reader, const GpioLineSettings& line) {
   const bool open_is_active = (line.bias == GpioBias::pull_up) != line.active_low;
   const bool trips_when_active = line.role == GpioRole::emergency_stop;
   if (open_is_active == trips_when_active) return;
-  reader.warn("bias",
-              trips_when_active ? "a broken wire would read as a released emergency stop"
-                                : "a broken wire would read as a part in position",
-              "with this `active`, use the other pull, and a contact that is closed while all is well");
+  reader.warn(
+      "bias",
+      trips_when_active ? "a broken wire would read as a released emergency stop"
+                        : "a broken wire would read as a part in position",
+      "with this `active`, use the other pull resistor, and a contact that is closed in normal operation");
 }
 
 /// `there` contains the chips of this computer.

@@ -37,7 +37,7 @@ std::string read_host(MapReader& reader) {
     return host;
   }
   reader.report("host", "`host` must be a numeric address, found `" + document::shown(host) + "`",
-                host == "localhost" ? "write 127.0.0.1" : "names are not resolved");
+                host == "localhost" ? "write 127.0.0.1" : "host names are not resolved");
   return host;
 }
 
@@ -169,8 +169,9 @@ class ModulesReader {
       const auto& other = std::get<drivers::TcpAddress>(links[link]);
       if (other.host != address.host || other.port != address.port) continue;
       if (other != address) {
-        reader.report("port", "another module at this host and port states other keys of the session",
-                      "state `settle_s`, `repeat_after_s`, `framing` and what belongs to it alike for both");
+        reader.report(
+            "port", "another module at this host and port has different settings of the shared session",
+            "give both modules the same `settle_s`, `repeat_after_s`, `framing` and keys of the framing");
       }
       return link;
     }
@@ -241,9 +242,10 @@ drivers::SerialLine read_line(Context& context, MapReader& reader) {
   line.habits = read_habits(context, reader);
   const double usual_s = line.turnaround_s + line.adapter_latency_s;
   if (reader.good("repeat_after_s") && line.habits.repeat_after_s <= usual_s) {
-    reader.report("repeat_after_s",
-                  "`repeat_after_s` is not above the " + written(usual_s) +
-                      " s that a module and the adapter take: requests would meet answers on the line");
+    reader.report(
+        "repeat_after_s",
+        "`repeat_after_s` is not above the " + written(usual_s) +
+            " s that a module and the adapter take: requests would collide with answers on the line");
   }
   advise_on_name(reader, line.device);
   return line;

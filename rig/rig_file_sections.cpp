@@ -140,11 +140,12 @@ void read_pressure_fault(Context& context, MapReader& reader) {
     faults.pressure_tolerance_kpa = *tolerance;
     faults.pressure_delay_s = *delay;
   } else if (wanted || tolerance || delay) {
-    reader.report(wanted      ? "pressure_cycles"
-                  : tolerance ? "pressure_tolerance_kpa"
-                              : "pressure_delay_s",
-                  "`pressure_cycles`, `pressure_tolerance_kpa` and `pressure_delay_s` belong together",
-                  "give all three, or none: then the measured pressure is not compared with the command");
+    reader.report(
+        wanted      ? "pressure_cycles"
+        : tolerance ? "pressure_tolerance_kpa"
+                    : "pressure_delay_s",
+        "`pressure_cycles`, `pressure_tolerance_kpa` and `pressure_delay_s` belong together",
+        "give all three, or give none if the measured pressure shall not be compared with the command");
   }
 }
 

@@ -171,7 +171,7 @@ void check_valve(Context& context, MapReader& reader, const ElectricalKey& at,
     reader.warn("range_kpa",
                 "the limits use less than a fifth of the valve's range (" + used + " of " + range +
                     "): resolution and linearity suffer",
-                "a valve with a smaller range resolves the finger better");
+                "a valve with a smaller range controls the finger more precisely");
   }
   const drivers::Terminal* const terminal = terminal_of(context, "output", wiring.module, wiring.output);
   if (terminal == nullptr) return;
@@ -211,7 +211,7 @@ void check_sensor(MapReader& reader, const drivers::InputWiring& wiring,
               "the limits allow " + written(limits.displacement_min_mm) + " to " +
                   written(limits.displacement_max_mm) + " mm, the valid range of the sensor is " +
                   written(std::min(a, b)) + " to " + written(std::max(a, b)) + " mm",
-              "beyond it a reading is invalid, which becomes a fault");
+              "a reading outside this range is invalid and becomes a fault");
 }
 
 }  // namespace

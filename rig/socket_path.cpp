@@ -30,8 +30,9 @@ std::optional<std::string> socket_path_of(const std::string& rig_path, document:
   }
   for (const document::Problem& problem : ignored.list()) problems.add(problem);
   if (ignored.empty()) {
-    problems.add(document.problem(document.root.at, "this names no socket",
-                                  "a rig file has `socket: {path: ...}`; or name the socket with --socket"));
+    problems.add(
+        document.problem(document.root.at, "this file does not name a socket",
+                         "write `socket: {path: ...}` in the rig file, or give the socket with --socket"));
   }
   return std::nullopt;
 }

@@ -68,7 +68,7 @@ class Reader {
     for (const Node* const item : reader.sequence(key, true)) entry(*item, block, known, missing);
     if (!missing.empty() && reader.has(key)) {
       reader.report(key, fmt::format("`{}` lacks the register '{}'", key, missing.front()),
-                    "every register has an address, used or not");
+                    "every register needs an address, even if it is not used");
     }
   }
 
@@ -79,7 +79,7 @@ class Reader {
     if (is_free && address <= last_address) return;
     problems_.add(document_.problem(
         at, is_free ? fmt::format("'{}' is beyond address {}", what, last_address)
-                    : fmt::format("address {} is that of '{}' and of '{}'", address, taken->second, what)));
+                    : fmt::format("address {} belongs to both '{}' and '{}'", address, taken->second, what)));
   }
 
  private:
@@ -99,8 +99,8 @@ class Reader {
     if (!info->unit.empty()) {
       map_.resolution[index] = resolution_of(reader.text("unit"), info->unit);
       if (reader.good("unit") && map_.resolution[index] == 0) {
-        reader.report("unit", "this is not the value of one count",
-                      fmt::format("a number and the unit: \"0.01 {}\"", info->unit));
+        reader.report("unit", "this is not a resolution (the value of one count)",
+                      fmt::format("write a number and the unit: \"0.01 {}\"", info->unit));
       }
     }
     if (block != Block::finger) claim(node.at, address, name);

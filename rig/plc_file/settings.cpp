@@ -72,7 +72,7 @@ class SettingsReader {
     recipe.displacement = parameter(reader, "displacement", "_mm");
     const bool twice = std::any_of(settings_.recipes.begin(), settings_.recipes.end(),
                                    [&](const Recipe& other) { return other.number == recipe.number; });
-    if (twice) reader.report("number", fmt::format("there is a recipe {} already", recipe.number));
+    if (twice) reader.report("number", fmt::format("the recipe {} already exists", recipe.number));
     settings_.recipes.push_back(std::move(recipe));
   }
 

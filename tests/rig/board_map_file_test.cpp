@@ -166,7 +166,7 @@ TEST(BoardMapFile, MistakesAreFoundWhereTheyStand) {
       {"timeout_s: 0.5", "timeout_s: 0", "allowed", "timeout_s: 0"},
       {"timeout_s: 0.5", "timeout_ms: 500", "timeout_ms", "timeout_ms: 500"},
       {"safe_ma: [4, 4]", "safe_ma: [4]", "2 numbers", "safe_ma: [4]"},
-      {"functions: [16]", "functions: [3, 4]", "does not feed it", "[3, 4]"},
+      {"functions: [16]", "functions: [3, 4]", "does not feed the watchdog", "[3, 4]"},
       {"value: 1}", "value: 2}", "allowed", "value: 2"},
       {"value: 5}", "value: 70000}", "allowed", "70000"},
       {"name: test", "name: test\ncolour: red", "unknown key", "colour: red"},
@@ -198,7 +198,7 @@ TEST(BoardMapFile, Function6CannotWriteTwoRegisters) {
   text.replace(text.find("functions: [16]"), 15, "functions: [6]");
   const Result result = read(text);
   ASSERT_EQ(result.problems.size(), 1U) << result.problems.format();
-  EXPECT_NE(result.problems.list()[0].message.find("two each"), std::string::npos);
+  EXPECT_NE(result.problems.list()[0].message.find("each of these outputs has two"), std::string::npos);
 }
 
 std::string without(std::string text, const std::string& from, const std::string& to) {

@@ -135,7 +135,8 @@ TEST_F(ChannelDefaultsTest, WhatCannotBeSharedThere) {
   text.replace(text.find("\n#"), 2, "\n  # ");
   EXPECT_FALSE(read());
   EXPECT_NE(problems.format().find("channels cannot share a name"), std::string::npos) << problems.format();
-  EXPECT_NE(problems.format().find("`model_health` is shared at the top of the file"), std::string::npos);
+  EXPECT_NE(problems.format().find("`model_health` for all channels belongs at the top of the file"),
+            std::string::npos);
   EXPECT_EQ(problems.size(), 2U) << problems.format();
 }
 

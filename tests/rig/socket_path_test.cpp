@@ -33,7 +33,7 @@ TEST_F(SocketPath, IsReadFromARigFileWhateverElseIsWrongWithIt) {
 TEST_F(SocketPath, WhereThereIsNoneIsAProblem) {
   document::Problems problems;
   EXPECT_FALSE(socket_path_of(write("name: x\n"), problems));
-  EXPECT_NE(problems.format().find("names no socket"), std::string::npos);
+  EXPECT_NE(problems.format().find("does not name a socket"), std::string::npos);
   EXPECT_FALSE(socket_path_of(write("socket: {mode: \"0660\"}\n"), problems));
   EXPECT_FALSE(socket_path_of((folder_ / "absent.yaml").string(), problems));
   EXPECT_EQ(problems.size(), 3U) << problems.format();

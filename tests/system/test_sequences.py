@@ -166,7 +166,7 @@ class WithADaemon(bench.BenchTest):
                                   env=other, timeout=bench.PATIENCE_S, check=False)
             self.assertEqual((done.returncode, done.stderr), (0, ""), command)
         self.softgrip("status", "--rig", "absent.yaml", expect=4)
-        self.assertIn("names no socket", self.softgrip("status", "--rig", PICK, expect=3).stderr)
+        self.assertIn("does not name a socket", self.softgrip("status", "--rig", PICK, expect=3).stderr)
         self.softgrip("status", "--rig", self.rig_path, "--socket", "x", expect=2)
 
     def test_the_first_reading_is_no_warning(self):

@@ -53,11 +53,11 @@ TEST(PlcSettings, SaysWhatIsWrongAndWhere) {
   EXPECT_NE(said_of("first: 120", "first: 100").find("address 100"), std::string::npos);
   EXPECT_NE(said_of("name: recipe", "name: receipt").find("recipe"), std::string::npos);
   EXPECT_NE(said_of("name: heartbeat", "name: fingers").find("appears twice"), std::string::npos);
-  EXPECT_NE(said_of("unit: 0.01 kPa", "unit: 0.01 bar").find("not the value of one count"),
+  EXPECT_NE(said_of("unit: 0.01 kPa", "unit: 0.01 bar").find("not a resolution (the value of one count)"),
             std::string::npos);
   EXPECT_NE(said_of("squeeze: squeeze_kpa", "squeeze: squeeze_mm").find("ends with `_kpa`"),
             std::string::npos);
-  EXPECT_NE(said_of("number: 2", "number: 1").find("there is a recipe 1 already"), std::string::npos);
+  EXPECT_NE(said_of("number: 2", "number: 1").find("the recipe 1 already exists"), std::string::npos);
   EXPECT_NE(said_of("address: 127.0.0.1 ", "address: localhost ").find("not a numeric address"),
             std::string::npos);
   EXPECT_NE(said_of("when_silent: stop", "when_silent: hope").find("vent"), std::string::npos);
