@@ -71,14 +71,15 @@ constexpr std::array faults{
         "The outputs changed without a write from softgripd: another Modbus client writes to the board.",
         "another client on the line or the network: a Modbus tool, a PLC",
         "Disconnect the other Modbus client. The outputs are vented.",
-        "8 exchanges if the board can be read back"},
+        "8 exchanges, if the outputs of the board can be read back"},
     FaultInfo{FaultCode::model_unfit, "F401", "model_unfit",
               "The running model does not describe the finger any more.",
               "wear, another finger, leak, moved sensor", "Record tp1 and identify again.",
               "1 cycle after the model is unfit, if model_unfit_is_fault"},
     FaultInfo{FaultCode::emergency_stop, "F501", "emergency_stop",
               "The emergency stop is pressed, or has not been released since start-up.",
-              "the emergency stop was pressed; a start with an emergency stop input; a broken wire to it",
+              "the emergency stop was pressed; its wire is broken; the daemon was started on a rig with an "
+              "emergency stop",
               "Make the area safe, release the emergency stop.", "1 cycle after the input's debounce_s"},
     FaultInfo{FaultCode::inputs_lost, "F502", "inputs_lost", "The digital inputs cannot be read.",
               "a USB or expander chip that was removed, a machine too busy to read them",
@@ -90,8 +91,8 @@ constexpr std::array faults{
               "max_missed_commands exchanges without the loop; 1 cycle, if "
               "overrun_cycles is not 0"},
     FaultInfo{FaultCode::not_finite, "F902", "not_finite", "A computed command was not a finite number.",
-              "a model or gains that diverge", "Keep the recording; it is a defect or an unusable model.",
-              "1 cycle"},
+              "a model or gains that diverge",
+              "Keep the recording; the cause is a software defect or an unusable model.", "1 cycle"},
 };
 
 struct RefusalInfo {

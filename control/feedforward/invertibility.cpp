@@ -34,8 +34,9 @@ constexpr std::string_view wrong_way_first = ": the model has an inverse respons
 constexpr std::string_view usual_cause = "a latency in the data is the usual cause, run `softgrip diagnose`";
 
 constexpr std::string_view creep_alone =
-    ": creep alone moves the model there, nothing elastic does (a play with threshold 0, a spring)";
-constexpr std::string_view planned_needs_none = "feedforward `planned` needs none";
+    ": at this pressure, only creep moves the model, and no elastic element (a play with threshold 0, or a "
+    "spring) does";
+constexpr std::string_view planned_needs_none = "feedforward `planned` needs no elastic element";
 
 /// Below this gain, nothing responds immediately to the pressure: even a Kelvin-Voigt spring without effect
 /// has 1e-9 mm/kPa.
@@ -161,8 +162,8 @@ tl::expected<void, Refusal> check_full_model(const model::Model& model, const Li
   for (const model::BlockSpec& spec : model.blocks) blocks.push_back(model::catalogue()[spec.type].info);
   const std::string names = not_undone(blocks);
   if (!names.empty()) {
-    return tl::unexpected(
-        Refusal{"the model contains " + names + ", which has no inverse; feedforward `none` is left for it"});
+    return tl::unexpected(Refusal{"the model contains " + names +
+                                  ", which has no inverse; use feedforward `none` with this model"});
   }
   const model::Model body = body_of(model);
   const auto elements = model::only(body, [](const BlockInfo& info) { return info.kind == Kind::element; });

@@ -116,7 +116,7 @@ class Binder {
       if (used_[i]) continue;
       problems_.add(document_.problem(
           parameters_[i].at, "no step uses the parameter " + document::in_backticks(parameters_[i].name),
-          "write $" + parameters_[i].name + " where its number belongs"));
+          "write $" + parameters_[i].name + " in place of a number in a step"));
     }
   }
 
@@ -134,7 +134,7 @@ class Binder {
     }
     used_[static_cast<std::size_t>(found - parameters_.begin())] = true;
     if (key.empty()) {
-      refuse(node, "a parameter is the number of a key, not an item of a list", "");
+      refuse(node, "a parameter can replace the number of a key, but not an item of a list", "");
     } else if (const std::string_view unit = document::unit_at_end(key); unit != found->unit) {
       const auto in_words = [](std::string_view text) {
         return text.empty() ? "a plain number" : document::in_backticks(text);

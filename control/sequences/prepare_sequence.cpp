@@ -68,7 +68,7 @@ class Fitting {
                                          settings_.channels[missed.channel].name +
                                          "' cannot follow within the limits: it deviates by up to " +
                                          significant(rounded(missed.worst_mm), 6) + " mm from the reference",
-                                     "a slower or smaller motion, or wider limits"));
+                                     "use a slower or smaller motion, or wider limits"));
     }
     if (stop.stop_requested()) report(sequence_.steps.front(), "its planning was stopped");
     if (prepared.planned_s > most_planned_s) {
@@ -303,7 +303,7 @@ class Fitting {
            "moves channel '" + channel.name + "' below its rest pressure (" + significant(rest_kpa, 6) +
                " kPa), where detection, on_contact and squeeze_kpa cannot detect a part",
            step.kind == StepKind::grip
-               ? "verify by: position or by: pressure with pressure_max_kpa, without squeeze_kpa"
+               ? "verify by: position, or by: pressure with pressure_max_kpa, and remove squeeze_kpa"
                : "on_contact: ignore");
   }
 

@@ -182,7 +182,7 @@ class FileReader {
     const auto by_speed = map.optional_number(own, speed);
     const auto by_duration = map.optional_number("duration_s", ramp_s);
     if (map.optional_number(other, speed)) {
-      map.report(other, "the speed has another unit than the target", "write " + std::string(own));
+      map.report(other, "the speed and the target have different units", "write " + std::string(own));
     } else if (by_speed && by_duration) {
       map.report("duration_s", "a ramp has a speed or a duration, not both");
     } else if (displacement && !by_speed && !by_duration) {
@@ -197,7 +197,7 @@ class FileReader {
     step.tolerance_mm = map.optional_number("tolerance_mm", {0.01, 50});
     if (!step.tolerance_mm) return;
     if (step.target.quantity != Target::Quantity::displacement_mm) {
-      map.report("tolerance_mm", "tolerance_mm belongs to a target in displacement_mm");
+      map.report("tolerance_mm", "tolerance_mm requires a target in displacement_mm");
     }
     step.timeout_s = map.number("timeout_s", short_time_s);
     step.retries = retries(map);
@@ -229,7 +229,7 @@ class FileReader {
     const auto by = map.optional_number("squeeze_kpa", squeeze_kpa);
     if (!by) {
       if (map.optional_number("squeeze_speed_kpa_per_s", speed))
-        map.report("squeeze_speed_kpa_per_s", "squeeze_speed_kpa_per_s belongs to squeeze_kpa");
+        map.report("squeeze_speed_kpa_per_s", "squeeze_speed_kpa_per_s requires squeeze_kpa");
       return;
     }
     step.squeeze = {*by, map.number("squeeze_speed_kpa_per_s", speed)};
@@ -341,8 +341,8 @@ class FileReader {
       MapReader inner(document_, *item, problems_, "point");
       const Point point{inner.number("time_s", long_time_s), inner.number("pressure_kpa", pressure_kpa)};
       if (points.empty() ? point.time_s != 0 : point.time_s < points.back().time_s) {
-        inner.report("time_s",
-                     points.empty() ? "the first point is at time_s: 0" : "points must not go back in time");
+        inner.report("time_s", points.empty() ? "the first point must be at time_s: 0"
+                                              : "points must not go back in time");
       }
       points.push_back(point);
     }

@@ -60,7 +60,7 @@ void check_channel(const ChannelSettings& channel, Texts& problems) {
   require(!channel.name.empty(), problems, "a channel has no name");
   require(!channel.model.blocks.empty(), problems, who + ": its model has no blocks");
   require(channel.displacement_used || channel.pressure_measured, problems,
-          who + ": without its displacement it needs a measured pressure");
+          who + ": if its displacement is not used, it needs a measured pressure");
   check_limits(channel.limits, who, problems);
   check_pid(channel.pid, who, problems);
   check_plausibility(channel.plausibility, who, problems);
@@ -97,7 +97,7 @@ std::vector<std::string> settings_problems(const RigSettings& settings) {
   Texts problems;
   require(positive(settings.rate_hz), problems, "rate_hz must be above 0");
   require(!settings.channels.empty() && settings.channels.size() <= max_channels, problems,
-          "a rig has 1 to " + std::to_string(max_channels) + " channels");
+          "a rig must have 1 to " + std::to_string(max_channels) + " channels");
   for (const ChannelSettings& channel : settings.channels) {
     check_channel(channel, problems);
     const auto same = [&](const ChannelSettings& other) { return other.name == channel.name; };

@@ -119,7 +119,7 @@ std::string limit_in_words(const TuneTask& task, const Tuned& tuned) {
            significant(task.most_sensitivity, 3) + " that are allowed; " +
            significant(dead_time_s(task.finger), 3) + " s of dead time" +
            (lag ? " and " + significant(model::flat_values(task.finger)[*lag], 3) + " s of lag" : "") +
-           " leave no more feedback";
+           " do not permit more feedback";
   } else {
     text = "no margin (Ms is " + significant(tuned.sensitivity, 3) + " of " +
            significant(task.most_sensitivity, 3) + "): more feedback would not lower the error";
@@ -130,8 +130,8 @@ std::string limit_in_words(const TuneTask& task, const Tuned& tuned) {
   text += "; most of the error is ";
   if (floor >= by_noise && floor >= by_mismatch) {
     return text +
-           "there without noise and mismatch too: the reference moves faster than this feedforward and "
-           "feedback follow";
+           "also present without noise and mismatch: the reference moves faster than this feedforward and "
+           "feedback can follow";
   }
   return text + (by_mismatch >= by_noise ? "the model's mismatch" : "the sensor's noise");
 }

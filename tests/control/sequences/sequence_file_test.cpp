@@ -178,7 +178,7 @@ INSTANTIATE_TEST_SUITE_P(
                with_step(
                    "grip: {displacement_mm: 5, speed_mm_per_s: 5, squeeze_speed_kpa_per_s: 4, settle_s: 0.1, "
                    "verify: {by: detection, window_s: 0.2}, timeout_s: 3, on_fail: vent}"),
-               3, "belongs to squeeze_kpa"},
+               3, "requires squeeze_kpa"},
         Broken{
             "squeeze_above_its_bound",
             with_step(
@@ -218,7 +218,7 @@ INSTANTIATE_TEST_SUITE_P(
                3, "displacement_min_mm"},
         Broken{"tolerance_of_pressure",
                with_step("move: {pressure_kpa: 5, tolerance_mm: 1, timeout_s: 3, on_fail: vent}"), 3,
-               "belongs to a target"},
+               "requires a target"},
         Broken{"backwards",
                with_step("pressure: {points: [{time_s: 0, pressure_kpa: 1}, {time_s: 2, pressure_kpa: 1}, "
                          "{time_s: 1, pressure_kpa: 1}]}"),
