@@ -91,7 +91,7 @@ std::string hint_for(std::string_view text) {
     return "write the number in decimal";
   }
   if (one_of(word, {"yes", "no", "on", "off", "true", "false"}))
-    return "a number is needed here, not a switch";
+    return "a number is needed here, not a boolean";
   if (const std::string plain = repaired(text, '_', ""); !plain.empty()) return "write " + plain;
   if (const std::string point = repaired(text, ',', "."); !point.empty()) {
     return "the decimal mark is a point: " + point;

@@ -39,7 +39,7 @@ bool has_control(std::string_view text) {
 }
 
 std::string not_a_map_hint(const Node& node) {
-  if (node.kind == Node::Kind::sequence) return "remove the `- ` or `[ ]` if there is one thing only";
+  if (node.kind == Node::Kind::sequence) return "remove the `- ` or `[ ]` if there is only one item";
   if (node.kind == Node::Kind::scalar && !node.quoted && node.scalar.find(':') != std::string::npos) {
     return "a space is missing after the colon";
   }

@@ -124,7 +124,7 @@ SyntaxMessage translated(const Document& document, std::string_view said, const 
   }
   const bool glued_above = at.line > 1 && has_glued_colon(line_of(document.text, at.line - 1));
   if (said == "illegal map value" && glued_above) {
-    return {"this is not a key: the line above has no `: ` and goes on here",
+    return {"this is not a key: the line above has no `: ` and continues here",
             "a space is missing after the colon in line " + std::to_string(at.line - 1)};
   }
   if (said == "illegal map value") {

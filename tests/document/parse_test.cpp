@@ -139,7 +139,7 @@ TEST(Parse, SyntaxErrorsSayWhatWasOpen) {
   EXPECT_EQ(problems_of("a: 1\n  b: 2\n"),
             (Lines{"2:4: this key starts in column 3, the keys of its map start in column 1"}));
   EXPECT_EQ(problems_of("a:1\nb: 2\n"),
-            (Lines{"2:2: this is not a key: the line above has no `: ` and goes on here"}));
+            (Lines{"2:2: this is not a key: the line above has no `: ` and continues here"}));
   EXPECT_EQ(problems_of("a: \"\\q\"\n"), (Lines{"1:7: a text in double quotes contains an unknown escape"}));
   EXPECT_EQ(problems_of("a: 1\n- b\n"), (Lines{"2:1: this does not belong to the map that starts at 1:1"}));
   EXPECT_EQ(problems_of("a: @b\n"), (Lines{"1:4: this character cannot start a value"}));

@@ -169,8 +169,8 @@ TEST(Reader, TextsAreOneLineAndPrintable) {
 TEST(Reader, WhatIsNoMapIsReportedOnce) {
   EXPECT_EQ(
       reported("- a\n", use_delay),
-      (Lines{"1:1: the map must be a map of keys, found a list | remove the `- ` or `[ ]` if there is one "
-             "thing only"}));
+      (Lines{"1:1: the map must be a map of keys, found a list | remove the `- ` or `[ ]` if there is only "
+             "one item"}));
   EXPECT_EQ(reported("", use_delay), (Lines{"1:1: the map must be a map of keys, found nothing"}));
 }
 
