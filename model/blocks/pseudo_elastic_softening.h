@@ -26,7 +26,7 @@ class PseudoElasticSoftening {
   static constexpr std::array parameters{
       parameter("softening_per_kpa", "1/kPa", "relative increase of the gain per kPa of the largest load",
                 Typical{0.002}, Within{0.0, 1.0}, Scale{0.001}, Neutral{0.0}),
-      parameter("range_kpa", "kPa", "pressure range below the largest load over which it sets in",
+      parameter("range_kpa", "kPa", "pressure range below the largest load over which the softening sets in",
                 Typical{15.0}, Within{0.01, 10000.0}, Scale{5.0})};
 
   PseudoElasticSoftening(std::span<const T> values, const Preparation&)
