@@ -426,7 +426,8 @@ void warn(const std::vector<Log>& healthy, const std::vector<Log>& later,
   const double now_kpa = largest_command_kpa(later), then_kpa = largest_command_kpa(healthy);
   if (now_kpa > 1.05 * then_kpa)
     warnings.push_back("The later logs reach " + significant(now_kpa, 3) + " kPa, the healthy logs only " +
-                       significant(then_kpa, 3) + " kPa: at higher pressures the base extrapolates");
+                       significant(then_kpa, 3) +
+                       " kPa: at higher pressures the baseline model extrapolates");
   if (healthy.size() == 1)
     warnings.emplace_back(
         "One healthy log does not show how runs differ. A change is reported only if its error exceeds three "

@@ -119,8 +119,8 @@ Figure runs_figure(const JudgedChange& judged, bool explained) {
   if (explained)
     chart.series.push_back(points_over_names("with the causes", Colour::model, std::move(after)));
   return {std::string("error by run ") + name_of(judged.judged),
-          "Error of the base in each run, RMS about its mean. Each healthy run was left out of the fit that "
-          "predicts it.",
+          "Error of the baseline model in each run, RMS about its mean. Each healthy run was left out of the "
+          "fit that predicts it.",
           stacked({chart})};
 }
 

@@ -42,7 +42,8 @@ std::vector<std::string> excitation_limits(const std::vector<Log>& logs,
       if (estimate.free && std::ranges::any_of(that_need(missing), begins))
         names += (names.empty() ? "" : ", ") + estimate.name;
     }
-    sentences.push_back(without(missing) + (names.empty() ? "" : "; these parameters need it: " + names));
+    sentences.push_back(without(missing) +
+                        (names.empty() ? "" : "; these parameters need this excitation: " + names));
   }
   return sentences;
 }

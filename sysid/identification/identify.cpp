@@ -188,7 +188,7 @@ void add_warnings(Identification& result) {
   if (result.noise.lag1_correlation > 0.5) {
     result.warnings.push_back("the residuals are correlated (" +
                               significant(result.noise.lag1_correlation, 3) +
-                              " from sample to sample): equivalent to " +
+                              " from sample to sample): the readings are equivalent to " +
                               fixed(result.noise.effective_samples, 0) + " independent samples");
   }
   if (result.multistart.starts >= 5 && result.multistart.share_at_best < 0.2) {

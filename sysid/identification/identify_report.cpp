@@ -130,8 +130,9 @@ void add_limits(Page& page, const Identification& r) {
     for (std::size_t i = 0; i < loose.names.size(); ++i) {
       text += (i == 0 ? "" : ", ") + loose.names[i] + " (" + significant(loose.weights[i], 2) + ")";
     }
-    items.push_back(text + " may move by " + significant(loose.deviation, 2) +
-                    " in the fit's scale (logarithms of stiffnesses and dampings) without a larger error.");
+    items.push_back(text + " may change by " + significant(loose.deviation, 2) +
+                    " in the scale of the fit (logarithms of stiffnesses and dampings), and the error does "
+                    "not increase.");
   }
   if (items.empty()) {
     page.paragraph("Every free parameter is identified by these logs.");

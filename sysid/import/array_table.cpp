@@ -70,7 +70,8 @@ std::optional<ForeignTable> ArrayCollector::table(const std::string& format,
   if (most >= 2) return table;
   std::string said;
   for (const std::string& note : table.notes) said += (said.empty() ? "" : "; ") + note;
-  problems.add({file_, {1, 1}, {}, "the file has no two arrays of numbers with the same length", said});
+  problems.add(
+      {file_, {1, 1}, {}, "the file does not contain two arrays of numbers with the same length", said});
   return std::nullopt;
 }
 

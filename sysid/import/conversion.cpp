@@ -399,7 +399,7 @@ class Converter {
       if (is_time && used.empty()) {
         remarks_.warnings.push_back(name + " and is not used: --rate-hz takes its place");
       } else if (is_time && same_clock(table_, mapping_, used.front(), i)) {
-        remarks_.notes.push_back(name + " and shows the time that is used");
+        remarks_.notes.push_back(name + " and contains the same times as the column that is used");
       } else if (is_time) {
         remarks_.warnings.push_back(name + " and is not used: it differs from the time of '" +
                                     document::shown(table_.columns[used.front()].name, 40) + "'");

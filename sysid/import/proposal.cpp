@@ -199,7 +199,7 @@ FingerChoice choose_finger(const ForeignTable& table, const Mapping& given, Prop
       if (other != choice.meant)
         proposal.questions.push_back(
             {"--channel '" + choice.meant + "': a column of finger '" + other + "' is given",
-             "give columns of one finger"});
+             "give columns of the same finger"});
     }
   } else if (choice.fingers.size() > 1) {
     const std::vector<std::string> read = read_fingers(table, choice.fingers);
@@ -236,8 +236,8 @@ void choose_times(const ForeignTable& table, const FingerChoice& choice, Proposa
   if (!of_roles || std::find(of_roles->begin(), of_roles->end(), chosen) == of_roles->end()) {
     proposal.questions.push_back(
         {"the times of the columns " + quoted(words) + " differ",
-         "--time COLUMN takes one of them for all values; given twice, each holds for the "
-         "columns that its name or its place shows"});
+         "--time COLUMN selects one of them for all values. If --time is given twice, each time applies to "
+         "the columns that its name or its position indicates"});
     return;
   }
   time.columns.clear();

@@ -153,7 +153,7 @@ std::optional<SampleProblem> order_in_time(const Mapping& mapping, ForeignSample
   }
   if (kept.empty())
     return SampleProblem{0, "no samples between --from-s and --to-s",
-                         "the file has " + significant(time_s.back()) + " s"};
+                         "the file lasts " + significant(time_s.back()) + " s"};
   remarks.account.leave_out(LeftOut::repeated_time, repeated);
   if (repeated > 0)
     remarks.notes.push_back(counted(repeated, "with the time of the previous sample left out"));

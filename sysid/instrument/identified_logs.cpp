@@ -70,8 +70,8 @@ tl::expected<IdentifiedLogs, std::string> identify_logs(IdentifyQuestion questio
   if (!result) return tl::unexpected(refusal_of(result.error(), all.logs));
   all.result = *std::move(result);
   if (question.structure && given)
-    all.result.warnings.push_back("--structure starts from the scale of the data: " + question.start_file +
-                                  " was not used");
+    all.result.warnings.push_back(
+        "--structure computes its start values from the data: " + question.start_file + " was not used");
   if (given) {
     all.result.model.name = all.start.name + "_identified";
   } else {

@@ -44,7 +44,7 @@ class Check {
     const std::size_t fewest = options.need_readings ? fewest_samples : fewest_command_samples;
     if (log_.size() < fewest) {
       refuse(log_.size(), 1, std::to_string(log_.size()) + " samples",
-             "a log has at least " + std::to_string(fewest));
+             "a log must have at least " + std::to_string(fewest));
       return;
     }
     if (!time_increases()) return;
@@ -185,7 +185,7 @@ class Check {
     const std::string message = percent(share) + " of the samples have no reading";
     if (readings.size() - count < fewest_samples) {
       refuse(at, source_.displacement_column, message,
-             "a log has at least " + std::to_string(fewest_samples) + " readings");
+             "a log must have at least " + std::to_string(fewest_samples) + " readings");
     } else {
       note(at, message + "; they are simulated but not compared");
     }

@@ -303,10 +303,10 @@ std::string_view name_of(Ingredient ingredient) {
       "a second lag",
       "delay and lag",
       "a regulator's overlap (a lag instead)",
-      "a time constant of its own for venting",
-      "bent characteristic and envelopes",
+      "a separate time constant for venting",
+      "nonlinear characteristic and envelopes",
       "a resonance",
-      "bent envelopes"};
+      "nonlinear envelopes"};
   return names[static_cast<std::size_t>(ingredient)];
 }
 

@@ -392,7 +392,7 @@ def reports():
         File("two_clocks.csv", "a separate, slower clock of the command, decimal commas", two_clocks, columns=BASIC_OF | thirds,
              says="each row has 2 times", joined=100, left_out={"empty": 200}),
         File("same_clock_twice.csv", "the same time in s and in ms", table(
-            ["time_s", "t_ms", "set_kpa", "tip_mm"], [T, ms, COMMAND, TIP]), says="shows the time that is used"),
+            ["time_s", "t_ms", "set_kpa", "tip_mm"], [T, ms, COMMAND, TIP]), says="contains the same times as"),
         File("clock_and_counter.csv", "a time and a counter of samples",
              table(["time_s", "sample", "set_kpa", "tip_mm"], [T, list(range(COUNT)), COMMAND, TIP]), says="not used: 'sample'"),
         File("unread_time.csv", "a time, and dates with the month first", table(
@@ -691,7 +691,7 @@ def files():
              + matlab_4("tip_mm", TIP)),
         File("v73.mat", "MATLAB 7.3", matlab_73, "--unit time=s", columns=MEASURED),
         File("cut_off.mat", "MATLAB 5, cut off", matlab_5(matrix("time_s", T))[:-900],
-             refused="no two arrays of numbers"),
+             refused="not contain two arrays of numbers"),
         File("groups.h5", "HDF5: groups, packed, units as attributes", hdf5_datasets, columns=MEASURED),
         File("compound.h5", "HDF5: a table of compounds", hdf5_compound),
         File("counter_16_bit.csv", "milliseconds of a 16-bit counter",

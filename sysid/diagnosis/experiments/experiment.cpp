@@ -59,8 +59,8 @@ std::string without_pairs(const Diagnosis& d) {
   }
   if (open.empty()) return "there are no two explanations to separate";
   return "no experiment is designed for " + open +
-         ": these causes belong to a different base, and experiments are only predicted for the base of the "
-         "given model";
+         ": these causes belong to a different model structure, and experiments are predicted only for the "
+         "structure of the given model";
 }
 
 class Designer {

@@ -22,7 +22,7 @@ constexpr const char* vary_temperature =
 std::string instead_of_waveform(const Cause& one, const Cause& other, const std::string& names,
                                 bool gauge_made) {
   if (has(one, Advice::change_load) && has(other, Advice::change_load)) {
-    return std::string(gauge_made ? "the gauge did not decide it: repeat the check with more positions over "
+    return std::string(gauge_made ? "the gauge check was not conclusive: repeat it with more positions over "
                                     "a wider range, or change the load or move the object"
                                   : "change the load or move the object") +
            ": a nonlinearity that stays at the same reading belongs to the sensor, one that moves with the "

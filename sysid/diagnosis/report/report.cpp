@@ -77,7 +77,8 @@ void add_found(Page& page, const DiagnosisReport& report) {
   }
   if (!d.base.empty())
     page.paragraph(
-        "The base of the given model is not sufficient. The extended model has this base: " + d.base + ".");
+        "The structure of the given model is not sufficient. The extended model has this structure: " +
+        d.base + ".");
   page.figure(chain_figure(d.extended_model, report.given));
   page.figure(error_figure(d, logs_by_gain(d).front()));
   if (const auto looped = first_with_loops(d)) page.figure(loops_figure(d, *looped));

@@ -92,8 +92,9 @@ std::vector<BudgetPart> budget_parts(const Diagnosis& d) {
   const double together = taken - scale * one_by_one;
   // A part below 0.1 % would not be visible.
   if (together > 1e-3 * budget.recalibrated)
-    parts.push_back({d.causes.empty() ? (d.base.empty() ? "Explained, without a name" : "Another structure")
-                                      : "Explained only by several causes together",
+    parts.push_back({d.causes.empty()
+                         ? (d.base.empty() ? "Explained, but not by a reported cause" : "Another structure")
+                         : "Explained only by several causes together",
                      together, Colour::muted, ""});
   const double noise = std::min(budget.noise, budget.recalibrated - taken);
   parts.push_back({"Unexplained", budget.recalibrated - taken - noise, Colour::error, ""});
@@ -128,7 +129,8 @@ Figure budget_figure(const Diagnosis& d) {
   return {"error budget",
           std::string("Error budget: mean squares of held-out readings.") +
               (d.causes.empty() ? ""
-                                : " The part of a cause is measured by its removal from the extended model."),
+                                : " The part of a cause is the increase of the error when the cause is "
+                                  "removed from the extended model."),
           {},
           std::move(drawing)};
 }

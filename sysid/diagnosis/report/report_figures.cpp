@@ -361,7 +361,9 @@ Figure conditions_figure(const Diagnosis& d) {
   Figure figure{"error by condition",
                 "Mean error with its 95 % interval for each condition on which it significantly depends. "
                 "Positions are predicted, because a reading and its error share their noise." +
-                    std::string(is_extended(d) ? " Dashed: extended model; a flat curve is explained." : ""),
+                    std::string(is_extended(d) ? " Dashed: extended model. Where the dashed curve is flat, "
+                                                 "the extended model explains the dependence."
+                                               : ""),
                 {}};
   std::size_t charts = 0;
   for (const ConditionEvidence& e : d.evidence->recalibrated.conditions) {

@@ -79,13 +79,13 @@ void add_gauge_section(Page& page, const GaugeEvidence& gauge) {
                    "to slightly more than the range of the logs.",
                {{gauge_chart(gauge)}}});
   page.table(hypotheses_table(check, gauge.file.output_unit));
-  page.paragraph(
-      "Zero and scale of every hypothesis are fitted to the readings. Noise of a reading: " +
-      significant(check.noise_mm, 2) + " " + std::string(name_of(gauge.file.output_unit)) +
-      " (readings at one position differ by " + significant(check.repeat_noise_mm, 2) +
-      "). The comparison of two hypotheses permits 20 % of their difference in addition. A hypothesis is "
-      "ruled out if the most likely one explains the readings and is at least 1000 times as likely (" +
-      significant(gauge_log_likelihood_needed, 2) + " in log likelihood).");
+  page.paragraph("Zero and scale of every hypothesis are fitted to the readings. Noise of a reading: " +
+                 significant(check.noise_mm, 2) + " " + std::string(name_of(gauge.file.output_unit)) +
+                 " (readings at one position differ by " + significant(check.repeat_noise_mm, 2) +
+                 "). In the comparison of two hypotheses, an error of 20 % of their difference is tolerated "
+                 "in addition to the noise. A hypothesis is ruled out if the most likely one explains the "
+                 "readings and is at least 1000 times as likely (" +
+                 significant(gauge_log_likelihood_needed, 2) + " in log likelihood).");
 }
 
 }  // namespace softgrip::sysid

@@ -89,8 +89,9 @@ std::optional<std::string> inconsistent_among(const std::vector<Record>& records
   const double apart_mm = rmse_apart_mm(records, recalibrated);
   if (!(apart_mm * apart_mm < apart_share * together_mm2)) return std::nullopt;
   const std::string unit(model::name_of(records.front().output_unit));
-  return "recalibrated on each log separately, the error of the model is " + significant(apart_mm, 2) + " " +
-         unit + ", and on all logs together " + significant(std::sqrt(together_mm2), 2) + " " + unit +
+  return "after recalibration on each log separately, the error of the model is " + significant(apart_mm, 2) +
+         " " + unit + ", and after recalibration on all logs together " +
+         significant(std::sqrt(together_mm2), 2) + " " + unit +
          ". Check that all logs come from one rig and that nothing was changed between them";
 }
 

@@ -51,8 +51,8 @@ void correct_by_logs(Diagnosis& d, const std::vector<Log>& logs) {
   };
   if (!std::all_of(logs.begin(), logs.end(), is_closed)) return;
   d.warnings.emplace_back(
-      "The command depends on the readings (closed loop). It contains their noise, so a simulation with it "
-      "is uncertain");
+      "The command depends on the readings (closed loop) and contains their noise, so a simulation with this "
+      "command is uncertain");
   if (!std::all_of(logs.begin(), logs.end(), sticks)) return;
   d.warnings.emplace_back("The phase between command and reading indicates a sticking valve (Horch 1999)");
   std::erase_if(d.causes,

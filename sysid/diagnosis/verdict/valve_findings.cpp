@@ -240,10 +240,11 @@ class Search {
     named.parameters = parameters_of(name, found.stage, lost->parts);
     named.alternatives = {*find_cause(causes::PressureScale::id)};
     found.named.push_back(std::move(named));
-    found.advice = "at " + significant(lost->highest_kpa, 3) + " kPa " + significant(lost->missing_kpa, 2) +
-                   " kPa of the command are missing, for rising and falling commands: hold full pressure and "
-                   "close the line after the valve. If the pressure of the finger falls, the finger leaks. "
-                   "If it does not, the scale of the valve or of the pressure sensor is wrong";
+    found.advice =
+        "at " + significant(lost->highest_kpa, 3) + " kPa " + significant(lost->missing_kpa, 2) +
+        " kPa of the command are missing in the measured pressure, for rising and falling commands. Hold "
+        "full pressure and close the line after the valve. If the pressure of the finger falls, the finger "
+        "leaks. If it does not, the scale of the valve or of the pressure sensor is wrong";
   }
 
   [[nodiscard]] bool moves_the_finger(const PartEvidence& of) const {

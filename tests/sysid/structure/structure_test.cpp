@@ -241,8 +241,9 @@ TEST(IdentifyStructure, FindsTheBentEnvelopesOfGeneralisedPlays) {
   const auto chosen = std::find_if(found->structure->candidates.begin(), found->structure->candidates.end(),
                                    [](const auto& c) { return c.chosen; });
   EXPECT_EQ(chosen->description.find("generalised play operators"), 0U) << chosen->description;
-  const auto straight = std::find_if(found->structure->ablation.begin(), found->structure->ablation.end(),
-                                     [](const auto& without) { return without.without == "bent envelopes"; });
+  const auto straight =
+      std::find_if(found->structure->ablation.begin(), found->structure->ablation.end(),
+                   [](const auto& without) { return without.without == "nonlinear envelopes"; });
   ASSERT_NE(straight, found->structure->ablation.end());
   EXPECT_GT(straight->heldout_rmse_mm, 1.3 * chosen->heldout_rmse_mm);
 }

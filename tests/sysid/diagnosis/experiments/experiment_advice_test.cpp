@@ -36,7 +36,8 @@ TEST(Advice, IsNotNeededWhereAWaveformTells) {
 
 TEST(Advice, IsOfWhatTheTwoHaveInCommon) {
   EXPECT_TRUE(says(advice_for("stiffening", "contact", {}), "change the load"));
-  EXPECT_TRUE(says(advice_for("stiffening", "contact", {.gauge_made = true}), "the gauge did not decide it"));
+  EXPECT_TRUE(
+      says(advice_for("stiffening", "contact", {.gauge_made = true}), "the gauge check was not conclusive"));
   EXPECT_TRUE(says(advice_for("slow_creep", "ageing", {}), "vented for an hour"));
   EXPECT_TRUE(says(advice_for("stress_softening", "ageing", {}), "a different temperature"));
   EXPECT_FALSE(says(advice_for("stress_softening", "ageing", {.temperature_varies = true}),
