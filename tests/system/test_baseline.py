@@ -161,8 +161,8 @@ class Baseline(bench.BenchTest):
                                    self.folder, columns=200)
         self.addCleanup(screen.close)
         bench.wait_for("the question", lambda: "Continue? [y/N]" in screen.text())
-        self.assertRegex(screen.text(), r"channel 'left' of bench will move, .* up to [\d.]+ kPa, about 17 minutes; "
-                                        "keep its way free")
+        self.assertRegex(screen.text(), r"channel 'left' of bench will move: .* at most [\d.]+ kPa, about 17 minutes; "
+                                        "keep the finger's range free")
         screen.type("n\n")
         self.assertEqual(screen.wait(), 1)
         self.assertIn("not allowed to move the rig", screen.text())

@@ -160,7 +160,7 @@ class BoardHabits(bench.BenchTest):
         self.assert_says(self.examined(plain, plain, "--unit", "3"), "(exception 11); unit id 3 responds", "unit: 3")
         self.assert_says(self.examined(plain, plain, fault="few_registers, most: 8"), "(exception 3); 8 registers",
                          "max_registers: 8")
-        self.assert_says(self.examined(plain, plain, fault="exception_reply, code: 1"), "(exception 1)", "with its manual")
+        self.assert_says(self.examined(plain, plain, fault="exception_reply, code: 1"), "(exception 1)", "with the manual")
         self.assert_says(self.examined(plain, plain, fault="exception_reply, code: 4"), "(exception 4)", "internal failure")
 
     def test_the_doctor_says_what_a_gateway_does(self):

@@ -142,9 +142,9 @@ class Commissioning {
     for (const sysid::Waveform& waveform : waveforms)
       length_s += 2 * (options_.rest_s + waveform.duration_s() + pause_s);
     return "channel '" + rig_.channel_name() + "' of " + rig_.rig.name +
-           " will move, gently once and then through " + std::to_string(waveforms.size()) +
-           " experiments, twice: up to " + significant(runs_.limits.pressure_max_kpa, 3) + " kPa, about " +
-           significant(length_s / 60, 2) + " minutes; keep its way free";
+           " will move: one gentle motion, then " + std::to_string(waveforms.size()) +
+           " experiments twice, at most " + significant(runs_.limits.pressure_max_kpa, 3) + " kPa, about " +
+           significant(length_s / 60, 2) + " minutes; keep the finger's range free";
   }
 
   static std::string no_motion(double found, double expected) {

@@ -265,7 +265,7 @@ ExitCode run(const BaselineOptions& options, const std::vector<std::string>& cal
 void add_rig_options(CLI::App& command, BaselineOptions& options) {
   CLI::Option* const data = command.get_option("--data");
   CLI::Option* const rig = command.add_option(
-      "--rig", options.rig, "Rig file: play the commissioning experiment on this rig twice");
+      "--rig", options.rig, "Rig file of the rig on which the commissioning experiment is run twice");
   rig->excludes(data)->excludes(command.get_option("--check"));
   command
       .add_option("--rig-channel", options.rig_channel, "With --rig: the channel to move [that of --channel]")
@@ -277,8 +277,9 @@ void add_rig_options(CLI::App& command, BaselineOptions& options) {
       ->check(CLI::IsMember(menu))
       ->capture_default_str();
   command
-      .add_option("--rest-s", options.rest_s,
-                  "With --rig: rest at zero pressure before each experiment, in which creep decays")
+      .add_option(
+          "--rest-s", options.rest_s,
+          "With --rig: duration of the rest at zero pressure before each experiment, so that creep decays")
       ->needs(rig)
       ->check(CLI::Range(0.0, 3600.0))
       ->capture_default_str();
@@ -294,14 +295,15 @@ void add_baseline(CLI::App& program, ExitCode& outcome) {
   command->add_option("--data", options->data, "Logs of the healthy finger, in order");
   command->add_option(
       "--check", options->check,
-      "Logs of a second run of the healthy finger: a change ends with exit code 6. Alone: the "
-      "folder of an existing baseline to check");
+      "Logs of a second run of the healthy finger; the exit code is 6 if the finger has changed between the "
+      "runs. Without --data and --rig: folder of an existing baseline to check");
   add_rig_options(*command, *options);
   command->add_option("--gauge", options->gauge,
-                      "Readings of the sensor at positions that a gauge measured: kept with the logs");
+                      "Readings of the sensor at positions that a gauge measured; stored with the logs");
   command->add_option("--model", options->model, "Model file of the finger [identified from the logs]");
   command->add_option("--out", options->out, "Folder for the logs, model.yaml and baseline.json");
-  command->add_option("--seed", options->seed, "Seed of starts and resampling")->capture_default_str();
+  command->add_option("--seed", options->seed, "Random seed of start points and resampling")
+      ->capture_default_str();
   command->add_option("--threads", options->threads, "Number of threads; 0: one per core")
       ->capture_default_str();
   add_log_options(*command, options->logs);

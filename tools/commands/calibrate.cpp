@@ -87,8 +87,9 @@ std::optional<ExitCode> set_pressures(const CalibrateOptions& options, const con
   const bool inside =
       settings.low_kpa >= limits.pressure_min_kpa && settings.high_kpa <= limits.pressure_max_kpa;
   if (inside && settings.low_kpa < settings.high_kpa) return std::nullopt;
-  return fail(ExitCode::input_refused,
-              "--at-kpa LOW HIGH must rise and stay within the limits of the rig file");
+  return fail(
+      ExitCode::input_refused,
+      "--at-kpa LOW HIGH: LOW must be below HIGH, and both must be within the limits of the rig file");
 }
 
 /// Each answer applies to one visit. Two answers apply to all visits.
@@ -280,13 +281,15 @@ void add_measuring_options(CLI::App& command, CalibrateOptions& options) {
   command.add_option("--settle-s", options.settle_s, "Wait after every motion")
       ->check(CLI::Range(0.0, 600.0))
       ->capture_default_str();
-  command.add_option("--average-s", options.average_s, "Duration of each average")
+  command.add_option("--average-s", options.average_s, "Duration over which each reading is averaged")
       ->check(CLI::Range(0.1, 600.0))
       ->capture_default_str();
-  command.add_option("--ramp-s", options.ramp_s, "Duration of the dead zone's ramp")
+  command.add_option("--ramp-s", options.ramp_s, "Duration of the pressure ramp that finds the dead zone")
       ->check(CLI::Range(1.0, 600.0))
       ->capture_default_str();
-  command.add_option("--repeats", options.repeats, "Visits to each point; at least 2 give the repeat spread")
+  command
+      .add_option("--repeats", options.repeats,
+                  "Number of visits to each point; with 2 or more, the repeat spread is computed")
       ->check(CLI::Range(1, 20))
       ->capture_default_str();
 }
@@ -311,26 +314,27 @@ void add_calibrate(CLI::App& program, ExitCode& outcome) {
                     "Use a manometer although there is a pressure monitor");
   command
       ->add_option("--gauge-mm", options->gauge_mm,
-                   "Readings of the gauge instead of questions: two, or two per visit")
+                   "Readings of the gauge, so that no questions are asked: two, or two per visit")
       ->expected(2, 40);
   command
       ->add_option("--manometer-kpa", options->manometer_kpa,
-                   "Readings of the manometer instead of questions: two, or two per visit")
+                   "Readings of the manometer, so that no questions are asked: two, or two per visit")
       ->expected(2, 40);
   add_measuring_options(*command, *options);
   command->add_option("--date", options->date, "Date of the calibration [today]");
-  command->add_option("--socket", options->socket, "Socket of a daemon that must not run [the rig file's]");
-  command->add_option("--out", options->out, "File for the lines; - is the standard output")
+  command->add_option("--socket", options->socket,
+                      "Socket on which no daemon may run [that of the rig file]");
+  command
+      ->add_option("--out", options->out,
+                   "File for the calibrated lines of the rig file; - is the standard output")
       ->capture_default_str();
   command->add_flag("--write", options->write,
                     "Write the points into the rig file and keep the old file next to it");
   command->add_flag("--yes", options->yes, "Write doubtful results without a question");
   command->footer(
       "Questions go to the standard error. Answers are read line by line from the standard input.\nExit "
-      "codes: 0 "
-      "done, 2 usage, 3 input refused, 4 the board or a file, 5 the daemon runs,\n6 what was measured "
-      "makes no "
-      "calibration, or a sensor that the motion needs gave no valid readings.");
+      "codes: 0 done, 2 usage, 3 input refused, 4 the board or a file failed, 5 the daemon runs,\n6 the "
+      "measurements give no calibration, or a sensor that the motion requires gave no valid readings.");
   command->callback([options, &outcome] { outcome = run(*options); });
 }
 

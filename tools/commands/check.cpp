@@ -89,7 +89,8 @@ void add_check(CLI::App& program, ExitCode& outcome) {
   CLI::App* command = program.add_subcommand("check", "Validate rig, board, model and sequence files");
   command
       ->add_option("FILE", options->files,
-                   "Files of these kinds, or folders of them; sequences are checked with the rigs among them")
+                   "Files of these kinds, or folders that contain them; sequences are also checked with the "
+                   "given rig files")
       ->required();
   add_set_option(*command, options->settings);
   command->add_flag("--json", options->json, "Print the findings as JSON");

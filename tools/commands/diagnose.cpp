@@ -257,13 +257,14 @@ void add_diagnose(CLI::App& program, ExitCode& outcome) {
                    "Logs of one measurement campaign, in order (CSV, or a recording's folder)")
       ->required();
   command->add_option("--healthy", options->healthy,
-                      "Logs of the healthy finger: diagnose the change since then");
+                      "Logs of the healthy finger; the change since these logs is diagnosed");
   command
       ->add_option("--baseline", options->baseline,
-                   "Folder of `softgrip baseline`: its logs are the healthy ones")
+                   "Folder that `softgrip baseline` wrote; its logs are used as the healthy logs")
       ->excludes("--healthy");
-  command->add_flag("--explain", options->explain,
-                    "Print the comparison behind each name: causes, errors by run, reasons of rejection");
+  command->add_flag(
+      "--explain", options->explain,
+      "Print the comparisons behind the verdict: tested causes, errors of each run, reasons for rejection");
   command
       ->add_option(
           "--out", options->out,
@@ -278,7 +279,7 @@ void add_diagnose(CLI::App& program, ExitCode& outcome) {
                    "Number of data sets that are simulated without any cause, to calibrate the search (with "
                    "19, the smallest p is 0.05)")
       ->capture_default_str();
-  command->add_option("--seed", options->diagnosis.seed, "Seed of starts and resampling")
+  command->add_option("--seed", options->diagnosis.seed, "Random seed of start points and resampling")
       ->capture_default_str();
   command->add_option("--threads", options->diagnosis.threads, "Number of threads; 0: one per core")
       ->capture_default_str();

@@ -173,7 +173,7 @@ ExitCode run(const DoctorOptions& options) {
     examine_health(*rig, findings);
   } else if (runs) {
     findings.fail("daemon", client.error().message,
-                  "without a response of the daemon, the board is not examined");
+                  "the board is not examined, because the daemon does not respond");
   } else {
     look_myself(*rig, options.move, findings);
   }
@@ -195,12 +195,10 @@ void add_doctor(CLI::App& program, ExitCode& outcome) {
   command->add_option("--socket", options->socket, "Socket of a running daemon [the rig file's]");
   command->add_flag("--json", options->json, "Print the findings as JSON");
   command->footer(
-      "Without a daemon it writes the rest pressures to the board and reads the sensors. With a running "
-      "daemon it reads the status instead.\nExit codes: 0 fit, 6 not fit, 2 no rig is named and no daemon "
-      "runs, 3 the rig file is "
-      "refused, 4 it cannot be read, 5 --move "
-      "while "
-      "the daemon runs.");
+      "If no daemon runs, this command writes the rest pressures to the board and reads the sensors. If the "
+      "daemon runs, it reads the daemon's status instead.\nExit codes: 0 fit to run, 6 not fit to run, 2 no "
+      "rig is named and no daemon runs, 3 the rig file is refused, 4 the rig file cannot be read, 5 --move "
+      "was given while the daemon runs.");
   command->callback([options, &outcome] { outcome = run(*options); });
 }
 

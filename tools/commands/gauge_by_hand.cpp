@@ -25,7 +25,7 @@ std::string what_is_done(const ExperimentRig& rig, std::size_t readings) {
   return "The sensor of channel '" + rig.channel_name() + "' of " + rig.rig.name +
          " is checked against a gauge: you hold its target at " + std::to_string(readings) + " positions, " +
          significant(sysid::minutes_for(readings), 2) +
-         " minutes. The finger is vented, and the rig moves nothing";
+         " minutes. The finger is vented, and the rig does not move it";
 }
 
 }  // namespace

@@ -113,7 +113,7 @@ void print_structure(const sysid::StructureEvidence& s, model::OutputUnit output
       significant(s.valve->delay_s, 3).c_str(), significant(s.valve->filling_time_constant_s, 3).c_str(),
       significant(s.valve->venting_time_constant_s, 3).c_str(), significant(s.valve->rmse_kpa, 3).c_str(),
       significant(s.valve->rmse_percent_of_range, 2).c_str());
-  print_scores("Both stages in a row, from the command", s.valve->from_command);
+  print_scores("Both stages in series, from the command", s.valve->from_command);
 }
 
 void print_summary(const sysid::IdentifyReport& report, const std::string& out) {
@@ -197,7 +197,7 @@ ExitCode run(IdentifyOptions options, const std::vector<std::string>& call) {
 
 void add_fit_options(CLI::App& command, sysid::IdentifyOptions& fit) {
   command.add_option("--fix", fit.fixed, "Parameters that keep their start value (bouc_wen.gamma_per_kpa)");
-  command.add_option("--free", fit.free, "Only these parameters are free");
+  command.add_option("--free", fit.free, "Fit only these parameters and fix all others");
   command.add_option("--starts", fit.starts, "Number of start points of the search")
       ->check(CLI::Range(1, 10000))
       ->capture_default_str();
@@ -206,7 +206,9 @@ void add_fit_options(CLI::App& command, sysid::IdentifyOptions& fit) {
       ->check(CLI::Range(1, 4));
   command.add_flag("--robust", fit.robust, "Robust fit: outliers count linearly (Huber)");
   command.add_flag("--profile", fit.profile, "Also compute intervals by profile likelihood");
-  command.add_option("--fit-share", fit.fit_share, "Fit this first share of every log and hold out the rest")
+  command
+      .add_option("--fit-share", fit.fit_share,
+                  "Share of every log, counted from its start, that is fitted; the rest is held out")
       ->check(number_between(0.05, 1.0))
       ->capture_default_str();
   command.add_option("--threads", fit.threads, "Number of threads; 0: one per core")->capture_default_str();
@@ -217,11 +219,12 @@ void add_structure_option(CLI::App& command, IdentifyOptions& options) {
   using sysid::HysteresisForm;
   const std::vector<std::string> names{automatic, std::string(name_of(HysteresisForm::bouc_wen)),
                                        std::string(name_of(HysteresisForm::play))};
-  CLI::Option* const structure = command
-                                     .add_option("--structure", options.structure,
-                                                 "Choose among a few structures: " + names[0] + ", " +
-                                                     names[1] + " or " + names[2] + " [that of the start]")
-                                     ->check(CLI::IsMember(names));
+  CLI::Option* const structure =
+      command
+          .add_option("--structure", options.structure,
+                      "Choose among a few structures: " + names[0] + ", " + names[1] + " or " + names[2] +
+                          " [the structure of the start model]")
+          ->check(CLI::IsMember(names));
   for (const char* other : {"--branches", "--fix", "--free", "--exponents", "--robust", "--profile"})
     structure->excludes(command.get_option(other));
 }

@@ -16,28 +16,32 @@ void add_import(CLI::App& program, ExitCode& outcome) {
                                              "too), XLSX, LabVIEW, MATLAB, HDF5, recordings");
   command->add_option("FILE", options->files, "Files, or recordings' folders")->required();
   command
-      ->add_option(
-          "--out", options->out,
-          "Log to write ('-': standard output), or a folder for several files. The column assignment "
-          "where is kept beside it (.import.yaml)")
+      ->add_option("--out", options->out,
+                   "Log to write ('-': standard output), or a folder for several files. The column "
+                   "assignment is stored next to each log (.import.yaml)")
       ->required();
   for (const sysid::RoleSpec& spec : sysid::roles) {
     const std::string word(spec.word);
     command
         ->add_option("--" + word, options->columns[static_cast<std::size_t>(spec.role)],
-                     "Column of the " + word + ": its name, or its number from 1; given twice, " +
-                         (spec.role == sysid::Role::time ? "each for its own columns" : "averaged"))
+                     "Column of the " + word +
+                         ": its name, or its number counted from 1. If the option is given twice, " +
+                         (spec.role == sysid::Role::time ? "each time applies to its own columns"
+                                                         : "the columns are averaged"))
         ->allow_extra_args(false);
   }
-  command->add_option("--unit", options->units, "ROLE=UNIT, if the file does not state it (pressure=psi)")
+  command
+      ->add_option("--unit", options->units, "ROLE=UNIT, if the file does not state the unit (pressure=psi)")
       ->allow_extra_args(false);
   command
       ->add_option("--scale", options->scales,
-                   "ROLE=X, s, kPa, mm or C per unit of the column (displacement=-2.5); deg or rad per unit "
-                   "beside --unit displacement=deg or =rad")
+                   "ROLE=X: factor that converts the column to s, kPa, mm or C (displacement=-2.5), or to "
+                   "the unit of --unit displacement=deg or =rad")
       ->allow_extra_args(false);
   command
-      ->add_option("--zero", options->zeros, "ROLE=X, subtracted first, in the column's unit; or ROLE=first")
+      ->add_option("--zero", options->zeros,
+                   "ROLE=X: value in the column's unit that is subtracted before scaling; ROLE=first: "
+                   "subtract the first value")
       ->allow_extra_args(false);
   command->add_option("--rate-hz", options->rate_hz, "Samples per second of a file without times")
       ->check(number_between(1e-3, 1e7));

@@ -136,11 +136,8 @@ void add_init(CLI::App& program, ExitCode& outcome) {
   }
   command->footer(
       "On a terminal, init asks a question for each missing option. Otherwise it uses the default, and an "
-      "option\n"
-      "without a default is required. Exit codes: 0 written, 1 stopped, 2 usage, 3 the rig file's reader "
-      "refuses "
-      "it,\n"
-      "4 the file cannot be written, 5 the file already exists.");
+      "option\nwithout a default is required. Exit codes: 0 written, 1 stopped, 2 usage, 3 the resulting rig "
+      "file is refused,\n4 the file cannot be written, 5 the file already exists.");
   command->callback([options, &outcome] { outcome = run(*options); });
 }
 

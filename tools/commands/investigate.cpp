@@ -260,14 +260,17 @@ void add_investigate(CLI::App& program, ExitCode& outcome) {
   command->add_option("--rig", options->rig, "Rig file of the rig that is moved");
   command->add_option("--rig-channel", options->rig_channel,
                       "With --rig: the channel to move [that of --channel]");
-  command->add_option("--rig-command", options->rig_command,
-                      "Command that plays on another rig: COMMAND COMMAND_CSV LOG_OUT");
   command->add_option(
-      "--gauge-command", options->gauge_command,
-      "With --rig-command: checks its sensor against a gauge: COMMAND POSITIONS_CSV GAUGE_OUT");
+      "--rig-command", options->rig_command,
+      "Program that runs an experiment on another rig; it is called as COMMAND COMMAND_CSV LOG_OUT");
+  command->add_option("--gauge-command", options->gauge_command,
+                      "With --rig-command: program that checks the sensor against a gauge; it is called as "
+                      "COMMAND POSITIONS_CSV GAUGE_OUT");
   command->add_option("--gauge", options->gauge, "An existing gauge file (CSV: gauge_mm,displacement_mm)");
   command->add_option("--out", options->out, "Folder for all results")->required();
-  command->add_option("--budget-minutes", options->budget_minutes, "Limit of the time on the rig")
+  command
+      ->add_option("--budget-minutes", options->budget_minutes,
+                   "Longest total duration of the experiments on the rig")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   command
@@ -278,9 +281,10 @@ void add_investigate(CLI::App& program, ExitCode& outcome) {
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   command->add_flag("--yes", options->yes, "Move the rig without a question");
-  command->add_flag("--no-closed-loop", options->no_closed_loop,
-                    "Do not retune and measure the closed loop with the extended model");
-  command->add_option("--seed", options->diagnosis.seed, "Seed of starts and resampling")
+  command->add_flag(
+      "--no-closed-loop", options->no_closed_loop,
+      "Do not retune the controller with the extended model, and do not measure the closed loop");
+  command->add_option("--seed", options->diagnosis.seed, "Random seed of start points and resampling")
       ->capture_default_str();
   command->add_option("--threads", options->diagnosis.threads, "Number of threads; 0: one per core")
       ->capture_default_str();

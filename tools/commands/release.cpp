@@ -6,11 +6,10 @@
 namespace softgrip::tools {
 
 void add_release(CLI::App& program, ExitCode& outcome) {
-  add_plain_request(
-      program, outcome, "release",
-      "Release: the running sequence continues with its release step; without one, fingers under "
-      "pressure are vented",
-      "releasing");
+  add_plain_request(program, outcome, "release",
+                    "Release: the running sequence continues with its release step. If no sequence runs, "
+                    "pressurised fingers are vented",
+                    "releasing");
 }
 
 }  // namespace softgrip::tools

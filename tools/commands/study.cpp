@@ -72,7 +72,7 @@ void add_published(CLI::App& study, ExitCode& outcome) {
   };
   auto options = std::make_shared<Options>();
   CLI::App* command = study.add_subcommand(
-      "published", "Consequences of the published numbers: hysteresis that absorbs latency");
+      "published", "Analyse the published parameters: a hysteresis model that absorbs an unmodelled latency");
   add_output(*command, options->output);
   command->add_option("--seed", options->study.seed, "Seed of noise and start points")->capture_default_str();
   command->add_option("--starts", options->study.starts, "Start points per identification")
@@ -90,9 +90,9 @@ void add_control(CLI::App& study, ExitCode& outcome) {
     ControlStudyOptions study;
   };
   auto options = std::make_shared<Options>();
-  CLI::App* command = study.add_subcommand(
-      "control",
-      "Track references with a simulated finger and every scheme, with mismatch, noise and margins");
+  CLI::App* command = study.add_subcommand("control",
+                                           "Compare how accurately the control schemes track references on "
+                                           "simulated fingers with model errors and noise");
   add_output(*command, options->output);
   command->add_option("--draws", options->study.draws, "Simulated fingers per figure")
       ->check(CLI::Range(1, 100000))
@@ -104,7 +104,7 @@ void add_control(CLI::App& study, ExitCode& outcome) {
       ->capture_default_str();
   command
       ->add_option("--max-sensitivity", options->study.most_sensitivity,
-                   "Largest sensitivity peak Ms of every loop")
+                   "Highest permitted sensitivity peak Ms of each loop")
       ->check(number_between(1.05, 5.0))
       ->capture_default_str();
   command->callback([options, &outcome] {

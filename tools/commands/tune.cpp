@@ -183,7 +183,7 @@ void add_tune(CLI::App& program, ExitCode& outcome) {
       ->capture_default_str();
   command
       ->add_option("--max-sensitivity", options->task.most_sensitivity,
-                   "Largest sensitivity peak Ms of the loop")
+                   "Highest permitted sensitivity peak Ms of the loop")
       ->check(number_between(1.05, 5.0))
       ->capture_default_str();
   command->add_option("--frequencies-hz", options->task.frequencies_hz, "Frequencies of the tracked sines")

@@ -293,11 +293,10 @@ ExitCode run(const WatchOptions& options) {
 
 void add_watch(CLI::App& program, ExitCode& outcome) {
   auto options = std::make_shared<WatchOptions>();
-  CLI::App* command =
-      program.add_subcommand("watch",
-                             "Show the live state of the daemon with trends, events, and keys that "
-                             "stop, vent, release, acknowledge and start; a "
-                             "line per update without a terminal");
+  CLI::App* command = program.add_subcommand(
+      "watch",
+      "Show the live state of the daemon with trends, events, and keys that stop, vent, release, acknowledge "
+      "and start. Without a terminal, it prints one line per update");
   add_daemon_options(*command, options->daemon);
   command->add_option("--rate-hz", options->rate_hz, "Updates per second")
       ->capture_default_str()

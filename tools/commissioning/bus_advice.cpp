@@ -29,7 +29,7 @@ constexpr std::array<BusAdvice, 5> bus_advices{{
      "look for another Modbus client or a gateway that mixes up responses; check `unit` in the rig file"},
     {BusStatus::exception,
      "the board responds but rejects the request: compare the function code, address and count in the board "
-     "map with its manual"},
+     "map with the manual of the board"},
 }};
 
 }  // namespace

@@ -177,12 +177,11 @@ class BusInquiry {
   bool try_other_addresses(const Heard& heard, Findings& findings) {
     for (const int by : {-1, 1}) {
       if (!can_move(by) || ask(moved(by)).status != BusStatus::ok) continue;
-      findings.fail(
-          name_,
-          fmt::format(
-              "{}; the request one register {}, from {} on, is accepted: the addresses are off by one",
-              heard.detail, by < 0 ? "lower" : "higher", asked_.address + by),
-          base_advice(by));
+      findings.fail(name_,
+                    fmt::format("{}; the board accepts the request if it begins one register {}, at {}: the "
+                                "addresses are off by one",
+                                heard.detail, by < 0 ? "lower" : "higher", asked_.address + by),
+                    base_advice(by));
       return true;
     }
     return false;
@@ -241,10 +240,10 @@ class BusInquiry {
       other = *tcp;
       other.numbered = false;
       if (tcp->numbered && !tcp->rtu_framing && try_address(other)) {
-        return findings.fail(
-            name_, heard.detail + "; its responses are correct except for the transaction id",
-            "the gateway does not return it. `accept_no_transaction_id` in the rig file accepts "
-            "the risk");
+        return findings.fail(name_,
+                             heard.detail + "; its responses are correct except for the transaction id",
+                             "the gateway does not return the transaction id. `accept_no_transaction_id` in "
+                             "the rig file accepts the risk");
       }
     }
     if (try_other_units(heard, findings)) return;
@@ -305,8 +304,8 @@ class BusInquiry {
     const std::string name(drivers::name_of(fit.order));
     if (fit.by != 0) {
       return findings.fail(name_,
-                           fmt::format("the inputs are implausible with the board map; one register {} they "
-                                       "are probably {}: the addresses are off by one",
+                           fmt::format("the inputs are implausible with the board map; if read one register "
+                                       "{}, they are probably {}: the addresses are off by one",
                                        fit.by < 0 ? "lower" : "higher", fit.shown),
                            base_advice(fit.by));
     }

@@ -128,7 +128,7 @@ void tell_crossings(const rig::RigFile& rig, std::span<const Crossing> crossings
       const bool last = k + 1 == crossing.channels.size();
       names += (k > 0 ? ", " : "") + name;
       shown +=
-          fmt::format("{}when `{}` was moved, {} of `{}` showed it", k > 0 ? "; " : "", name,
+          fmt::format("{}when `{}` was moved, {} of `{}` responded", k > 0 ? "; " : "", name,
                       valves ? "sensor and monitor" : fmt::format("the {}", key), rig.wiring[other].name);
       terminals += fmt::format("{}{} (`{}`)",
                                k == 0 ? ""

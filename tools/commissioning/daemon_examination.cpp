@@ -84,7 +84,7 @@ void judge_real_time(const Json& status, Findings& findings) {
     const std::string detail = text_in(step, "detail");
     const bool slow_kernel = name == "kernel" && detail.find("no PREEMPT_RT") != std::string::npos;
     if (text_in(step, "outcome") == "failed") {
-      findings.warn(name, detail, "grant it, or accept that " + text_in(step, "cost"));
+      findings.warn(name, detail, "grant this setting, or accept that " + text_in(step, "cost"));
     } else if (slow_kernel) {
       findings.warn(name, detail, "install linux-image-rt-amd64 (Debian) and boot it");
     } else {

@@ -122,16 +122,16 @@ tl::expected<Line, std::string> fit_line(const std::vector<Visit>& visits, const
                     demands.least_span));
   }
   if (electrical_span < demands.least_electrical_span) {
-    return tl::unexpected(fmt::format(
-        "the signal does not follow: {:.4g} {} between points that are {:.4g} {} apart, at least {:.4g} are "
-        "needed",
-        electrical_span, electrical, span, unit, demands.least_electrical_span));
+    return tl::unexpected(
+        fmt::format("the signal does not follow: it changes by {:.4g} {} between points that are {:.4g} {} "
+                    "apart, and a change of at least {:.4g} is needed",
+                    electrical_span, electrical, span, unit, demands.least_electrical_span));
   }
   const double noise = largest(visits, &Visit::noise);
   if (noise > demands.most_noise_share * electrical_span) {
     return tl::unexpected(
-        fmt::format("too much noise: {:.4g} {} on a difference of {:.4g} {}: more than {:g} %", noise,
-                    electrical, electrical_span, electrical, 100 * demands.most_noise_share));
+        fmt::format("too much noise: {:.4g} {} on a difference of {:.4g} {}, which is more than {:g} %",
+                    noise, electrical, electrical_span, electrical, 100 * demands.most_noise_share));
   }
   Line line;
   const Means all = means_of(visits, std::nullopt);
@@ -143,9 +143,9 @@ tl::expected<Line, std::string> fit_line(const std::vector<Visit>& visits, const
     line.repeat_spread =
         std::max(spread_at(visits, line.residuals, false), spread_at(visits, line.residuals, true));
     if (*line.repeat_spread > span / 10) {
-      return tl::unexpected(
-          fmt::format("not repeatable: visits to one position differ by {:.4g} {} of {:.4g}",
-                      *line.repeat_spread, unit, span));
+      return tl::unexpected(fmt::format(
+          "not repeatable: visits to one position differ by {:.4g} {}, and the two positions by {:.4g}",
+          *line.repeat_spread, unit, span));
     }
   }
   line.noise = noise * std::abs(line.slope);

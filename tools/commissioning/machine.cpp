@@ -54,10 +54,12 @@ void take(const RealTimeStep& step, bool required, Findings& findings) {
   }
   const std::string who = " (as user " + user() + ")";
   if (required) {
-    findings.fail(step.name, step.detail + who,
-                  "softgripd will not start: real_time: required. Without it " + step.cost);
+    findings.fail(
+        step.name, step.detail + who,
+        "softgripd will not start, because the rig file sets real_time: required. Without this setting, " +
+            step.cost);
   } else {
-    findings.warn(step.name, step.detail + who, "grant it, or accept that " + step.cost);
+    findings.warn(step.name, step.detail + who, "grant this setting, or accept that " + step.cost);
   }
 }
 

@@ -89,7 +89,8 @@ void judge_model(const control::ChannelSettings& channel, const Motion& motion, 
   const std::string name = "model " + channel.name;
   if (motion.residual_rms_mm > health.unfit_mm) {
     findings.fail(name, text,
-                  "another finger, wear, a leak or a moved sensor: inspect, calibrate, then identify again");
+                  "the cause may be another finger, wear, a leak or a moved sensor: inspect, calibrate, then "
+                  "identify again");
   } else if (motion.residual_rms_mm > healthy_mm) {
     findings.warn(name, text, "grip detection loses margin: record tp1 and identify again soon");
   } else {
@@ -159,8 +160,8 @@ void judge_finger(const control::ChannelSettings& of, const Sample& rest, const 
                   const Motion& motion, bool pressure_seen, Findings& findings) {
   const double moved_mm = seen.mean - rest.mean;
   const std::string name = "finger " + of.name;
-  const std::string text = fmt::format("moved {:.2f} mm at {:.1f} kPa, the model {:.2f} mm", moved_mm,
-                                       motion.command_kpa, motion.model_mm);
+  const std::string text = fmt::format("moved {:.2f} mm at {:.1f} kPa, the model predicts {:.2f} mm",
+                                       moved_mm, motion.command_kpa, motion.model_mm);
   const auto broken = [&](const std::string& what, const std::string& advice) {
     findings.fail(name, what, advice);
     findings.not_judged("model " + of.name, "see `" + name + "`");

@@ -211,13 +211,12 @@ MotionFailure MotionSession::blind() const {
   const model::Validity validity = readings_[required_->channel].validity;
   const bool of_displacement = required_->displacement && validity != model::Validity::valid;
   return {FailureKind::blind,
-          fmt::format(
-              "the {} of `{}`: {} consecutive readings are not valid{}. No finger leaves rest without them: "
-              "check its cable{}",
-              of_displacement ? "displacement sensor" : "pressure monitor",
-              rig_.settings.channels[required_->channel].name, blind_cycles_,
-              of_displacement ? fmt::format(" ({})", daemon::name_of(validity)) : "",
-              of_displacement ? ", its supply and its target" : " and its supply")};
+          fmt::format("the {} of `{}`: {} consecutive readings are not valid{}. No finger is moved without "
+                      "valid readings: check the cable of the sensor{}",
+                      of_displacement ? "displacement sensor" : "pressure monitor",
+                      rig_.settings.channels[required_->channel].name, blind_cycles_,
+                      of_displacement ? fmt::format(" ({})", daemon::name_of(validity)) : "",
+                      of_displacement ? ", its supply and its target" : " and its supply")};
 }
 
 MotionSession::Expected<std::vector<ChannelSample>> MotionSession::sample(double duration_s,

@@ -272,10 +272,10 @@ Expected<std::vector<GaugeVisit>> read_positions(MotionSession& session, Operato
                                                  const std::vector<double>& positions_mm) {
   std::vector<GaugeVisit> visits;
   for (std::size_t i = 0; i < positions_mm.size(); ++i) {
-    const auto where = ask_position(
-        session, person,
-        fmt::format("{} of {}: target at {:g} mm, then Enter", i + 1, positions_mm.size(), positions_mm[i]),
-        positions_mm[i]);
+    const auto where = ask_position(session, person,
+                                    fmt::format("{} of {}: put the target at {:g} mm, then press Enter",
+                                                i + 1, positions_mm.size(), positions_mm[i]),
+                                    positions_mm[i]);
     if (!where) return tl::unexpected(where.error());
     if (!*where) continue;
     const auto halves = average(session, settings);
@@ -292,7 +292,7 @@ Expected<std::vector<GaugeVisit>> read_positions(MotionSession& session, Operato
         (first.mean * static_cast<double>(first.count) + second.mean * static_cast<double>(second.count)) /
         count;
     visits.push_back({**where, mean, first.count + second.count});
-    person.tell(fmt::format("{:.5g} mm read at {:.5g} mm", mean, **where));
+    person.tell(fmt::format("the sensor reads {:.5g} mm at {:.5g} mm", mean, **where));
   }
   return visits;
 }

@@ -145,10 +145,8 @@ std::string board_text(const RigDraft& draft, double rate_hz, const std::filesys
   const double deadline_s = std::clamp(2 / rate_hz, 0.02, 0.5);
   text += fmt::format(
       "    exchange_deadline_s: {:<9} # after this time an exchange has failed and the session is opened "
-      "again\n"
-      "    connect_deadline_s: 2\n    first_pause_s: 0.1             # between attempts to connect; doubles "
-      "...\n"
-      "    longest_pause_s: 2             # ... up to this\n",
+      "again\n    connect_deadline_s: 2\n    first_pause_s: 0.1             # pause between attempts to "
+      "connect; it doubles\n    longest_pause_s: 2             # longest pause between attempts to connect\n",
       two(deadline_s));
   return text;
 }

@@ -127,7 +127,7 @@ void failed(const MotionFailure& failure, const rig::RigFile& rig, const std::st
             Findings& findings) {
   switch (failure.kind) {
     case MotionFailure::Kind::stopped:
-      return findings.fail(name, failure.text, "run it again to the end");
+      return findings.fail(name, failure.text, "repeat the command and let it run to its end");
     case MotionFailure::Kind::bus:
       return findings.fail(name, failure.text, advice_for_silence(rig, failure.status));
     case MotionFailure::Kind::blind:
@@ -147,7 +147,7 @@ void judge_clients(const drivers::Board& board, Findings& findings) {
         fmt::format("the board counts {} clients, one of them is this command. The others feed its "
                     "watchdog: the board does not vent while they send requests",
                     clients),
-        "find the other program and disconnect it; a connection that was cut may count for a while");
+        "find the other program and disconnect it; the board may count a broken connection for some time");
   } else if (clients > 0) {
     findings.ok("clients", fmt::format("the board counts {}, this command included", clients));
   }
@@ -234,7 +234,7 @@ void examine_description(const rig::RigFile& rig, const drivers::Board& board, F
     findings.fail("bus budget", text,
                   fmt::format("lower rate_hz to {:.0f} or less", 0.9 / budget.exchange_s));
   } else if (budget.exchange_s > 0.8 * period_s) {
-    findings.warn("bus budget", text, "little is left for a slow reply: lower rate_hz");
+    findings.warn("bus budget", text, "little time is left for a slow reply: lower rate_hz");
   } else {
     findings.ok("bus budget", text);
   }
@@ -268,7 +268,7 @@ void examine_rig(const rig::RigFile& rig, drivers::Board& board, const Clock& cl
     findings.ok("board", board.describe() + " responds");
     return findings.warn(
         "sensors", "not read: an exchange would also write the rest pressures, and a part may still be held",
-        "take the part out, then run it with --move");
+        "take the part out, then repeat the command with --move");
   }
   const auto rest = session.sample(settings.look_s);
   if (!rest) {

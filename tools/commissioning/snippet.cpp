@@ -53,8 +53,8 @@ std::string findings(const std::string& what, const Line& line, const std::strin
   const std::string residuals =
       with_commas(line.residuals, [](double residual) { return rounded(residual, 4); });
   return fmt::format(
-      "# {}: error {} {} between the points without that of the reference, noise of a reading {} {},\n"
-      "#   residuals [{}] {}, repeat spread {}\n",
+      "# {}: error between the points {} {} (without the error of the reference), noise of a reading {} "
+      "{},\n#   residuals [{}] {}, repeat spread {}\n",
       what, rounded(line.error, 4), unit, rounded(line.noise, 4), unit, residuals, unit,
       line.repeat_spread ? rounded(*line.repeat_spread, 4) + " " + unit
                          : "not known (one visit to each point)");
@@ -77,11 +77,12 @@ std::string dead_zone_lines(const DeadZoneResult& result, double rest_kpa) {
   const std::string by =
       result.by_pressure ? "the pressure monitor" : "the finger (less reliable because of its hysteresis)";
   if (!zone.significant) {
-    return fmt::format("# dead zone: none detected up to {} kPa, by {}\n", rounded(result.highest_kpa, 3),
-                       by);
+    return fmt::format("# dead zone: none detected up to {} kPa, measured by {}\n",
+                       rounded(result.highest_kpa, 3), by);
   }
-  return fmt::format("# dead zone: no response from rest to a command of {} kPa ({} from rest), by {}\n",
-                     rounded(zone.end, 2), rounded(std::abs(zone.end - rest_kpa), 2), by);
+  return fmt::format(
+      "# dead zone: commands between rest and {} kPa (width {} kPa) have no effect, measured by {}\n",
+      rounded(zone.end, 2), rounded(std::abs(zone.end - rest_kpa), 2), by);
 }
 
 }  // namespace
@@ -131,10 +132,11 @@ std::string snippet(const rig::RigFile& rig, const Results& results) {
   }
   if (results.dead_zone) text += dead_zone_lines(*results.dead_zone, control::resting_kpa(settings.limits));
   const double share = share_of_valve(rig, channel);
-  text += fmt::format("# the limits use {:.0f} % of the valve's range{}\n", 100 * share,
-                      share < least_share_of_valve
-                          ? ": less than a fifth, resolution and linearity suffer; take a smaller valve"
-                          : "");
+  text += fmt::format(
+      "# the limits use {:.0f} % of the valve's range{}\n", 100 * share,
+      share < least_share_of_valve
+          ? ": with less than a fifth, resolution and linearity suffer; use a valve with a smaller range"
+          : "");
   return text;
 }
 

@@ -77,7 +77,7 @@ tl::expected<std::vector<std::string>, std::string> import_targets(const std::ve
   for (const std::string& file : files) {
     targets.push_back(folder ? (fs::path(out) / log_name(file)).string() : out);
     if (!seen.insert(targets.back()).second)
-      return tl::unexpected("two files would have the output " + targets.back());
+      return tl::unexpected("two files would be written to the same output " + targets.back());
   }
   return targets;
 }

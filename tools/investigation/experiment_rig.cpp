@@ -124,7 +124,7 @@ tl::expected<ExperimentRig, std::string> experiment_rig(rig::RigFile rig, const 
   if (control::resting_kpa(limits) != 0) {
     return tl::unexpected("channel '" + result.channel_name() + "' never " +
                           (limits.pressure_min_kpa > 0 ? "goes down to" : "rests at") +
-                          " 0 kPa, where experiments begin and end");
+                          " 0 kPa, but experiments begin and end at this pressure");
   }
   result.simulated = std::holds_alternative<simulation::SimulatedBoardSettings>(result.rig.board);
   return result;

@@ -106,7 +106,7 @@ class Investigator {
     unbounded.most_minutes = 1e9;
     if (sysid::design_experiment(result_.last, unbounded).best) {
       return end(InvestigationEnd::budget_spent,
-                 "the experiments that separate them exceed the remaining time");
+                 "the experiments that separate the remaining causes take longer than the remaining time");
     }
     std::string why = "no remaining experiment of the menu separates the alternatives";
     for (const std::string& sentence : none.advice) why += "; " + sentence;
@@ -155,7 +155,7 @@ class Investigator {
   bool check_sensor(const sysid::ProposedGaugeCheck& check, const std::string& folder) {
     if (check.minutes > result_.budget_minutes - result_.spent_minutes) {
       return end(InvestigationEnd::budget_spent,
-                 "the sensor must be checked against a gauge, which exceeds the remaining time");
+                 "the sensor must be checked against a gauge, which takes longer than the remaining time");
     }
     tell("checking the sensor against a gauge: " + std::to_string(check.positions_mm.size()) + " readings, " +
          significant(check.minutes, 2) + " minutes");

@@ -114,18 +114,18 @@ class Verifier {
     result_.reported_by = text_in(json_, "software");
     const Json& call = member(json_, "call");
     for (const Json& word : call) {
-      if (!word.is_string()) return missing(path + ": its key call is not a list of texts");
+      if (!word.is_string()) return missing(path + ": the value of its key `call` is not a list of texts");
       call_.push_back(word.get<std::string>());
     }
     if (call_.empty())
       return missing(path +
-                     " does not contain its call (key call): an older version or an investigation "
-                     "wrote it");
+                     " does not contain the command that wrote it (key `call`): it was written by an older "
+                     "version or by an investigation");
     const bool writes_elsewhere = std::any_of(call_.begin(), call_.end(), [](const std::string& word) {
       return word.starts_with("--out") || word.starts_with("--figures");
     });
     if (call_.front() != kind_->command || writes_elsewhere)
-      return missing(path + ": its key call is not a call of softgrip " + kind_->command);
+      return missing(path + ": its key `call` does not contain a call of softgrip " + kind_->command);
     return true;
   }
 
@@ -169,7 +169,8 @@ class Verifier {
         path = candidate.string();
         return;
       }
-      if (other.empty()) other = candidate.string() + " has another content (" + hash + ")";
+      if (other.empty())
+        other = candidate.string() + " differs from the file that the report used (" + hash + ")";
     }
     missing(std::string(is_model              ? "model "
                         : option == "--gauge" ? "gauge file "

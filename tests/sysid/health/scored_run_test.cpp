@@ -119,7 +119,7 @@ TEST_F(FoundRuns, WhatIsNotFinishedAndWhatIsOfNoSequenceIsLeftOut) {
   EXPECT_EQ(found.runs[0].recipe, "pick 01234567");
   ASSERT_EQ(found.skipped.size(), 2U);
   EXPECT_EQ(found.skipped[0].why, "it is not finished");
-  EXPECT_NE(found.skipped[1].why.find("no sequence"), std::string::npos);
+  EXPECT_NE(found.skipped[1].why.find("not belong to a sequence"), std::string::npos);
 }
 
 TEST_F(FoundRuns, OneThatIsNotThereIsLeftOutWithTheReason) {

@@ -354,7 +354,7 @@ TEST_F(CalibrateTest, ReadsThePositionsOfAGaugeByHandAndNothingMoves) {
     EXPECT_NEAR(visit.reading_mm, board_->plant(0).displacement_mm(), 0.02);
     EXPECT_GT(visit.count, 100U);
   }
-  EXPECT_NE(person.asked[1].find("2 of 4: target at 10 mm"), std::string::npos) << person.asked[1];
+  EXPECT_NE(person.asked[1].find("2 of 4: put the target at 10 mm"), std::string::npos) << person.asked[1];
   EXPECT_EQ(board_->plant(0).pressure_kpa(), 0);
 }
 

@@ -76,9 +76,9 @@ TEST_F(CrossingTest, TwoSensorsAreNamedByTheirInputs) {
   const Finding finding = told(crossings);
   EXPECT_EQ(finding.name, "sensors left, right");
   EXPECT_EQ(finding.text,
-            "crossed: when `left` was moved, the sensor of `right` showed it; when `right` was moved, the "
+            "crossed: when `left` was moved, the sensor of `right` responded; when `right` was moved, the "
             "sensor of "
-            "`left` showed it");
+            "`left` responded");
   EXPECT_NE(finding.advice.find("swap input 0 (`left`) and input 1 (`right`)"), std::string::npos);
   EXPECT_NE(finding.advice.find("under `sensor` in the rig file"), std::string::npos);
 }

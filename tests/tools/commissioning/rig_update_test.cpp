@@ -149,8 +149,8 @@ TEST_F(RigUpdateTest, ALineFarFromTheOldOneIsDoubted) {
   const auto odd = doubts(rig_, results);
   ASSERT_EQ(odd.size(), 3U);
   EXPECT_EQ(odd[0],
-            "valve: at 60 kPa of the rig file's line, the new line gives 45 kPa, a difference of 25 % of the "
-            "range");
+            "valve: where the line of the rig file gives 60 kPa, the new line gives 45 kPa, a difference of "
+            "25 % of the range");
   EXPECT_EQ(odd[1].rfind("pressure monitor: ", 0), 0U);
   EXPECT_EQ(odd[2].rfind("sensor: ", 0), 0U);
 }
@@ -162,7 +162,9 @@ TEST_F(RigUpdateTest, AGaugeThatDoesNotGoWithTheModelIsDoubted) {
     return doubts(rig_, results);
   };
   ASSERT_FALSE(doubted(3).empty());
-  EXPECT_NE(doubted(3)[0].find("the gauge moved by 3 mm, the model by "), std::string::npos) << doubted(3)[0];
+  EXPECT_NE(doubted(3)[0].find("the gauge reading changes by 3 mm, but the model predicts "),
+            std::string::npos)
+      << doubted(3)[0];
   const std::string sentence = doubted(3)[0];
   const double model_mm = std::stod(sentence.substr(sentence.find("goes ") + 5));
   EXPECT_GT(model_mm, 8);

@@ -69,7 +69,8 @@ TEST_F(Verification, AMissingOrAnotherLogIsRefusedWithItsHash) {
   EXPECT_NE(verified(3)["missing"][0].get<std::string>().find("log fit.csv, sha256 " + sha + ": not found"),
             std::string::npos);
   write("fit.csv", read("elsewhere/fit.csv") + "\n");
-  EXPECT_NE(verified(3)["missing"][0].get<std::string>().find("has another content"), std::string::npos);
+  EXPECT_NE(verified(3)["missing"][0].get<std::string>().find("differs from the file that the report used"),
+            std::string::npos);
   std::filesystem::rename(folder_ / "elsewhere/fit.csv", folder_ / "report/fit.csv");
   EXPECT_EQ(verified(0)["same"], true)
       << "the log is found next to the report, regardless of the file at its old path";
@@ -77,7 +78,7 @@ TEST_F(Verification, AMissingOrAnotherLogIsRefusedWithItsHash) {
 
 TEST_F(Verification, AFolderThatDoesNotSayHowItWasMadeIsRefused) {
   replace("report/identify.json", "\"call\"", "\"called\"");
-  EXPECT_NE(verified(3)["missing"][0].get<std::string>().find("does not contain its call"),
+  EXPECT_NE(verified(3)["missing"][0].get<std::string>().find("does not contain the command that wrote it"),
             std::string::npos);
   EXPECT_EQ(run("report --verify nowhere"), 3);
   EXPECT_EQ(run("report"), 2);
@@ -85,7 +86,7 @@ TEST_F(Verification, AFolderThatDoesNotSayHowItWasMadeIsRefused) {
 
 TEST_F(Verification, ACallThatWouldWriteElsewhereIsNotMade) {
   replace("report/identify.json", "\"--starts\"", "\"--out=/tmp\"");
-  EXPECT_NE(verified(3)["missing"][0].get<std::string>().find("key call"), std::string::npos);
+  EXPECT_NE(verified(3)["missing"][0].get<std::string>().find("key `call`"), std::string::npos);
 }
 
 /// A report of another program or of an attacker: every malformed report gives an error message and exit

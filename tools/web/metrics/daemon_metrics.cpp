@@ -36,7 +36,8 @@ void tell_state(const Json& status, MetricText& metrics) {
   const std::string state = status.value("state", "");
   for (const char* name : {"starting", "idle", "resynchronising", "running", "stopping", "faulted"})
     metrics.sample({{"state", name}}, state == name ? 1 : 0);
-  metrics.family("softgrip_fault", gauge, "1 for the latched fault; no sample without a fault.");
+  metrics.family("softgrip_fault", gauge,
+                 "1 for the latched fault; if no fault is latched, there is no sample.");
   if (const Json& fault = member(status, "fault"); fault.is_object()) {
     const std::string channel = fault.contains("channel") && fault["channel"].is_string()
                                     ? fault["channel"].get<std::string>()
