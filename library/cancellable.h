@@ -10,8 +10,8 @@
 
 namespace softgrip::library {
 
-/// Returns work(), which may use `threads` threads (0: one per processor). Throws Cancelled if `stop` ended
-/// it.
+/// Returns the result of work(), which may use `threads` threads (0: one per processor). Throws Cancelled if
+/// `stop` ended work().
 template <class Work>
 auto cancellable(unsigned threads, const std::stop_token& stop, Work&& work) {
   const ThreadBudget budget(threads, stop);

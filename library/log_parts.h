@@ -12,13 +12,13 @@
 
 namespace softgrip::library {
 
-/// The unit that logs must have, and its origin.
+/// The unit that logs must have.
 struct NeededUnit {
-  std::string of;  ///< "the model NAME"
+  std::string of;  ///< what has this unit, for messages: "the model NAME"
   Unit unit = Unit::mm;
 };
 
-/// Returns the unit of a model.
+/// Returns the unit of a model as the unit that logs must have.
 [[nodiscard]] NeededUnit needed_for(const Model& model);
 
 /// Checks logs as the commands do, and converts them. Throws InvalidArgument.

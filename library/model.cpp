@@ -19,7 +19,7 @@
 namespace softgrip {
 namespace {
 
-/// Largest difference of a step from the first step, as a share of the first.
+/// Largest difference between a step and the mean step, as a share of the mean step.
 constexpr double most_jitter = 1e-6;
 /// Permitted steps of an inverse [s].
 constexpr double shortest_step_s = 1e-4;

@@ -26,7 +26,7 @@ namespace library {
 /// Throws FileError with all problems.
 [[noreturn]] void refuse(const document::Problems& problems);
 
-/// Returns a unit as messages write it: "[kPa]", "[mm]".
+/// Returns the unit as text for messages: "mm" or "deg".
 [[nodiscard]] std::string in_brackets(model::OutputUnit unit);
 
 // Each of the following functions throws InvalidArgument.

@@ -23,19 +23,21 @@ enum class Validity : std::uint8_t {
   none_yet,      ///< no response so far
   out_of_range,  ///< outside the electrical range of the sensor
   sensor_error,  ///< an error code of the sensor or of the board
-  jumped,        ///< faster than the finger can move
-  frozen,        ///< constant while the command moved
+  jumped,        ///< changed faster than the finger can move
+  frozen,        ///< constant while the command changed
   stale,         ///< older than permitted
 };
 
 /// Reading of one channel.
 struct Reading {
-  double displacement = 0;                                          ///< displacement in the unit of the model
-  double pressure_kpa = std::numeric_limits<double>::quiet_NaN();   ///< measured [kPa]; NaN: no sensor
-  double temperature_c = std::numeric_limits<double>::quiet_NaN();  ///< [degrees Celsius]; NaN: no sensor
-  std::chrono::nanoseconds sampled_at{0};                           ///< time of the sample
-  std::uint32_t sequence = 0;                                       ///< number of the response
-  Validity validity = Validity::none_yet;                           ///< assessment by the driver
+  double displacement = 0;  ///< displacement in the unit of the model
+  double pressure_kpa =
+      std::numeric_limits<double>::quiet_NaN();  ///< measured pressure [kPa]; NaN: no sensor
+  double temperature_c =
+      std::numeric_limits<double>::quiet_NaN();  ///< temperature [degrees Celsius]; NaN: no sensor
+  std::chrono::nanoseconds sampled_at{0};        ///< time of the sample
+  std::uint32_t sequence = 0;                    ///< number of responses so far
+  Validity validity = Validity::none_yet;        ///< assessment by the driver
 };
 
 /// Result of an exchange with a board.
@@ -45,7 +47,7 @@ enum class BusStatus : std::uint8_t {
   timed_out,         ///< the deadline passed
   bad_reply,         ///< the response is malformed
   exception,         ///< the board returned an error
-  write_refused,     ///< the outputs did not follow
+  write_refused,     ///< the outputs did not take the commanded values
   overwritten,       ///< another client also writes the outputs
   watchdog_tripped,  ///< the watchdog of the board holds the outputs at their safe value
   closed_at_once,    ///< the connection was closed before its first response
@@ -64,14 +66,14 @@ class SOFTGRIP_API Board {
 
   /// Returns the number of channels.
   [[nodiscard]] virtual std::size_t channels() const noexcept = 0;
-  /// Opens or reopens the session. It may block until the deadline. The outputs keep their values.
-  /// @param deadline  longest duration
+  /// Opens or reopens the session. The call may block until the deadline. The outputs keep their values.
+  /// @param deadline  longest duration of the call
   [[nodiscard]] virtual BusStatus connect(std::chrono::nanoseconds deadline) noexcept = 0;
   /// Writes one pressure per channel and reads all channels. If the result is not `ok`, the readings are
-  /// unchanged. It does not allocate.
+  /// unchanged. The function must not allocate.
   /// @param commands_kpa  commands [kPa], channels() values
   /// @param readings      channels() values, written by the call
-  /// @param deadline      longest duration
+  /// @param deadline      longest duration of the call
   [[nodiscard]] virtual BusStatus exchange(std::span<const double> commands_kpa, std::span<Reading> readings,
                                            std::chrono::nanoseconds deadline) noexcept = 0;
   /// Returns the reason of the last failure of connect() or exchange().
@@ -83,7 +85,7 @@ class SOFTGRIP_API Board {
 /// An object that a finger touches.
 struct SimulatedObject {
   double position = 0;    ///< displacement at contact, in the unit of the model
-  double yielding = 0.1;  ///< share of the free motion beyond the contact: 0 (rigid) to 1 (no object)
+  double yielding = 0.1;  ///< motion beyond the contact relative to free motion: 0 (rigid) to 1 (no effect)
 };
 
 /// One channel of a SimulatedBoard.
@@ -96,8 +98,8 @@ struct SimulatedFinger {
   std::uint64_t seed = 1;                      ///< seed of all noise
 };
 
-/// A board in memory whose fingers are models. Its clock advances only by advance(). Equal settings and calls
-/// give equal bits. It is the simulated board of the daemon.
+/// A simulated board whose fingers are models. Only advance() advances its clock. Equal settings and equal
+/// calls give bit-identical readings. The daemon uses the same simulated board.
 class SOFTGRIP_API SimulatedBoard final : public Board {
  public:
   /// Creates a board. Throws InvalidArgument.
@@ -117,7 +119,8 @@ class SOFTGRIP_API SimulatedBoard final : public Board {
   [[nodiscard]] std::chrono::nanoseconds now() const noexcept;
   /// Advances the clock. A negative duration is ignored.
   void advance(std::chrono::nanoseconds duration) noexcept;
-  /// Places an object, or removes it. An unknown channel is ignored.
+  /// Places an object at the finger of a channel. An empty `object` removes it. A call for an unknown channel
+  /// has no effect.
   void set_object(std::size_t channel, const std::optional<SimulatedObject>& object) noexcept;
   /// Returns the displacement of the finger without the errors of its sensor; NaN for an unknown channel.
   [[nodiscard]] double displacement(std::size_t channel) const noexcept;

@@ -32,7 +32,7 @@ struct Limits {
 struct LimitedCommand {
   double command_kpa = 0;  ///< within the range and the slew limits [kPa]
   bool saturated = false;  ///< the request is outside the pressure range
-  bool slewing = false;    ///< the request is further away than the slew limits allow
+  bool slewing = false;    ///< the request changes faster than the slew limits allow
   bool invalid = false;    ///< the request is not a number; the last command is held
 };
 
@@ -47,8 +47,8 @@ struct LimitedCommand {
 /// Method that keeps the integrator from winding up while the command cannot follow the request.
 enum class AntiWindup : std::uint8_t {
   none,              ///< no method; only for comparison
-  conditional,       ///< the integrator stops while the error pushes further into the limit
-  back_calculation,  ///< the excess drives the integrator back within `tracking_time_s`
+  conditional,       ///< the integrator stops while it would increase a limited request further
+  back_calculation,  ///< the limited part of the request drives the integrator back in `tracking_time_s`
 };
 
 /// Settings of a PID. Displacements are in the unit of the model.
@@ -58,12 +58,12 @@ struct PidSettings {
   double kd_kpa_s_per_mm = 0;         ///< derivative gain [kPa s per unit]
   double derivative_filter_s = 0.02;  ///< time constant of the filter of the derivative [s], >= 0
   double setpoint_weight = 1;         ///< share of the reference in the proportional part, 0 to 1
-  AntiWindup anti_windup = AntiWindup::back_calculation;  ///< method
-  double tracking_time_s = 0.5;                           ///< time constant of back_calculation [s], > 0
+  AntiWindup anti_windup = AntiWindup::back_calculation;  ///< anti-windup method
+  double tracking_time_s = 0.5;  ///< time constant, only for back_calculation [s], > 0
 };
 
-/// PID with two degrees of freedom (Astrom and Hagglund, Advanced PID Control, 2006). Call order in a period:
-/// step(), limit() of the sum with the feedforward, sent().
+/// PID with two degrees of freedom (Astrom and Hagglund, Advanced PID Control, 2006). In each period, call
+/// step(), then limit() for the sum of feedforward and feedback, then sent() with the limited command.
 class SOFTGRIP_API Pid {
  public:
   /// Creates a PID. Throws InvalidArgument.
@@ -76,7 +76,8 @@ class SOFTGRIP_API Pid {
   /// Takes over the state. `other` can then only be assigned to or destroyed.
   Pid& operator=(Pid&& other) noexcept;
 
-  /// Makes the next step() continue at `command_kpa` [kPa], at a start or after a change of the feedforward.
+  /// Sets the integrator so that the next step() continues from the command `command_kpa` [kPa]. Call it at a
+  /// start and after a change of the feedforward.
   void align(double command_kpa) noexcept;
   /// Returns the feedback [kPa]. The request is the sum of the feedback and `feedforward_kpa`.
   /// @param reference        reference at the time of the measurement
@@ -97,10 +98,10 @@ class SOFTGRIP_API Pid {
 /// and acceleration are continuous over ramps and holds (minimum jerk).
 class SOFTGRIP_API Reference {
  public:
-  /// Holds `value` from time 0 s.
+  /// Creates a reference that has the value `value` from time 0 s on.
   explicit Reference(double value = 0);
   ~Reference();
-  /// Copies all segments.
+  /// Creates a copy of all segments.
   Reference(const Reference& other);
   /// Copies all segments.
   Reference& operator=(const Reference& other);
@@ -110,10 +111,10 @@ class SOFTGRIP_API Reference {
   /// Appends a minimum-jerk ramp of `duration_s` [s], > 0. Returns false and changes nothing if there are
   /// already 8 segments or an argument is out of range.
   bool ramp_to(double value, double duration_s) noexcept;
-  /// Appends a hold of `duration_s` [s], > 0. Returns false as ramp_to() does.
+  /// Appends a hold of `duration_s` [s], > 0. Returns false under the same conditions as ramp_to().
   bool hold_for(double duration_s) noexcept;
   /// Appends mean - amplitude cos(2 pi f t) for `cycles` > 0, at `frequency_hz` > 0. A ramp to
-  /// mean - amplitude should precede it. Returns false as ramp_to() does.
+  /// mean - amplitude should precede it. Returns false under the same conditions as ramp_to().
   bool sine(double mean, double amplitude, double frequency_hz, double cycles) noexcept;
   /// Returns the value at a time [s].
   [[nodiscard]] double at(double time_s) const noexcept;
@@ -122,7 +123,7 @@ class SOFTGRIP_API Reference {
 
   /// Opaque content.
   struct Parts;
-  /// For the library.
+  /// Returns the content; only the library itself uses it.
   [[nodiscard]] const Parts& parts() const noexcept { return *parts_; }
 
  private:
@@ -142,7 +143,8 @@ struct FeedforwardStep {
   bool out_of_reach = false;  ///< because of the limits, the command cannot reach the reference
 };
 
-/// Inverse of a model, one period at a time, for a reference that is not a Reference: a stream of samples.
+/// Inverse of a model that computes one command per period. The reference is a stream of samples. It does not
+/// have to be an object of the class Reference.
 class SOFTGRIP_API Feedforward {
  public:
   /// Computes the inverse. Throws InvalidArgument, and Refused if the model has no inverse within the limits.
@@ -150,9 +152,8 @@ class SOFTGRIP_API Feedforward {
   /// @param limits           limits of the command
   /// @param tick_s           period of step() [s], > 0
   /// @param kind             kind of the inverse
-  /// @param extra_latency_s  latency from a command to the output of the board [s], 0 to 1, in addition to
-  /// the
-  ///                         dead time of the model
+  /// @param extra_latency_s  latency from a command to the output of the board [s], 0 to 1. It is added to
+  ///                         the dead time of the model.
   Feedforward(const Model& model, const Limits& limits, double tick_s,
               FeedforwardKind kind = FeedforwardKind::full_model, double extra_latency_s = 0);
   ~Feedforward();
@@ -161,14 +162,14 @@ class SOFTGRIP_API Feedforward {
   /// Takes over the state. `other` can then only be assigned to or destroyed.
   Feedforward& operator=(Feedforward&& other) noexcept;
 
-  /// Returns the preview time [s]: step() needs the reference at this time after the present.
+  /// Returns the preview time [s]. step() needs the value that the reference has this time after the present.
   [[nodiscard]] double preview_s() const noexcept;
   /// Starts from rest.
   /// @param command_kpa      command under which the finger is at rest [kPa]
-  /// @param reference_ahead  the reference preview_s() from now, in the unit of the model
+  /// @param reference_ahead  value of the reference preview_s() after the present, in the unit of the model
   void start(double command_kpa, double reference_ahead) noexcept;
-  /// Returns the command of this period, which is held until the next one.
-  /// @param reference_ahead  the reference preview_s() from now, in the unit of the model
+  /// Returns the command of this period, which is held until the next period.
+  /// @param reference_ahead  value of the reference preview_s() after the present, in the unit of the model
   [[nodiscard]] FeedforwardStep step(double reference_ahead) noexcept;
 
  private:
@@ -188,22 +189,22 @@ struct ControllerSettings {
   double reading_max_age_s = 0.05;  ///< largest age of a reading that is used [s], 0.0001 to 60
 };
 
-/// Result of Controller::tick(). NaN: not available.
+/// Result of Controller::tick(). A value that is not available is NaN.
 struct ControlOutput {
   double command_kpa = 0;                  ///< command for the board [kPa], within the limits
   double reference = 0;                    ///< present reference; NaN while no reference is followed
   double displacement = 0;                 ///< last valid reading
   double feedforward_kpa = 0;              ///< feedforward part of the command [kPa]
   double feedback_kpa = 0;                 ///< feedback part of the command [kPa]
-  double residual = 0;                     ///< reading minus the displacement of the model
+  double residual = 0;                     ///< reading minus the displacement that the model predicts
   Validity validity = Validity::none_yet;  ///< validity of the reading after the plausibility check
   bool saturated = false;                  ///< the request was outside the pressure range
   bool slewing = false;                    ///< the slew limits reduced the request
   bool out_of_reach = false;               ///< the feedforward cannot reach the reference
 };
 
-/// Controller of one finger: feedforward plus PID through the limits, plausibility check of the readings. It
-/// is the channel controller of the daemon, without its sequences, faults and supervisor.
+/// Controller of one finger. It adds feedforward and PID, limits the sum, and checks the plausibility of the
+/// readings. It is the channel controller of the daemon without sequences, faults and supervisor.
 class SOFTGRIP_API Controller {
  public:
   /// Creates a controller. Throws InvalidArgument, and Refused if the model has no inverse for the
@@ -217,7 +218,8 @@ class SOFTGRIP_API Controller {
 
   /// Starts from rest under `command_kpa` [kPa], which is clamped to the limits.
   void start(double command_kpa) noexcept;
-  /// From the next tick on, follows a reference whose time 0 is the time 0 of tick().
+  /// From the next tick() on, follows a reference. The times of the reference are on the clock of `now` in
+  /// tick().
   void follow(const Reference& reference) noexcept;
   /// From the next tick on, holds the command.
   void hold() noexcept;

@@ -1,7 +1,7 @@
 #pragma once
 /// @file
-/// Diagnosis: the error of a model on measured logs, and its cause; the change of a finger since it was
-/// healthy. The functions are stable; later versions may add fields to the results.
+/// Diagnosis of a model from measured logs (its error and the causes of the error), and of the change of a
+/// finger since it was healthy. The functions are stable; later versions may add fields to the results.
 
 #include <cstddef>
 #include <cstdint>
@@ -17,15 +17,15 @@
 
 namespace softgrip {
 
-/// A named cause.
+/// A cause of the error of a model, or of the change of a finger.
 struct Cause {
-  std::string id;     ///< "valve_deadband"; the reference page "causes" lists all
+  std::string id;     ///< for example "valve_deadband"; the reference page "causes" lists all ids
   std::string title;  ///< name of the cause in words
   /// Reduction of the held-out error by the cause [%]. NaN in a Change.
   double error_reduction_percent = 0;
   Interval error_reduction_ci95;          ///< 95 % interval of error_reduction_percent [%]
   std::vector<Estimate> parameters;       ///< parameters of the cause; in a Change, size of the change
-  std::vector<std::string> alternatives;  ///< ids of causes that the logs cannot separate from it
+  std::vector<std::string> alternatives;  ///< ids of causes that the logs cannot separate from this cause
 };
 
 /// Settings of diagnose() and diagnose_change().
@@ -58,10 +58,10 @@ struct Diagnosis {
   std::string html;  ///< report.html, without the experiment and the closed loop
 };
 
-/// Diagnoses a model: its error on the logs, the cause, the extension and the error reduction. `softgrip
-/// diagnose` uses the same functions. Throws InvalidArgument, Refused if the logs cannot be diagnosed,
-/// Cancelled.
-/// @param model    the model that is used today
+/// Diagnoses a model. Computes its error on the logs, finds the causes, extends the model by them, and
+/// computes the error reduction. `softgrip diagnose` uses the same functions. Throws InvalidArgument, Refused
+/// if the logs cannot be diagnosed, and Cancelled.
+/// @param model    the model to diagnose
 /// @param logs     logs of one campaign, in order, in the unit of the model
 /// @param options  settings of the search
 [[nodiscard]] SOFTGRIP_API Diagnosis diagnose(const Model& model, const std::vector<Log>& logs,
@@ -79,7 +79,7 @@ struct Change {
 };
 
 /// Compares later logs of a finger with logs from when it was healthy. `softgrip diagnose --healthy` uses the
-/// same functions. Throws InvalidArgument, Refused if the logs cannot be compared, Cancelled.
+/// same functions. Throws InvalidArgument, Refused if the logs cannot be compared, and Cancelled.
 /// @param model    model of the healthy finger
 /// @param healthy  logs of the healthy finger
 /// @param later    logs of the same finger today

@@ -44,7 +44,8 @@ class SOFTGRIP_API FileError : public Error {
   ~FileError() override;
 };
 
-/// Valid arguments for which there is no result: a model without an inverse, logs that cannot be fitted.
+/// Valid arguments for which no result exists, for example a model without an inverse, or logs that cannot be
+/// fitted.
 class SOFTGRIP_API Refused : public Error {
  public:
   using Error::Error;

@@ -15,7 +15,7 @@
 namespace softgrip {
 
 /// One measured run of one finger. All columns have one value per time; optional columns may be empty.
-/// Plain arrays: fill them from memory, or use read_log(). Functions that take logs check them.
+/// Fill the arrays directly, or use read_log(). Functions that take logs check them.
 struct Log {
   std::string name = {};                          ///< short name for results and reports
   std::vector<double> time_s = {};                ///< times [s], increasing. The first one counts as 0
@@ -32,14 +32,14 @@ struct Log {
 
 /// Settings of read_log().
 struct ReadOptions {
-  std::string channel = {};  ///< the finger to read if the file has several; empty: there is one
-  bool import_file = true;   ///< convert a file that is not a log with the proposal of `softgrip import`
-  /// Columns by role (`time`, `command`, `pressure`, `displacement`, `temperature`, `supply`): a name or a
-  /// number from 1. Roles that are absent are proposed by names and units. If it is not empty, the file is
-  /// always imported.
+  std::string channel = {};  ///< the finger to read; empty if the file has only one
+  bool import_file = true;   ///< if the file is not a log, convert it as `softgrip import` proposes
+  /// Column for each role (`time`, `command`, `pressure`, `displacement`, `temperature`, `supply`), as its
+  /// name or its number from 1. For absent roles, names and units of the columns determine a proposal. If the
+  /// map is not empty, the file is always imported.
   std::map<std::string, std::string> columns = {};
   std::map<std::string, std::string> units =
-      {};                              ///< units by role, if the file does not state them: `pressure`: `psi`
+      {};  ///< unit for each role, if the file does not state it: `pressure`: `psi`
   std::optional<double> rate_hz = {};  ///< sampling rate of a file without times [Hz]
   std::string sheet = {};              ///< name of the sheet in a workbook
 };
@@ -52,7 +52,8 @@ struct ReadOptions {
 /// Writes a log as CSV. Reading it back gives equal columns. Throws FileError and InvalidArgument.
 SOFTGRIP_API void write_log(const std::string& path, const Log& log);
 
-/// Checks a log as `softgrip identify` does. Throws InvalidArgument with the column, its shape and its unit.
+/// Checks a log as `softgrip identify` does. Throws InvalidArgument, which names the column, the expected
+/// values and the unit.
 SOFTGRIP_API void check(const Log& log);
 
 /// Input signal of the model.
@@ -68,7 +69,7 @@ enum class Begin : std::uint8_t {
   unknown,    ///< estimated from the readings
 };
 
-/// Interpretation of logs, as the options --drive, --begin and --held of `softgrip`.
+/// Interpretation of logs. The options --drive, --begin and --held of `softgrip` have the same meaning.
 struct LogUse {
   Drive drive = Drive::command;    ///< input signal of the model
   Begin begin = Begin::automatic;  ///< the initial state

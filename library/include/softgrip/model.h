@@ -14,7 +14,7 @@
 
 namespace softgrip {
 
-/// Unit of a displacement: of the readings of a log and of the output of a model.
+/// Unit of the displacement in a log and of the output of a model.
 enum class Unit : std::uint8_t {
   mm,   ///< displacement
   deg,  ///< bending angle
@@ -25,9 +25,9 @@ enum class Unit : std::uint8_t {
 
 /// One parameter of a model.
 struct Parameter {
-  std::string name;   ///< "kelvin_voigt.k1_kpa_per_mm"
+  std::string name;   ///< for example "kelvin_voigt.k1_kpa_per_mm"
   double value = 0;   ///< value in `unit`
-  std::string unit;   ///< "kPa/mm"; empty: no unit
+  std::string unit;   ///< for example "kPa/mm"; empty: no unit
   double lower = 0;   ///< smallest permitted value
   double upper = 0;   ///< largest permitted value
   std::string about;  ///< description in one line
@@ -84,31 +84,32 @@ class SOFTGRIP_API Model {
   [[nodiscard]] const std::string& name() const noexcept;
   /// Returns the origin of the parameters, in one line.
   [[nodiscard]] const std::string& source() const noexcept;
-  /// Returns 16 hexadecimal digits that change with any parameter.
+  /// Returns 16 hexadecimal digits that identify the model: any change of a parameter changes them.
   [[nodiscard]] std::string hash() const;
   /// Returns the unit of the output.
   [[nodiscard]] Unit unit() const noexcept;
   /// Returns all parameters in the order of the chain.
   [[nodiscard]] std::vector<Parameter> parameters() const;
   /// Returns a copy with another value of a parameter. Throws InvalidArgument if there is no such parameter,
-  /// or if the model would not be valid.
-  /// @param parameter  a name of parameters()
-  /// @param value      in the unit of the parameter
+  /// or if the copy would not be a valid model.
+  /// @param parameter  name of the parameter, as in parameters()
+  /// @param value      new value, in the unit of the parameter
   [[nodiscard]] Model with(const std::string& parameter, double value) const;
 
   /// Simulates the finger, which is at rest under the first pressure. `softgrip simulate` uses the same
   /// function. Throws InvalidArgument.
   /// @param time_s        times [s], at least 1 value, increasing
   /// @param pressure_kpa  commanded pressure [kPa], one per time
-  /// @param options       settings of hold, noise and surroundings
+  /// @param options       settings of hold, noise, supply pressure and temperature
   /// @return the readings, one per time, in the unit of the model
   [[nodiscard]] std::vector<double> simulate(std::span<const double> time_s,
                                              std::span<const double> pressure_kpa,
                                              const SimulateOptions& options = {}) const;
 
   /// Computes the command with which the finger follows a displacement. The method is the feedforward
-  /// `full_model` of the daemon: an implicit solution of hysteresis and creep, lead for lags, and preview for
-  /// dead times. The difference between the first value and the displacement at rest decays in 0.5 s or more.
+  /// `full_model` of the daemon: it solves hysteresis and creep implicitly, and compensates lags by lead and
+  /// dead times by preview. If the first value differs from the displacement at rest, this difference decays
+  /// in 0.5 s or more.
   /// simulate() with `held` shows the motion under this command.
   /// Throws InvalidArgument, and Refused if the model has no inverse.
   /// @param time_s        times [s], at least 2 values, with equal steps (within 1e-6 of the step)
@@ -120,16 +121,16 @@ class SOFTGRIP_API Model {
 
   /// Opaque content.
   struct Parts;
-  /// For the library.
+  /// Creates a model from its content; only the library itself uses it.
   explicit Model(std::shared_ptr<const Parts> parts) noexcept;
-  /// For the library.
+  /// Returns the content; only the library itself uses it.
   [[nodiscard]] const Parts& parts() const noexcept { return *parts_; }
 
  private:
   std::shared_ptr<const Parts> parts_;
 };
 
-/// Simulates a finger step by step. Construction allocates memory; step() and reset() do not if
+/// Simulates a finger step by step. Construction allocates memory. step() and reset() allocate no memory if
 /// `sample_time_s` is given. Only one thread may use an object at a time.
 class SOFTGRIP_API Simulator {
  public:

@@ -15,7 +15,7 @@ namespace softgrip {
 
 /// Result of validate().
 struct Validation {
-  std::string verdict;                  ///< one sentence
+  std::string verdict;                  ///< assessment of the predictions in one sentence
   std::vector<std::string> warnings;    ///< warnings about the data
   std::vector<Prediction> predictions;  ///< one prediction per log
   std::string json;                     ///< validate.json of `softgrip validate`
