@@ -6,12 +6,12 @@
 //
 //   template <class T> class ValveLag {
 //    public:
-//     static constexpr BlockInfo info = block_info(...);          // id, station, kind, inverse, one line
-//     static constexpr std::array parameters{parameter(...)};     // its only declaration
+//     static constexpr BlockInfo info = block_info(...);          // id, station, kind, inverse, texts
+//     static constexpr std::array parameters{parameter(...)};     // the only declaration of the parameters
 //     ValveLag(std::span<const T> values, const Preparation&);
-//     void reset(const T& input);  // see "Rest"
+//     void reset(const T& input);  // see the paragraph "Rest"
 //     T output() const;            // current output
-//     ... and by kind:
+//     ... and one of the following functions, depending on the kind of the block:
 //   };
 //
 //   pressure, displacement:
@@ -29,28 +29,30 @@
 // The concepts below state this contract for the compiler. registry.h checks them for every block.
 //
 // A step calls next(segment) one or more times. The durations of the segments that it passes on sum to the
-// duration of its input (a delay may keep back a jump). The first `begin` is the last `end` of the previous
-// step. A block whose output reverses within a sample passes two segments, so that Bouc-Wen sees the
-// reversal. At its neutral parameter values a block passes its input on unchanged; an element adds nothing.
+// duration of its input (a delay may keep back a jump). The `begin` of the first segment equals the `end` of
+// the last segment of the previous step. A block whose output reverses within a sample passes two segments
+// on, so that Bouc-Wen receives the reversal. With its neutral parameter values, a block passes its input on
+// unchanged, and an element adds 0 mm.
 //
 // Rest. reset(input) sets the state that a block reaches after its input rose from 0 to `input` once and was
 // then held for a long time. Lags and creep are settled, hysteresis is on its first loading curve, the delay
 // line is filled.
 //
-// A block with a memory over the whole campaign (the largest load so far) also has rest(input). It does the
-// same as reset(input) but keeps that memory.
+// A block with a memory over the whole campaign, such as the largest load so far, also has rest(input). This
+// function does the same as reset(input) but keeps that memory.
 //
 // A block with repeated parts also declares `repeated` (the parameters of one part, in order) and
-// `max_parts`. It declares `min_parts` if that is not one. A block whose parameters depend on each other
-// declares `static std::string_view objection(std::span<const double> values)`. It returns an empty text for
-// valid values.
+// `max_parts`. If the smallest number of parts is not 1, it also declares `min_parts`. A block whose
+// parameters depend on each other declares
+// `static std::string_view objection(std::span<const double> values)`. This function returns an empty text
+// for valid values.
 //
 // A displacement block declares `static constexpr bool at_samples = true` if its output at the end of a
 // sample depends only on its input and surroundings at that time. This is the default for reading blocks.
-// Reading blocks whose random numbers depend on their place in the chain declare it false.
+// Reading blocks with random numbers declare `at_samples = false`.
 //
-// A block that is a part of the chain's Bouc-Wen hysteresis also declares `void shape(BoucWen<T>&) const`.
-// The chain calls it once when it is constructed.
+// A block that modifies the chain's Bouc-Wen element also declares `void shape(BoucWen<T>&) const`. The
+// constructor of the chain calls this function once.
 //
 // Blocks are copyable values. Stepping allocates no memory if the block was prepared for a sample time.
 
@@ -76,16 +78,16 @@ enum class Kind : std::uint8_t {
   pressure,      ///< kPa in, kPa out, in series
   element,       ///< kPa in, mm out; all elements of a chain see the same pressure and their outputs add
   displacement,  ///< mm in, mm out, in series
-  reading,       ///< mm in, mm out, once at the end of a step: an effect of the sensor on the reading
+  reading,       ///< mm in, mm out, evaluated once at the end of a step; an effect of the sensor
 };
 
 /// The method by which the control side inverts a block.
 enum class Inverse : std::uint8_t {
   implicit,  ///< solved together with the actuator; the output is monotone in the newest pressure
-  lead,      ///< the derivative of the planned signal
+  lead,      ///< uses the derivative of the planned signal
   preview,   ///< uses the future value of the reference
-  play,      ///< half the band in the direction of travel
-  bound,     ///< no inverse; it limits the reference
+  play,      ///< adds half the band in the direction of motion
+  bound,     ///< no inverse; the block limits the reference
   ignored,   ///< not inverted (noise, quantisation)
 };
 
@@ -97,11 +99,11 @@ struct BlockInfo {
   Inverse inverse;
   std::string_view title;     ///< "Transport delay"
   std::string_view meaning;   ///< one line for the reference page
-  std::string_view equation;  ///< its equation as plain text
+  std::string_view equation;  ///< the equation as plain text
   bool repeatable = false;    ///< may occur in a chain more than once (two stops, two disturbances)
 };
 
-/// For block_info(): the block may occur in a chain more than once.
+/// Argument of block_info() for a block that may occur in a chain more than once.
 struct Repeatable {};
 
 /// Returns the description of a block, in the order of the members above. The meaning is a sentence.
@@ -121,7 +123,7 @@ consteval BlockInfo block_info(std::string_view id, Station station, Kind kind, 
 
 /// Inputs for the preparation of a block in addition to its parameters.
 struct Preparation {
-  double sample_time_s = 0;  ///< nominal; 0 when samples are irregular
+  double sample_time_s = 0;  ///< nominal sample time [s]; 0 if samples are irregular
   std::uint64_t seed = 0;    ///< seed of this block's random numbers, distinct per block and channel
 };
 
@@ -201,13 +203,13 @@ consteval bool keeps_contract() {
   return true;
 }
 
-/// "valve", "actuator", "load", "sensor"
+/// Returns "valve", "actuator", "load" or "sensor".
 [[nodiscard]] constexpr std::string_view name_of(Station station) {
   constexpr std::array<std::string_view, 4> names{"valve", "actuator", "load", "sensor"};
   return names[static_cast<std::size_t>(station)];
 }
 
-/// "pressure", "element", "displacement", "reading"
+/// Returns "pressure", "element", "displacement" or "reading".
 [[nodiscard]] constexpr std::string_view name_of(Kind kind) {
   constexpr std::array<std::string_view, 4> names{"pressure", "element", "displacement", "reading"};
   return names[static_cast<std::size_t>(kind)];

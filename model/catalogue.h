@@ -1,6 +1,6 @@
 #pragma once
-// Describes all block types as plain data by index. Code that lists, reads, writes or fits blocks uses these
-// descriptions and does not step the blocks. The list of types is in registry.h.
+// Describes all block types as plain data. The code that lists, reads, writes or fits blocks uses these
+// descriptions instead of the classes of the blocks. registry.h contains the list of types.
 
 #include <cstddef>
 #include <optional>
@@ -25,12 +25,13 @@ struct BlockDescriptor {
   /// The output at the end of a sample depends only on input and surroundings at that time (see block.h).
   bool at_samples = false;
 
-  /// Returns true if a block of this type may have this number of values: parameters.size() + n
-  /// repeated.size().
+  /// Returns true if a block of this type may have this number of values: parameters.size() + n *
+  /// repeated.size(), with n from min_parts to max_parts.
   [[nodiscard]] bool accepts(std::size_t value_count) const;
   /// Returns the declaration of value `index` of a block. Throws std::out_of_range if the index is not valid.
   [[nodiscard]] const ParameterSpec& spec(std::size_t index) const;
-  /// Returns the name of a value, numbered in repeated parts: "k2_kpa_per_mm". Throws like spec().
+  /// Returns the name of value `index`. In a repeated part, the name contains the number of the part:
+  /// "k2_kpa_per_mm". Throws like spec().
   [[nodiscard]] std::string name(std::size_t index) const;
 };
 

@@ -18,8 +18,8 @@ AnyBlock<T> make_block(std::size_t type, std::span<const T> values, const Prepar
   return AnyBlock<T>(std::in_place_index<I>, values, preparation);
 }
 
-// Returns the seed of a block. It depends on the id and the number of earlier blocks with this id. The seed
-// therefore does not change if blocks with other ids are added or removed.
+// Returns the seed of a block. The seed depends on the id and on the number of earlier blocks with this id.
+// It therefore does not change if blocks with other ids are added or removed.
 inline std::uint64_t seed_of(const Model& model, std::size_t index, std::uint64_t seed) {
   std::uint64_t part = 0;
   for (const char c : catalogue()[model.blocks[index].type].info.id) {
@@ -31,11 +31,12 @@ inline std::uint64_t seed_of(const Model& model, std::size_t index, std::uint64_
 
 template <class Block>
 inline constexpr Kind kind_of = std::remove_cvref_t<Block>::info.kind;
-/// A large pressure change within a segment is divided into parts of at most this size [kPa] if a block
-/// behind the elements, which an inverse ignores, approximates their sum by a parabola. For 44 kPa within 10
-/// ms, the error of an inertia of 45 ms was 0.07 mm without division and is 1e-4 mm with it.
+/// Largest pressure change of one segment at the elements [kPa], for chains with a displacement block that
+/// has no inverse, such as inertia. Such a block approximates the sum of the elements by a parabola per
+/// segment. A segment with a larger pressure change is therefore divided into parts. For 44 kPa within 10 ms,
+/// the error of an inertia of 45 ms was 0.07 mm without division and is 1e-4 mm with division.
 inline constexpr double longest_way_kpa = 5;
-/// Largest number of parts, for any command.
+/// Largest number of parts of a segment, for any pressure change.
 inline constexpr double most_parts = 100;
 
 template <class Block>
@@ -70,7 +71,7 @@ Chain<T>::Chain(const Model& model, std::span<const T> values, double sample_tim
     if (info.kind <= Kind::displacement) first_reading_ = behind;
     leaps_in_parts_ |= info.kind == Kind::displacement && info.inverse == Inverse::ignored;
   }
-  // Blocks that are a part of the chain's hysteresis modify it.
+  // Blocks with a function shape() modify the chain's Bouc-Wen element.
   for (const AnyBlock<T>& any : blocks_) {
     visit_block(any, [&](const auto& block) {
       if constexpr (requires(BoucWen<T> & hysteresis) { block.shape(hysteresis); }) {
@@ -178,7 +179,7 @@ void Chain<T>::walk_elements(const Segment<T>& segment, const Surroundings& surr
 }
 
 // The code for each block is always inlined, here and in peek(). By default, GCC 12 does not inline
-// Kelvin-Voigt (41 ns instead of 17 ns for a trial with derivative).
+// Kelvin-Voigt (41 ns instead of 17 ns for a call of peek() with the derivative).
 template <class T>
 void Chain<T>::add_elements(const Segment<T>& segment, const Surroundings& surroundings) {
   Segment<T> sum{segment.duration_s, T(0.0), T(0.0), T(0.0)};

@@ -23,7 +23,7 @@ class CharacteristicMap {
         last_slope_(exponential(curvature) / phi1_) {}
 
   [[nodiscard]] const T& curvature() const { return curvature_; }
-  /// The slopes g'(0) and g'(span).
+  /// Slopes g'(0) and g'(span).
   [[nodiscard]] const T& first_slope() const { return first_slope_; }
   [[nodiscard]] const T& last_slope() const { return last_slope_; }
 
@@ -43,7 +43,7 @@ class CharacteristicMap {
     if (value_of(y) <= 0.0) return y * phi1_;
     if (value_of(y) >= value_of(span_mm_)) return span_mm_ + (y - span_mm_) / last_slope_;
     const T share = y / span_mm_;
-    // For |a| below this limit, the quotient of the logarithm is 0/0 and the map is linear up to rounding.
+    // For |a| below this limit, the quotient below becomes 0/0, and the map is linear except for rounding.
     if (std::abs(value_of(curvature_)) < 1e-9) return y;
     return span_mm_ * (log1p(share * (curvature_ * phi1_)) / curvature_);
   }

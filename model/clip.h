@@ -1,5 +1,5 @@
 #pragma once
-// Limits a monotone segment to a level and divides it where it crosses the level.
+// Limits a monotone segment to a level and divides the segment at the point where it crosses the level.
 
 #include "model/segment.h"
 
@@ -17,7 +17,7 @@ template <class T>
   return value_of(y) > value_of(x) ? y : x;
 }
 
-/// Passes on min(in, level), in two segments if `in` crosses the level inside.
+/// Passes on min(in, level). If `in` crosses the level within the segment, two segments are passed on.
 template <class T, class Next>
 void clip_above(const Segment<T>& in, const T& level, Next&& next) {
   const double top = value_of(level);

@@ -37,7 +37,7 @@ struct Dual {
   friend constexpr Dual operator-(const S& x, const Dual& y) { return {x - y.a, -y.v}; }
   friend constexpr Dual operator/(const Dual& x, const S& y) { return {x.a / y, x.v / y}; }
 
-  // Comparisons use only the value, as decisions do.
+  // Comparisons use only the value and ignore the derivative.
   friend constexpr bool operator<(const Dual& x, const Dual& y) { return x.a < y.a; }
   friend constexpr bool operator>(const Dual& x, const Dual& y) { return x.a > y.a; }
   friend constexpr bool operator<=(const Dual& x, const Dual& y) { return x.a <= y.a; }

@@ -1,10 +1,10 @@
 #pragma once
-// First-order linear responses over one segment. They are exact if the input is a parabola in time.
+// Computes first-order linear responses over one segment, exactly if the input is a parabola in time.
 //
-// All blocks with a time constant use them (valve lag, sensor lag, Kelvin-Voigt branches). With z = dt/tau,
-// the solution is a combination of the phi functions of exponential integrators (Hochbruck and Ostermann,
-// Acta Numerica 19, 2010, section 2.1): phi_k(-z) = integral over s in [0, 1] of exp(-z (1 - s)) s^(k-1) /
-// (k-1)!. They are accurate for z from 0 to infinity.
+// All blocks with a time constant use this file (valve lag, sensor lag, Kelvin-Voigt branches). With z =
+// dt/tau, the solution is a combination of the phi functions of exponential integrators (Hochbruck and
+// Ostermann, Acta Numerica 19, 2010, section 2.1): phi_k(-z) = integral over s in [0, 1] of exp(-z (1 - s))
+// s^(k-1) / (k-1)!. The functions are computed accurately for z from 0 to infinity.
 
 #include <array>
 #include <cmath>
@@ -27,7 +27,7 @@ template <class T>
   return expm1(w) / w;
 }
 
-/// phi_1 to phi_4 at -z.
+/// The values of phi_1 to phi_4 at -z.
 template <class T>
 struct PhiFunctions {
   T phi1, phi2, phi3, phi4;
@@ -55,18 +55,19 @@ template <class T>
   return {phi1, phi2, phi3, (1.0 / 6.0 - phi3) * inverse};
 }
 
-/// The response of x' = gain_rate * u(t) - x / tau over one segment. The response is a sum of weights times
-/// the old state and the coefficients of the parabola u(s) = begin + (end - begin) s + bend s (1 - s), s in
-/// [0, 1]. `gain_rate` is 1/tau for a lag and 1/c for a Kelvin-Voigt branch (which is also defined for k =
-/// 0).
+/// Weights for the response of x' = gain_rate * u(t) - x / tau over one segment. The response is a weighted
+/// sum of the old state and the coefficients of the parabola u(s) = begin + (end - begin) s + bend s (1 - s),
+/// s in [0, 1]. `gain_rate` is 1/tau for a lag and 1/c for a Kelvin-Voigt branch. With 1/c, the response is
+/// also defined for k = 0.
 template <class T>
 struct ExponentialWeights {
-  T loss;                           ///< x1 = x0 - loss x0 + ...
-  T end_begin, end_rise, end_bend;  ///< x1 += begin .. + rise .. + bend ..
-  T mean_state;                     ///< mean(x) = mean_state x0 + ...
-  T mean_begin, mean_rise, mean_bend;
+  T loss;                              ///< x1 = x0 - loss x0 + ...
+  T end_begin, end_rise, end_bend;     ///< weights of begin, end - begin and bend in x1
+  T mean_state;                        ///< mean(x) = mean_state x0 + ...
+  T mean_begin, mean_rise, mean_bend;  ///< weights of begin, end - begin and bend in mean(x)
 
-  /// @param duration_s  of the segment, >= 0.  @param rate  1/tau, >= 0.  @param gain_rate  as above.
+  /// @param duration_s  duration of the segment, >= 0.  @param rate  1/tau, >= 0.  @param gain_rate  see
+  /// above.
   static ExponentialWeights make(const T& duration_s, const T& rate, const T& gain_rate) {
     const T z = duration_s * rate;
     const PhiFunctions<T> f = phi_functions(z);

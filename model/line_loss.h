@@ -8,16 +8,16 @@ namespace softgrip::model {
 /// A steady flow passes through the line and then through a leak to the atmosphere. Both restrictions follow
 /// ISO 6358-1 with a critical pressure ratio of 0.5. The flow through the line is approximately C sqrt(p dp).
 /// At small pressures, the line loses `share` times the pressure at the finger (the squared ratio of the
-/// conductances). The leak is choked above a gauge pressure of one atmosphere. Pressures are gauge [kPa]. The
-/// functions increase; below 0 they are linear.
+/// conductances). The flow through the leak is choked above a gauge pressure of one atmosphere. Pressures are
+/// gauge [kPa]. Both functions increase with their argument and are linear for negative arguments.
 template <class T>
 struct LineLoss {
   T share;  ///< >= 0
 
   static constexpr double atmosphere_kpa = 101.325;
 
-  /// Returns the pressure before the line from the pressure p at the finger: p + share p a / (p + a), up to
-  /// one atmosphere a.
+  /// Returns the pressure before the line from the pressure p at the finger. For p up to the atmospheric
+  /// pressure a, it is p + share p a / (p + a).
   template <class U>
   [[nodiscard]] U before(const U& p) const {
     if (value_of(p) <= 0.0) return p * (1.0 + share);

@@ -1,6 +1,6 @@
 #pragma once
-// Defines a model as a plain value: the blocks of the chain and their parameters. It has no behaviour and no
-// state.
+// Defines a model as a plain value that contains the blocks of the chain and their parameters. model/chain.h
+// simulates a model.
 
 #include <cstddef>
 #include <optional>
@@ -27,9 +27,9 @@ struct BlockSpec {
 /// valid models. validate() returns the problems of a model from another source.
 struct Model {
   std::string name;
-  std::string source;  ///< source of its values, one line
+  std::string source;  ///< source of the parameter values, one line
   std::vector<BlockSpec> blocks;
-  OutputUnit output_unit = OutputUnit::mm;  ///< of the output and of all parameters whose name contains mm
+  OutputUnit output_unit = OutputUnit::mm;  ///< unit of the output; parameters with mm in the name use it too
 
   bool operator==(const Model&) const = default;
 };
@@ -39,7 +39,7 @@ struct Model {
 
 /// Returns a block of a type with its default values, with `parts` repeated parts if the type has any.
 [[nodiscard]] BlockSpec default_block(std::size_t type, std::size_t parts = 1);
-/// Returns a block of a type at its neutral values, where it has no effect.
+/// Returns a block of a type with its neutral values, with which it has no effect.
 [[nodiscard]] BlockSpec neutral_block(std::size_t type, std::size_t parts = 1);
 
 /// Returns the model with an additional block, at the position that registry.h defines.
@@ -53,7 +53,8 @@ struct Model {
 [[nodiscard]] std::optional<std::size_t> position_of(const Model& model, std::size_t type);
 [[nodiscard]] std::optional<std::size_t> position_of(const Model& model, std::string_view id);
 
-/// Returns the name of value `index` of a block, numbered in repeated parts: "k2_kpa_per_mm".
+/// Returns the name of value `index` of a block. In a repeated part, the name contains the number of the
+/// part: "k2_kpa_per_mm".
 [[nodiscard]] std::string parameter_name(const BlockSpec& block, std::size_t index);
 /// Returns the index of the value with that name in a block, or nullopt.
 [[nodiscard]] std::optional<std::size_t> find_parameter(const BlockSpec& block, std::string_view name);
@@ -66,11 +67,13 @@ struct ParameterPlace {
 
 /// Returns the number of values of all blocks of a model.
 [[nodiscard]] std::size_t parameter_count(const Model& model);
-/// Returns the position of a flat index, which must be below parameter_count().
+/// Returns the position of the value with a flat index, which must be below parameter_count(). A flat index
+/// counts the values of all blocks in the order of the chain.
 [[nodiscard]] ParameterPlace place_of(const Model& model, std::size_t flat_index);
-/// Returns "kelvin_voigt.k2_kpa_per_mm"; for a repeated block, "contact_2.position_mm".
+/// Returns the path of a value, for example "kelvin_voigt.k2_kpa_per_mm". The path contains the number of a
+/// repeated block from the second one on: "contact_2.position_mm".
 [[nodiscard]] std::string parameter_path(const Model& model, std::size_t flat_index);
-/// Returns the flat index of such a path, or nullopt.
+/// Returns the flat index of the value with this path, or nullopt.
 [[nodiscard]] std::optional<std::size_t> find_path(const Model& model, std::string_view path);
 /// Returns the declaration of a value by flat index.
 [[nodiscard]] const ParameterSpec& parameter_spec(const Model& model, std::size_t flat_index);

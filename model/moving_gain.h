@@ -8,7 +8,7 @@ namespace softgrip::model {
 
 /// Multiplies segments by a gain that changes linearly over a sample, from its last value to the value for
 /// the surroundings at the end of the sample. If a sample has several segments, the gain changes during the
-/// first.
+/// first segment.
 template <class T>
 class MovingGain {
  public:

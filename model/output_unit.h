@@ -1,5 +1,5 @@
 #pragma once
-// The unit of a finger's sensor: of the readings of a log, and of the output of a model.
+// The unit of a finger's sensor, which is the unit of the readings in a log and of the output of a model.
 //
 // Names in files, JSON and code end with _mm, because most fingers are measured in mm. Their values are in
 // the output unit, which may be deg. Texts for display use in_unit().
@@ -21,8 +21,8 @@ inline constexpr double deg_per_rad = 180 / std::numbers::pi;
 /// Returns "mm" or "deg", as in model files and JSON.
 [[nodiscard]] std::string_view name_of(OutputUnit unit) noexcept;
 
-/// Returns a text of the program about mm in another unit. For deg, "displacement [mm]" becomes "bending
-/// angle [deg]" and "mm/kPa" becomes "deg/kPa". Words that only contain these, such as "gap_mm", do not
+/// Converts a text of the program from mm to another unit. For deg, "displacement [mm]" becomes "bending
+/// angle [deg]" and "mm/kPa" becomes "deg/kPa". Longer words that contain mm, such as "gap_mm", do not
 /// change. The text must not contain names from users.
 [[nodiscard]] std::string in_unit(std::string_view text, OutputUnit unit);
 

@@ -21,11 +21,11 @@ struct ParameterSpec {
   double scale = 1;          ///< a typical change, for the scaling of a fit
   bool whole = false;        ///< only integers (an exponent)
   bool placed = false;       ///< remains fixed while a fit changes the values that depend on it (a threshold)
-  /// If all parameters with a neutral value have that value, the block has no effect. NaN: the parameter then
-  /// has no influence.
+  /// If all parameters with a neutral value have that value, the block has no effect. NaN: the parameter has
+  /// no neutral value, because it has no influence while the others are neutral.
   double neutral = std::numeric_limits<double>::quiet_NaN();
-  /// Value of a parameter that a model file omits; NaN: it is required. It lets files from before the
-  /// parameter was introduced keep their meaning.
+  /// Value of the parameter if a model file omits it; NaN: the parameter is required. Files that are older
+  /// than the parameter therefore keep their meaning.
   double if_left_out = std::numeric_limits<double>::quiet_NaN();
 };
 
@@ -66,7 +66,7 @@ constexpr void add(ParameterSpec& spec, Placed) {
 /// Declares one parameter:
 ///   parameter("rate_mm_per_h", "mm/h", "steady drift", Typical{0.5}, Within{-1e5, 1e5}, Scale{1.0},
 ///   Neutral{0.0})
-/// Numbers outside their own bounds do not compile.
+/// Values outside the bounds of the parameter are compile errors.
 template <class... More>
 consteval ParameterSpec parameter(std::string_view name, std::string_view unit, std::string_view meaning,
                                   Typical typical, Within within, Scale scale, More... more) {
@@ -82,7 +82,7 @@ consteval ParameterSpec parameter(std::string_view name, std::string_view unit, 
   return spec;
 }
 
-/// Returns true if `name` is `declared` with the number of a part in place of `#`.
+/// Returns true if `name` is `declared` with the number `part` in place of `#`.
 constexpr bool is_name_of_part(std::string_view declared, std::size_t part, std::string_view name) {
   const std::size_t mark = declared.find('#');
   const std::string_view behind = declared.substr(mark + 1);

@@ -14,7 +14,7 @@ class Play {
  public:
   explicit Play(const T& reach) : reach_(reach) {}
 
-  /// Sets the state after a rise of the input from 0.
+  /// Sets the state after a change of the input from 0 to `input`.
   void reset(const T& input) {
     output_ = T(0.0);
     settle(input);
@@ -31,7 +31,7 @@ class Play {
     return dragged(input, U(output_));
   }
 
-  /// Passes the output on, in two segments if it begins to move inside.
+  /// Passes the output on. If the output begins to move within the segment, two segments are passed on.
   template <class Next>
   void step(const Segment<T>& in, Next&& next) {
     const T begin = output_;
@@ -49,7 +49,8 @@ class Play {
     const T side = upwards ? T(-reach_) : reach_;
     const T start = begin - side;  // the input at which the output begins to move
     const double share = (value_of(start) - value_of(in.begin)) / (value_of(in.end) - value_of(in.begin));
-    // If the motion begins with the segment, it is divided only to keep the derivatives.
+    // If the motion begins at the start of the segment, the segment is divided only for number types with
+    // derivatives.
     const double least = std::is_arithmetic_v<T> ? 1e-12 : -1e-12;
     if (went_on || !(share > least && share < 1.0)) {
       next(Segment<T>{in.duration_s, begin, end, in.mean + side});

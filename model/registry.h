@@ -1,6 +1,6 @@
 #pragma once
-// The only list of blocks in the project. To add a block, write model/blocks/<id>.h and add its line here.
-// Files, names, bounds, the reference page, the chain and the property tests use this list.
+// The only list of blocks in the project. To add a block, write model/blocks/<id>.h and add the block to this
+// list. Model files, the reference page, the chain and the property tests use the list.
 
 #include <cstddef>
 #include <type_traits>

@@ -23,13 +23,14 @@ struct RegulatorNumbers {
   T full_open_kpa{0.0};  ///< error at which a port is fully open
 };
 
-/// With v = e + integral of e / integral_s and e = u - p, v clamped to full_open_kpa:
+/// The equations, with e = u - p and v = e + integral of e / integral_s, clamped to +-full_open_kpa, are:
 ///   filling_s p' = v - overlap if v > overlap;
 ///   venting_s p' / outflow(p) = v + overlap if v < -overlap;
 ///   otherwise p' = 0.
-/// The integral stops if v is clamped and would grow. With only its time constants it is a TwoWayLag, except
-/// for the outflow. Steps are at most `longest_step_s`. In each step the integral is linear in time and the
-/// outflow is that at the middle of the step. Apart from that it is exact for straight input.
+/// The integral stops if v is clamped and would grow. If only the time constants are above 0, the regulator
+/// is a TwoWayLag, except that venting depends on outflow(p). A segment is divided into steps of at most
+/// `longest_step_s`. In each step the integral is linear in time, and the outflow has its value at the middle
+/// of the step. Apart from these approximations, the solution is exact for straight input.
 template <class T>
 class RegulatedPressure {
  public:
@@ -86,7 +87,8 @@ class RegulatedPressure {
 
  private:
   static constexpr double longest_step_s = 0.005;
-  /// Largest number of steps of a segment: more than an hour. A longer segment has come to rest before.
+  /// Largest number of steps of a segment. With the longest step, they take more than an hour. In this time
+  /// the pressure comes to rest.
   static constexpr double most_steps = 1e6;
   static constexpr double atmosphere_kpa = 101.325;
   /// ISO 6358-1: critical pressure ratio of a common port, and the ratio above which its flow is linear.
@@ -184,8 +186,8 @@ class RegulatedPressure {
     return before * waits + mean * (1.0 - waits);
   }
 
-  /// Returns the time constant for the pressure that venting towards `target_kpa` reaches halfway through the
-  /// step.
+  /// Returns the time constant of venting at the middle of the step, at the pressure that venting towards
+  /// `target_kpa` has reached by then.
   T venting_s(const T& target_kpa, const T& step_s) const {
     static const double usual = value_of(outflow(T(usual_kpa)));
     const T begins = outflow(pressure_kpa_);
@@ -195,8 +197,8 @@ class RegulatedPressure {
     return n_.venting_s * (usual / (value_of(halfway) > 0 ? halfway : begins));
   }
 
-  /// Moves the pressure as a lag behind a straight target until it meets the target. Returns the duration and
-  /// sets `mean` to the mean pressure of that time.
+  /// Moves the pressure as a first-order lag towards a straight target until it meets the target. Returns the
+  /// duration of this motion and sets `mean` to its mean pressure.
   T towards(const T& step_s, const T& target, const T& target_after, const T& time_constant, T& mean) {
     using std::log1p;
     const T tau = value_of(time_constant) > shortest_s ? time_constant : T(shortest_s);

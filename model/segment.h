@@ -10,8 +10,9 @@ namespace softgrip::model {
 
 /// One interval of a signal. A `duration_s` of zero is a jump from `begin` to `end`. `mean` is the average
 /// over the interval. The next blocks treat the signal as the parabola through these three values, so that
-/// they reproduce its curvature (the exponential of a lag) to second order. In a straight interval, the mean
-/// is the middle. Pressures are monotone within a segment. T is double or an automatic differentiation type.
+/// they reproduce its curvature (the exponential of a lag) to second order. If the signal is straight, `mean`
+/// is the average of `begin` and `end`. Pressures are monotone within a segment. T is double or an automatic
+/// differentiation type.
 template <class T>
 struct Segment {
   T duration_s;
@@ -62,7 +63,8 @@ struct Segment {
 
 /// Surroundings of the rig during a sample. Blocks that do not depend on them ignore them.
 struct Surroundings {
-  /// time since the start of the campaign at the end of the sample; NaN: the clock of the chain since reset()
+  /// time from the start of the campaign to the end of the sample [s]; NaN: the chain uses the sum of its
+  /// step durations since reset()
   double time_s = std::numeric_limits<double>::quiet_NaN();
   double supply_kpa = 1e9;    ///< supply pressure; the default has no effect
   double temperature_c = 20;  ///< temperature of the actuator

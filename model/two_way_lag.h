@@ -45,7 +45,8 @@ class TwoWayLag {
     const T rest_s = in.duration_s - turn_s;
     const double least_s = 1e-6 * value_of(in.duration_s);
     if (!(value_of(turn_s) > least_s && value_of(rest_s) > least_s)) {
-      // If they meet within a millionth of either end, no separate segment is made.
+      // If output and input meet within a millionth of the duration from either end, one segment is passed
+      // on.
       go(value_of(turn_s) <= least_s ? then : now, in, next);
       return;
     }

@@ -19,7 +19,8 @@ class WeightCache {
  public:
   explicit WeightCache(std::size_t branches) : branches_(branches), weights_(branches * slots) {}
 
-  /// Returns the weights for a duration. `fill(span)` computes those of all branches if the duration is new.
+  /// Returns the weights for a duration. If the duration is new, `fill(span)` computes the weights of all
+  /// branches.
   template <class Fill>
   const ExponentialWeights<T>* at(const T& duration_s, Fill&& fill) {
     for (std::size_t slot = 0; slot < used_; ++slot) {

@@ -24,7 +24,8 @@ class ActuatorThreshold {
   template <class Next>
   void step(const Segment<T>& in, const Surroundings&, Next&& next) {
     const auto pass = [&](const Segment<T>& piece) {
-      // Within one of the three zones, the map is either a shift or zero.
+      // In each of the three zones of the map, the output is a shifted pressure, zero, or the pressure
+      // itself.
       const double middle = 0.5 * (value_of(piece.begin) + value_of(piece.end));
       const T begin = output_;
       output_ = map(piece.end);

@@ -6,7 +6,7 @@
 
 namespace softgrip::model {
 
-/// Multiplies y by 1 + a t, limited to positive values. t is the time of the campaign.
+/// Multiplies y by 1 + a t, limited to positive values. t is the time since the start of the campaign.
 template <class T>
 class Ageing : public SurroundingsGain<Ageing<T>, T> {
  public:

@@ -1,5 +1,5 @@
 #pragma once
-// Differences between loading and unloading of the chain's Bouc-Wen element.
+// Makes the parameters of the chain's Bouc-Wen element differ between loading and unloading.
 
 #include "model/block.h"
 #include "model/blocks/bouc_wen.h"

@@ -1,6 +1,6 @@
 #pragma once
 // Bouc-Wen hysteresis, stepped in pressure. Zhang et al., Actuators 2025, 14(4), 193, equation 1,
-// with signs and bars in their standard reading:
+// with the signs and absolute values of the standard form:
 //   B(t) = alpha p - h,   h' = beta p' - gamma p' |h|^n - eta |p'| |h|^(n-1) h
 // The model is rate independent: dh/dp = beta - (gamma + eta s) |h|^n with s = sgn(p' h).
 // An AsymmetricBoucWen in the chain adds a term that differs between loading and unloading,
@@ -11,8 +11,8 @@
 // A RateDependentWidth in the chain makes the loop wider at high pressure rates,
 //   B = alpha p - h (1 + growth r/(r + rate)), settling r' = |p'| - r
 // (loop heights that grow with the rate: Ang, Khosla and Riviere, IEEE/ASME Transactions on Mechatronics 12,
-// 2007; here they saturate). A RateDependentLevelling makes the hysteretic state saturate earlier at high
-// rates, because it replaces eta by
+// 2007; here the growth saturates). A RateDependentLevelling makes the hysteretic state saturate earlier at
+// high rates, because it replaces eta by
 //   eta (1 + saturation r/(r + rate)).
 
 #include <array>
@@ -24,7 +24,8 @@
 
 namespace softgrip::model {
 
-/// Deviation of loading (plus) and unloading (minus) from their mean. Zeros have no effect.
+/// Deviations of the parameters of bouc_wen. They are added for loading and subtracted for unloading. Values
+/// of 0 have no effect.
 template <class T>
 struct BoucWenSkew {
   T delta_per_kpa{0.0};    ///< deviation of gamma
@@ -35,12 +36,12 @@ struct BoucWenSkew {
 /// Change of the loop at high pressure rates.
 template <class T>
 struct BoucWenRate {
-  T share{0.0};           ///< largest change of the width or of eta, as a share
+  T share{0.0};           ///< largest relative change of the width or of eta
   T half_kpa_per_s{1.0};  ///< rate at which half the change is reached
   T settling_s{1.0};      ///< time constant of the average of the rate
 };
 
-/// The averaged rate r, which follows settling r' = |p'| - r, and its effect.
+/// The averaged pressure rate r, which follows settling r' = |p'| - r, and the change of a parameter by r.
 template <class T>
 class AveragedRate {
  public:
@@ -50,8 +51,8 @@ class AveragedRate {
   void reset() { kpa_per_s_ = T(0.0); }
   void step(const T& change_kpa, const T& duration_s) { kpa_per_s_ = after(change_kpa, duration_s); }
 
-  /// Returns r after `duration_s`. It relaxes toward |p'|. A jump increases it by the jump divided by the
-  /// settling time.
+  /// Returns r after `duration_s`. r relaxes towards |p'|. A jump of the pressure increases r by the jump
+  /// divided by the settling time.
   template <class U>
   [[nodiscard]] U after(const U& change_kpa, const T& duration_s) const {
     const T z = duration_s * settling_per_s_;
@@ -59,7 +60,8 @@ class AveragedRate {
     return kpa_per_s_ + (size * settling_per_s_ - z * kpa_per_s_) * phi1(T(-z));
   }
 
-  /// Returns `base` times the share: zero at rest, and the full share if the rate is far above the half rate.
+  /// Returns the change of `base` at a rate: 0 at rest, and `base` times BoucWenRate::share if the rate is
+  /// far above half_kpa_per_s.
   template <class U>
   [[nodiscard]] U share_of(const T& base, const U& kpa_per_s) const {
     return base * rate_.share * (kpa_per_s / (kpa_per_s + rate_.half_kpa_per_s));
@@ -72,14 +74,15 @@ class AveragedRate {
   T kpa_per_s_{0.0};
 };
 
-/// For exponent 1, dh/dp is linear between sign changes of h. It is integrated in closed form, exact for any
-/// step size, with at most one sign change per monotone step. Other exponents use the classical Runge-Kutta
-/// method in sub-steps of the pressure. The relative change of the slope in a sub-step is below 1/100 (local
-/// error about 1e-11 of h). Sub-steps end at the sign change, whose position is an integral over h computed
-/// by Gauss-Legendre quadrature. The error of the mean of a segment is of the fourth order in its pressure
-/// change (1e-7 mm at 0.5 kPa).
+/// For exponent 1, dh/dp is linear in h between sign changes of h. The equation is integrated in closed form,
+/// which is exact for any step size. A monotone step has at most one sign change. Other exponents use the
+/// classical Runge-Kutta method in sub-steps of the pressure. The relative change of the slope in a sub-step
+/// is below 1/100 (local error about 1e-11 of h). Sub-steps end at the sign change, whose position is an
+/// integral over h computed by Gauss-Legendre quadrature. The error of the mean of a segment is of the fourth
+/// order in its pressure change (1e-7 mm at 0.5 kPa).
 ///
-/// gamma and eta have the unit 1/(kPa mm^(exponent-1)). The parameter names state that of exponent 1: 1/kPa.
+/// gamma and eta have the unit 1/(kPa mm^(exponent-1)). The parameter names state the unit for exponent 1,
+/// which is 1/kPa.
 template <class T>
 class BoucWen {
  public:
@@ -118,8 +121,9 @@ class BoucWen {
   }
 
   /// Makes loading and unloading differ. `skew` is added for loading and subtracted for unloading.
-  /// `delta_per_kpa` is limited to +-eta and +-(gamma + eta), and the saturation to the values that keep the
-  /// state bounded. Beyond these limits, h would grow while the pressure returns. Call it once per block.
+  /// `delta_per_kpa` is limited to +-eta and +-(gamma + eta), and the saturation rates are limited to values
+  /// that keep h bounded. Beyond these limits, h would grow while the pressure returns. Call skew() once per
+  /// block.
   void skew(const BoucWenSkew<T>& skew) {
     const T eta = (growing_[0] - shrinking_[0]) * 0.5;
     const T most = value_of(eta) < value_of(growing_[0]) ? eta : growing_[0];
@@ -147,8 +151,8 @@ class BoucWen {
     widening_ = AveragedRate<T>(rate);
   }
 
-  /// Increases eta by up to `rate.share` of its value at such rates. During a segment, eta keeps its value
-  /// from the beginning.
+  /// Increases eta by up to `rate.share` of its value at pressure rates far above `rate.half_kpa_per_s`.
+  /// During a segment, eta keeps the value that it has at the beginning of the segment.
   void level_off(const BoucWenRate<T>& rate) {
     follows_rate_ = true;
     levelling_ = AveragedRate<T>(rate);
@@ -173,7 +177,7 @@ class BoucWen {
   /// Returns dh/dp at the present state, for a rising or falling pressure [mm/kPa].
   [[nodiscard]] T slope(bool rising) const { return slope_at(hysteresis_, rising ? 1.0 : -1.0); }
   [[nodiscard]] const T& alpha_mm_per_kpa() const { return alpha_; }
-  /// Returns the larger value of loading and unloading.
+  /// Returns the larger of the two values of beta for loading and unloading.
   [[nodiscard]] const T& beta_mm_per_kpa() const {
     return value_of(beta_[0]) > value_of(beta_[1]) ? beta_[0] : beta_[1];
   }
@@ -187,8 +191,8 @@ class BoucWen {
     hysteresis_ = moved(change, direction);
     pressure_ = in.end;
     direction_ = direction;
-    // Mean of h over the segment: a cubic through both ends and their slopes, corrected for the curvature of
-    // p.
+    // The mean of h over the segment is that of the cubic with the values and slopes of h at both ends,
+    // corrected for the curvature of p.
     const T slope_before = slope_at(before, direction);
     const T slope_after = slope_at(hysteresis_, direction);
     const T off_middle = in.mean - (in.begin + in.end) * 0.5;
@@ -219,8 +223,8 @@ class BoucWen {
   }
 
  private:
-  // Returns +1 while the pressure rises and -1 while it falls. A change of value zero still has the
-  // derivatives of the previous motion.
+  // Returns +1 while the pressure rises and -1 while it falls. For a change of value zero, returns the last
+  // direction, because such a change can still have derivatives.
   template <class U>
   [[nodiscard]] double direction_of(const U& change) const {
     const double value = value_of(change);
@@ -266,7 +270,7 @@ class BoucWen {
     return exponent_ == 1 ? moved_linear(change, direction) : moved_in_steps(change, direction);
   }
 
-  // dh/dp = beta - k h on either side of h = 0, with k = sgn(h) (gamma + eta s).
+  // Solves dh/dp = beta - k h, where k = sgn(h) (gamma + eta s) is constant on either side of h = 0.
   template <class U>
   [[nodiscard]] U moved_linear(const U& change, double direction) const {
     const double h0 = value_of(hysteresis_);
@@ -275,7 +279,7 @@ class BoucWen {
     const U end = hysteresis_ + change * (gain - k * hysteresis_) * phi1(U(-k * change));
     if (h0 * value_of(end) >= 0.0) return end;
     // h passes zero after a pressure change of -h0/beta * log(1 + x)/x, where x = -k h0 / beta. The
-    // integration continues from there.
+    // integration continues from h = 0.
     using std::log1p;
     const T x = -k * hysteresis_ / gain;
     const T stretch = std::abs(value_of(x)) < 1e-5 ? T(1.0 - x * 0.5 + x * x * (1.0 / 3.0)) : T(log1p(x) / x);
@@ -300,8 +304,8 @@ class BoucWen {
     return h;
   }
 
-  // Returns the number of sub-steps. In each, the relative change of the slope, n k |h|^(n-1) dp, is below
-  // 1/100, and h changes by at most 1/40 of its saturation value.
+  // Returns the number of sub-steps. In each sub-step, the relative change of the slope, n k |h|^(n-1) dp, is
+  // below 1/100, and h changes by at most 1/40 of its saturation value.
   [[nodiscard]] int steps_for(double change_kpa, double direction) const {
     constexpr int most = 100000;
     const double beta = value_of(this->beta(direction));
@@ -346,9 +350,9 @@ class BoucWen {
   }
 
   T alpha_;
-  std::array<T, 2> beta_;       // while the pressure falls and while it rises
-  std::array<T, 2> growing_;    // gamma + eta, while the pressure falls and while it rises
-  std::array<T, 2> shrinking_;  // gamma - eta, for the same two directions
+  std::array<T, 2> beta_;       // for falling and for rising pressure
+  std::array<T, 2> growing_;    // gamma + eta, for falling and for rising pressure
+  std::array<T, 2> shrinking_;  // gamma - eta, for falling and for rising pressure
   int exponent_;
   double direction_ = 1.0;
   bool follows_rate_ = false;
@@ -361,9 +365,9 @@ class BoucWen {
   T output_{0.0};
 };
 
-/// Common base of the parts of the chain's Bouc-Wen element that are separate blocks in the model. They
-/// declare `void shape(BoucWen<T>&) const`, which the chain calls once after all its blocks are constructed.
-/// They add nothing to the displacement themselves. Without bouc_wen in the chain, they have no effect.
+/// Base class of the blocks that modify the chain's Bouc-Wen element. Each of these blocks declares
+/// `void shape(BoucWen<T>&) const`. The chain calls this function once after all blocks are constructed. The
+/// blocks themselves add nothing to the displacement. In a chain without bouc_wen they have no effect.
 template <class T>
 class BoucWenPart {
  public:

@@ -7,7 +7,7 @@
 
 namespace softgrip::model {
 
-/// The equation is that of CharacteristicMap. It is monotone for every curvature.
+/// The equation is that of CharacteristicMap. The map is monotone for every curvature.
 template <class T>
 class Characteristic {
  public:

@@ -7,9 +7,9 @@
 namespace softgrip::model {
 
 /// A generalised play (Krasnosel'skii and Pokrovskii, Systems with Hysteresis, 1989, chapter 2). c is
-/// constant until it meets one of two envelopes and then follows it: the lower one upwards, the upper one
-/// downwards. With x = p/range, the upper envelope is straight and the lower one is x/(1 + bend (1 - x)).
-/// Outside [0, 1] both envelopes are one line and the block adds nothing. The mean of both envelopes is
+/// constant between two envelopes. The lower envelope moves c upwards, and the upper envelope moves c
+/// downwards. With x = p/range, the upper envelope is the line x and the lower one is x/(1 + bend (1 - x)).
+/// For x outside [0, 1] both envelopes coincide and the block adds nothing. The mean of both envelopes is
 /// subtracted, so that the gain of the model does not change. Rate independent.
 template <class T>
 class CrescentHysteresis {
@@ -35,7 +35,7 @@ class CrescentHysteresis {
   }
   [[nodiscard]] T output() const { return output_; }
 
-  // Mean by Simpson's rule for a straight p.
+  // The mean is computed by Simpson's rule for a straight p.
   Segment<T> step(const Segment<T>& in, const Surroundings&) {
     const T begin = output_;
     const T half = (in.begin + in.end) * 0.5 / range_kpa_, end = in.end / range_kpa_;

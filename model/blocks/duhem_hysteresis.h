@@ -1,5 +1,6 @@
 #pragma once
-// Loading and unloading loops of different shape: an element with one characteristic pressure per direction.
+// Hysteresis whose loading and unloading curves differ in shape. Each direction has its own characteristic
+// pressure.
 
 #include "model/block.h"
 #include "model/exponential.h"
@@ -7,9 +8,9 @@
 namespace softgrip::model {
 
 /// A Duhem operator. While the pressure falls, z approaches the unloading length. While the pressure rises, z
-/// decays over the loading length. It is rate independent and zero on the first loading. With equal lengths,
-/// the settled loop is point symmetric, as that of Bouc-Wen. With different lengths it is not. Exact for any
-/// step size.
+/// decays over the loading length. z is rate independent and zero on the first loading. With equal lengths,
+/// the settled loop is point symmetric, as the loop of Bouc-Wen is. With different lengths, the loop is not
+/// symmetric. The solution is exact for any step size.
 template <class T>
 class DuhemHysteresis {
  public:
@@ -45,7 +46,7 @@ class DuhemHysteresis {
     wound_kpa_ = moved(change, falling_);
     pressure_ = in.end;
     output_ = gain_ * wound_kpa_;
-    // Mean of the cubic through both ends and their slopes.
+    // The mean is that of the cubic with the values and slopes of z at both ends.
     const T size = falling_ ? T(-change) : change;
     const T bow =
         size * (falling_ ? unloading_per_kpa_ : loading_per_kpa_) * (wound_kpa_ - before) * (1.0 / 12.0);

@@ -51,15 +51,16 @@ class Inertia {
   }
 
  private:
-  // The particular solution, a parabola a + b t + c t^2, plus the decaying homogeneous solution.
+  // Computes the particular solution, a parabola a + b t + c t^2, plus the decaying homogeneous solution.
   void advance(const Segment<T>& in) {
     using std::cos;
     using std::exp;
     using std::sin;
     using std::sqrt;
     const T& dt = in.duration_s;
-    const T bend =
-        value_of(omega_) * value_of(dt) < 1e-6 ? T(0.0) : in.bend();  // below, only rounding errors remain
+    const T bend = value_of(omega_) * value_of(dt) < 1e-6
+                       ? T(0.0)
+                       : in.bend();  // bend of short segments: rounding error
     const T c = -bend / (dt * dt);
     const T b = (in.end - in.begin + bend) / dt - 4.0 * damping_ * c / omega_;
     const T a = in.begin - 2.0 * damping_ * b / omega_ - 2.0 * c / (omega_ * omega_);

@@ -1,5 +1,6 @@
 #pragma once
-// Pressure drop between valve and finger, also while the pressure is held.
+// Pressure drop between valve and finger, caused by the flow through a leak at the finger. It also exists
+// while the pressure is constant.
 
 #include "model/block.h"
 #include "model/line_loss.h"
@@ -27,8 +28,8 @@ class Leak {
   void step(const Segment<T>& in, const Surroundings&, Next&& next) {
     const T begin = output_;
     output_ = loss_.behind(in.end);
-    // The chord between both ends is used, because only the preceding lag curves the pressure within a
-    // sample.
+    // Replaces the map by its chord between both ends, because only the preceding lag curves the pressure
+    // within a sample.
     const T middle = (begin + output_) * 0.5;
     const double way = value_of(in.end) - value_of(in.begin);
     const T slope = way != 0.0 ? T((output_ - begin) / (in.end - in.begin)) : T(1.0);

@@ -8,8 +8,8 @@
 
 namespace softgrip::model {
 
-/// z = y + s sin(2 pi f t) + c cos(2 pi f t), where t is the time of the campaign. The amplitude is sqrt(s^2
-/// + c^2).
+/// z = y + s sin(2 pi f t) + c cos(2 pi f t), where t is the time since the start of the campaign. The
+/// amplitude is sqrt(s^2 + c^2).
 template <class T>
 class PeriodicDisturbance {
  public:

@@ -15,9 +15,9 @@ namespace softgrip::model {
 
 /// y += w1 play_r1(p) + w2 play_r2(p) + ... A play with threshold 0 is the elastic gain. Rate independent.
 /// With nonnegative weights, y rises with the pressure and has an inverse. If the finger was loaded before,
-/// the operators start in the positions that the earlier load left. The first loading is then no steeper than
-/// later ones, and y is 0 at that state. With nonlinear envelopes (see EnvelopeMap) the plays are
-/// generalised: loops are wider where the envelopes are steeper.
+/// the operators start in the positions to which the earlier load moved them. The first loading is then no
+/// steeper than later ones, and y is 0 in this initial state. With nonlinear envelopes (see EnvelopeMap) the
+/// plays are generalised, and the loops are wider at pressures where the envelopes are steeper.
 template <class T>
 class PrandtlIshlinskii {
  public:
@@ -92,6 +92,7 @@ class PrandtlIshlinskii {
     T weight;
   };
 
+  /// Steps all operators and returns the displacement.
   /// @param in  pressure after the envelope map.
   Segment<T> moved(const Segment<T>& in) {
     const T begin = output_;

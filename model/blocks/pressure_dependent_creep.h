@@ -12,8 +12,8 @@
 namespace softgrip::model {
 
 /// Kelvin-Voigt branches, each above its own threshold pressure (hinge): tau x' = c max(p - hinge, 0) - x.
-/// Exact for straight pressure that does not pass a hinge within the segment, and up to the corner if it
-/// does.
+/// Exact for straight pressure that does not pass a hinge within the segment. Otherwise the pressure above
+/// the hinge is approximated by a parabola with the exact mean.
 template <class T>
 class PressureDependentCreep {
  public:
@@ -99,13 +99,14 @@ class PressureDependentCreep {
   static U above(const U& pressure, const T& hinge) {
     return value_of(pressure) >= value_of(hinge) ? U(pressure - hinge) : U(0.0);
   }
-  /// Returns the mean over a straight line from `begin` to `end`.
+  /// Returns the mean pressure above the hinge while the pressure changes linearly from `begin` to `end`.
   template <class U>
   static U mean_above(const T& begin, const U& end, const T& hinge) {
     const U first(above(begin, hinge)), last = above(end, hinge);
     const bool begins = value_of(begin) >= value_of(hinge), ends = value_of(end) >= value_of(hinge);
     if (begins == ends) return (first + last) * 0.5;
-    // The part above the hinge is a triangle. Its height is that of the end above the hinge.
+    // The part above the hinge is a triangle. Its height is the pressure above the hinge at the end that lies
+    // above the hinge.
     const U height = begins ? first : last;
     return height * height * 0.5 / (begins ? U(begin - end) : U(end - begin));
   }

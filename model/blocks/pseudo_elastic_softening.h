@@ -13,8 +13,8 @@ namespace softgrip::model {
 /// and Ogden, Int. J. Solids Struct. 41, 2004). The driving pressure q replaces the stored energy. Above the
 /// largest load, q = p. Below it, p = q/(1 + s m tanh((m - q)/range)), where m is the largest pressure so
 /// far. All later unloading and loading follows one curve, which joins the first loading at m. q rises with p
-/// for all parameter values. The block has a memory over the campaign: rest() keeps m, only reset() clears
-/// it.
+/// for all parameter values. The block remembers m over the whole campaign: rest() keeps m, and only reset()
+/// clears m.
 template <class T>
 class PseudoElasticSoftening {
  public:
@@ -63,8 +63,8 @@ class PseudoElasticSoftening {
   }
 
  private:
-  /// Returns q at a pressure with a constant largest load. One Newton step over a number completes its
-  /// derivatives.
+  /// Returns q at the pressure `p` for a constant largest load. The last Newton step uses the type U, so that
+  /// the result has the derivatives.
   template <class U>
   [[nodiscard]] U map(const U& p) const {
     const double pressure = value_of(p), largest = value_of(largest_kpa_);
@@ -76,8 +76,9 @@ class PseudoElasticSoftening {
     return from + (p * (1.0 + share) - from) * (1.0 / slope(from, pressure, largest));
   }
 
-  /// Solves by Newton's method between p and m, which contain the root, from the present output. Bisection
-  /// replaces a step that leaves the interval. The result has half the digits; map() makes the last step.
+  /// Returns q by Newton's method in the interval from p to m, which contains the root. The iteration starts
+  /// at the present output. Bisection replaces a step that leaves the interval. The result has half of the
+  /// digits, and the last Newton step in map() provides the rest.
   [[nodiscard]] double solved(double pressure, double largest) const {
     double low = pressure, high = largest, q = std::clamp(value_of(output_), low, high);
     const double strength = value_of(softening_per_kpa_) * largest, range = value_of(range_kpa_);
@@ -93,7 +94,7 @@ class PseudoElasticSoftening {
     return q;
   }
 
-  /// d/dq of q - p (1 + s m tanh((m - q)/range)); at least 1 for p >= 0.
+  /// Returns the derivative of q - p (1 + s m tanh((m - q)/range)) with respect to q; at least 1 for p >= 0.
   [[nodiscard]] double slope(double q, double pressure, double largest) const {
     const double range = value_of(range_kpa_), t = hyperbolic_tangent((largest - q) / range);
     return 1 + pressure * value_of(softening_per_kpa_) * largest * (1 - t * t) / range;

@@ -7,8 +7,8 @@
 
 namespace softgrip::model {
 
-/// Rounds to the nearest multiple of the step. Derivatives pass unchanged, because those of a step function
-/// are useless.
+/// Rounds to the nearest multiple of the step. The derivatives of the displacement are kept, because the
+/// derivative of the rounding is 0 almost everywhere and useless for a fit.
 template <class T>
 class Quantisation {
  public:

@@ -14,8 +14,7 @@ class RateDependentLevelling : public BoucWenPart<T> {
       "rate_dependent_levelling", Station::actuator, Kind::element, Inverse::implicit,
       "Rate-dependent saturation",
       "The loop width grows with rate beyond the viscous part: bouc_wen saturates sooner at high rates.",
-      "bouc_wen: eta is replaced by eta (1 + levelling r/(r + rate)), settling r' = |p'| - r");  // words-ok:
-                                                                                                 // a key
+      "bouc_wen: eta is replaced by eta (1 + levelling r/(r + rate)), settling r' = |p'| - r");  // words-ok
   static constexpr std::array parameters{
       parameter("levelling", "", "share by which eta of bouc_wen is larger at high rates", Typical{0.2},
                 Within{-0.9, 100.0}, Scale{0.1}, Neutral{0.0}),

@@ -6,9 +6,9 @@
 
 namespace softgrip::model {
 
-/// Dahl's friction with relaxation: z' = p' - z (|p'|/width + 1/tau), y -= gain z. At rates far above
-/// width/tau it is a hysteresis of that width. At rates far below, it is a viscous branch whose loop shrinks
-/// with the rate. Exact for straight pressure and any step size.
+/// Dahl's friction with relaxation: z' = p' - z (|p'|/width + 1/tau), y -= gain z. At pressure rates far
+/// above width/tau, the block is a hysteresis with this width. At rates far below width/tau, it is a viscous
+/// branch whose loop shrinks with the rate. Exact for straight pressure and any step size.
 template <class T>
 class RelaxingFriction {
  public:
@@ -58,7 +58,7 @@ class RelaxingFriction {
     return value_of(change) < 0.0 ? U(-change) : change;
   }
 
-  // dz/ds = change - decay z over s in [0, 1].
+  // Returns z(1) of dz/ds = change - decay z, where s runs from 0 to 1 over the segment.
   template <class U>
   [[nodiscard]] U moved(const U& change, const U& decay) const {
     return held_kpa_ + (change - decay * held_kpa_) * phi1(U(-decay));

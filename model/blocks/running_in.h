@@ -8,7 +8,8 @@
 
 namespace softgrip::model {
 
-/// Multiplies y by 1 + r (1 - exp(-t/tau)), limited to positive values. t is the time of the campaign.
+/// Multiplies y by 1 + r (1 - exp(-t/tau)), limited to positive values. t is the time since the start of the
+/// campaign.
 template <class T>
 class RunningIn : public SurroundingsGain<RunningIn<T>, T> {
  public:

@@ -5,7 +5,7 @@
 
 namespace softgrip::model {
 
-/// z = y + rate t, where t is the time of the campaign. The drift is zero at its start.
+/// z = y + rate t, where t is the time since the start of the campaign.
 template <class T>
 class SensorDrift {
  public:

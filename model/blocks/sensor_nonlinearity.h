@@ -7,7 +7,7 @@ namespace softgrip::model {
 
 /// With x = y/range: z = y + 4 bow x (1 - x) + 6 sqrt(3) wave x (1 - x) (1 - 2x) within the range, continued
 /// as straight lines outside. The error is zero at both ends of the range and `bow` in the middle. The second
-/// term adds up to `wave` below the middle and down to -`wave` above it.
+/// term is between 0 and `wave` below the middle, and between -`wave` and 0 above the middle.
 template <class T>
 class SensorNonlinearity {
  public:

@@ -7,7 +7,7 @@
 
 namespace softgrip::model {
 
-/// z = y + warm_up (1 - exp(-t/tau)), where t is the time of the campaign. The drift is zero at its start.
+/// z = y + warm_up (1 - exp(-t/tau)), where t is the time since the start of the campaign.
 template <class T>
 class SensorWarmUp {
  public:

@@ -7,8 +7,9 @@
 
 namespace softgrip::model {
 
-/// Models tau x' = gain p - x. It is equivalent to a Kelvin-Voigt branch of stiffness 1/gain and damping
-/// tau/gain. It is also defined at gain 0, and it is separate from the branches of the given model.
+/// Models tau x' = gain p - x. The block is equivalent to a Kelvin-Voigt branch of stiffness 1/gain and
+/// damping tau/gain. Unlike such a branch, it is also defined at gain 0, and its parameters are separate from
+/// those of kelvin_voigt.
 template <class T>
 class SlowCreep {
  public:

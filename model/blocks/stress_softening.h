@@ -6,9 +6,9 @@
 
 namespace softgrip::model {
 
-/// q = p (1 + s m/(1 + b m)), where m is the largest pressure so far. The first loading curve is steeper than
-/// a line. Every later curve up to m is straight and lies above it. b makes the softening saturate. The block
-/// has a memory over the campaign: rest() keeps m, only reset() clears it.
+/// q = p (1 + s m/(1 + b m)), where m is the largest pressure so far. The first loading curve is convex.
+/// Every later curve up to m is straight and lies above the first loading curve. b makes the softening
+/// saturate. The block remembers m over the whole campaign: rest() keeps m, and only reset() clears m.
 template <class T>
 class StressSoftening {
  public:
@@ -69,8 +69,8 @@ class StressSoftening {
     next(Segment<T>{in.duration_s, begin, output_, map(in.mean, largest_kpa_)});
   }
 
-  // Above it, the current load is the largest so far. Simpson's rule for a straight p gives the mean of the
-  // added pressure. It is exact if b is zero.
+  // Above the previous largest load, the current load is the largest so far. Simpson's rule for a straight p
+  // gives the mean of the added pressure. This mean is exact if b is zero.
   template <class Next>
   void anew(const Segment<T>& in, Next&& next) {
     const T begin = output_;

@@ -8,7 +8,7 @@
 namespace softgrip::model {
 
 /// p = u (1 - coupling * loss), loss = max(0, 1 - supply/nominal). The supply pressure is a part of the
-/// surroundings. A log needs its supply_kpa column.
+/// surroundings. A log for this block needs the column supply_kpa.
 template <class T>
 class SupplySag {
  public:

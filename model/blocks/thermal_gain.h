@@ -7,7 +7,7 @@
 namespace softgrip::model {
 
 /// Multiplies y by 1 + a (temperature - 20 degC), limited to positive values. The temperature is a part of
-/// the surroundings. A log needs its temperature_c column.
+/// the surroundings. A log for this block needs the column temperature_c.
 template <class T>
 class ThermalGain : public SurroundingsGain<ThermalGain<T>, T> {
  public:

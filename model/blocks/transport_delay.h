@@ -76,8 +76,8 @@ class TransportDelay {
     T mean;
   };
 
-  // Two pieces per sample (a jump and a ramp), doubled for samples that are shorter than the nominal sample
-  // time.
+  // Returns space for two pieces per sample (a jump and a ramp), doubled for samples that are shorter than
+  // the nominal sample time.
   static std::size_t initial_size(double delay_s, double sample_time_s) {
     if (sample_time_s <= 0) return 64;
     const std::size_t needed = 16 + static_cast<std::size_t>(4.0 * delay_s / sample_time_s);
@@ -86,8 +86,9 @@ class TransportDelay {
     return size;
   }
 
-  // Rounding must not decide whether a kink or a jump falls before or after a sample: lengths within 1e-9 are
-  // equal. With derivatives the tolerance is zero, because it would remove the derivatives.
+  // Rounding must not decide if a kink or a jump falls before or after a sample. Durations that differ by a
+  // relative 1e-9 or less are therefore treated as equal. For number types with derivatives the tolerance is
+  // zero, because a tolerance would remove the derivatives.
   static constexpr double snap = std::is_arithmetic_v<T> ? 1e-9 : 0.0;
   static bool ends_in(const T& piece_s, const T& remaining_s) {
     const double piece = value_of(piece_s);

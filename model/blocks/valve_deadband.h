@@ -6,7 +6,8 @@
 
 namespace softgrip::model {
 
-/// After a reversal, the pressure is constant until the command has moved back by the band. Then it follows.
+/// After a reversal, the pressure is constant until the command has moved back by the band. Then the pressure
+/// follows the command.
 template <class T>
 class ValveDeadband {
  public:

@@ -9,8 +9,8 @@
 
 namespace softgrip::model {
 
-/// Exact for straight input, including the reversal of the output. If the output has its extremum within a
-/// segment (it meets the input), two segments are passed on.
+/// Exact for straight input, including the reversal of the output. If the output meets the input within a
+/// segment, the output has an extremum at this point, and two segments are passed on.
 template <class T>
 class ValveLag {
  public:
@@ -59,8 +59,8 @@ class ValveLag {
   }
 
   // The gap d = input - output follows d' = r - d / tau on a straight input of slope r. It closes after t =
-  // tau log(1 - d(0) / (r tau)), when output = input. A reversal within a millionth of either end is ignored:
-  // its effect on Bouc-Wen is of second order in that time.
+  // tau log(1 - d(0) / (r tau)), when output = input. A reversal within a millionth of the duration from
+  // either end is ignored, because its effect on Bouc-Wen is of second order in that time.
   template <class Next>
   bool turns(const Segment<T>& in, const T& begin, const T& gap_begin, const T& end, Next&& next) const {
     using std::log1p;

@@ -7,12 +7,12 @@
 
 namespace softgrip::model {
 
-/// Keeps the pressure until the command differs by more than the band. Then it jumps to the command and
-/// sticks again, so that a ramp becomes a series of steps. It models the stiction of positioners (stick band
-/// equal to slip jump: Choudhury, Thornhill and Shah, Control Engineering Practice 13, 2005) and the dead
-/// band of digital regulators. All jumps of a segment are passed on at their times. If a command crosses a
-/// band in less than `rest_s`, the valve follows it to its end, because the spool does not come to rest in
-/// between.
+/// Keeps the pressure until the command differs from it by more than the band. Then the pressure jumps to the
+/// command and sticks again, so that a ramp becomes a series of steps. The block models the stiction of
+/// positioners (stick band equal to slip jump: Choudhury, Thornhill and Shah, Control Engineering Practice
+/// 13, 2005) and the dead band of digital regulators. All jumps of a segment are passed on at their times. If
+/// the command of a segment crosses one band in less than `rest_s`, the valve follows the command to the end
+/// of the segment, because the spool does not come to rest between the jumps.
 template <class T>
 class ValveStiction {
  public:

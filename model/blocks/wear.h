@@ -8,7 +8,8 @@
 namespace softgrip::model {
 
 /// Multiplies y by 1 + c l, limited to positive values. l is the total travel of the actuator in the
-/// campaign, up and down. The block has a memory over the campaign: rest() keeps l, only reset() clears it.
+/// campaign, up and down. The block remembers l over the whole campaign: rest() keeps l, and only reset()
+/// clears l.
 template <class T>
 class Wear {
  public:

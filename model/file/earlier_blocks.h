@@ -8,13 +8,14 @@
 
 namespace softgrip::model {
 
-/// An earlier block. Its keys are those of its successors, under the same names.
+/// An earlier block. Its keys have the same names as the keys of its successors.
 struct EarlierBlock {
   std::string_view id;
-  std::vector<std::size_t> types;  ///< its successors
-  std::string_view choice;  ///< key whose number selects one successor; empty: every successor with a value
-                            ///< that is not neutral
-  bool adds = false;        ///< several successors together have the same effect as the earlier block
+  std::vector<std::size_t> types;  ///< types of the successors
+  /// Key whose number selects one successor. If it is empty, each successor with a value that is not neutral
+  /// is used.
+  std::string_view choice;
+  bool adds = false;  ///< several successors together have the same effect as the earlier block
 };
 
 /// Returns the earlier block of this id, or nullptr. Some ids are also used by one of the successors.

@@ -39,7 +39,7 @@ double read_value(MapReader& map, const ParameterSpec& spec, const std::string& 
   return map.number(name, {spec.lower, spec.upper});
 }
 
-// Counts parts up to the first missing number: k1, c1, k2, c2, ...
+// Returns the largest number of a part (k1, c1, k2, c2, ...) that occurs in the map, at least min_parts.
 std::size_t count_parts(const MapReader& map, const BlockDescriptor& descriptor) {
   std::size_t parts = 0;
   for (std::size_t part = 1; part <= descriptor.max_parts; ++part) {
@@ -142,8 +142,8 @@ class ModelReader {
     model.blocks.push_back(std::move(block));
   }
 
-  /// Reads a block of an earlier version into those successors that have an effect with its numbers. If none
-  /// has an effect, the first successor is used.
+  /// Converts a block of an earlier version to those successors that have an effect with the given values. If
+  /// none has an effect, the first successor is used.
   void read_earlier(const Node::Entry& entry, const EarlierBlock& earlier, Model& model) {
     MapReader map(document_, entry.value, problems_, entry.key);
     std::vector<std::size_t> types = earlier.types;
@@ -207,7 +207,7 @@ class ModelReader {
     }
   }
 
-  /// @param absent_is_neutral  a number that is not given has its neutral value.
+  /// @param absent_is_neutral  if true, a parameter that the file omits has its neutral value.
   BlockSpec read_values(MapReader& map, std::size_t type, bool absent_is_neutral = false) {
     const BlockDescriptor& descriptor = catalogue()[type];
     const std::size_t parts = descriptor.repeated.empty() ? 0 : count_parts(map, descriptor);

@@ -26,7 +26,8 @@ namespace softgrip::model {
 [[nodiscard]] std::optional<Model> read_model(const document::Document& document,
                                               document::Problems& problems);
 
-/// Like read_model(), for a rig, which measures in mm: a model with another output unit is an error.
+/// Reads a model for a rig, as read_model() does. A rig measures in mm, so a model with another output unit
+/// is an error.
 [[nodiscard]] std::optional<Model> read_rig_model(const document::Document& document,
                                                   document::Problems& problems);
 
