@@ -17,11 +17,11 @@ using model::Reading;
 /// The result of an exchange with the board.
 enum class BusStatus : std::uint8_t {
   ok,
-  disconnected,      ///< no session; reconnect() is due
+  disconnected,      ///< no session; connect() is necessary
   timed_out,         ///< the deadline of the exchange passed
   bad_reply,         ///< wrong unit id, length, transaction id or function; the session must be closed
   exception,         ///< the board answered with a Modbus exception
-  write_refused,     ///< the read-back shows that the output did not follow
+  write_refused,     ///< a command is invalid or out of range, or the read-back shows another value
   overwritten,       ///< another client has written to the board since the last exchange
   watchdog_tripped,  ///< the board's own watchdog holds the outputs at their safe value
   closed_at_once,    ///< the other end accepted the connection and closed it before its first response
@@ -40,8 +40,8 @@ class Board {
 
   [[nodiscard]] virtual std::size_t channels() const noexcept = 0;
 
-  /// Opens or reopens the session within `deadline`; may block until then. Never called in a tick. The
-  /// outputs of the board do not change: the first exchange() writes the safe value.
+  /// Opens or reopens the session within `deadline` and may block for this time. It is never called in a
+  /// tick. The outputs of the board do not change. The first exchange() writes the safe value.
   [[nodiscard]] virtual BusStatus connect(std::chrono::nanoseconds deadline) noexcept = 0;
 
   /// Writes one pressure per channel [kPa] and reads all channels within `deadline`. Unless it returns `ok`,
@@ -49,12 +49,13 @@ class Board {
   [[nodiscard]] virtual BusStatus exchange(std::span<const double> commands_kpa, std::span<Reading> readings,
                                            std::chrono::nanoseconds deadline) noexcept = 0;
 
-  /// Returns the reason why connect() or exchange() failed, for the event log. Valid until the next call of
-  /// either.
+  /// Returns the reason why the last connect() or exchange() failed, for the event log. The text is valid
+  /// until the next call of one of these functions.
   [[nodiscard]] virtual const char* detail() const noexcept { return ""; }
 
-  /// Returns the output of a channel in an exchange that ended with `write_refused` [kPa]. NaN if the output
-  /// was as written, or if the board does not report it. Valid until the next exchange.
+  /// Returns the output of a channel that the board reported in an exchange that ended with `write_refused`
+  /// [kPa]. NaN if the output had the written value, or if the board does not report its outputs. The value
+  /// is valid until the next exchange.
   [[nodiscard]] virtual double found_kpa(std::size_t /*channel*/) const noexcept {
     return std::numeric_limits<double>::quiet_NaN();
   }
@@ -72,8 +73,8 @@ class Board {
   /// Returns true if the board sets its outputs to a safe value when the daemon stops sending requests.
   [[nodiscard]] virtual bool has_watchdog() const noexcept = 0;
 
-  /// Returns the time without a feeding request after which the board sets the first of its outputs to the
-  /// safe value; 0 if it never does.
+  /// Returns the shortest time without a request that feeds the watchdog after which the board sets an output
+  /// to its safe value; 0 if the board has no watchdog.
   [[nodiscard]] virtual std::chrono::nanoseconds watchdog_time() const noexcept = 0;
 
   /// Returns true if another client that only reads also feeds the watchdog. The outputs then keep their

@@ -17,8 +17,8 @@ namespace softgrip::drivers {
 
 /// The representation of one number in registers.
 enum class RegisterKind : std::uint8_t { uint16, int16, uint32, int32, float32 };
-/// The word of a two-register number at the lower address, and whether the two bytes of each register are
-/// swapped.
+/// The order of the two words of a two-register number (high_first: the high word has the lower address), and
+/// of the two bytes of each register.
 enum class WordOrder : std::uint8_t {
   high_first,
   low_first,
@@ -39,12 +39,12 @@ enum class ElectricalUnit : std::uint8_t { volt, milliampere, kilopascal };
 /// Returns "V", "mA" or "kPa".
 [[nodiscard]] std::string_view name_of(ElectricalUnit unit) noexcept;
 
-/// Consecutive numbers of one kind. `address` is the address on the wire (from 0): the loader has subtracted
-/// the file's address_base.
+/// Consecutive numbers of one kind. `address` is the address on the wire, from 0. The loader of the board
+/// file has subtracted the file's address_base.
 struct RegisterBlock {
   std::uint8_t function = 0;  ///< function code for reading (1-4) or writing (5, 6, 16)
   std::uint16_t address = 0;
-  std::uint16_t count = 0;  ///< in numbers, not in registers
+  std::uint16_t count = 0;  ///< quantity of numbers, each with one or two registers
   RegisterKind kind = RegisterKind::uint16;
 
   [[nodiscard]] constexpr std::uint16_t registers() const noexcept {
@@ -57,13 +57,13 @@ struct RegisterBlock {
   }
 };
 
-/// Terminals of one direction: their registers and the scaling of the raw numbers. The count is 0 if a module
-/// has no terminals of this direction.
+/// All input terminals or all output terminals of a module: their registers and the scaling of the raw
+/// numbers. `registers.count` is 0 if the module has no such terminals.
 struct TerminalBlock {
   RegisterBlock registers;
   ElectricalUnit unit = ElectricalUnit::volt;
   TwoPoints scaling;   ///< x: raw, y: in `unit`
-  double raw_min = 0;  ///< lower end of the converter's range; a write beyond an end is refused
+  double raw_min = 0;  ///< lower end of the converter's range; commands outside the range are limited to it
   double raw_max = 0;
   int bits = 0;                    ///< resolution over [raw_min, raw_max]; 0: not quantised (float)
   std::vector<double> error_raws;  ///< raw numbers that are error codes instead of values (inputs)
@@ -81,8 +81,8 @@ struct StatusBlock {
 struct ReadBack {
   RegisterBlock registers;   ///< same kind and scaling as the outputs
   double tolerance_raw = 0;  ///< a larger difference means that the write was refused
-  /// Number of exchanges after which the board shows a written value at the latest. Earlier values are
-  /// accepted too.
+  /// Largest number of exchanges until the board reports a written value. Until then, the values written
+  /// before are also accepted.
   std::uint32_t lag_exchanges = 0;
 };
 
@@ -91,23 +91,24 @@ struct FixedWrite {
   std::uint8_t function = 0;  ///< 5, 6 or 16
   std::uint16_t address = 0;
   std::uint16_t value = 0;  ///< for a coil: 0 or 1
-  /// For a heartbeat: value of each second write, because the board waits for a change.
+  /// Value of every second write, for a heartbeat whose board expects a change.
   std::optional<std::uint16_t> alternate{};
 };
 
 /// The watchdog of the board, which acts when the daemon sends no requests.
 struct BoardWatchdog {
   enum class Kind : std::uint8_t {
-    none,                   ///< outputs keep their last value without a limit of time
-    communication_timeout,  ///< outputs go to the safe value after timeout_s without a feeding request
+    none,                   ///< outputs keep their last value for an unlimited time
+    communication_timeout,  ///< outputs go to the safe value after timeout_s without a request that feeds it
   };
   enum class Feed : std::uint8_t {
-    any_request,  ///< each message that the board receives
+    any_request,  ///< each request that the board receives
     functions,    ///< only requests with one of `functions`
     feed_write,   ///< only the write `feed_write`, which each exchange contains
   };
+  /// The registers or bits in which the board reports that its watchdog has tripped.
   struct Tripped {
-    std::uint8_t function = 0;  ///< 1 or 2 (a coil, an input) or 3, 4 (a register)
+    std::uint8_t function = 0;  ///< function code 1 or 2 (coil, discrete input), or 3 or 4 (register)
     std::uint16_t address = 0;
     std::uint16_t mask = 0xffff;  ///< tripped if (number & mask) is not 0 ...
     std::uint16_t count = 1;      ///< ... in any of `count` numbers (one per output)
@@ -120,14 +121,14 @@ struct BoardWatchdog {
   };
 
   Kind kind = Kind::none;
-  double timeout_s = 0;                 ///< as set in the board (by `setup` or another tool)
+  double timeout_s = 0;                 ///< time-out that `setup` or another tool has set in the board [s]
   std::vector<double> safe_electrical;  ///< safe value of each output, in the outputs' unit
   Feed feed = Feed::any_request;
   std::vector<std::uint8_t> functions;
   std::optional<FixedWrite> feed_write;
-  std::optional<Tripped> tripped;      ///< where the board reports that it tripped
-  std::vector<FixedWrite> clear;       ///< writes that end the tripped state in order; empty: any write
-  std::optional<ClientCount> clients;  ///< where the board counts its clients, including this program
+  std::optional<Tripped> tripped;  ///< place where the board reports that its watchdog has tripped
+  std::vector<FixedWrite> clear;   ///< writes that end the tripped state, in order; empty: any write ends it
+  std::optional<ClientCount> clients;  ///< place where the board counts its clients, including this program
 
   /// Returns true if requests of a client that only reads also feed the watchdog.
   [[nodiscard]] bool fed_by_reading() const noexcept {
@@ -141,7 +142,7 @@ struct BoardWatchdog {
 /// The contents of a board file.
 struct BoardMap {
   std::string name;
-  std::string source;    ///< source of its numbers, one line
+  std::string source;    ///< source of the numbers in the file, one line
   int address_base = 0;  ///< number of the first register in the file; for messages only
   WordOrder word_order = WordOrder::high_first;
   TerminalBlock inputs;
@@ -156,8 +157,8 @@ struct BoardMap {
   std::optional<StatusBlock> input_status;
   std::optional<ReadBack> read_back;
   BoardWatchdog watchdog;
-  /// Written in this order after a session was opened. If the board's watchdog has tripped, it is cleared
-  /// first.
+  /// Writes after a session was opened, in order. If the board's watchdog has tripped, the watchdog is
+  /// cleared before these writes.
   std::vector<FixedWrite> setup;
 
   [[nodiscard]] bool has_inputs() const noexcept { return inputs.registers.count > 0; }

@@ -33,7 +33,7 @@ class Checker {
     scales(where, input);
   }
 
-  /// Several channels may share one temperature sensor.
+  /// Checks a temperature sensor, which several channels may share.
   void thermometer(const ChannelWiring& channel, const InputWiring& input) {
     if (!thermometers_.emplace(input.module, input.input).second) {
       scales(of_channel(channel, "temperature"), input);

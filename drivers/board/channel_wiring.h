@@ -1,5 +1,5 @@
 #pragma once
-// The wiring of one finger to a board: module, terminals and scaling. The rig file states it.
+// The wiring of one finger to a board, as the rig file states it: module, terminals and scaling.
 
 #include <cstddef>
 #include <optional>
@@ -16,14 +16,14 @@ namespace softgrip::drivers {
 /// optoNCDT 1402: 3.75 mA).
 struct SensorErrorCode {
   double electrical = 0;  ///< V or mA, in the unit of the input
-  double tolerance = 0;   ///< in the same unit, at least 0
+  double tolerance = 0;   ///< largest difference from `electrical`, in the same unit, at least 0
 };
 
 /// A sensor on an input of the board.
 struct InputWiring {
   std::size_t input = 0;                       ///< terminal, from 0
   ElectricalUnit unit = ElectricalUnit::volt;  ///< as in the rig file; must equal the board's unit
-  TwoPoints scaling;                           ///< x: V or mA, y: mm, kPa or degrees C; any sign of slope
+  TwoPoints scaling;                           ///< x: V or mA, y: mm, kPa or degrees C; rising or falling
   double valid_min = 0;  ///< electrical range in which a reading is valid, both ends included
   double valid_max = 0;
   std::vector<SensorErrorCode> error_codes;

@@ -18,13 +18,14 @@ struct JudgedInput {
   model::Validity validity = model::Validity::none_yet;
 };
 
-/// Determines the value and validity of one input. Error codes are checked before the range, because sensors
-/// place their codes outside the range. The order is: the board's error codes and status register (`status`,
-/// if the map has one), the sensor's error codes, the electrical range.
+/// Determines the value and validity of one input. The board's error codes have priority over all other
+/// checks, and the sensor's error codes over the electrical range, because sensors place their codes outside
+/// the range. If the sensor reports no error and the map has a status register, a `status` that is not ok
+/// replaces the result of the range check.
 [[nodiscard]] JudgedInput judge(const BoardMap& map, const InputWiring& wiring, double raw,
                                 std::optional<std::uint16_t> status) noexcept;
 
-/// Determines the validity of a value in V or mA that the board reports as good.
+/// Determines the value and validity of an input in V or mA for which the board reports no error.
 [[nodiscard]] JudgedInput judge(const InputWiring& wiring, double electrical) noexcept;
 
 }  // namespace softgrip::drivers

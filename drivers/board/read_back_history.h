@@ -1,5 +1,5 @@
 #pragma once
-// Compares the outputs that a board reports with those written now or in a few earlier exchanges.
+// Compares the outputs that a board reports with the outputs that the last exchanges wrote.
 
 #include <cmath>
 #include <cstddef>
@@ -10,8 +10,8 @@
 
 namespace softgrip::drivers {
 
-/// The raw numbers written in the last exchanges of a session, as many as the board's read-back may lag.
-/// Allocates only in the constructor.
+/// The raw numbers of the last exchanges of a session. It stores the present exchange and as many earlier
+/// ones as the board's read-back may lag. Only the constructor allocates.
 class ReadBackHistory {
  public:
   ReadBackHistory(const ReadBack& rules, std::size_t channels)
@@ -20,7 +20,7 @@ class ReadBackHistory {
         channels_(channels),
         written_(depth_ * channels) {}
 
-  /// Begins a new session, in which the earlier writes are unknown.
+  /// Begins a new session and discards the stored numbers.
   void forget() noexcept { exchanges_ = 0; }
 
   /// Stores the raw numbers that one exchange wrote, one per channel.
@@ -29,8 +29,8 @@ class ReadBackHistory {
     for (std::size_t i = 0; i < channels_; ++i) written_[at + i] = raws[i];
   }
 
-  /// Returns true if `raw` is within the tolerance of a number that the board may show now. At the beginning
-  /// of a session the board may show earlier numbers, so all numbers are accepted. NaN is never accepted.
+  /// Returns true if `raw` is within the tolerance of a stored number. At the beginning of a session the
+  /// board may still report numbers of the last session, so all numbers are accepted. NaN is never accepted.
   [[nodiscard]] bool accepts(std::size_t channel, double raw) const noexcept {
     if (exchanges_ < depth_) return !std::isnan(raw);
     for (std::size_t i = 0; i < depth_; ++i) {

@@ -10,7 +10,7 @@
 
 namespace softgrip::drivers {
 
-/// Round trips measured when the session was opened. The first ones are kept.
+/// Durations of the first round trips (up to 32) after the session was opened.
 class RoundTrip {
  public:
   void reset() noexcept { count_ = 0; }
@@ -18,7 +18,7 @@ class RoundTrip {
     if (count_ < durations_.size()) durations_[count_++] = duration;
   }
   [[nodiscard]] std::size_t count() const noexcept { return count_; }
-  /// The next two functions return 0 without a measurement.
+  /// Median and longest duration [s]; 0 without a measurement.
   [[nodiscard]] double median_s() const noexcept;
   [[nodiscard]] double slowest_s() const noexcept;
 
@@ -27,17 +27,18 @@ class RoundTrip {
   std::size_t count_ = 0;
 };
 
-/// Returns the duration of `transactions` consecutive round trips. It uses the measured median, because a
-/// single round trip may be delayed by other load of this machine; the text also states the slowest one.
-/// Without a measurement it uses an assumed round trip, and the text states this.
+/// Returns the duration of `transactions` consecutive round trips and its explanation. The calculation uses
+/// the measured median, because other load of this machine may delay single round trips. The explanation also
+/// states the slowest one. Without a measurement, the calculation uses an assumed round trip, and the
+/// explanation states this.
 [[nodiscard]] Board::Budget tcp_cost(std::size_t transactions, const std::string& plan,
                                      const std::string& host, const RoundTrip& measured);
 
 /// Returns, for example, "9.7 ms".
 [[nodiscard]] std::string milliseconds(double seconds);
 
-/// Returns the sum of the costs of links that are used one after the other, with their texts and the possible
-/// rate.
+/// Returns the duration of an exchange over links that are used one after the other. The explanation joins
+/// those of the links and states the highest possible rate.
 [[nodiscard]] Board::Budget sum_of(std::span<const Board::Budget> costs);
 
 }  // namespace softgrip::drivers

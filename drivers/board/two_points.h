@@ -3,8 +3,9 @@
 
 namespace softgrip::drivers {
 
-/// y over x through (x0, y0) and (x1, y1). A sensor with 4-20 mA whose reading decreases with the current is
-/// {4, 85, 20, 15}. Requires x0 != x1, and y0 != y1 for x_at(); loaders check this.
+/// The line through (x0, y0) and (x1, y1). For example, {4, 85, 20, 15} describes a sensor with 4-20 mA whose
+/// reading decreases with the current. Requires x0 != x1, and y0 != y1 for x_at(). wiring_problems() and the
+/// loaders check this.
 struct TwoPoints {
   double x0 = 0;
   double y0 = 0;

@@ -34,7 +34,7 @@ Failure refused(std::string message, std::string hint = {}) {
   return {Failure::Kind::refused, 0, std::move(message), std::move(hint)};
 }
 
-/// Explains an errno of opening or requesting to the author of the rig file.
+/// Returns the failure of opening a chip or requesting a line, with a hint for the author of the rig file.
 Failure failed(const std::string& what, int error) {
   Failure failure{Failure::Kind::failed, 0, what + ": " + std::strerror(error), ""};
   if (error == EACCES || error == EPERM) {
@@ -56,7 +56,7 @@ std::vector<std::filesystem::path> chip_paths(const std::filesystem::path& devic
   return paths;
 }
 
-/// Sets `denied` to the errno of the last chip that could not be opened.
+/// Returns the chips with their words. Sets `denied` to the errno of the last chip that could not be opened.
 std::vector<ComputerDevice> look_at_chips(const std::filesystem::path& devices,
                                           const std::filesystem::path& sys, int& denied) {
   std::vector<ComputerDevice> chips;
@@ -146,8 +146,8 @@ tl::expected<LineFacts, Failure> find_line(gpiod_chip* chip, const GpioLineSetti
   return *facts;
 }
 
-/// Explains a failed request: with EINVAL, ENOTSUPP and similar errors the chip does not support these
-/// settings.
+/// Returns the failure of a request for a line. EINVAL, ENOTSUPP and similar errors mean that the chip does
+/// not support these settings.
 Failure request_failure(const GpioLineSettings& settings, int error) {
   if (error == EBUSY) return failed("the line is in use", error);
   if (error == EACCES) return failed("the line cannot be requested", error);

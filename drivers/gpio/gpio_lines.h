@@ -1,7 +1,7 @@
 #pragma once
-// The digital lines of a rig: buttons, lamps, an enable output. This interface is between their meaning
-// (daemon/panel/panel.h) and the GPIO character device (drivers/gpio/gpio_libgpiod.cpp). Tests implement it
-// themselves.
+// Interface of the digital lines of a rig: buttons, lamps, an enable output. daemon/panel/panel.h uses the
+// interface, and drivers/gpio/gpio_libgpiod.cpp implements it with the GPIO character device. Tests have
+// their own implementation.
 
 #include <cstddef>
 #include <cstdint>
@@ -18,7 +18,7 @@
 
 namespace softgrip::drivers {
 
-/// The purpose of a line. A rig has at most one line for each.
+/// The purpose of a line. A rig has at most one line for each purpose.
 enum class GpioRole : std::uint8_t { emergency_stop, part_in_position, enable, ready_lamp, fault_lamp };
 inline constexpr std::size_t gpio_role_count = 5;
 /// Returns the name in the rig file: "emergency_stop" ...
@@ -35,7 +35,7 @@ struct GpioLineSettings {
   std::string chip;                     ///< a word that matches one of chips_in()
   std::string line;                     ///< name of the line; empty: `offset` is used
   std::optional<std::uint32_t> offset;  ///< number of the line in its chip, from 0
-  bool active_low = false;              ///< the low level means pressed, in position or on
+  bool active_low = false;              ///< the low level means active: pressed, in position or on
   GpioBias bias = GpioBias::as_is;      ///< for inputs
 };
 /// Returns, for example, "gpiochip0 line `ESTOP`, active high".
@@ -60,14 +60,14 @@ class GpioLines {
   /// Releases the lines. The chip's driver then decides the level of an output.
   virtual ~GpioLines() = default;
 
-  /// Waits at most `timeout` for edges and stores them at the start of `edges`, in the order of time for each
-  /// line. Returns their number; nothing if the chip failed, which is permanent.
+  /// Waits at most `timeout` for edges and stores them at the start of `edges`. The edges of one line are in
+  /// the order of time. Returns the number of edges; nothing if the chip failed. Such a failure is permanent.
   [[nodiscard]] virtual std::optional<std::size_t> wait(Nanoseconds timeout,
                                                         std::span<GpioEdge> edges) noexcept = 0;
   /// Returns the present logical level of an input; nothing if the chip failed.
   [[nodiscard]] virtual std::optional<bool> read(GpioRole role) noexcept = 0;
-  /// Sets the logical level of an output. Returns false if the chip failed. Has no effect for a role without
-  /// a line.
+  /// Sets the logical level of an output. Returns false if the chip failed. For a role without a line,
+  /// returns true without an effect.
   virtual bool write(GpioRole role, bool active) noexcept = 0;
   /// Returns true if all inputs of the rig report edges. Chips without interrupts report only levels.
   [[nodiscard]] virtual bool sees_edges() const noexcept = 0;

@@ -1,6 +1,6 @@
 #pragma once
-// Properties of chips and lines that both APIs of libgpiod provide under different names. gpio_libgpiod.cpp
-// includes libgpiod_1.h or libgpiod_2.h, depending on the installed library.
+// Definitions that the code for both APIs of libgpiod uses. gpio_libgpiod.cpp includes libgpiod_1.h or
+// libgpiod_2.h, depending on the version of the installed library.
 
 #include <gpiod.h>
 

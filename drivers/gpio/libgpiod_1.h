@@ -52,7 +52,7 @@ inline int flags_of(const GpioLineSettings& settings) {
   return flags;
 }
 
-/// A line that was requested. In 1.6 it belongs to its chip, which must remain open.
+/// A line that was requested. In libgpiod 1.6, a line belongs to its chip, which must remain open.
 class Line {
  public:
   Line(gpiod_chip* chip, const GpioLineSettings& settings, std::uint32_t offset, bool edges) {

@@ -64,7 +64,7 @@ inline gpiod_line_bias bias_of(GpioBias bias) {
   return GPIOD_LINE_BIAS_AS_IS;
 }
 
-/// A line that was requested. In 2.x each line has its own request, so that failures are separate.
+/// A line that was requested. Each line has its own request, so that a failure concerns only one line.
 class Line {
  public:
   Line(gpiod_chip* chip, const GpioLineSettings& settings, std::uint32_t offset, bool edges)

@@ -41,7 +41,7 @@ int IioAttribute::open(const std::string& path, bool writable) noexcept {
 
 std::optional<double> IioAttribute::read() const noexcept {
   std::array<char, longest_text> text{};
-  // sysfs reads from the driver again only at offset 0.
+  // sysfs obtains a new value from the driver only for a read at offset 0.
   const ssize_t count = ::pread(descriptor_, text.data(), text.size(), 0);
   if (count < 0) return std::nullopt;
   double value = 0;

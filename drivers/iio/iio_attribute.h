@@ -6,7 +6,8 @@
 
 namespace softgrip::drivers {
 
-/// Keeps its descriptor open: reading and writing need one system call each and do not allocate.
+/// An attribute that stays open. Each read() or write() therefore needs one system call, and does not
+/// allocate.
 class IioAttribute {
  public:
   IioAttribute() = default;
@@ -21,8 +22,8 @@ class IioAttribute {
   void close() noexcept;
   [[nodiscard]] bool is_open() const noexcept { return descriptor_ >= 0; }
 
-  /// Returns the present number; nothing after an error. Then errno has the reason, or is 0 if the text is
-  /// not a number.
+  /// Returns the present number; nothing after an error. In that case errno is the reason, or 0 if the text
+  /// of the attribute is not a number.
   [[nodiscard]] std::optional<double> read() const noexcept;
   /// Writes a whole number. Returns errno, or 0.
   [[nodiscard]] int write(long value) const noexcept;

@@ -22,20 +22,21 @@ namespace {
 constexpr int probes = 5;
 constexpr const char* stays_off_text = "it remains 1 after 0 was written: the output is switched off";
 
-/// The kernel reports voltages in mV, currents in mA and pressures in kPa.
+/// Returns the factor from the kernel's unit (voltages in mV, currents in mA, pressures in kPa) to V, mA or
+/// kPa.
 double per_unit(std::string_view channel) noexcept {
   return unit_of_channel(channel) == ElectricalUnit::volt ? 1e-3 : 1;
 }
 
-/// Returns the converter's name and place, which must not change while a rig runs; an empty text if the rig
-/// file uses a label or a serial number, which identify the converter.
+/// Returns the converter's name and place, which must not change while a rig runs. Returns an empty text if
+/// the rig file names the converter by its label or serial number, because these identify it.
 std::string identity_behind(const std::string& word, const ComputerDevice& device) {
   const bool says_which = device.has("label", word) || device.has("serial number", word);
   return says_which ? std::string{} : identity_of(device);
 }
 
-/// Returns a number of one channel, or the number that all channels of its kind share; `otherwise` if neither
-/// exists.
+/// Returns the attribute `what` of one channel, or the attribute that all channels of this kind share.
+/// Returns `otherwise` if neither exists.
 double shared_number(const std::filesystem::path& folder, const std::string& direction,
                      const std::string& channel, const std::string& what, double otherwise) {
   for (const std::string& whose : {channel, type_of(channel)}) {
@@ -88,9 +89,9 @@ struct IioBoard::Parts {
     double offset = 0;  // added to the raw number
     std::string powerdown_path;
     IioAttribute powerdown;
-    IioAttribute wake;  // the same attribute, to be written
+    IioAttribute wake;  // the powerdown attribute, open for writing
     bool is_off = false;
-    bool stays_off = false;  // it did not switch on at an earlier attempt
+    bool stays_off = false;  // an earlier attempt to switch the output on had no effect
   };
 
   explicit Parts(const IioSettings& given)
@@ -112,7 +113,7 @@ struct IioBoard::Parts {
     std::snprintf(detail.data(), detail.size(), "%s: %s", what.c_str(), why);
     return status;
   }
-  /// Ends the session: the converter has failed for a reason other than the written number.
+  /// Ends the session after a failure of the converter that the written number did not cause.
   BusStatus lost(const Converter& converter, int error) noexcept {
     open = false;
     return say(BusStatus::disconnected, converter.name, error != 0 ? text_of_errno(error) : "no number");
@@ -162,7 +163,7 @@ BusStatus IioBoard::Parts::open_number(const std::filesystem::path& folder, cons
   const std::string stem = (output ? "out_" : "in_") + channel;
   converter.path = (folder / (stem + "_raw")).string();
   int error = converter.raw.open(converter.path, output);
-  // Some drivers provide only the number in its unit.
+  // Some drivers provide the number only in mV, mA or kPa.
   const bool processed =
       error == ENOENT && !output && converter.raw.open((folder / (stem + "_input")).string(), false) == 0;
   if (error != 0 && !processed) return say(BusStatus::disconnected, converter.path, text_of_errno(error));
@@ -231,7 +232,7 @@ BusStatus IioBoard::Parts::attach_all() {
   return status;
 }
 
-/// Reads each wired input several times and measures the duration for the budget.
+/// Reads each input several times and measures the duration of a read for the budget.
 BusStatus IioBoard::Parts::probe(Nanoseconds deadline) noexcept {
   reads.reset();
   for (int i = 0; i < probes; ++i) {
@@ -256,7 +257,8 @@ BusStatus IioBoard::Parts::switch_on(Converter& converter) noexcept {
              error != 0 ? text_of_errno(error) : stays_off_text);
 }
 
-/// Called after all numbers were written, because several outputs may share one switch.
+/// Switches on all outputs that are off. It is called after all numbers were written, because several outputs
+/// may share one powerdown attribute.
 BusStatus IioBoard::Parts::switch_all_on() noexcept {
   for (Converter& converter : outputs) {
     if (!converter.is_off) continue;
@@ -373,7 +375,7 @@ BusStatus IioBoard::exchange(std::span<const double> commands_kpa, std::span<Rea
   if (const BusStatus status = parts.beat(); status != BusStatus::ok) return status;
   if (written == BusStatus::ok) written = parts.switch_all_on();
   if (written == BusStatus::disconnected) return written;
-  // Either all readings change, or none.
+  // If one read fails, no reading of the caller changes.
   std::array<Reading, most_channels> fresh{};
   for (std::size_t i = 0; i < readings.size(); ++i) {
     fresh[i] = readings[i];
@@ -421,7 +423,7 @@ Board::Budget IioBoard::budget() const {
   for (const ChannelWiring& channel : parts.settings.wiring)
     reads += 1U + (channel.pressure.has_value() ? 1U : 0U) + (channel.temperature.has_value() ? 1U : 0U);
   const std::size_t writes = parts.settings.wiring.size() + (parts.settings.heartbeat ? 1U : 0U);
-  // A write is assumed to take as long as a conversion, because measuring it would change an output.
+  // A write is assumed to take as long as a conversion, because measuring a write would change an output.
   const double each_s = parts.reads.median_s();
   Budget cost;
   cost.exchange_s = static_cast<double>(reads + writes) * each_s;

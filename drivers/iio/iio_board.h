@@ -1,6 +1,6 @@
 #pragma once
-// A board that consists of converters of this computer, through the kernel's industrial I/O attributes in
-// sysfs. See Documentation/ABI/testing/sysfs-bus-iio of the kernel.
+// A board that consists of converters of this computer. It uses the industrial I/O attributes of the kernel
+// in sysfs; see Documentation/ABI/testing/sysfs-bus-iio of the kernel.
 
 #include <cstddef>
 #include <memory>
@@ -14,7 +14,8 @@
 
 namespace softgrip::drivers {
 
-/// One channel of a converter: "voltage0", "current2", or a differential one, "voltage0-voltage1".
+/// One channel of a converter. `channel` is, for example, "voltage0", "current2", or "voltage0-voltage1" for
+/// a differential channel.
 struct IioTerminal {
   std::string device;  ///< a word that matches one of converters_in()
   std::string channel;
@@ -25,12 +26,12 @@ struct IioTerminal {
 /// output has not changed for `timeout_s`.
 struct IioHeartbeat {
   IioTerminal terminal;
-  long first = 0;  ///< raw numbers
-  long second = 0;
+  long first = 0;        ///< raw number of the first, third, ... write
+  long second = 0;       ///< raw number of the other writes
   double timeout_s = 0;  ///< time-out of the circuit [s]
 };
 
-/// Largest number of channels, equal to that of the control.
+/// Largest number of channels; the controller has the same limit.
 inline constexpr std::size_t most_channels = 16;
 
 struct IioSettings {
@@ -41,27 +42,28 @@ struct IioSettings {
   std::vector<ChannelWiring> wiring;
 };
 
-/// Returns the unit of a channel by its name; nothing if it is not a voltage, current or pressure.
+/// Returns the unit of a channel from its name; nothing if the channel is not a voltage, current or pressure.
 [[nodiscard]] std::optional<ElectricalUnit> unit_of_channel(std::string_view channel) noexcept;
-/// Returns the terminals of such a board with their units. Only the converters know their ranges.
+/// Returns the terminals of an industrial I/O board with their units. The ranges are unlimited, because the
+/// actual ranges are not known before the converters are open.
 [[nodiscard]] ModuleTerminals terminals_of(const IioSettings& settings);
 
-/// One exchange writes the raw numbers of all outputs, then reads those of all inputs. Each needs one system
-/// call on a descriptor that connect() opened. Scales and offsets are read once. V = (raw + offset) * scale /
-/// 1000; mA and kPa = (raw + offset) * scale. An input without a raw number has a processed one in mV, mA or
-/// kPa.
+/// One exchange writes the raw numbers of all wired outputs, then reads those of all wired inputs. Each
+/// number needs one system call on a descriptor that connect() opened. connect() also reads scales and
+/// offsets. V = (raw + offset) * scale / 1000; mA and kPa = (raw + offset) * scale. If an input has no raw
+/// number, its processed number in mV, mA or kPa is used.
 ///
-/// A conversion happens inside a system call and cannot be interrupted, so the deadline is checked after each
-/// one. The only watchdog is the circuit of a heartbeat: without it, the outputs keep their last value when
-/// the daemon stops.
+/// A conversion happens inside a system call and cannot be interrupted. The deadline is therefore checked
+/// after the reads of each channel. The only watchdog is the external circuit of a heartbeat. Without this
+/// circuit, the outputs keep their last value when the daemon stops.
 ///
 /// If the `powerdown` attribute of an output is 1, the first exchange writes the number and then switches the
-/// output on. In the opposite order, the output would have an old value for a moment. connect() fails if
-/// switching on is not permitted or had no effect before.
+/// output on. In the opposite order, the output would have an old value for a moment. connect() fails if the
+/// output may not be switched on, or if an earlier attempt had no effect.
 ///
-/// connect() refuses a word that matches no converter or several, and two terminals that are the same. In
-/// later sessions a word must lead to the same converter, unless it is a label or a serial number. Otherwise
-/// another converter of that name could receive the commands.
+/// connect() fails if the word for a converter matches none or several, or if two terminals are the same
+/// channel. In later sessions, each word must lead to the same converter as before, unless the word is a
+/// label or a serial number. Otherwise another converter with the same name could receive the commands.
 class IioBoard final : public Board {
  public:
   explicit IioBoard(const IioSettings& settings);

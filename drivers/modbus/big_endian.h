@@ -1,6 +1,6 @@
 #pragma once
-// Reads and writes words in byte buffers, high byte first as in Modbus. The caller checks that `at + 1` is
-// inside.
+// Reads and writes words in byte buffers, high byte first as in Modbus. The caller checks that the index
+// `at + 1` is within the buffer.
 
 #include <cstddef>
 #include <cstdint>

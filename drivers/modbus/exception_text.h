@@ -1,5 +1,5 @@
 #pragma once
-// Texts of Modbus exceptions without allocation.
+// Provides the texts of Modbus exceptions without allocating memory.
 
 namespace softgrip::drivers {
 

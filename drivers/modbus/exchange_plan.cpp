@@ -25,8 +25,8 @@ std::uint32_t most_readable(const BoardMap& map, std::uint8_t function) {
   return is_bits(function) ? max_read_bits : std::min(max_read_registers, map.max_registers);
 }
 
-/// Adds the fewest ranges that contain the numbers `indices` of a block, without dividing a number. The
-/// registers between them belong to the block, so the board supports reading them.
+/// Adds the fewest ranges that contain the numbers `indices` of a block, without dividing a number between
+/// two ranges. The registers between the numbers belong to the block, so the board supports reading them.
 void cover(const BoardMap& map, const RegisterBlock& block, std::vector<std::size_t> indices,
            std::vector<Range>& ranges) {
   std::sort(indices.begin(), indices.end());
@@ -114,8 +114,8 @@ std::vector<std::size_t> wired_outputs(const std::vector<ChannelWiring>& wiring,
   return outputs;
 }
 
-/// Returns the reads of one exchange: the wired inputs, and the registers of the map on the state of the
-/// outputs.
+/// Returns the reads of one exchange: the wired inputs and, if the module has wired outputs, the registers
+/// for read-back, watchdog and number of clients.
 std::vector<ReadStep> plan_reads(const BoardMap& map, const std::vector<std::size_t>& inputs,
                                  const std::vector<std::size_t>& outputs) {
   std::vector<Range> ranges;

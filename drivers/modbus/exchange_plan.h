@@ -1,6 +1,6 @@
 #pragma once
-// The transactions of one exchange, and the places of each channel's numbers in the replies. The plan is made
-// once from board map and wiring, so that an exchange only follows a list.
+// Plans the transactions of one exchange, and the places of each channel's numbers in the replies. The plan
+// is made once from board map and wiring. An exchange then only executes the transactions of the plan.
 
 #include <cstddef>
 #include <cstdint>
@@ -22,7 +22,8 @@ struct ReadStep {
   bool operator==(const ReadStep&) const = default;
 };
 
-/// One write of consecutive outputs; `first_word` counts in ExchangePlan::output_words.
+/// One write of consecutive outputs. `first_word` is the index of its first register among all registers that
+/// the exchange writes.
 struct WriteStep {
   std::uint8_t function = 0;
   std::uint16_t address = 0;
@@ -40,9 +41,10 @@ struct Slot {
   bool operator==(const Slot&) const = default;
 };
 
-/// The places of one channel's numbers, as far as the channel is wired to the module.
+/// The places of one channel's numbers. Members are empty for parts of the channel that are not wired to the
+/// module.
 struct ChannelSlots {
-  std::optional<std::size_t> output_word;  ///< index of the channel's encoded output
+  std::optional<std::size_t> output_word;  ///< index of the channel's first register, as in first_word
   std::optional<Slot> displacement;
   std::optional<Slot> displacement_status;
   std::optional<Slot> pressure;
@@ -57,23 +59,23 @@ struct ExchangePlan {
   std::vector<WriteStep> writes;
   std::vector<ReadStep> reads;
   std::vector<ChannelSlots> channels;
-  std::optional<Slot> tripped;  ///< the first register, if the watchdog has several
+  std::optional<Slot> tripped;  ///< place of the first register or bit that reports a tripped watchdog
   std::optional<Slot> clients;
-  /// The read that function code 23 combines with the first write in one transaction.
+  /// Index of the read that function code 23 combines with the first write in one transaction.
   std::optional<std::size_t> combined_read;
-  /// The read that contains the inputs. Its time is the readings' `sampled_at`. Without wired inputs it is
-  /// the first read, if there is one.
+  /// Index of the read that contains the first wired input. The time of this read is the readings'
+  /// `sampled_at`. Without wired inputs the index is 0.
   std::size_t sampling_read = 0;
 
-  /// Returns the round trips of one exchange without the write that feeds the watchdog.
+  /// Returns the number of round trips of one exchange, without the write that feeds the watchdog.
   [[nodiscard]] std::size_t transactions() const noexcept {
     return writes.size() + reads.size() - (combined_read.has_value() ? 1 : 0);
   }
 };
 
 /// Returns the plan with the fewest transactions that the map allows for the channels of `module`. Only wired
-/// outputs are written: two wired outputs that are not adjacent need two writes, because the terminal between
-/// them may drive an unknown device. Requires wiring_problems() to be empty.
+/// outputs are written. Two wired outputs that are not adjacent therefore need two writes, because the
+/// terminal between them may drive an unknown device. Requires wiring_problems() to be empty.
 [[nodiscard]] ExchangePlan plan_exchange(const BoardMap& map, const std::vector<ChannelWiring>& wiring,
                                          std::size_t module = 0);
 

@@ -5,7 +5,7 @@
 namespace softgrip::drivers {
 namespace {
 
-/// Returns the defect of the header in the bytes received so far.
+/// Returns the first defect of the header in the bytes received so far, or `none`.
 ReplyDefect header_defect(std::span<const std::uint8_t> bytes, std::size_t pdu_size,
                           std::uint16_t transaction, std::uint8_t unit) noexcept {
   if (bytes.size() >= 2 && word_at(bytes, 0) != transaction) return ReplyDefect::transaction;

@@ -1,5 +1,5 @@
 #pragma once
-// Framing on Modbus TCP: the header before requests and responses. Format: MODBUS Messaging on TCP/IP
+// Framing of Modbus TCP: the header before requests and responses. Format: MODBUS Messaging on TCP/IP
 // Implementation Guide V1.0b, 3.1.3 (MBAP header).
 
 #include <cstddef>
@@ -11,7 +11,7 @@
 
 namespace softgrip::drivers {
 
-/// Size of transaction id, protocol id, length (two bytes each) and unit id.
+/// Size of the header [bytes]: transaction id, protocol id and length (two bytes each), and unit id.
 inline constexpr std::size_t mbap_size = 7;
 inline constexpr std::size_t mbap_unit = 6;  ///< index of the unit id
 

@@ -53,8 +53,8 @@ struct ModbusBoard::Parts {
     std::snprintf(detail.data(), detail.size(), "%s", text);
     return status;
   }
-  /// Stores the reason of a failure, with the module's name if there are several. A failure of one link
-  /// closes all links.
+  /// Stores the reason of a failure, with the module's name if the board has several modules. Closes all
+  /// links if the failure ends the session.
   BusStatus failed(BusStatus status, const ModbusModule& module) noexcept {
     if (modules.size() == 1) {
       say(status, module.detail());
@@ -74,9 +74,10 @@ struct ModbusBoard::Parts {
   void fill(std::span<Reading> readings) const noexcept;
 };
 
-/// Links settle at the same time: each waits for the rest of its own settle time.
+/// Opens all links, and then waits until all have settled, so that the settle times overlap.
 ///
-/// A link without outputs may remain closed. Exchanges then write the commands and fail when they read.
+/// A link without outputs may remain closed. In that case, exchanges write the commands and fail when they
+/// read from this link.
 BusStatus ModbusBoard::Parts::open(Nanoseconds deadline) noexcept {
   close();
   const auto each_link = [&](BusStatus (ModbusLink::*step)(Nanoseconds) noexcept) {
@@ -99,8 +100,9 @@ BusStatus ModbusBoard::Parts::open(Nanoseconds deadline) noexcept {
   return measured ? BusStatus::ok : probe(deadline);
 }
 
-/// Measures the links in the first session only. Later sessions begin with the outputs: earlier requests
-/// would feed the board's watchdog while the outputs still have the pressure at which the line failed.
+/// Measures the round trips, in the first session only. Later sessions must begin with writing the outputs:
+/// other requests would feed the board's watchdog while the outputs still have the values from before the
+/// failure.
 BusStatus ModbusBoard::Parts::probe(Nanoseconds deadline) noexcept {
   for (const auto& link : links) link->forget_measurements();
   const Nanoseconds start = monotonic_now();
@@ -129,7 +131,7 @@ BusStatus ModbusBoard::Parts::encode(std::span<const double> commands_kpa) noexc
   return result;
 }
 
-/// Reads before writing, for the modules that require it in this exchange.
+/// Reads and checks the modules that read before they write in this exchange.
 BusStatus ModbusBoard::Parts::look_first(Nanoseconds deadline) noexcept {
   for (ModbusModule& module : modules) {
     module.begin_exchange();
@@ -204,7 +206,7 @@ BusStatus ModbusBoard::exchange(std::span<const double> commands_kpa, std::span<
   if (commands_kpa.size() != channels() || readings.size() != channels()) {
     return parts.say(BusStatus::write_refused, "the commands, readings and channels differ in number");
   }
-  // The reason why the session ended remains in `detail`, because it is more useful than "disconnected".
+  // `detail` keeps the reason why the session ended, which is more useful than "disconnected".
   if (!parts.is_open()) return BusStatus::disconnected;
   for (std::size_t i = 0; i < commands_kpa.size(); ++i) {
     if (std::isfinite(commands_kpa[i])) continue;

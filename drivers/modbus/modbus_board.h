@@ -14,25 +14,28 @@ struct ModbusSettings {
   std::vector<ModbusAddress> links;
   std::vector<ModbusModuleSettings> modules;
   std::vector<ChannelWiring> wiring;  ///< one per channel; problems_of() must be empty
-  /// Largest number of reads per link with which connect() measures it for budget(), within a quarter of its
-  /// deadline; 0: no measurement, the budget is assumed.
+  /// Largest number of reads per module with which connect() measures the round trips for budget(). The
+  /// measurement takes at most about a quarter of the deadline. 0: no measurement, so budget() uses an
+  /// assumed round trip.
   int probes = 9;
 };
 
 /// Returns the errors of the settings; see wiring_problems().
 [[nodiscard]] std::vector<std::string> problems_of(const ModbusSettings& settings);
 
-/// One exchange writes the outputs of all modules, each in one write if possible (or FC23). Then it reads the
-/// inputs and the status, read-back and watchdog registers of the maps in the fewest reads. Outputs come
-/// first, so that the failure of a module without outputs does not prevent writing the others.
+/// One exchange writes the outputs of all modules, if possible with one write per module (function code 16 or
+/// 23). Then it reads the inputs and the status, read-back and watchdog registers of the maps with as few
+/// reads as possible. All outputs are written before the reads, so that the failure of a module without
+/// outputs does not prevent the writes to the others.
 ///
-/// `deadline` limits the complete exchange on CLOCK_BOOTTIME; a reply that arrives in parts does not extend
-/// it. All errors except a Modbus exception close the links. A late or duplicated reply can then not be taken
-/// for the response to a later request. exchange() returns `disconnected` until connect() has opened new
-/// links.
+/// `deadline` limits the complete exchange on CLOCK_BOOTTIME, also if a reply arrives in parts. After a
+/// time-out, an error of the connection or an unexpected reply, all links are closed. A late or duplicated
+/// reply can therefore not be taken for the response to a later request. exchange() then returns
+/// `disconnected` until connect() has opened new links.
 ///
-/// A tripped watchdog is cleared only after connect(): the first exchange writes the commands, clears the
-/// watchdog, writes the commands again and reads. Before that, each exchange returns `watchdog_tripped`.
+/// A tripped watchdog is cleared only in the first exchange after connect(). This exchange writes the
+/// commands, clears the watchdog, writes the commands again and reads. If the watchdog trips later, each
+/// exchange returns `watchdog_tripped` until the next connect().
 class ModbusBoard final : public Board {
  public:
   explicit ModbusBoard(const ModbusSettings& settings);

@@ -25,8 +25,8 @@ namespace {
 
 static_assert(MODBUS_MAX_ADU_LENGTH <= max_frame);
 
-// After an incomplete reply, libmodbus does not report the number of received bytes. So the buffer is filled
-// with this value before, and trailing bytes with this value count as not received.
+// After an incomplete reply, libmodbus does not report the number of received bytes. The buffer is therefore
+// filled with this value before each reception, and bytes at its end with this value count as not received.
 constexpr std::uint8_t filler = 0xff;
 
 Descriptor selectable_descriptor() noexcept {
@@ -39,7 +39,8 @@ std::span<const std::uint8_t> without_filler(std::span<const std::uint8_t> bytes
   return bytes;
 }
 
-/// libmodbus' byte time-out is 0, so its response time-out limits the complete reply.
+/// Sets the response time-out of libmodbus. Because its byte time-out is 0, the response time-out limits the
+/// duration of the complete reply.
 void set_deadline(modbus_t* context, Nanoseconds left) noexcept {
   const auto microseconds = static_cast<std::uint64_t>((left + 999) / 1000);
   ::modbus_set_response_timeout(context, static_cast<std::uint32_t>(microseconds / 1'000'000),
@@ -84,7 +85,8 @@ BusStatus ModbusLink::settle(Nanoseconds deadline) noexcept {
   return drain(opened_at_ + settle_, deadline, "waiting until the board has settled");
 }
 
-/// Discards received bytes until a point in time. Returns at once if the link is closed meanwhile.
+/// Discards received bytes until the time `until`. If the link fails before, closes it and returns the
+/// status.
 BusStatus ModbusLink::drain(Nanoseconds until, Nanoseconds deadline, const char* what) noexcept {
   while (monotonic_now() < until) {
     if (monotonic_now() >= deadline) return fail(BusStatus::timed_out, what, "the deadline passed");
@@ -98,8 +100,8 @@ BusStatus ModbusLink::drain(Nanoseconds until, Nanoseconds deadline, const char*
   return BusStatus::ok;
 }
 
-/// A board at its limit of clients may accept a connection and close it. Cable and address are right in this
-/// case.
+/// A board that already serves its largest number of clients may accept a connection and close it. Before the
+/// first response, the status is therefore `closed_at_once`, which means that cable and address are right.
 BusStatus ModbusLink::ended(const char* what) noexcept {
   if (!on_network_) return fail(BusStatus::disconnected, what, "the device is gone");
   if (answered_) return fail(BusStatus::disconnected, what, "the other end is gone");
@@ -179,7 +181,8 @@ BusStatus ModbusLink::send_until_heard(std::span<const std::uint8_t> frame, Nano
   first_asked_at_ = monotonic_now();
   for (repeats_ = 0;; ++repeats_) {
     asked_at_ = monotonic_now();
-    // After a pause of the process, a request from before it may move what the board's watchdog has vented.
+    // If the process was paused, the board's watchdog may have vented the fingers. A request from before the
+    // pause would then move them, so it must not be sent after its deadline.
     if (asked_at_ >= deadline)
       return fail(BusStatus::timed_out, "before sending the request", "the deadline passed");
     if (const BusStatus status = send(frame, deadline); status != BusStatus::ok) return status;
@@ -192,9 +195,9 @@ BusStatus ModbusLink::send_until_heard(std::span<const std::uint8_t> frame, Nano
   }
 }
 
-/// Each repetition of a request may get its own response. A response with a transaction id is recognised when
-/// it arrives. A response without one could be taken for that of the next request, so the next request waits
-/// for it.
+/// Stores that each repetition of the last request may still get its own response. A response with a
+/// transaction id is recognised when it arrives. A response without a transaction id could be taken for the
+/// response to the next request, so the next request is delayed until the late responses should have arrived.
 void ModbusLink::expect_more_answers() noexcept {
   stale_ = repeats_;
   const bool quiet = repeats_ > 0 && !numbers_answers();
@@ -218,7 +221,7 @@ ModbusLink::Received ModbusLink::hear(std::span<std::uint8_t> buffer, std::uint8
   return {judge(bytes, unit, request, asked), error, bytes};
 }
 
-/// Returns the checked response. `error` contains the reason if it is not a complete frame.
+/// Returns the checked response. Sets `error` to whole_frame, or to the reason why the frame is incomplete.
 ModbusReply ModbusLink::receive(std::uint8_t unit, const ModbusRequest& request,
                                 std::span<const std::uint8_t> asked, Nanoseconds deadline,
                                 int& error) noexcept {
@@ -245,7 +248,7 @@ bool ModbusLink::drop_strays() noexcept {
          ::read(descriptor(), strays.data(), count) == static_cast<ssize_t>(count);
 }
 
-/// Determines the failure after an incomplete reply.
+/// Closes the link after an incomplete reply and returns the status for the reason `error`.
 BusStatus ModbusLink::name_failure(int error) noexcept {
   const bool began = !without_filler(incoming_).empty();
   const char* const what = began ? "waiting for the rest of the reply" : "waiting for the reply";

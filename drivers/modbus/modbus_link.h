@@ -1,5 +1,6 @@
 #pragma once
-// A link to Modbus modules. It sends one request at a time, and closes after any unclear response.
+// A link to Modbus modules. It sends one request at a time. After a response that is not clearly that of the
+// request, the link closes.
 
 #include <array>
 #include <cstddef>
@@ -19,13 +20,13 @@ struct _modbus;  // NOLINT(bugprone-reserved-identifier): the name in libmodbus
 
 namespace softgrip::drivers {
 
-/// On a network, libmodbus receives; on a serial line, it opens and sends. This class adds three properties.
-/// Each wait ends at a time of CLOCK_BOOTTIME [ns], not after a pause between two bytes. A received frame is
-/// checked by own functions before its contents are used. Bytes after a frame are detected.
-/// docs/explanation/libraries.md gives the reasons.
+/// Base class of the links. libmodbus receives the responses on a network, and opens and sends on a serial
+/// line. This class adds three properties. Each wait ends at a time of CLOCK_BOOTTIME [ns], not after a pause
+/// between two bytes. A received frame is checked by functions of this project before its contents are used.
+/// Bytes after a frame are detected. docs/explanation/libraries.md gives the reasons.
 ///
-/// A repeated request is the same frame, so a late repetition writes the same output values. It is sent
-/// within the deadline of its exchange and does not extend that deadline.
+/// A repetition of a request is the same frame, so it writes the same output values. It is sent within the
+/// deadline of its exchange and does not extend that deadline.
 ///
 /// Only the constructors, open() of a serial line, cost() and describe() allocate. No function throws or
 /// resolves names. Requests are repeated only as LinkHabits states.
@@ -37,7 +38,7 @@ class ModbusLink {
   ModbusLink& operator=(ModbusLink&&) = delete;
   virtual ~ModbusLink();
 
-  /// Closes the link if it is open, and opens it.
+  /// Opens the link. A link that is open is closed before.
   [[nodiscard]] BusStatus open(Nanoseconds deadline) noexcept;
   /// Waits for the end of the settle time after open(). Bytes that arrive in this time are discarded.
   [[nodiscard]] BusStatus settle(Nanoseconds deadline) noexcept;
@@ -56,11 +57,11 @@ class ModbusLink {
   /// Returns the reason of the last failure.
   [[nodiscard]] const char* detail() const noexcept { return detail_.data(); }
 
-  /// Measurements for cost(): the first function deletes them, the second one adds the last ask().
+  /// Delete the measurements for cost(), and add the round trip of the last ask() to them.
   void forget_measurements() noexcept { measured_.reset(); }
   void keep_measurement() noexcept { measured_.add(answer_time(last_round_trip_)); }
-  /// Returns the duration of these consecutive transactions and its calculation. `plan` describes the
-  /// transactions.
+  /// Returns the duration of `transactions`, one after the other, and the calculation as text. `plan`
+  /// describes the transactions in this text.
   [[nodiscard]] virtual Board::Budget cost(std::span<const TransactionSize> transactions,
                                            const std::string& plan) const = 0;
   /// Returns, for example, "127.0.0.1:502" or "/dev/ttyUSB0 (115200 8N1)".
@@ -72,9 +73,9 @@ class ModbusLink {
 
   [[nodiscard]] _modbus* context() const noexcept { return context_; }
   [[nodiscard]] int descriptor() const noexcept;
-  /// Stores the reason why a link cannot be opened.
+  /// Stores the reason why a link cannot be opened, closes the link and returns `status`.
   BusStatus refuse(BusStatus status, const char* what, const char* why) noexcept;
-  /// Closes the link and stores the reason.
+  /// Does the same as refuse() for a link on which a response may still arrive.
   BusStatus fail(BusStatus status, const char* what, const char* why) noexcept;
   BusStatus wait_until_ready(short events, Nanoseconds deadline, const char* what) noexcept;
   /// Reads the available bytes of a link that is ready.
@@ -83,10 +84,10 @@ class ModbusLink {
   BusStatus ended(const char* what) noexcept;
   [[nodiscard]] const RoundTrip& measured() const noexcept { return measured_; }
 
-  /// The reason why bytes between two requests end a session.
+  /// Reason for detail() if bytes arrive before a request is sent.
   static constexpr const char* unasked = "unexpected bytes: a late or repeated reply";
 
-  /// The checked response. `error` is whole_frame, or the errno for which the frame is incomplete.
+  /// The checked response. `error` is whole_frame, or the errno that explains an incomplete frame.
   struct Received {
     ModbusReply reply;
     int error = 0;
@@ -96,7 +97,7 @@ class ModbusLink {
 
   Descriptor held_;               ///< closed with the link
   Nanoseconds heard_at_ = 0;      ///< time of the last received bytes
-  bool answer_may_come_ = false;  ///< the last session ended while a response was due
+  bool answer_may_come_ = false;  ///< a response to a request of the last session may still arrive
 
  private:
   virtual BusStatus connect(Nanoseconds deadline) noexcept = 0;
@@ -109,17 +110,17 @@ class ModbusLink {
   [[nodiscard]] virtual ModbusReply judge(std::span<const std::uint8_t> bytes, std::uint8_t unit,
                                           const ModbusRequest& request,
                                           std::span<const std::uint8_t> asked) const noexcept = 0;
-  /// Receives with libmodbus into `buffer`, which contains only the filler value before.
+  /// Receives with libmodbus into `buffer`. The caller has filled the buffer with the filler value.
   virtual Received hear(std::span<std::uint8_t> buffer, std::uint8_t unit, const ModbusRequest& request,
                         std::span<const std::uint8_t> asked, Nanoseconds deadline) noexcept;
-  /// Time to transmit a frame of this number of bytes after send().
+  /// Returns the time that the wire needs to transmit this number of bytes after send() [ns].
   [[nodiscard]] virtual Nanoseconds sending_time(std::size_t) const noexcept { return 0; }
-  /// numbers_answers() returns true if a response contains the number of its request. answers_previous()
-  /// returns true if these bytes contain the number of the previous request.
+  /// numbers_answers() returns true if a response contains the transaction id of its request.
+  /// answers_previous() returns true if the bytes begin with the transaction id of the previous request.
   [[nodiscard]] virtual bool numbers_answers() const noexcept { return false; }
   [[nodiscard]] virtual bool answers_previous(std::span<const std::uint8_t>) const noexcept { return false; }
-  /// Returns the largest number of bytes before or after a response that are discarded. It is below the size
-  /// of the shortest response, so the bytes cannot be the response to another request.
+  /// Returns the largest number of bytes before or after a response that are discarded. The number is below
+  /// the size of the shortest response, so the bytes cannot be the response to another request.
   [[nodiscard]] virtual std::size_t most_stray() const noexcept { return 0; }
   /// Returns the index of the unit id in a frame.
   [[nodiscard]] virtual std::size_t unit_place() const noexcept = 0;
@@ -146,10 +147,10 @@ class ModbusLink {
   Nanoseconds first_asked_at_ = 0;
   Nanoseconds asked_at_ = 0;
   unsigned repeats_ = 0;         ///< repetitions of the last request
-  unsigned stale_ = 0;           ///< late responses to the previous request that may arrive
-  Nanoseconds quiet_until_ = 0;  ///< end of the time in which other responses to it may still arrive
-  /// libmodbus waits with select(), which accepts no descriptor above 1023. This object reserves a lower one
-  /// from the start.
+  unsigned stale_ = 0;           ///< number of late responses to the previous request that may arrive
+  Nanoseconds quiet_until_ = 0;  ///< end of the time in which these responses may arrive
+  /// A reserved descriptor below 1024 for the link, because libmodbus waits with select(), which accepts no
+  /// descriptor above 1023.
   Descriptor place_;
   Frame outgoing_{};
   Frame incoming_{};

@@ -15,7 +15,7 @@
 namespace softgrip::drivers {
 namespace {
 
-/// Every 8th exchange reads first, unless the one before it did not confirm the outputs.
+/// Number of exchanges after which an exchange reads before it writes; see begin_exchange().
 constexpr std::uint32_t reads_first_every = 8;
 
 ModbusRequest request_of(const FixedWrite& write) noexcept {
@@ -108,8 +108,8 @@ BusStatus ModbusModule::write_outputs(Nanoseconds deadline) noexcept {
   return BusStatus::ok;
 }
 
-/// While its watchdog holds the outputs, a board may respond to writes with an exception. The reported status
-/// is then the tripped watchdog.
+/// Returns the status of a failed write. A board may respond to writes with an exception while its watchdog
+/// holds the outputs. In this case the status is `watchdog_tripped`.
 BusStatus ModbusModule::name_refusal(BusStatus status, Nanoseconds deadline) noexcept {
   if (status != BusStatus::exception || !plan_.tripped.has_value()) return status;
   const char* const refusal = detail_;
@@ -120,9 +120,9 @@ BusStatus ModbusModule::name_refusal(BusStatus status, Nanoseconds deadline) noe
   return say(status, refusal);
 }
 
-/// Called only after a new session. The commands are written before the tripped state is cleared: a board
-/// that accepts writes while tripped then returns to the present commands. For boards that ignore or refuse
-/// such writes, a second write follows at once.
+/// Writes the outputs for the first time in a session, and clears a tripped watchdog. The commands are
+/// written before the tripped state is cleared, so that a board that accepts writes in this state returns to
+/// the present commands. For boards that ignore or refuse such writes, a second write follows at once.
 BusStatus ModbusModule::first_write(Nanoseconds deadline) noexcept {
   const BusStatus written = write_outputs(deadline);
   if (written != BusStatus::ok && written != BusStatus::exception) return written;
@@ -157,7 +157,8 @@ BusStatus ModbusModule::set_up(Nanoseconds deadline) noexcept {
   accepted_.forget();
   if (settings_.map.setup.empty()) return BusStatus::ok;
   if (clear_due_ && plan_.tripped.has_value()) {
-    // Configuring a watchdog may end its tripped state, and the outputs would return to their last values.
+    // The setup may end the tripped state of the watchdog, and the outputs would return to their last values.
+    // If the watchdog has tripped, the setup is therefore delayed.
     const BusStatus status = read_step(plan_.tripped->step, deadline);
     if (status != BusStatus::ok) return status;
     setup_due_ = is_tripped();
@@ -205,7 +206,8 @@ BusStatus ModbusModule::write(Nanoseconds deadline) noexcept {
   return feed(*settings_.map.watchdog.feed_write, deadline);
 }
 
-/// A write without a confirmation is repeated with the same value, because the board may have received it.
+/// Writes the value that feeds the watchdog. If the heartbeat has two values, the value changes after each
+/// confirmed write.
 BusStatus ModbusModule::feed(FixedWrite write, Nanoseconds deadline) noexcept {
   if (alternate_due_) write.value = write.alternate.value_or(write.value);
   const BusStatus status = write_fixed({&write, 1}, deadline);
@@ -274,7 +276,7 @@ BusStatus ModbusModule::check() noexcept {
       status = fail(BusStatus::write_refused, "channel '%s': the output reads back as raw %g", i, raw);
   }
   if (status != BusStatus::ok) return status;
-  // If this exchange reads first, its write comes later and is visible in the next exchange.
+  // If this exchange reads first, it writes after this check, and the next exchange reads these values.
   if (reads_first_) accepted_.note(requested_raws_);
   confirmed_ = !reads_first_;
   return BusStatus::ok;
@@ -293,7 +295,8 @@ void ModbusModule::fill(std::size_t channel, Reading& reading) const noexcept {
   if (slots.displacement.has_value()) {
     const JudgedInput displacement =
         input(wiring.displacement, *slots.displacement, slots.displacement_status);
-    // Without a value, the last displacement remains and is marked as invalid: the control cannot use NaN.
+    // If the board delivered no value, the last displacement is kept and marked as invalid, because the
+    // controller cannot use NaN.
     if (std::isfinite(displacement.physical)) reading.displacement_mm = displacement.physical;
     reading.validity = displacement.validity;
     reading.sampled_at = sampled_at_;

@@ -19,13 +19,14 @@
 namespace softgrip::drivers {
 
 struct ModbusModuleSettings {
-  std::string name;  ///< name in messages if a board has several modules; otherwise the map's name is used
+  std::string name;  ///< name in messages if the board has several modules
   BoardMap map;
-  std::uint8_t unit = 1;  ///< unit id; responses with another one are refused
-  std::size_t link = 0;   ///< index of the board's link to the module
+  std::uint8_t unit = 1;  ///< unit id; responses with another unit id are refused
+  std::size_t link = 0;   ///< index of the link over which the board reaches the module
 };
 
-/// Stores the values that one exchange wrote and read. Only the constructor and the texts allocate.
+/// One module of a board. It stores the values that the last exchange wrote and read. Only the constructor
+/// and transactions() allocate.
 class ModbusModule {
  public:
   /// `link` must outlive the module. `index` is the module's number in the wiring.
@@ -35,35 +36,36 @@ class ModbusModule {
   [[nodiscard]] const ModbusModuleSettings& settings() const noexcept { return settings_; }
   [[nodiscard]] const ExchangePlan& plan() const noexcept { return plan_; }
   [[nodiscard]] bool drives_outputs() const noexcept { return !plan_.writes.empty(); }
-  /// Returns the number of clients in the last read; 0 if the module does not count them.
+  /// Returns the number of clients that the module reported in the last read; 0 if it does not count clients.
   [[nodiscard]] unsigned clients() const noexcept;
 
-  /// Called after the link was opened. Writes the map's setup, or delays it until a tripped watchdog has been
-  /// cleared.
+  /// Prepares the module for a new session, after the link was opened. Writes the map's setup. If the
+  /// watchdog has tripped, the setup is delayed until the watchdog has been cleared.
   [[nodiscard]] BusStatus set_up(Nanoseconds deadline) noexcept;
   /// Sends one request that changes nothing, to measure the link. Returns `ok` at once if the plan has no
   /// read.
   [[nodiscard]] BusStatus probe(Nanoseconds deadline) noexcept;
 
-  /// Encodes the commands. Returns `write_refused` if a command is outside the range of its output, and
-  /// limits it.
+  /// Encodes the commands for write(). A command outside the range of its output is limited to this range,
+  /// and the function returns `write_refused`.
   [[nodiscard]] BusStatus encode(std::span<const double> commands_kpa) noexcept;
   /// Writes the outputs and feeds the watchdog. Once per session, it also clears a tripped watchdog.
   [[nodiscard]] BusStatus write(Nanoseconds deadline) noexcept;
-  /// Every few exchanges, an exchange reads before it writes. It then detects values that another client has
-  /// written since the last exchange, before it overwrites them. begin_exchange() makes this decision. The
-  /// exchange before must have confirmed the outputs, because an output that did not follow differs without
-  /// another client.
+  /// Decides if this exchange reads before it writes; reads_first() returns the decision. Every 8th exchange
+  /// reads first, in order to detect values that another client has written since the last exchange, before
+  /// they are overwritten. The last exchange must have read back the values that it had written. Otherwise an
+  /// output that did not take its value would look like a write of another client.
   void begin_exchange() noexcept;
   [[nodiscard]] bool reads_first() const noexcept { return reads_first_; }
 
   /// Performs the reads that write() has not done.
   [[nodiscard]] BusStatus read(Nanoseconds deadline) noexcept;
-  /// Checks the outputs that the board reports. Returns `overwritten` only if the exchange read first. After
-  /// `write_refused`, found_kpa() returns the actual outputs.
+  /// Checks the outputs that the board reports. For an output with another value than the written one,
+  /// returns `overwritten` if the exchange read first, else `write_refused`. After `write_refused`,
+  /// found_kpa() returns the reported outputs.
   [[nodiscard]] BusStatus check() noexcept;
-  /// Returns the actual output [kPa]. NaN if the channel is not wired to the module, or if the output is as
-  /// written.
+  /// Returns the reported output of a channel [kPa]. NaN if the channel is not wired to the module, or if the
+  /// output has the written value.
   [[nodiscard]] double found_kpa(std::size_t channel) const noexcept { return found_kpa_[channel]; }
   void forget_found() noexcept;
   /// Copies the module's values of a channel into its reading.
@@ -107,8 +109,8 @@ class ModbusModule {
   std::uint32_t unlooked_ = 0;  ///< exchanges since the last one that read first
   bool confirmed_ = false;      ///< the last exchange read back the values that it had written
   bool reads_first_ = false;
-  bool alternate_due_ = false;  ///< the last write of the heartbeat had its first value
-  bool clear_due_ = false;      ///< the session is new: a tripped watchdog may be cleared
+  bool alternate_due_ = false;  ///< the next write of the heartbeat has the alternate value
+  bool clear_due_ = false;      ///< the session is new, so a tripped watchdog may be cleared
   bool setup_due_ = false;      ///< the watchdog was tripped when the session was opened, so the setup is due
   std::array<char, 200> own_detail_{};
   const char* detail_ = "";

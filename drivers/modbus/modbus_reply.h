@@ -1,6 +1,6 @@
 #pragma once
-// Checks Modbus responses: whether the bytes from the function code on are the response to a request. Pure
-// functions over bytes from an untrusted source. mbap.h and rtu_frame.h check the framing.
+// Checks if bytes from an untrusted source, beginning with the function code, are the Modbus response to a
+// request. The functions have no state. mbap.h and rtu_frame.h check the framing.
 
 #include <cstddef>
 #include <cstdint>
@@ -27,8 +27,7 @@ enum class ReplyDefect : std::uint8_t {
 /// Returns a sentence for the event log.
 [[nodiscard]] const char* text_of(ReplyDefect defect) noexcept;
 
-/// The bit in the function code of an exception, and the size of an exception from the function code on
-/// [bytes].
+/// The bit that an exception sets in the function code, and the size of an exception without framing [bytes].
 inline constexpr std::uint8_t exception_bit = 0x80;
 inline constexpr std::size_t exception_pdu_size = 2;
 
@@ -42,9 +41,10 @@ struct ModbusReply {
   std::span<const std::uint8_t> data = {};
 };
 
-/// Checks the beginning of a reply from the function code on. `incomplete` means that it is a correct
-/// beginning of the response. Each byte is checked when it arrives. `complete` and `exception` apply to the
-/// first pdu_size_of(reply, request) bytes; the framing checks the bytes after them.
+/// Checks the bytes of a reply that have arrived so far, beginning with the function code. `incomplete` means
+/// that they are a correct beginning of the response, so a wrong byte is detected before the rest arrives.
+/// `complete` and `exception` apply to the first pdu_size_of(reply, request) bytes. The functions for the
+/// framing check the bytes after them.
 [[nodiscard]] ModbusReply parse_pdu(std::span<const std::uint8_t> pdu, const ModbusRequest& request) noexcept;
 
 /// Returns the size of a reply that is complete or an exception [bytes].

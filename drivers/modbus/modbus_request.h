@@ -1,5 +1,6 @@
 #pragma once
-// Modbus requests: the bytes from the function code on, independent of the wire.
+// Builds Modbus requests without framing: the bytes from the function code on, which are the same for TCP and
+// serial lines.
 
 #include <array>
 #include <cstddef>
@@ -10,7 +11,7 @@ namespace softgrip::drivers {
 
 /// Longest request or response without its framing [bytes]: function code and 252 bytes of data.
 inline constexpr std::size_t max_pdu = 253;
-/// Longest frame of all wires [bytes]: that of Modbus TCP.
+/// Longest frame of TCP and serial lines [bytes]: that of Modbus TCP.
 inline constexpr std::size_t max_frame = 7 + max_pdu;
 using Frame = std::array<std::uint8_t, max_frame>;
 

@@ -9,18 +9,19 @@
 
 namespace softgrip::drivers {
 
-/// RTU has no transaction id: a response belongs to the request before it, and its bytes do not prove this.
-/// Therefore a request is sent only after the silence of the specification. Bytes without a request end the
-/// link, unless they are fewer than the shortest response. After a failure, a new link first listens as long
-/// as a response may still take. libmodbus does none of this. It also does not find a response after stray
-/// bytes, so this class receives without it.
+/// RTU has no transaction id, so the bytes of a response do not show to which request it belongs. Therefore a
+/// request is sent only after the silence of the specification. Unexpected bytes before a request close the
+/// link, unless they are fewer than the shortest response. After a failure, a new link first listens for as
+/// long as a late response may take. libmodbus does none of this. It also does not find a response after
+/// stray bytes, so this class receives without libmodbus.
 class ModbusRtuFraming : public ModbusLink {
  protected:
   ModbusRtuFraming(_modbus* context, const LinkHabits& habits, bool on_network, Nanoseconds character,
                    Nanoseconds silence) noexcept
       : ModbusLink(context, habits, on_network), character_(character), silence_(silence) {}
 
-  /// Called once a link is open. `usual`: response time of a module without bytes and silence.
+  /// Discards late responses after a link was opened. `usual` is the response time of a module without the
+  /// times of bytes and silence [ns].
   BusStatus listen(Nanoseconds usual, Nanoseconds deadline) noexcept;
   [[nodiscard]] Nanoseconds character() const noexcept { return character_; }
   [[nodiscard]] Nanoseconds silence() const noexcept { return silence_; }

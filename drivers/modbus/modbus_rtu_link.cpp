@@ -72,8 +72,8 @@ BusStatus ModbusRtuLink::take_echo(std::span<const std::uint8_t> frame, Nanoseco
   return BusStatus::ok;
 }
 
-/// Returns the response time of module and adapter without the time of bytes and silence. A module responds
-/// after a silence, which shows it the end of the request.
+/// Returns the response time of module and adapter without the times of bytes and of one silence. A module
+/// recognises the end of a request by the silence and responds after it.
 Nanoseconds ModbusRtuLink::answer_time(Nanoseconds round_trip) const noexcept {
   const auto bytes = static_cast<Nanoseconds>(last_size().request + last_size().reply + 2 * rtu_overhead);
   return std::max<Nanoseconds>(0, round_trip - bytes * character() - silence());

@@ -1,5 +1,5 @@
 #pragma once
-// A serial line with Modbus RTU modules and one request at a time.
+// Link to Modbus RTU modules on a serial line.
 
 #include <array>
 #include <cstdint>
@@ -11,8 +11,8 @@
 
 namespace softgrip::drivers {
 
-/// open() opens the device by its name, so an adapter that was unplugged and connected again is found. It
-/// allocates to find the name, and refuses a name that udev gave to several adapters.
+/// open() opens the device by its name, so that it finds an adapter that was unplugged and connected again.
+/// It allocates memory for this search, and fails for a name that udev gave to several adapters.
 class ModbusRtuLink final : public ModbusRtuFraming {
  public:
   explicit ModbusRtuLink(SerialLine line);

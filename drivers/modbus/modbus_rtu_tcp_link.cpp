@@ -11,12 +11,12 @@
 namespace softgrip::drivers {
 namespace {
 
-/// The baud rate behind the server is unknown. This is the duration of a character at 9600 baud [ns].
+/// Assumed duration of a character on the serial line [ns], at 9600 baud. The actual rate is unknown.
 constexpr Nanoseconds slow_character = 1'041'667;
 
 }  // namespace
 
-// libmodbus gets an open socket: the device of its context is never opened.
+// libmodbus receives an open socket, so it never opens the device of this context.
 ModbusRtuTcpLink::ModbusRtuTcpLink(TcpAddress address)
     : ModbusRtuFraming(::modbus_new_rtu("/dev/null", 9600, 'N', 8, 1), address.habits, true, slow_character,
                        nanoseconds(address.silence_s)),

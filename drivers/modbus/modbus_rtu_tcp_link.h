@@ -8,8 +8,9 @@
 
 namespace softgrip::drivers {
 
-/// A serial server may deliver a late response into the next connection. After a failure, a new connection
-/// therefore listens first, as on a serial line.
+/// Link to modules on the line of a serial server. The server may deliver a late response into the next
+/// connection. After a failure, a new connection therefore first listens for such a response, as on a serial
+/// line.
 class ModbusRtuTcpLink final : public ModbusRtuFraming {
  public:
   /// If the host is not a numeric address, open() reports it and fails.

@@ -10,11 +10,11 @@
 
 namespace softgrip::drivers {
 
-/// This class connects within a deadline to an IPv4 or IPv6 address and numbers its requests, which libmodbus
-/// cannot do: raw requests of its version 3.1.6 always have the transaction id 0. With one id, a repeated
-/// reply could be taken for the response to the next request. If a gateway does not return the id
-/// (TcpAddress::numbered is false), this risk exists: a late response is detected only if it arrives before
-/// the next request.
+/// This class connects within a deadline to an IPv4 or IPv6 address and gives each request its own
+/// transaction id. libmodbus cannot do this: raw requests of version 3.1.6 always have the transaction id 0.
+/// With equal ids, a repeated reply could be taken for the response to the next request. This risk remains
+/// for a gateway that does not return the id (TcpAddress::numbered is false). Its late responses are detected
+/// only if they arrive before the next request is sent.
 class ModbusTcpLink final : public ModbusLink {
  public:
   /// If the host is not a numeric address, open() reports it and fails.
@@ -38,7 +38,8 @@ class ModbusTcpLink final : public ModbusLink {
   [[nodiscard]] std::size_t unit_place() const noexcept override { return mbap_unit; }
 
   TcpAddress address_;
-  /// Continues across sessions, so that an old reply that a gateway delivers into a new session is detected.
+  /// Last transaction id. The count continues in later sessions, so that an old reply that a gateway delivers
+  /// into a new session is detected.
   std::uint16_t transaction_ = 0;
 };
 

@@ -1,5 +1,6 @@
 #pragma once
-// Framing on serial lines (Modbus RTU): the unit id before and the CRC after the PDU. A silence ends a frame.
+// Framing of Modbus RTU on serial lines: the unit id before the PDU and the CRC after it. A silence ends a
+// frame.
 // MODBUS over Serial Line, Specification and Implementation Guide V1.02, 2.5.1.
 
 #include <cstddef>
@@ -16,7 +17,8 @@ inline constexpr std::size_t max_rtu_frame = 1 + max_pdu + 2;
 /// Size of the framing: unit id and CRC [bytes].
 inline constexpr std::size_t rtu_overhead = 3;
 
-/// One byte less than the shortest response, an exception [bytes].
+/// Largest number of stray bytes that are discarded: one byte less than the shortest response, which is an
+/// exception.
 inline constexpr std::size_t max_stray_bytes = rtu_overhead + exception_pdu_size - 1;
 
 /// Returns the CRC-16 of the specification: polynomial 0xA001 (reflected), start value 0xFFFF. Sent low byte
@@ -34,8 +36,9 @@ std::size_t put_rtu_ends(std::span<std::uint8_t> frame, std::size_t pdu_size, st
 [[nodiscard]] std::size_t build_rtu_request(const ModbusRequest& request, std::uint8_t unit,
                                             Frame& frame) noexcept;
 
-/// Checks `bytes`, the bytes received since the frame `asked` was sent. As in parse_reply(), `incomplete` is
-/// a correct beginning, and a wrong beginning is detected before the rest arrives.
+/// Checks `bytes`, the bytes received since the frame `asked` was sent. As for parse_reply(), `incomplete`
+/// means that they are a correct beginning of the response, and a wrong byte is detected before the rest
+/// arrives.
 [[nodiscard]] ModbusReply parse_rtu_reply(std::span<const std::uint8_t> bytes, const ModbusRequest& request,
                                           std::uint8_t unit, std::span<const std::uint8_t> asked) noexcept;
 

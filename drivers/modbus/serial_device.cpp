@@ -38,7 +38,7 @@ std::string escaped(const std::string& link) {
   return text;
 }
 
-/// Returns a device with the names of its port as words.
+/// Returns the device at `node` with the names of its port (links in /dev/serial/by-path) as words.
 ComputerDevice on_port(const fs::path& root, const std::string& node) {
   ComputerDevice device{node, {}, {}};
   std::error_code error;
@@ -50,8 +50,8 @@ ComputerDevice on_port(const fs::path& root, const std::string& node) {
   return device;
 }
 
-/// Returns the devices to which udev gave the link. Each has an entry, such as "c188:0", that contains
-/// "PRIORITY:/dev/ttyUSB0".
+/// Returns the devices to which udev gave the link. In udev's folder for this link, each device has an entry,
+/// such as "c188:0", that leads to "PRIORITY:/dev/ttyUSB0".
 std::vector<ComputerDevice> claimants(const fs::path& root, const std::string& link) {
   const std::string folder = "run/udev/links/" + escaped(link);
   std::vector<ComputerDevice> found;

@@ -43,7 +43,7 @@ tcflag_t line_flags(const SerialLine& line) noexcept {
 
 /// Returns true if the device has the rate and the format of the line.
 bool keeps_to(int descriptor, const SerialLine& line) noexcept {
-  termios2 settings{};  // with the rate as a number
+  termios2 settings{};  // contains the baud rate as a number
   if (::ioctl(descriptor, TCGETS2, &settings) != 0) return false;
   constexpr tcflag_t judged = CSIZE | PARENB | PARODD | CSTOPB;
   const bool same_format = (settings.c_cflag & judged) == line_flags(line);

@@ -24,19 +24,20 @@ struct SerialFailure {
 /// device.
 [[nodiscard]] _modbus* new_context(const SerialLine& line);
 
-/// Opens and configures the device with libmodbus, without blocking. Before, it locks the device for this
-/// process while `master` is open: two Modbus clients on one line would read each other's responses and
-/// change the settings. After, it reads the settings back: libmodbus uses 9600 baud for an unknown rate, and
-/// tcsetattr() succeeds if it could apply any setting. The format of a pseudo-terminal is not checked,
-/// because it has no bits on a wire. Does not allocate.
+/// Locks, opens and configures the device with libmodbus, without blocking. The lock excludes other processes
+/// while `master` is open, because two Modbus clients on one line would read each other's responses and
+/// change the settings. After the configuration, the function reads the settings back, because libmodbus uses
+/// 9600 baud for an unknown rate, and tcsetattr() succeeds even if it could apply only some settings. The
+/// format of a pseudo-terminal is not checked, because it has no wire. The function does not allocate.
 [[nodiscard]] SerialFailure open_serial(_modbus* context, const SerialLine& line,
                                         Descriptor& master) noexcept;
 
 /// Returns the duration of one character with its start, parity and stop bits [s].
 [[nodiscard]] double character_s(const SerialLine& line) noexcept;
-/// Returns the silence before and after a frame [s]: that of the line, or of the specification.
+/// Returns the silence before and after a frame [s]: that of the line if it states one, else that of the
+/// specification.
 [[nodiscard]] double silence_s(const SerialLine& line) noexcept;
-/// Sets parity and stop bits from "8N1", "8E1", "8O1", "8N2" or "8E2"; false for any other text.
+/// Sets parity and stop bits from "8N1", "8E1", "8O1", "8N2" or "8E2". Returns false for any other text.
 [[nodiscard]] bool set_format(std::string_view text, SerialLine& line) noexcept;
 /// Returns the texts that set_format() accepts.
 [[nodiscard]] std::span<const std::string_view> formats() noexcept;
@@ -46,7 +47,7 @@ struct SerialFailure {
 /// The time for which the driver of a USB adapter collects bytes before it delivers them.
 struct AdapterLatency {
   double seconds = 0;
-  std::string path;  ///< the file that contains it in milliseconds
+  std::string path;  ///< the file that contains the latency in milliseconds
 };
 /// Returns the latency of the device that is connected now; nothing if it is not connected or has no such
 /// setting. `sys` is the path of sysfs.

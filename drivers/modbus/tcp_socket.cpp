@@ -15,8 +15,8 @@
 namespace softgrip::drivers {
 namespace {
 
-// The deadline of an exchange detects a dead peer. These options only make the kernel close a connection
-// whose other end is gone while no request is sent.
+// During an exchange, the deadline detects a peer that no longer responds. At other times, these options make
+// the kernel close the connection to such a peer.
 constexpr int keepalive_idle_s = 2;
 constexpr int keepalive_interval_s = 1;
 constexpr int keepalive_probes = 3;
@@ -27,7 +27,7 @@ void set_option(int socket, int level, int name, int value) noexcept {
   (void)::setsockopt(socket, level, name, &value, sizeof value);
 }
 
-/// Returns the size of the address, or 0 if the host is not numeric.
+/// Converts the host and port to `address`. Returns the size of the address, or 0 if the host is not numeric.
 socklen_t parse_address(const TcpAddress& from, sockaddr_storage& address) noexcept {
   sockaddr_in v4{.sin_family = AF_INET, .sin_port = htons(from.port), .sin_addr = {}, .sin_zero = {}};
   sockaddr_in6 v6{};

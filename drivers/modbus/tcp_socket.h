@@ -1,5 +1,5 @@
 #pragma once
-// Connects to a host within a deadline, and sends to it without waiting. Neither function allocates.
+// Connects to a host within a deadline, and sends to the host without waiting. No function allocates memory.
 
 #include <cstdint>
 #include <span>
@@ -17,10 +17,10 @@ struct TcpConnection {
   const char* why = "";
 };
 
-/// Connects to an IPv4 or IPv6 address until `deadline` on CLOCK_BOOTTIME [ns].
+/// Connects to an IPv4 or IPv6 address. Fails if the time `deadline` of CLOCK_BOOTTIME [ns] passes before.
 [[nodiscard]] TcpConnection connect_tcp(const TcpAddress& to, Nanoseconds deadline) noexcept;
 
-/// Returns 0, or the errno if the frame was not sent completely.
+/// Sends a frame. Returns 0, or the errno if the frame was not sent completely.
 [[nodiscard]] int send_whole(int socket, std::span<const std::uint8_t> frame) noexcept;
 /// Returns true if an errno means that the other end has closed the connection.
 [[nodiscard]] bool is_closed(int error) noexcept;

@@ -9,7 +9,8 @@
 namespace softgrip::modbus {
 namespace {
 
-// A client that does not read its replies is disconnected at this amount [bytes].
+// Largest number of queued pieces of replies. A client that does not read its replies is disconnected when
+// the queue exceeds this number.
 constexpr std::size_t max_outgoing = 1024;
 
 bool would_block(int error) {
@@ -49,8 +50,8 @@ bool Connection::broken() const {
 }
 
 void Connection::queue(const Request& request, const Reply& reply, Clock::time_point now) {
-  // A pseudo-terminal transmits at once. The reply is delayed by the transmission time of request and reply
-  // on a line.
+  // A pseudo-terminal transmits without delay. The reply is therefore delayed by the time that a real serial
+  // line needs to transmit request and reply.
   constexpr std::size_t unit_and_checksum = 3;
   std::size_t bytes = request.pdu.size() + unit_and_checksum;
   for (const Piece& piece : reply.pieces) bytes += piece.bytes.size();

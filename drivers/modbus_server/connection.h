@@ -1,5 +1,6 @@
 #pragma once
-// One Modbus client: receives requests, and sends pieces of replies when they are due. Never blocks.
+// The connection of one Modbus client. It receives requests, sends pieces of replies when they are due, and
+// never blocks.
 
 #include <chrono>
 #include <functional>
@@ -13,10 +14,10 @@
 
 namespace softgrip::modbus {
 
-/// The times of a real serial line, which a pseudo-terminal does not have.
+/// The times of a real serial line, with which a pseudo-terminal simulates this line.
 struct WireTime {
   std::chrono::nanoseconds character{0};
-  std::chrono::nanoseconds silence{0};     ///< shows a module the end of a request
+  std::chrono::nanoseconds silence{0};     ///< silence by which a module recognises the end of a request
   std::chrono::nanoseconds turnaround{0};  ///< response time of a module after the silence
 };
 
@@ -24,15 +25,16 @@ class Connection {
  public:
   using Serve = std::function<Reply(const Request&)>;
 
-  /// A client on the network.
+  /// Creates the connection of a client on the network.
   explicit Connection(Descriptor socket) : descriptor_(std::move(socket)) {}
-  /// The Modbus client on a serial line.
+  /// Creates the connection of the client on a serial line.
   Connection(Descriptor line, WireTime wire_time)
       : descriptor_(std::move(line)), stream_(RtuRequestStream{}), wire_time_(wire_time) {}
 
-  /// Reads the received bytes and passes each complete request to `serve`. False: close the connection.
+  /// Reads the received bytes and passes each complete request to `serve`. Returns false if the caller must
+  /// close the connection.
   [[nodiscard]] bool receive(const Serve& serve);
-  /// Sends all pieces that are due. False: close the connection.
+  /// Sends all pieces that are due. Returns false if the caller must close the connection.
   [[nodiscard]] bool send_due(Clock::time_point now);
   /// Returns the time at which the next piece is due, or nothing.
   [[nodiscard]] std::optional<Clock::time_point> next_due() const;
@@ -59,7 +61,7 @@ class Connection {
   Descriptor descriptor_;
   std::variant<RequestStream, RtuRequestStream> stream_;
   WireTime wire_time_;
-  std::vector<Outgoing> outgoing_;  // by due time; pieces with equal times in the order of queueing
+  std::vector<Outgoing> outgoing_;  // sorted by due time; pieces with equal times in the order of insertion
   bool closing_ = false;
   bool blocked_ = false;
 };

@@ -8,9 +8,10 @@
 
 namespace softgrip::modbus {
 
-/// If no descriptor is free, a waiting client cannot be accepted, and poll() returns at once each time. A
-/// server that only tries again would use a complete processor. Therefore the listener pauses for a moment.
-/// Before the pause it closes its spare descriptors, so that one client that wants to stop the rig is served.
+/// Accepts clients. If no descriptor is free, a waiting client cannot be accepted, and each poll() returns at
+/// once, so that the server would use a complete processor core. The listener therefore pauses. Before the
+/// pause, it closes its spare descriptors and accepts one more client, because this client may be the one
+/// that stops the rig.
 class Entrance {
  public:
   /// Time until the next attempt [ns].
@@ -34,7 +35,7 @@ class Entrance {
   void take_spares() noexcept;
 
   Descriptor listener_;
-  /// One for the client, and one that its request may need.
+  /// Spare descriptors: one for a client, and one that the client's request may need.
   std::array<Descriptor, 2> spares_;
   Nanoseconds rests_until_ = 0;
   bool short_ = false;

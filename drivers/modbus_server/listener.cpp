@@ -26,7 +26,7 @@ tl::unexpected<std::string> failure(const std::string& what) {
 
 using AddressList = std::unique_ptr<addrinfo, decltype(&::freeaddrinfo)>;
 
-/// Returns the address of a numeric text, or null.
+/// Converts a numeric address and port. Returns null if the address is not numeric.
 AddressList numeric(const std::string& address, const std::string& port) {
   addrinfo hints{};
   hints.ai_family = AF_UNSPEC;

@@ -1,5 +1,5 @@
 #pragma once
-// Listening sockets.
+// Creates listening sockets and accepts clients.
 
 #include <cstdint>
 #include <string>
@@ -27,7 +27,8 @@ struct Listener {
 /// Listens on a Unix domain socket that only this user may open. An old socket at the path is replaced.
 [[nodiscard]] tl::expected<Descriptor, std::string> listen_unix(const std::string& path);
 
-/// Returns the next client, not blocking and closed on exec; empty if there is none.
+/// Returns the descriptor of the next client, which does not block and is closed on exec; empty if no client
+/// waits.
 [[nodiscard]] Descriptor accept_client(const Descriptor& listener);
 
 }  // namespace softgrip::modbus

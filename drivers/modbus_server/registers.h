@@ -1,5 +1,5 @@
 #pragma once
-// The registers of a Modbus board and its responses to requests, without a wire. Semantics: MODBUS
+// The registers of a Modbus server and its responses to requests, without framing. Semantics: MODBUS
 // Application Protocol Specification V1.1b3, sections 6.3, 6.4, 6.6, 6.12, 6.17 and 7.
 
 #include <cstdint>
@@ -15,9 +15,9 @@ namespace softgrip::modbus {
 /// Returns the reply that reports an exception.
 [[nodiscard]] Bytes exception_reply(std::uint8_t function, std::uint8_t code);
 
-/// A set of registers. An undefined address causes an exception, never the value 0: a client with a wrong
-/// address must detect its error. Like the ADAM-6000, it accepts both function codes for an address that only
-/// one of the two tables (holding, input) has.
+/// A set of registers. A request for an undefined address causes an exception instead of the value 0, so that
+/// a client with a wrong address detects its error. Like the ADAM-6000, the set accepts the read functions of
+/// both tables (holding, input) for an address that only one of them contains.
 class Registers {
  public:
   enum class Access : std::uint8_t { read_only, read_write };

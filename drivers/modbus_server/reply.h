@@ -1,5 +1,6 @@
 #pragma once
-// The bytes that a client receives and their times. Faults of the wire are expressed in these types.
+// The bytes that a client receives, and the times at which they are sent. The emulator also expresses faults
+// of the wire in these types.
 
 #include <chrono>
 #include <vector>
@@ -14,7 +15,7 @@ struct Piece {
   Bytes bytes;
 };
 
-/// The complete reaction to one request. A board without a reaction has no pieces.
+/// The complete reaction to one request. If the board does not respond, `pieces` is empty.
 struct Reply {
   std::vector<Piece> pieces;
   bool disconnect = false;  ///< close the connection after all pieces are sent

@@ -13,14 +13,15 @@ namespace {
 using drivers::mbap_size;
 using drivers::rtu_overhead;
 
-// Largest amount of bytes without a complete frame; beyond it the client is disconnected. Complete requests
-// are removed as they arrive, so more than two frames never wait.
+// Largest number of received bytes that wait. If a client exceeds it, the connection is closed. Complete
+// requests are removed after each reception, so that a correct client does not reach this number.
 constexpr std::size_t max_pending = 16 * drivers::max_frame;
 
 constexpr std::chrono::milliseconds no_lump{100};
 
-/// Returns the size of the serial frame that begins here; 0 if it is still unknown. For a function that no
-/// board here has, returns all bytes, so that the server can respond with an exception.
+/// Returns the size of the serial frame at the start of `bytes`; 0 if the size is not known yet. For a
+/// function code that no board of this project supports, returns the number of all bytes, so that the server
+/// can respond with an exception.
 std::size_t rtu_request_size(std::span<const std::uint8_t> bytes) {
   if (bytes.size() < 2) return 0;
   constexpr std::size_t crc_size = 2;
@@ -48,7 +49,7 @@ std::size_t rtu_request_size(std::span<const std::uint8_t> bytes) {
   }
 }
 
-/// Removes the first `frame` bytes. The bytes from `begin` to `end` are the PDU.
+/// Removes the first `frame` bytes and returns their request. The bytes from `begin` to `end` are the PDU.
 Request taken_from(Bytes& pending, std::size_t frame, std::size_t begin, std::size_t end) {
   const auto at = [&](std::size_t index) { return pending.begin() + static_cast<std::ptrdiff_t>(index); };
   Request request{0, pending[begin - 1], Bytes(at(begin), at(end))};

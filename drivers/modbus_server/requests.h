@@ -43,14 +43,15 @@ class RequestStream {
   bool broken_ = false;
 };
 
-/// Divides the bytes of a serial line into requests. In the specification, 3.5 characters of silence end a
-/// frame. On a busy machine bytes arrive in groups, so the length of each function ends a frame here. Only a
-/// silence of 100 ms discards an incomplete frame.
+/// Divides the bytes of a serial line into requests. In the specification, a silence of 3.5 characters ends a
+/// frame. On a busy machine bytes arrive in groups, so this class determines the end of a frame from the
+/// length that its function code implies. Bytes that arrive after a silence of more than 100 ms begin a new
+/// frame.
 class RtuRequestStream {
  public:
   void append(std::span<const std::uint8_t> bytes, Clock::time_point now);
-  /// Returns the next complete request. A frame with a wrong checksum is discarded with all bytes that
-  /// arrived with it, as by a board that does not respond.
+  /// Removes and returns the next complete request, or nothing. A frame with a wrong checksum is discarded
+  /// with all other waiting bytes, and the server does not respond to it.
   [[nodiscard]] std::optional<Request> next();
 
  private:
@@ -58,7 +59,7 @@ class RtuRequestStream {
   Clock::time_point last_byte_;
 };
 
-/// Returns a complete frame with a reply. A serial line has no transaction ids.
+/// Returns a complete frame with the PDU of a reply. On a serial line, `transaction` is not used.
 [[nodiscard]] Bytes frame_on(Wire wire, std::uint16_t transaction, std::uint8_t unit,
                              std::span<const std::uint8_t> pdu);
 
