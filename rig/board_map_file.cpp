@@ -111,7 +111,7 @@ class BoardReader {
     const std::string key = "is" + std::string(suffix_of(block.unit));
     const std::vector<double> electrical = in.numbers(key, 2, {-1000, 1000});
     block.scaling = {raw[0], electrical[0], raw[1], electrical[1]};
-    // The scaling points of a block with an error are not compared.
+    // If a value could not be read, the two scaling points are not compared.
     if (problems_.size() != before || !in.has("at_raw") || !in.has(key)) return;
     if (raw[0] == raw[1]) in.report("at_raw", "the two scaling points must differ");
     if (electrical[0] == electrical[1]) in.report(key, "the two scaling points must differ");
@@ -216,8 +216,8 @@ class BoardReader {
     return write;
   }
 
-  /// Reads a number, or calculates the mask of the functions that feed the watchdog from the name of their
-  /// group.
+  /// Reads the value of a write. For the texts functions_1_to_16 and functions_17_to_32, calculates the bit
+  /// mask of the functions in this group that feed the watchdog.
   std::uint16_t value_of(MapReader& in, std::int64_t largest) {
     const Node* const node = in.child("value", true);
     if (node == nullptr) return 0;
@@ -265,7 +265,7 @@ class BoardReader {
     drivers::BoardWatchdog& watchdog = map_.watchdog;
     const std::size_t before = problems_.size();
     if (in.choice("kind", {"communication_timeout", "none"}) == 1) return;
-    // The kind is misspelt. The other keys show whether the map describes a watchdog.
+    // If the kind is misspelt, further keys show that the map describes a watchdog.
     if (problems_.size() != before && in.keys().size() <= 1) return;
     watchdog.kind = drivers::BoardWatchdog::Kind::communication_timeout;
     watchdog.timeout_s = in.number("timeout_s", {0.001, 3600});
@@ -286,7 +286,8 @@ class BoardReader {
     if (const Node* count = in.child("clients", false)) watchdog.clients = client_count(*count);
   }
 
-  /// The daemon sends only the requests of an exchange, so one of their functions must feed the watchdog.
+  /// Reads the function codes that feed the watchdog. The function that writes the outputs must be one of
+  /// them, because each exchange contains this request.
   void feeding_functions(MapReader& in) {
     std::vector<std::uint8_t>& functions = map_.watchdog.functions;
     for (const Node* item : in.sequence("functions", true)) {
@@ -301,7 +302,7 @@ class BoardReader {
     }
   }
 
-  /// Reports keys of outputs or inputs in a board that has none.
+  /// Reports keys that need outputs or inputs in a board that has no outputs or no inputs.
   void check_directions(MapReader& in) {
     const auto needs = [&](std::string_view key, const std::string& direction) {
       if (in.has(key) && !in.has(direction)) {
@@ -329,7 +330,8 @@ class BoardReader {
     }
   }
 
-  /// A number must be read by one request. Two requests could return its halves from different moments.
+  /// Checks that one request can read a complete number. Two requests could return the halves of a number
+  /// from different moments.
   void check_max_registers(MapReader& in) {
     if (!in.good("max_registers")) return;
     std::uint16_t least = 1;

@@ -1,5 +1,5 @@
 #pragma once
-// Board files: reads YAML into a BoardMap. Unknown keys are errors, and all problems are reported together.
+// Reads board files (YAML) into a BoardMap. Unknown keys are errors, and all problems are reported together.
 
 #include <optional>
 #include <string>

@@ -23,9 +23,9 @@ bool has_item_at(const Node& node, Location at) {
   return std::any_of(node.items.begin(), node.items.end(), item_at);
 }
 
-/// Marks the node at a place as refused, so that no further problem is reported there. An unknown key may be
-/// a misspelt key that is now missing, so its map is marked as incomplete. Returns true if the place is in
-/// the map.
+/// Marks the node at a place as refused, so that no further problem is reported for this node. An unknown key
+/// may be a misspelt key that is now missing, so the map that contains an unknown key is also marked as
+/// refused. Returns true if the place is in `map`.
 bool settle_in(Node& map, Location at) {
   const auto unknown = std::find_if(map.entries.begin(), map.entries.end(),
                                     [&](const Node::Entry& entry) { return entry.key_at == at; });

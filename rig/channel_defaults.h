@@ -8,15 +8,16 @@
 
 namespace softgrip::rig {
 
-/// Takes the keys that a channel omits from `channel_defaults`, map by map: a channel with `valve: {output:
-/// 0}` gets the scaling of `valve` in the defaults. A list is not merged. Nodes keep their places in the
-/// file, so an error in a default is reported once, at the default.
+/// Completes the channels: a key that a channel omits is taken from `channel_defaults`. Maps are merged key
+/// by key. For example, a channel with `valve: {output: 0}` gets the scaling of `valve` in the defaults.
+/// Lists are not merged. Nodes keep their places in the file, so an error in a default is reported once, at
+/// the default.
 class ChannelDefaults {
  public:
   /// Reports keys that cannot be defaults: a name, and keys that are shared at the top of the file.
   ChannelDefaults(Context& context, MapReader& top);
 
-  /// Returns the channel with the defaults of all keys that it omits.
+  /// Returns the channel with the default for each key that the channel omits.
   [[nodiscard]] document::Node completed(const document::Node& channel);
 
   /// Marks the defaults that have a problem with index `before` or above, so that they are not reported again

@@ -42,7 +42,8 @@ const std::array<Signature, 6>& signatures() {
   return all;
 }
 
-/// Scores a document against one kind of file: 2 points for each key of the kind, 1 point for a misspelt key.
+/// Returns the number of points of a document for one kind of file: 2 points for each key of this kind, 1
+/// point for each misspelt key.
 std::size_t score(const document::Document& document, const Signature& signature) {
   std::size_t points = 0;
   for (const document::Node::Entry& entry : document.root.entries) {
@@ -63,7 +64,7 @@ void report_unknown(const document::Document& document, document::Problems& prob
       "`steps`"));
 }
 
-/// A rig, and the document that gives the places of its keys.
+/// A rig, and the document that contains the places of its keys in the file.
 struct ReadRig {
   document::Document document;
   RigReading reading;
@@ -75,7 +76,8 @@ struct Read {
   std::vector<control::Sequence> sequences;
 };
 
-/// `parsed`: the document has no syntax error, so it contains the complete file.
+/// Reads a document as a file of the kind `file.kind`, and stores rigs and sequences in `read`. `parsed` is
+/// true if the document has no syntax error and therefore contains the complete file.
 void read_as(const document::Document& document, bool parsed, std::span<const control::Argument> arguments,
              CheckedFile& file, document::Problems& problems, Read& read) {
   const auto keep_name = [&](const auto& value) {
@@ -112,7 +114,8 @@ void read_as(const document::Document& document, bool parsed, std::span<const co
   }
 }
 
-/// Replaces a channel whose motion could not be read. Its limits are so wide that each sequence fits it.
+/// Returns a substitute for a channel whose model, feedforward, gains or limits could not be read. The limits
+/// of the substitute are so wide that they accept each sequence.
 control::ChannelSettings anything(const control::ChannelSettings& known) {
   constexpr double wide = 1e6;
   control::ChannelSettings channel;
@@ -246,7 +249,8 @@ CheckReport check_files(std::span<const std::string> paths, std::span<const cont
   report.has_rig = !read.rigs.empty();
   fit_sequences(read, problems);
   compare(read, problems);
-  // A model was read more than once if two rigs name it, or if it is also an argument.
+  // A model is read more than once if two rigs refer to it, or if its file is also an argument. Its problems
+  // are reported once.
   report.problems = problems.without_repeats();
   for (CheckedFile& file : report.files) {
     file.errors = count_of(report.problems.list(), file.path);

@@ -14,13 +14,13 @@ struct GpioSettings {
   /// Time without a message from the lines or the loop after which the lines count as lost, or the loop as
   /// stalled [s].
   double stale_after_s = 0;
-  /// Longest interval between two reads of the levels [s]. A missed edge is detected after this time at the
-  /// latest.
+  /// Longest interval between two reads of the levels [s]. If an edge is missed, the new level is detected
+  /// within this time.
   double look_interval_s = 0.005;
   /// The enable output is switched off while a fault other than the emergency stop is latched.
   bool enable_drops_on_fault = true;
   std::vector<drivers::GpioLineSettings> lines;  ///< at most one per role
-  std::vector<document::Problem> places;         ///< of each line in the rig file, without a message
+  std::vector<document::Problem> places;         ///< place of each line in the rig file, without a message
 
   [[nodiscard]] bool has(drivers::GpioRole role) const noexcept {
     for (const drivers::GpioLineSettings& line : lines) {

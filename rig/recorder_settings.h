@@ -9,22 +9,21 @@ namespace softgrip::rig {
 struct RecorderSettings {
   enum class Mode : std::uint8_t {
     off,
-    sequences,  ///< one folder per sequence, and one per fault with the second before it
-    always,     ///< one folder from start to stop
+    sequences,  ///< one folder per sequence, and one per fault with the rows before the fault
+    always,     ///< one folder from the start to the end of the daemon
   };
   Mode mode = Mode::sequences;
   /// Folder in which run folders are created.
   std::string directory = "/var/lib/softgrip/runs";
   /// A row is recorded every `decimation` ticks, at least 1.
   std::uint32_t decimation = 1;
-  /// Longest interval between writes to the kernel [s], above 0 and at most 0.5. `kill -9` loses the rows of
-  /// this time.
+  /// Longest interval between writes to the kernel [s], above 0 and at most 0.5. If the daemon is killed, the
+  /// rows of this time are lost.
   double flush_interval_s = 0.1;
-  /// Interval between writes to the disk (fdatasync) [s]. A power failure loses the rows of this time. 0:
-  /// kernel decides.
+  /// Interval between writes to the disk (fdatasync) [s]. After a power failure, the rows of this time are
+  /// lost. 0: the kernel decides when to write.
   double sync_interval_s = 5;
-  /// Duration of the rows in memory before a recording starts [s]. They are added to the recording of a
-  /// fault.
+  /// Duration for which past rows are kept in memory [s]. The recording of a fault begins with these rows.
   double history_s = 1;
 };
 

@@ -17,9 +17,11 @@ namespace {
 using document::Location;
 using document::Node;
 
-/// Gripping a part needs more pressure than the free finger within its range, but at most this factor more.
+/// Largest plausible ratio of the displacement of the free finger at the pressure limit to the displacement
+/// limit. The ratio may exceed 1, because gripping a part needs more pressure than free motion.
 constexpr double most_times_too_far = 2;
-/// A finger that loses its part moves faster than its valve alone would move it, but at most by this factor.
+/// Largest plausible ratio of `max_speed_mm_per_s` to the speed of the model. The ratio may exceed 1, because
+/// a finger that loses its part moves faster than its valve alone would move it.
 constexpr double most_times_too_fast = 10;
 
 const Node* channel_node(const document::Document& document, std::size_t channel) {
@@ -27,7 +29,8 @@ const Node* channel_node(const document::Document& document, std::size_t channel
   return channels != nullptr && channel < channels->items.size() ? &channels->items[channel] : nullptr;
 }
 
-/// Returns the place of a channel's key: in the channel, in `channel_defaults`, or at the top of the file.
+/// Returns the place of the key that applies to a channel: in the channel, in `channel_defaults`, or at the
+/// top of the file.
 Location place_of(const document::Document& document, std::size_t channel, std::string_view map,
                   std::string_view key) {
   const Node* const own = channel_node(document, channel);
@@ -39,14 +42,15 @@ Location place_of(const document::Document& document, std::size_t channel, std::
   return own != nullptr ? own->at : document.root.at;
 }
 
-/// Writes a suggested value with 2 significant digits.
+/// Returns a suggested value as text with 2 significant digits.
 std::string about(double value) {
   if (value == 0) return "0";
   const double unit = std::pow(10, std::floor(std::log10(std::abs(value))) - 1);
   return significant(std::round(value / unit) * unit, 6);
 }
 
-/// One end of the pressure range, and the end of the displacement range to which it moves the finger.
+/// The keys and values of one end of the pressure range and of the corresponding end of the displacement
+/// range.
 struct Reach {
   const char* pressure;
   const char* displacement;

@@ -16,7 +16,7 @@ namespace softgrip::rig {
 
 namespace {
 
-/// Returns the file in the same folder whose name is most similar to a path that does not exist.
+/// Returns the path of the file with the most similar name in the folder of `path`, which does not exist.
 std::string nearest_file(const std::string& named, const std::string& path) {
   const std::filesystem::path wanted(path);
   std::error_code error;
@@ -30,7 +30,7 @@ std::string nearest_file(const std::string& named, const std::string& path) {
   return near.empty() ? std::string{} : std::filesystem::path(named).replace_filename(near).string();
 }
 
-/// Returns the errno of an attempt to read a file; 0 if it is readable.
+/// Returns the errno with which reading the file would fail; 0 if it is readable.
 int reading_error(const std::string& path) {
   if (::access(path.c_str(), R_OK) != 0) return errno;
   std::error_code error;
@@ -55,7 +55,7 @@ void remember(Context& context, InputFile::Role role, const document::Document& 
 struct BoardKind {
   const char* key;
   void (*read)(Context& context, const document::Node& node);
-  bool after_channels;  ///< simulated boards need the channels; channels of other boards need the board
+  bool after_channels;  ///< the board is read after the channels instead of before them
 };
 constexpr std::array<BoardKind, 4> board_kinds{
     BoardKind{"simulated", read_simulated_board, true}, BoardKind{"modbus_tcp", read_modbus_tcp, false},

@@ -23,7 +23,7 @@
 
 namespace softgrip::rig {
 
-/// Behaviour of a valve when its power fails: a property of the valve, reported at start-up.
+/// Behaviour of a valve when its power fails. The daemon reports it at start-up.
 enum class PowerLoss : std::uint8_t { vents, holds };
 
 /// Properties of a channel's valve apart from its wiring.
@@ -34,7 +34,7 @@ struct ValveFacts {
   double power_loss_kpa = 0;  ///< pressure after a power failure, for a valve that vents
 };
 
-/// A file that the rig depends on, with the text that was read. Recordings store its hash.
+/// A file on which the rig depends, with the text that was read. Recordings store the hash of the text.
 struct InputFile {
   enum class Role : std::uint8_t { rig, board, model, plant };
   Role role = Role::rig;
@@ -42,8 +42,9 @@ struct InputFile {
   std::string text;
 };
 
-/// A rig file. load_rig() returns only valid ones: the settings satisfy control::settings_problems(),
-/// control::check_feedforward() accepted each feedforward, and the wiring matches the board.
+/// The contents of a rig file. load_rig() returns only valid contents: control::settings_problems() finds no
+/// problem in the settings, control::check_feedforward() accepts each feedforward, and the wiring matches the
+/// board.
 struct RigFile {
   std::string name;
   std::string path;                            ///< as the user named it
@@ -51,11 +52,11 @@ struct RigFile {
   std::vector<ValveFacts> valves;              ///< one per channel
   std::vector<drivers::ChannelWiring> wiring;  ///< one per channel, for each kind of board
   std::variant<simulation::SimulatedBoardSettings, drivers::ModbusSettings, drivers::IioSettings> board;
-  std::optional<std::uint64_t> seed;  ///< of a simulated board, as written
-  /// The sentence with which the file accepts a board that does not vent on its own; empty if it has a
-  /// watchdog.
+  std::optional<std::uint64_t> seed;  ///< seed of a simulated board, as in the file
+  /// Text of `accept_no_watchdog`, with which the file accepts a board that does not vent by itself; empty if
+  /// the file does not have this key.
   std::string accept_no_watchdog;
-  /// The file accepts a rate above the bus budget. Without this key, such a file is refused.
+  /// The file accepts a rate that the bus may not reach. Otherwise such a rate is an error.
   bool accept_over_budget = false;
   LoopSettings loop;
   ReconnectSettings reconnect;
@@ -71,28 +72,28 @@ inline constexpr std::string_view no_watchdog_words =
     "the outputs keep their last pressure when softgripd dies";
 
 /// Reads a rig from a parsed document. Paths in the file (board map, models) are relative to the folder of
-/// the document, and their problems are reported under their own paths. Returns nothing if there is an error.
-/// Warnings are in `problems.warnings()`, and the rig is returned.
+/// the document. Problems of these files are reported with their own paths. Returns nothing if there is an
+/// error. If there are only warnings, which are in `problems.warnings()`, returns the rig.
 [[nodiscard]] std::optional<RigFile> read_rig(const document::Document& document,
                                               document::Problems& problems);
 
-/// The readable part of a rig file. Files that belong to a rig with errors are checked against this part.
+/// The readable part of a rig file. If a rig has errors, sequences are checked with this part.
 struct RigReading {
   RigFile rig;
-  bool accepted = false;  ///< no error: `rig` is what read_rig() returns
+  bool accepted = false;  ///< the file has no error, and read_rig() would return `rig`
   /// The names of all channels, the rate, the detection and the rest settings are known. Sequences can then
   /// be checked against `rig.settings`, except for channels whose motion is not known.
   bool fits_sequences = false;
   std::vector<bool> motion_known;  ///< one per channel: model, feedforward, gains and limits are known
 };
-/// Works like read_rig(), but returns the readable part of a rig that has errors.
+/// Reads a rig as read_rig() does, but returns the readable part of a rig that has errors.
 [[nodiscard]] RigReading read_rig_so_far(const document::Document& document, document::Problems& problems);
 
 /// Calls parse_file() and read_rig().
 [[nodiscard]] std::optional<RigFile> load_rig(const std::string& path, document::Problems& problems);
 
-/// Changes the seeds of the simulated plants as if the file contained `seed`. Returns false if the board is
-/// not simulated.
+/// Changes the seeds of the simulated plants to those that a file with this `seed` would give. Returns false
+/// if the board is not simulated.
 bool reseed(RigFile& rig, std::uint64_t seed);
 
 }  // namespace softgrip::rig

@@ -12,7 +12,8 @@ namespace {
 
 using document::Node;
 
-/// Gauge pressures and displacements of all supported fingers. The limits of a rig are narrower.
+/// Permitted gauge pressures and displacements in a rig file, for any supported finger. The limits of a rig
+/// are narrower.
 constexpr document::Range any_pressure_kpa{-100, 2000};
 constexpr document::Range any_displacement_mm{-1000, 1000};
 
@@ -56,7 +57,8 @@ control::LimitSettings read_limits(Context& context, const Node& node, const std
   return limits;
 }
 
-/// Reads the pressure of all safe states. Without the key it is 0 kPa, or the limit nearest to 0 kPa.
+/// Reads `rest_kpa`, the pressure of all safe states. Without this key, the pressure is 0 kPa, or the
+/// pressure limit nearest to 0 kPa.
 void read_rest_pressure(MapReader& reader, const std::string& who, control::LimitSettings& limits) {
   const bool limits_known = reader.good("limits") && limits.pressure_max_kpa > limits.pressure_min_kpa;
   const auto rest_kpa = reader.optional_number("rest_kpa", any_pressure_kpa);
@@ -70,7 +72,8 @@ void read_rest_pressure(MapReader& reader, const std::string& who, control::Limi
                 "`rest_kpa` is the pressure of every safe state");
 }
 
-/// Reads the name first, because the messages of all other keys contain it.
+/// Reads the name of a channel. It is called before all other keys are read, because their messages contain
+/// the name.
 std::string read_channel_name(Context& context, MapReader& reader) {
   std::string name = read_name(reader, "name");
   if (name.empty()) return name;
@@ -82,7 +85,7 @@ std::string read_channel_name(Context& context, MapReader& reader) {
 void read_feedforward(Context& context, MapReader& reader, control::ChannelSettings& channel) {
   channel.feedforward.kind = static_cast<control::FeedforwardKind>(
       reader.choice("feedforward", {control::feedforward_names.begin(), control::feedforward_names.end()}));
-  // A command waits for the bus thread, which runs later than the loop by this time.
+  // A command of the loop waits for the bus thread. The bus thread runs this time after the loop.
   const double lag_s = context.rig.loop.bus_offset_fraction * context.period_s();
   channel.feedforward.extra_latency_s = reader.optional_number("extra_latency_s", {0, 1}).value_or(lag_s);
 }
@@ -122,7 +125,7 @@ struct Shared {
 
 void read_own_or_shared(Context& context, MapReader& reader, const std::string& who, const Shared& shared,
                         control::ChannelSettings& channel) {
-  // In an incomplete document, the shared maps may be in the part that was not read.
+  // If the document is incomplete, the shared maps may be in the part that was not read.
   const bool judge = context.document.complete && !reader.keys().empty();
   const Node* const plausibility = reader.child("plausibility", false);
   if (plausibility != nullptr) {
@@ -148,7 +151,7 @@ void check_feedforward_exists(Context& context, MapReader& reader, const control
   const auto exists =
       control::check_feedforward(channel.model, channel.feedforward, channel.limits, context.period_s());
   if (exists) return;
-  // Most models without an inverse can use the planned feedforward, which needs none.
+  // Most models without an inverse can use the planned feedforward, which needs no inverse.
   const control::FeedforwardSettings planned{control::FeedforwardKind::planned,
                                              channel.feedforward.extra_latency_s};
   const bool plannable =

@@ -1,4 +1,4 @@
-// Checks that need the complete rig.
+// Checks of a rig file that need the complete rig.
 
 #include <algorithm>
 #include <chrono>
@@ -12,8 +12,8 @@ namespace softgrip::rig {
 
 namespace {
 
-/// Modbus: returns the pressure of a channel's valve after the watchdog of the board has tripped; nothing
-/// without a watchdog.
+/// Returns the pressure of a valve after the watchdog of its Modbus module has tripped; nothing if the module
+/// has no watchdog.
 std::optional<double> safe_value_kpa(const drivers::OutputWiring& valve, const ValveFacts& facts,
                                      const drivers::ModbusSettings& board) {
   if (valve.module >= board.modules.size()) return std::nullopt;
@@ -24,8 +24,8 @@ std::optional<double> safe_value_kpa(const drivers::OutputWiring& valve, const V
   return std::clamp(asked_kpa, facts.range_min_kpa, facts.range_max_kpa);
 }
 
-/// Modbus: returns the reason why the watchdog does not put each channel to its rest pressure; nothing if it
-/// does. The reason is empty if a board has no watchdog.
+/// Returns nothing if the watchdog of a Modbus board puts each channel to its rest pressure, otherwise the
+/// text that a message appends as the reason. The text is empty if a module has no watchdog.
 std::optional<std::string> stays_away(const Context& context, const drivers::ModbusSettings& board) {
   for (std::size_t i = 0; i < context.wiring.size(); ++i) {
     const std::optional<double> safe_kpa =
@@ -39,8 +39,8 @@ std::optional<std::string> stays_away(const Context& context, const drivers::Mod
   return std::nullopt;
 }
 
-/// Converters: returns true if all channels reach rest when the circuit behind the heartbeat switches off the
-/// valves.
+/// Returns true if all channels of an industrial I/O board go to rest when the external circuit of the
+/// heartbeat switches off the valves.
 bool heartbeat_vents(const Context& context, const drivers::IioSettings& board) {
   for (std::size_t i = 0; i < context.wiring.size(); ++i) {
     const ValveFacts& valve = context.rig.valves[i];
@@ -66,8 +66,8 @@ void check_watchdog(Context& context, MapReader& top) {
       "to accept it, write under `safety`: accept_no_watchdog: \"" + std::string(no_watchdog_words) + "\"");
 }
 
-/// Returns the time without messages after which the board sets the first used output to its safe value [s];
-/// 0: never.
+/// Returns the shortest time without messages after which the board sets an output to its safe value [s]; 0
+/// if it never does.
 double watchdog_time_s(const Context& context) {
   if (const auto* modbus = std::get_if<drivers::ModbusSettings>(&context.rig.board)) {
     return seconds(drivers::ModbusBoard(*modbus).watchdog_time().count());
@@ -78,9 +78,9 @@ double watchdog_time_s(const Context& context) {
   return simulated != nullptr ? simulated->watchdog_timeout_s : 0;
 }
 
-/// A sequence continues after a gap of the bus that is too short for a fault. If the board has vented in the
-/// gap, the sequence would continue from outputs that no longer exist. So the fault must come before the
-/// watchdog.
+/// Checks that a gap in the communication causes the fault bus_down before the board's watchdog vents. A
+/// sequence continues after a gap that is too short for this fault. If the board had vented in the gap, the
+/// sequence would continue with vented fingers.
 void check_watchdog_time(Context& context, MapReader& top) {
   const double timeout_s = watchdog_time_s(context);
   const std::chrono::nanoseconds timeout(nanoseconds(timeout_s));
@@ -98,8 +98,9 @@ void check_watchdog_time(Context& context, MapReader& top) {
   }
 }
 
-/// The round trip of a network is an estimate, so a user with better knowledge may accept the rate. The
-/// transmission time on a serial line is exact, so a shorter deadline is never met.
+/// Checks that the bus is fast enough for the rate. The round-trip time of a network is an estimate, so a
+/// user who knows it better may accept the rate. The transmission time on a serial line is exact, so an
+/// exchange could never meet a shorter deadline.
 void check_budget(Context& context, MapReader& top) {
   const auto* const settings = std::get_if<drivers::ModbusSettings>(&context.rig.board);
   if (settings == nullptr) return;

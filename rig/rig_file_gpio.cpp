@@ -14,7 +14,7 @@ using drivers::GpioBias;
 using drivers::GpioLineSettings;
 using drivers::GpioRole;
 
-/// The kernel's names of lines have at most 31 bytes.
+/// Largest length of the name of a line in the kernel [bytes].
 constexpr std::size_t longest_name = 31;
 
 std::string read_line_name(MapReader& reader) {
@@ -24,8 +24,8 @@ std::string read_line_name(MapReader& reader) {
   return text.value_or("");
 }
 
-/// Reports a word that matches two chips of this computer, because their order would decide. A word that
-/// matches no chip is accepted: it may be right on the computer of the rig.
+/// Reads the word for a chip. Reports a word that matches several chips of this computer. A word that matches
+/// no chip is accepted, because it may be right on the computer of the rig.
 std::string read_chip(MapReader& reader, const std::vector<ComputerDevice>& there) {
   std::string chip = reader.text("chip");
   const auto found = only_device(there, chip, "GPIO chip");
@@ -47,7 +47,8 @@ void read_which_line(MapReader& reader, GpioLineSettings& line, const std::vecto
   }
 }
 
-/// If a wire breaks, the chip's resistor sets the level of the input. This level must not be the safe one.
+/// Warns if a broken wire would read as a released emergency stop or as a part in position. If a wire breaks,
+/// the pull resistor of the chip sets the level of the input.
 void check_broken_wire(MapReader& reader, const GpioLineSettings& line) {
   if (line.bias != GpioBias::pull_up && line.bias != GpioBias::pull_down) return;
   const bool open_is_active = (line.bias == GpioBias::pull_up) != line.active_low;
@@ -60,7 +61,7 @@ void check_broken_wire(MapReader& reader, const GpioLineSettings& line) {
       "with this `active`, use the other pull resistor, and a contact that is closed in normal operation");
 }
 
-/// `there` contains the chips of this computer.
+/// Reads the line of a role, if the file has it. `there` contains the chips of this computer.
 void read_line(Context& context, MapReader& gpio, const std::vector<ComputerDevice>& there, GpioRole role) {
   const std::string name(drivers::name_of(role));
   const Node* const node = gpio.child(name, false);

@@ -13,7 +13,7 @@ using document::Node;
 
 constexpr std::int64_t largest_raw = (std::int64_t{1} << 24) - 1;
 
-/// Reads the terminals. Each must be a different channel of a converter.
+/// Reads the terminals. Each terminal must be a different channel of a converter.
 class TerminalsReader {
  public:
   TerminalsReader(Context& context, const std::vector<ComputerDevice>& there)
@@ -38,7 +38,7 @@ class TerminalsReader {
     return terminals;
   }
 
-  /// Called after outputs(), because the heartbeat must not be one of the outputs.
+  /// Reads the heartbeat. It is called after outputs(), because the heartbeat must not be one of the outputs.
   std::optional<drivers::IioHeartbeat> heartbeat(MapReader& iio) {
     const Node* const node = iio.child("heartbeat", false);
     if (node == nullptr) return std::nullopt;
@@ -79,8 +79,8 @@ class TerminalsReader {
                       "_voltage0_raw is voltage0");
   }
 
-  /// Reports a word that matches two converters of this computer, because their order would decide. A word
-  /// that matches no converter is accepted: it may be right on the computer of the rig.
+  /// Reports a word that matches several converters of this computer, and a channel that is listed twice. A
+  /// word that matches no converter is accepted, because it may be right on the computer of the rig.
   void check_device(MapReader& reader, const drivers::IioTerminal& terminal, Known& known) const {
     if (!reader.good("device") || !reader.good("channel")) return;
     const auto device = only_device(there_, terminal.device, "converter");

@@ -25,10 +25,10 @@ constexpr int largest_tcp_unit = 255;
 // 0 is the broadcast address, to which no module responds; 248 to 255 are reserved (Modbus over Serial Line
 // V1.02, 2.2).
 constexpr int largest_rtu_unit = 247;
-/// An adapter that delays responses by more than this time causes a warning [s].
+/// Longest time for which an adapter may delay responses without a warning [s].
 constexpr double usual_latency_s = 0.0015;
 
-/// Reads a numeric address. The time to resolve a name would not be bounded.
+/// Reads a numeric address. Names are not accepted, because the time to resolve a name is not bounded.
 std::string read_host(MapReader& reader) {
   std::string host = reader.text("host");
   std::array<unsigned char, sizeof(in6_addr)> address{};
@@ -50,8 +50,8 @@ std::optional<drivers::BoardMap> read_map(Context& context, MapReader& reader) {
   return map;
 }
 
-/// Reads the settings of the session beyond the specification. They are compared with the deadlines after
-/// those are read.
+/// Reads the settings of the session that the Modbus specification does not contain. check_waits() compares
+/// them with the deadlines after the deadlines are read.
 drivers::LinkHabits read_habits(Context& context, MapReader& reader) {
   drivers::LinkHabits habits;
   habits.settle_s = reader.optional_number("settle_s", {0, 30}).value_or(0);
@@ -64,7 +64,7 @@ drivers::LinkHabits read_habits(Context& context, MapReader& reader) {
   return habits;
 }
 
-/// Checks that each waiting time is below the deadline to which it belongs.
+/// Checks that each waiting time is below the deadline that includes it.
 void check_waits(Context& context) {
   const RigFile& rig = context.rig;
   for (const Context::Wait& wait : context.waits) {
@@ -82,7 +82,8 @@ void check_waits(Context& context) {
   }
 }
 
-/// Reads the acceptance of responses without a transaction id. The user must state the risk.
+/// Reads `accept_no_transaction_id`. To accept responses without a transaction id, the file must contain the
+/// sentence that states the risk.
 void read_numbering(MapReader& reader, drivers::TcpAddress& address) {
   constexpr std::string_view key = "accept_no_transaction_id";
   constexpr std::string_view words = "a late answer may pass for the answer to a later request";
@@ -100,8 +101,8 @@ void read_framing(MapReader& reader, drivers::TcpAddress& address) {
   address.silence_s = reader.optional_number("silence_s", {0, 1}).value_or(address.silence_s);
 }
 
-/// Reads the modules of a board. A single one has `map` and `unit` beside the other keys, on a network also
-/// `host` and `port`. Several are in a list under `modules`, each with a name.
+/// Reads the modules of a board. For a single module, the map of the board contains `map` and `unit`, and on
+/// a network also `host` and `port`. Several modules are in a list under `modules`, each with a name.
 class ModulesReader {
  public:
   ModulesReader(Context& context, ModbusSettings& settings, bool serial)
@@ -162,7 +163,8 @@ class ModulesReader {
     return address;
   }
 
-  /// Modules at one host and port share a session, so they must state the same settings of the session.
+  /// Returns the link to an address, which is added if it is new. Modules at one host and port share a
+  /// session, so they must state the same settings of the session.
   std::size_t link_of(MapReader& reader, const drivers::TcpAddress& address) {
     auto& links = settings_.links;
     for (std::size_t link = 0; link < links.size(); ++link) {
@@ -193,22 +195,23 @@ void read_format(MapReader& reader, drivers::SerialLine& line) {
   (void)drivers::set_format(texts[reader.choice("format", texts)], line);
 }
 
-/// Warns of device names that the kernel assigns in the order in which adapters are connected.
+/// Warns of a device name that the kernel assigns in the order in which adapters are connected.
 void advise_on_name(MapReader& reader, const std::string& device) {
   if (device.rfind("/dev/ttyUSB", 0) != 0 && device.rfind("/dev/ttyACM", 0) != 0) return;
   reader.warn("device", document::in_backticks(device) + " may be another adapter after the next start",
               "use the adapter's own name, see: ls -l /dev/serial/by-id");
 }
 
-/// Reports a name that two adapters have, because the adapter connected last would be used. A missing name is
-/// accepted: it may be right on the computer of the rig.
+/// Reports a device name that several adapters have, because the adapter connected last would be used. A name
+/// that does not exist is accepted, because it may be right on the computer of the rig.
 void check_device(MapReader& reader, const std::string& device) {
   if (!reader.good("device")) return;
   const auto unclear = drivers::unclear_serial_device(device);
   if (unclear && unclear->several) reader.report("device", unclear->message, unclear->hint);
 }
 
-/// Uses the latency in the file; without it, the latency that the kernel reports for the connected adapter.
+/// Reads the latency of the adapter from the file, or else from the kernel for the connected adapter. Warns
+/// of an adapter with a long latency.
 void read_adapter_latency(MapReader& reader, drivers::SerialLine& line) {
   const auto stated = reader.optional_number("adapter_latency_s", {0, 1});
   const auto found = drivers::adapter_latency(line.device);

@@ -1,5 +1,5 @@
 #pragma once
-// Functions that read_rig() calls. Each reads one map of a rig file. Internal to rig_file*.cpp.
+// Functions that read_rig() calls to read the maps of a rig file. Internal to rig_file*.cpp.
 
 #include <map>
 #include <optional>
@@ -27,19 +27,19 @@ struct Context {
   const document::Document& document;
   document::Problems& problems;
   RigFile& rig;
-  std::string board_key;                            ///< the kind of board
-  std::vector<KnownModule> modules;                 ///< modules of a board with terminals
+  std::string board_key;                            ///< key of the board's kind, such as "modbus_tcp"
+  std::vector<KnownModule> modules;                 ///< modules of the board; empty for a simulated board
   std::vector<drivers::ChannelWiring> wiring;       ///< one per channel
   std::map<std::string, document::Location> names;  ///< names of channels, and their places in the file
   UsedTerminals inputs;
-  UsedTerminals thermometers;  ///< inputs that several channels may share
+  UsedTerminals thermometers;  ///< inputs of temperature sensors, which several channels may share
   UsedTerminals outputs;
   std::map<std::string, std::optional<model::Model>> models;  ///< by path, so that each file is read once
 
-  bool rate_known = false;  ///< rate_hz has no error, so values can be compared with a cycle
+  bool rate_known = false;  ///< rate_hz has no error, so values can be compared with the period
 
-  /// The parts of the file that are present without an error. A check of several parts runs only if all of
-  /// them are.
+  /// True for each part of the file that is present and has no error. A check that needs several parts runs
+  /// only if they all have no error.
   struct Sound {
     bool loop = false;
     bool faults = false;
@@ -52,10 +52,10 @@ struct Context {
   Sound sound;
   /// One per channel: true if model, feedforward, gains and limits are known.
   std::vector<bool> motion_known;
-  /// Texts of the files that the rig names; null: they are read from the disk.
+  /// Texts of the files to which the rig refers; if it is null, the files are read from the disk.
   const std::vector<InputFile>* stored = nullptr;
 
-  /// A time of the session with a Modbus board that must be below a deadline. The deadline is read later.
+  /// A waiting time of a Modbus session that must be below a deadline, which is read later.
   struct Wait {
     document::Location at;
     std::string_view key;
@@ -69,10 +69,11 @@ struct Context {
 
 /// Returns a path in the rig file relative to the working directory.
 [[nodiscard]] std::string resolved(const Context& context, const std::string& path);
-/// Reads the document in the file that `key` names. A file that cannot be read is reported at the key.
+/// Reads the document in the file whose path is the value of `key`. If the file cannot be read, a problem is
+/// reported at the key.
 [[nodiscard]] std::optional<document::Document> named_document(Context& context, MapReader& reader,
                                                                std::string_view key, InputFile::Role role);
-/// Reads the model in the file that `key` names.
+/// Reads the model in the file whose path is the value of `key`.
 [[nodiscard]] std::optional<model::Model> named_model(Context& context, MapReader& reader,
                                                       std::string_view key, InputFile::Role role);
 
@@ -84,7 +85,7 @@ struct Context {
 void report_repeated(MapReader& reader, std::string_view key, const std::string& what,
                      document::Location first);
 
-/// The following functions read the maps at the top of the file.
+// Each of the following functions reads one map of the file.
 void read_modbus_tcp(Context& context, const document::Node& node);
 void read_modbus_rtu(Context& context, const document::Node& node);
 void read_iio(Context& context, const document::Node& node);
@@ -102,17 +103,19 @@ void read_recorder(Context& context, MapReader& top);
 void read_socket(Context& context, MapReader& top);
 void read_gpio(Context& context, MapReader& top);
 
-/// Reads maps that are either at the top of the file, for all channels, or in a channel.
+// The following two maps are at the top of the file, for all channels, or in a channel.
 [[nodiscard]] control::PlausibilitySettings read_plausibility(Context& context, const document::Node& node);
 [[nodiscard]] control::ModelHealthSettings read_model_health(Context& context, const document::Node& node);
 
-/// Returns 0 kPa if only the limits keep a resting channel from 0 kPa; otherwise the rest pressure.
+/// Returns 0 kPa if the rest pressure differs from 0 kPa only because the pressure limits exclude 0 kPa;
+/// otherwise the rest pressure.
 [[nodiscard]] double vented_kpa(const control::LimitSettings& limits);
-/// Returns true if a pressure is within 1 % of the range of the rest pressure, or between the rest pressure
-/// and vented_kpa().
+/// Returns true if a pressure lies between the rest pressure and vented_kpa(), or differs from this interval
+/// by at most 1 % of the pressure range.
 [[nodiscard]] bool is_rest(const control::LimitSettings& limits, double pressure_kpa);
 
-/// Reads the wiring of a channel. `rest_stated`: the file gives the channel's `rest_kpa`.
+// Each of the following functions reads one part of the wiring of a channel.
+/// Reads the valve. `rest_stated` is true if the file contains the channel's `rest_kpa`.
 [[nodiscard]] drivers::OutputWiring read_valve(Context& context, const document::Node& node,
                                                const std::string& who, const control::LimitSettings& limits,
                                                bool rest_stated, ValveFacts& facts);
@@ -120,12 +123,12 @@ void read_gpio(Context& context, MapReader& top);
                                                const std::string& who, const control::LimitSettings& limits);
 [[nodiscard]] drivers::InputWiring read_pressure_monitor(Context& context, const document::Node& node,
                                                          const std::string& who);
-/// Several channels may share one temperature sensor.
+/// Reads the temperature sensor, which several channels may share.
 [[nodiscard]] drivers::InputWiring read_temperature_sensor(Context& context, const document::Node& node,
                                                            const std::string& who);
 
-/// Checks the wiring, the watchdog, the settings of the control and the bus budget. Each check runs only if
-/// the parts that it needs have no error.
+/// Checks the wiring, the watchdog, the settings of the controller and the bus budget. Each check runs only
+/// if the parts of the file that it needs have no error.
 void check_whole(Context& context, MapReader& top);
 /// Returns true if the board puts each channel to its rest pressure when messages stop.
 [[nodiscard]] bool board_vents_when_silent(const Context& context);

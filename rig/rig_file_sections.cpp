@@ -30,7 +30,7 @@ std::uint32_t cycles(MapReader& reader, std::string_view key, std::int64_t lower
   return static_cast<std::uint32_t>(reader.integer(key, lower, 100'000));
 }
 
-/// `slipped_cycles` is the deprecated name of `overrun_cycles`.
+/// Reads `overrun_cycles`, or the same key under its deprecated name `slipped_cycles`.
 std::uint32_t overrun_cycles(MapReader& reader) {
   if (!reader.has("slipped_cycles")) return cycles(reader, "overrun_cycles", 0);
   const std::uint32_t number = cycles(reader, "slipped_cycles", 0);
@@ -39,7 +39,7 @@ std::uint32_t overrun_cycles(MapReader& reader) {
   return number;
 }
 
-/// Reads processor numbers without repetition.
+/// Reads the list of processor numbers.
 std::vector<int> read_cpus(Context& context, MapReader& reader) {
   std::vector<int> cpus;
   for (const Node* item : reader.sequence("cpus", true)) {
@@ -56,7 +56,7 @@ std::vector<int> read_cpus(Context& context, MapReader& reader) {
   return cpus;
 }
 
-/// Reads permissions in the form of ls: `rw-rw----`.
+/// Converts permissions in the form of ls, such as `rw-rw----`. Returns nothing for another text.
 std::optional<unsigned> in_letters(std::string_view text) {
   constexpr std::string_view letters = "rwxrwxrwx";
   if (text.size() != letters.size()) return std::nullopt;
@@ -68,7 +68,8 @@ std::optional<unsigned> in_letters(std::string_view text) {
   return mode;
 }
 
-/// Reads permissions in the form of chmod: three octal digits, with an optional leading 0.
+/// Converts permissions in the form of chmod: three octal digits, with an optional leading 0. Returns nothing
+/// for another text.
 std::optional<unsigned> octal(std::string_view text) {
   if (text.size() == 4 && text[0] == '0') text.remove_prefix(1);
   unsigned mode = 0;
@@ -79,7 +80,7 @@ std::optional<unsigned> octal(std::string_view text) {
   return mode;
 }
 
-/// `moves`: clients of this socket may move the gripper.
+/// Reads the permissions of a socket. `moves` is true if clients of this socket may move the gripper.
 void read_socket_mode(MapReader& reader, SocketFile& socket, bool moves) {
   const std::string text = reader.text("mode");
   if (text.empty()) return;

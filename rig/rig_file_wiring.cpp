@@ -16,13 +16,13 @@ namespace {
 using document::Node;
 using drivers::ElectricalUnit;
 
-/// V and mA of all supported boards, and pressures of sensors that measure kPa. The limits of the board map
-/// are narrower.
+/// Returns the permitted values in a rig file for V, mA or kPa at a terminal, for any supported board. The
+/// limits of the board map are narrower.
 constexpr document::Range range_of(ElectricalUnit unit) {
   return unit == ElectricalUnit::kilopascal ? document::Range{-200, 10'000} : document::Range{-100, 100};
 }
 
-/// The map contains either `stem_v` or `stem_ma`. The suffix decides the unit.
+/// A key with an electrical suffix, such as `at_v` or `at_ma`. The suffix determines the unit.
 struct ElectricalKey {
   std::string name;
   ElectricalUnit unit = ElectricalUnit::volt;
@@ -43,7 +43,7 @@ ElectricalKey electrical_key(MapReader& reader, const std::string& stem) {
   return found.value_or(ElectricalKey{stem + "_v", ElectricalUnit::volt});
 }
 
-/// Reads `at_v: [0, 10], is_kpa: [0, 100]`.
+/// Reads the two points of a scaling, for example `at_v: [0, 10], is_kpa: [0, 100]`.
 drivers::TwoPoints read_scaling(MapReader& reader, const ElectricalKey& at_key, std::string_view is_key,
                                 document::Range is_range) {
   const auto at = reader.numbers(at_key.name, 2, range_of(at_key.unit));
@@ -62,7 +62,8 @@ drivers::TwoPoints read_scaling(MapReader& reader, const ElectricalKey& at_key, 
   return {at[0], is[0], at[1], is[1]};
 }
 
-/// Returns the module of a terminal: the one that `module` names, or the only one that has such terminals.
+/// Returns the index of a terminal's module: that of the module named by the key `module`, or else that of
+/// the only module with terminals of this direction.
 std::size_t read_module(const Context& context, MapReader& reader, std::string_view key) {
   if (context.modules.size() <= 1) return 0;
   std::vector<std::string> names;
@@ -88,8 +89,8 @@ const drivers::Terminal* terminal_of(const Context& context, std::string_view ke
   return index < terminals.size() ? &terminals[index] : nullptr;
 }
 
-/// Reads a terminal, which must exist and may be used once. @param shared  terminals of `used` that may be
-/// used again; null: none.
+/// Reads the number of a terminal, which must exist and may be used once.
+/// @param shared  terminals that may be used more than once; null: none.
 std::size_t read_terminal(Context& context, MapReader& reader, std::string_view key, std::size_t module,
                           UsedTerminals& used, UsedTerminals* shared = nullptr) {
   const auto terminal = static_cast<std::size_t>(reader.integer(key, 0, 255));
@@ -116,7 +117,7 @@ void check_unit(MapReader& reader, const ElectricalKey& key, const drivers::Term
                               " but `" + key.name + "` is in " + std::string(drivers::name_of(key.unit)));
 }
 
-/// Reads the part of the electrical range that is valid for readings.
+/// Reads the electrical range in which readings are valid.
 void read_validity(MapReader& reader, const std::string& valid_key, drivers::InputWiring& wiring) {
   const auto valid = reader.numbers(valid_key, 2, range_of(wiring.unit));
   if (reader.good(valid_key) && valid[0] >= valid[1]) {
@@ -153,7 +154,8 @@ drivers::InputWiring read_input(Context& context, MapReader& reader, const std::
   return wiring;
 }
 
-/// Checks that the valve can control the limits, and that the limits use enough of the valve's range.
+/// Checks that the pressure limits are within the ranges of valve and board output, and that they use at
+/// least a fifth of the valve's range.
 void check_valve(Context& context, MapReader& reader, const ElectricalKey& at,
                  const drivers::OutputWiring& wiring, const control::LimitSettings& limits,
                  const ValveFacts& facts) {
@@ -175,7 +177,8 @@ void check_valve(Context& context, MapReader& reader, const ElectricalKey& at,
   }
   const drivers::Terminal* const terminal = terminal_of(context, "output", wiring.module, wiring.output);
   if (terminal == nullptr) return;
-  // The full scale of many boards is one count above the largest raw number.
+  // The nominal full scale of many boards is one count above the largest raw number, so the comparison has a
+  // tolerance.
   const double slack = (terminal->highest - terminal->lowest) * 1e-3;
   for (const double pressure : {limits.pressure_min_kpa, limits.pressure_max_kpa}) {
     const double needed = wiring.scaling.x_at(pressure);
@@ -189,7 +192,8 @@ void check_valve(Context& context, MapReader& reader, const ElectricalKey& at,
   }
 }
 
-/// Without power, software has no effect: the valve alone determines the pressure of its finger.
+/// Warns if the valve does not go to the rest pressure without power. Software cannot do this, because
+/// without power the valve alone determines the pressure of its finger.
 void check_power_loss(MapReader& reader, const std::string& who, const control::LimitSettings& limits,
                       bool rest_stated, const ValveFacts& facts) {
   const bool holds = facts.on_power_loss == PowerLoss::holds;

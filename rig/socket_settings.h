@@ -9,9 +9,9 @@ namespace softgrip::rig {
 /// A Unix domain stream socket in the file system.
 struct SocketFile {
   std::string path;  ///< empty: no socket
-  /// Permissions of its file.
+  /// Permissions of the file of the socket.
   unsigned mode = 0660;
-  /// Group of its file; empty: the daemon's.
+  /// Group of the file of the socket; empty: the group of the daemon.
   std::string group;
 };
 
@@ -25,9 +25,9 @@ struct SocketSettings : SocketFile {
   /// Longest line of a client [bytes]. After a longer line, the daemon sends an error and disconnects the
   /// client.
   std::size_t max_line_bytes = 64 * 1024;
-  /// Largest amount of replies that a client has not read [bytes]. Above it the client is disconnected.
+  /// Largest amount of replies that a client has not read [bytes]. A client that exceeds it is disconnected.
   std::size_t max_queue_bytes = 1024 * 1024;
-  /// Folder that contains the sequences of the request `start`.
+  /// Folder that contains the sequences that the request `start` can start.
   std::string sequence_directory = "/etc/softgrip/sequences";
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// Reads a rig from stored texts of its files, without access to the disk.
+// Reads a rig from stored texts of its files.
 
 #include <optional>
 #include <vector>

@@ -72,8 +72,7 @@ class Reader {
     }
   }
 
-  /// Reports an address above the last one or used twice. For a finger, `address` is that of its first
-  /// register.
+  /// Reports an address that is above the last possible one or is used twice.
   void claim(document::Location at, std::int64_t address, std::string_view what) {
     const auto [taken, is_free] = claimed_.emplace(address, what);
     if (is_free && address <= last_address) return;

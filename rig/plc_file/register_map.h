@@ -10,7 +10,7 @@
 
 namespace softgrip::plc {
 
-/// All registers. Those of a finger exist once per finger.
+/// All registers. The registers whose names begin with finger_ exist once per finger.
 enum class Name : std::uint8_t {
   command_counter,
   command,
@@ -39,22 +39,22 @@ enum class Name : std::uint8_t {
 };
 inline constexpr std::size_t name_count = static_cast<std::size_t>(Name::finger_valid) + 1;
 
-/// The blocks of the file: registers that the PLC writes, registers that the gateway writes, registers per
-/// finger.
+/// The blocks of the file: registers that the PLC writes (command), registers that the gateway writes
+/// (status), and registers that exist once per finger.
 enum class Block : std::uint8_t { command, status, finger };
 
 struct RegisterInfo {
   Name name;
   Block block;
-  std::string_view key;   ///< key in the file, without its block
-  std::string_view unit;  ///< unit of a quantity; empty for a code or a count
+  std::string_view key;   ///< name of the register in its block of the file
+  std::string_view unit;  ///< unit of a physical quantity; empty for a code or a counter
 };
 /// Returns the registers in the order of Name.
 [[nodiscard]] const std::array<RegisterInfo, name_count>& registers() noexcept;
 
 struct RegisterMap {
-  std::array<std::uint16_t, name_count> address{};  ///< of a finger: offset from its first
-  std::array<double, name_count> resolution{};      ///< for a quantity: size of one count, in its unit
+  std::array<std::uint16_t, name_count> address{};  ///< for a finger: offset from its first register
+  std::array<double, name_count> resolution{};      ///< value of one count of a quantity, in its unit
   std::uint16_t first_finger = 0;
   std::uint16_t finger_stride = 0;
   std::uint16_t most_fingers = 0;
@@ -67,7 +67,8 @@ struct RegisterMap {
   [[nodiscard]] double of_one(Name name) const noexcept { return resolution[static_cast<std::size_t>(name)]; }
 };
 
-/// Reads the map under `registers`. Each register must be present, and no two may share an address.
+/// Reads the map under the key `registers`. Each register must be present, and no two registers may have the
+/// same address.
 [[nodiscard]] RegisterMap read_register_map(const document::Document& document, const document::Node& node,
                                             document::Problems& problems);
 

@@ -76,7 +76,8 @@ class SettingsReader {
     settings_.recipes.push_back(std::move(recipe));
   }
 
-  /// The suffix of the parameter's name must be the unit of the register.
+  /// Reads the name of the sequence's parameter that a register sets. The name must end with the unit of the
+  /// register.
   static std::string parameter(MapReader& reader, std::string_view key, std::string_view ending) {
     std::string name = reader.optional_text(key).value_or("");
     if (!name.empty() && !name.ends_with(ending)) {

@@ -13,13 +13,13 @@
 
 namespace softgrip::plc {
 
-/// The sequence and the parameters that belong to a number in the recipe register.
+/// The sequence and its parameters that a number in the recipe register selects.
 struct Recipe {
-  std::uint16_t number = 0;  ///< from 1
+  std::uint16_t number = 0;  ///< number in the recipe register, from 1
   std::string sequence;
-  std::string squeeze;  ///< parameter of the sequence that the register sets; empty: none
-  std::string speed;
-  std::string displacement;
+  std::string squeeze;       ///< parameter of the sequence that the register `squeeze` sets; empty: none
+  std::string speed;         ///< parameter that the register `speed` sets; empty: none
+  std::string displacement;  ///< parameter that the register `displacement` sets; empty: none
 };
 
 /// Action of the gateway when the PLC stops responding.
@@ -28,11 +28,12 @@ enum class Reaction : std::uint8_t { nothing, stop, vent, release };
 struct Settings {
   std::string name;
   std::string socket;   ///< socket of softgripd
-  std::string address;  ///< numeric
+  std::string address;  ///< numeric IP address at which the gateway listens
   std::uint16_t port = 502;
   std::vector<std::string> allow;  ///< numeric addresses of the permitted Modbus clients (PLCs)
-  std::size_t max_masters = 4;
-  double idle_s = 60;  ///< a client that sends no request for this time is disconnected
+  std::size_t max_masters = 4;     ///< largest number of connected clients
+  double idle_s = 60;              ///< a client that sends no request for this time is disconnected [s]
+  /// Time without a change of the PLC's heartbeat after which `when_silent` applies [s].
   double silence_s = 2;
   Reaction when_silent = Reaction::stop;
   std::vector<Recipe> recipes;

@@ -19,15 +19,15 @@ struct Settings {
   std::string name;
   std::string look_socket;     ///< socket of softgripd from which the page reads
   std::string operate_socket;  ///< socket for commands; empty: the page has no commands
-  std::string address;         ///< numeric
+  std::string address;         ///< numeric IP address at which the page is served
   std::uint16_t port = 0;
   std::size_t max_connections = 64;
   std::vector<std::string> hosts;  ///< host names of the page in addition to `localhost`
   std::string tokens;              ///< path of the file of tokens; empty: no tokens
   Role without_token = Role::look;
-  double session_idle_s = 1800;  ///< a session without requests and without an open page ends after this time
-  double session_s = 43200;      ///< each session ends after this time
-  std::string recordings;        ///< folder of the daemon's recordings; empty: they are not shown
+  double session_idle_s = 1800;  ///< time after which a session without requests and open page ends [s]
+  double session_s = 43200;      ///< time after which each session ends [s]
+  std::string recordings;        ///< folder of the daemon's recordings; empty: the page shows none
 };
 
 /// Reads a document and adds its problems to `problems`.
