@@ -6,7 +6,8 @@
 namespace softgrip::simulation {
 namespace {
 
-// A stone as wide as a hand stops the fingers at 12 mm. A screw head lets them go further and is stiffer.
+// Predefined objects. A wide stone stops the fingers at 12 mm. A screw head is narrower, so that the fingers
+// touch it at 17 mm, and stiffer.
 constexpr simulation::PlantObject stone{12, 0.1};
 constexpr simulation::PlantObject screw{17, 0.05};
 

@@ -3,10 +3,10 @@
 //
 //   status                 one line of JSON: true state of board, fingers and faults
 //   fault NAME             begins a fault of the faults file
-//   clear NAME             ends that fault
-//   object out | back      removes the object, puts it back
+//   clear NAME             ends the fault NAME
+//   object out | back      removes the object, or puts it back
 //   object stone | screw | POSITION_MM[:YIELDING]    sets another object
-//   quit
+//   quit                   ends the emulator
 
 #include <optional>
 #include <string>
@@ -17,12 +17,12 @@
 
 namespace softgrip::simulation {
 
-/// Returns the object for a text of a user: "stone", "screw", "13", "13:0.2".
+/// Returns the object that a text of a user describes ("stone", "screw", "13", "13:0.2"), or nullopt.
 [[nodiscard]] std::optional<simulation::PlantObject> object_named(std::string_view text);
 
 struct ControlAnswer {
-  std::string line;  ///< "ok", "error: ..." or the requested value, without line break
-  bool quit = false;
+  std::string line;   ///< "ok", "error: ..." or the status, without line break
+  bool quit = false;  ///< the command requests the end of the emulator
 };
 
 /// Executes one command line at `now`.

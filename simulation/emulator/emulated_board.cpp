@@ -153,8 +153,8 @@ Registers::Answer EmulatedBoard::answer(Nanoseconds now, std::span<const std::ui
   if (touched) {
     commanded_ = true;
     if (!tripped_ && !writes_ignored_) take_outputs();
-    // The registers show the values at the terminals, so that a client that reads back detects an ignored
-    // write.
+    // The registers contain the values at the terminals, so that a client that reads the registers detects an
+    // ignored write.
     show_outputs();
   }
   return answer;
@@ -169,8 +169,8 @@ void EmulatedBoard::advance(Nanoseconds now) {
   show_tripped();
 }
 
-/// Ends a trip after the last of the writes that clear it. If the map names no such write, any write to the
-/// outputs ends it.
+/// Ends the tripped state of the watchdog when all writes that clear it have been received. If the map
+/// contains no such write, any write to the outputs ends the tripped state.
 void EmulatedBoard::note_clearing(std::span<const std::uint8_t> pdu, bool wrote_outputs) {
   for (std::size_t i = 0; i < cleared_.size(); ++i) {
     if (is_write(pdu, map_.watchdog.clear[i])) cleared_[i] = true;
@@ -237,8 +237,8 @@ void EmulatedBoard::put_raw(const RegisterBlock& block, std::size_t index, doubl
   }
 }
 
-/// Returns true if the request feeds the heartbeat. A heartbeat with a constant value does not count, because
-/// it comes from a program that hangs.
+/// Returns true if the request is a heartbeat that feeds the watchdog. If the heartbeat has two alternating
+/// values, a repeated value does not feed the watchdog, because it may come from a program that hangs.
 bool EmulatedBoard::is_heartbeat(std::span<const std::uint8_t> pdu) {
   drivers::FixedWrite write = *map_.watchdog.feed_write;
   if (!write.alternate) return is_write(pdu, write);

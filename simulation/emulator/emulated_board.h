@@ -1,6 +1,6 @@
 #pragma once
-// Emulates the board: registers according to a board map, converters and the watchdog of the board. It knows
-// terminals and their voltages or currents, but not the devices that are wired to them.
+// Emulates a board: registers according to a board map, converters and the watchdog of the board. The signals
+// at its terminals are voltages or currents. The class does not know the devices at the terminals.
 
 #include <cstddef>
 #include <cstdint>
@@ -15,8 +15,8 @@ namespace softgrip::simulation {
 
 class EmulatedBoard {
  public:
-  /// Starts in the state after power-on. Outputs have their safe values (0 if the map gives none), and the
-  /// watchdog is inactive until the first request that feeds it.
+  /// Creates the board in the state after power-on. Outputs have their safe values (0 if the map contains
+  /// none), and the watchdog is inactive until the first request that feeds it.
   explicit EmulatedBoard(const drivers::BoardMap& map);
 
   [[nodiscard]] const drivers::BoardMap& map() const noexcept { return map_; }
@@ -24,10 +24,10 @@ class EmulatedBoard {
   /// Returns the reply to a request that arrives at `now`. Calls must be in order of time.
   Registers::Answer answer(Nanoseconds now, std::span<const std::uint8_t> pdu);
 
-  /// Trips the watchdog if it is due by `now`.
+  /// Trips the watchdog if its time-out has passed at `now`.
   void advance(Nanoseconds now);
-  /// Returns the time at which the watchdog trips if it is not fed. Returns nullopt if it is inactive, has
-  /// tripped or does not exist.
+  /// Returns the time at which the watchdog trips if no request feeds it before. Returns nullopt if the
+  /// watchdog is inactive, has tripped or does not exist.
   [[nodiscard]] std::optional<Nanoseconds> watchdog_due() const noexcept;
   [[nodiscard]] bool tripped() const noexcept { return tripped_; }
   /// Returns true after a client has written an output.
@@ -35,14 +35,15 @@ class EmulatedBoard {
 
   /// Returns the signal of an output terminal [V or mA].
   [[nodiscard]] double output(std::size_t terminal) const { return outputs_.at(terminal); }
-  /// Writes the number of connected clients to its register, if the map has one.
+  /// Writes the number of connected clients to the register for this number, if the map has one.
   void count_clients(std::size_t clients);
   /// While true, writes are confirmed but have no effect.
   void ignore_writes(bool ignored) noexcept { writes_ignored_ = ignored; }
 
   /// Sets the signal at an input terminal [V or mA].
   void set_input(std::size_t terminal, double electrical);
-  /// Sets an input to the board's error value, or to its upper end if the map has no error value.
+  /// Sets an input to the board's error value, or to the upper end of its range if the map has no error
+  /// value.
   void set_input_error(std::size_t terminal);
 
  private:
@@ -72,7 +73,7 @@ class EmulatedBoard {
   bool tripped_ = false;
   bool commanded_ = false;
   bool writes_ignored_ = false;
-  std::vector<bool> cleared_;  // clearing writes received since the watchdog tripped
+  std::vector<bool> cleared_;  // for each clearing write: received since the watchdog tripped
 };
 
 }  // namespace softgrip::simulation

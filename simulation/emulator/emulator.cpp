@@ -58,7 +58,7 @@ void Emulator::advance(Nanoseconds now) {
       ++watchdog_trips_;
       take_commands();
     }
-    // A jumping sensor also changes between the changes of the schedule.
+    // Faults are applied in each step, because a jumping sensor also changes while its fault stays active.
     faults_.advance(now_);
     apply_faults();
     if (now_ % grid == 0 && observer_) observer_();

@@ -1,6 +1,6 @@
 #pragma once
-// The emulated rig in real time: board, fingers and faults. The times at which requests arrive advance it. It
-// has no sockets and no clock.
+// Emulates a rig: board, fingers and faults. The class has no sockets and no clock: the caller passes
+// requests and the times at which they arrive.
 
 #include <cstddef>
 #include <cstdint>
@@ -24,8 +24,8 @@ struct EmulatedModule {
 };
 
 struct EmulatorSettings {
-  /// A request to a unit that is not on its link gets exception 11 on a network and no reply on a serial
-  /// line.
+  /// Modules of the board. A request to any other unit of a link gets exception 11 on a network and no reply
+  /// on a serial line.
   std::vector<EmulatedModule> modules;
   Wire wire = Wire::tcp;
   std::vector<drivers::ChannelWiring> wiring;
@@ -35,18 +35,18 @@ struct EmulatorSettings {
 
 class Emulator {
  public:
-  /// Plants move in steps that end at multiples of this time, at every request and at every event [ns].
+  /// The plants advance in steps that end at multiples of this time [ns], and also at each request and event.
   static constexpr Nanoseconds grid = 1'000'000;
   /// Name of a fault that always exists. It removes the object while it is active.
   static constexpr std::string_view object_out = "object_out";
 
-  /// Starts at time 0.
+  /// Creates the rig at time 0.
   explicit Emulator(EmulatorSettings settings);
 
   /// Advances to `now`. Calls must be in order of time.
   void advance(Nanoseconds now);
   /// Processes a request that arrives at `now` on a link, over a connection that was opened at `opened_at`.
-  /// Returns the reply or its absence.
+  /// Returns the reply. The reply is empty if the board does not respond.
   [[nodiscard]] Reply serve(Nanoseconds now, const Request& request, std::size_t link = 0,
                             Nanoseconds opened_at = 0);
   /// Sets the number of clients that are connected to a link.
@@ -54,10 +54,10 @@ class Emulator {
   /// Returns true if new connections are accepted.
   [[nodiscard]] bool reachable() const { return !faults_.first_active(FaultKind::disconnect); }
 
-  /// Begins or ends a fault. Returns false if no fault has this name.
+  /// Begin or end a fault. Both functions return false if no fault has this name.
   bool trigger(std::string_view name, Nanoseconds now);
   bool clear(std::string_view name, Nanoseconds now);
-  /// Puts an object between the fingers (all channels), or none.
+  /// Puts an object between the fingers, for all channels. An empty value removes the object.
   void set_object(const std::optional<simulation::PlantObject>& object);
 
   /// Sets a function that is called at every multiple of `grid`.

@@ -4,10 +4,10 @@
 //   faults:
 //     - name: slow_wire
 //       kind: dripped_reply
-//       at_s: 5           # after the first command to an output; without it: begins only by a trigger
-//       for_s: 2          # without it: lasts until it is cleared
-//       replies: 1        # faults of the wire only: number of affected requests until it ends
-//       interval_s: 0.05  # keys of this kind, all required
+//       at_s: 5           # begins 5 s after the first command to an output; without at_s only by a trigger
+//       for_s: 2          # lasts 2 s; without for_s until it is cleared
+//       replies: 1        # only for faults of the wire: ends after this number of affected requests
+//       interval_s: 0.05  # a key of this kind of fault; such keys are required
 //
 // docs/reference/emulator.md describes the file.
 
@@ -25,26 +25,26 @@ namespace softgrip::simulation {
 
 enum class FaultKind : std::uint8_t {
   // faults of the wire
-  lost_request,       ///< the request is lost: it is neither executed nor answered
+  lost_request,       ///< the request is neither executed nor answered
   no_reply,           ///< the request is executed, but not answered
-  late_reply,         ///< answered after delay_s, possibly after later replies
-  dripped_reply,      ///< one byte every interval_s
-  cut_reply,          ///< only the first half of the reply
+  late_reply,         ///< the reply is delayed by delay_s, possibly beyond the replies to later requests
+  dripped_reply,      ///< the reply is sent in single bytes, one every interval_s
+  cut_reply,          ///< only the first half of the reply is sent
   repeated_reply,     ///< the reply is sent twice
-  wrong_unit,         ///< unit id one too high
-  wrong_transaction,  ///< transaction id one too high
-  wrong_length,       ///< the length in the header is one byte too large
-  exception_reply,    ///< Modbus exception `code`; the request is not executed
+  wrong_unit,         ///< the unit id in the reply is one too high
+  wrong_transaction,  ///< the transaction id in the reply is one too high
+  wrong_length,       ///< the length in the header of the reply is one byte too large
+  exception_reply,    ///< the reply is the Modbus exception `code`, and the request is not executed
   settling,           ///< requests within settle_s after the connection was opened are lost
   few_registers,      ///< a request for more than `most` registers gets exception 3
-  stray_bytes,        ///< `before` extra bytes before each reply, `behind` bytes after it
+  stray_bytes,        ///< each reply has `before` extra bytes before it and `behind` bytes after it
   disconnect,         ///< connections are closed, and new ones are closed immediately
   // faults of the board
   ignored_write,  ///< writes are confirmed but have no effect
   // faults of a channel
-  sensor_stuck,         ///< repeats its last value
-  sensor_jumping,       ///< offset of by_mm in every second interval_s
-  sensor_out_of_range,  ///< no valid reading
+  sensor_stuck,         ///< the sensor repeats its last value
+  sensor_jumping,       ///< the reading has the offset by_mm in every second interval of interval_s
+  sensor_out_of_range,  ///< the sensor gives no valid reading
   line_blocked,         ///< the pressure of the finger stays constant
   line_leaking,         ///< the finger receives (1 - share) of the pressure
   object_removed,       ///< the object is removed, and put back at the end of the fault
@@ -61,7 +61,7 @@ enum class FaultKind : std::uint8_t {
   return kind >= FaultKind::sensor_stuck;
 }
 
-/// One entry of a faults file. Members of the last group have a meaning only for the kinds that use them.
+/// One entry of a faults file. The members from `delay_s` on have a meaning only for the kinds that use them.
 struct FaultSpec {
   std::string name;
   FaultKind kind = FaultKind::no_reply;

@@ -1,5 +1,6 @@
 #pragma once
-// Determines the active faults at a time: they begin by the clock or by a trigger and last until their end.
+// Determines which faults are active. A fault begins at its scheduled time or by a trigger, and ends after
+// its duration or by a command.
 
 #include <cstddef>
 #include <optional>
@@ -20,7 +21,7 @@ class FaultSchedule {
   [[nodiscard]] bool started() const noexcept { return started_at_.has_value(); }
   /// Begins and ends the faults that are due by `now`. Returns true if a fault changed.
   bool advance(Nanoseconds now);
-  /// Returns the next time at which the clock begins or ends a fault.
+  /// Returns the next scheduled time at which a fault begins or ends.
   [[nodiscard]] std::optional<Nanoseconds> next_change() const;
 
   /// Begins a fault now, independent of its at_s. Returns false if no fault has this name.
@@ -28,7 +29,7 @@ class FaultSchedule {
   /// Ends a fault. Only a trigger begins it again. Returns false if no fault has this name.
   bool clear(std::string_view name);
 
-  /// Counts a reply that a fault of the wire affected. The fault ends with the last reply that it may affect.
+  /// Counts a reply that a fault of the wire affected. The fault ends after FaultSpec::replies such replies.
   void count_reply(std::size_t index);
 
   [[nodiscard]] const std::vector<FaultSpec>& faults() const noexcept { return faults_; }
@@ -41,7 +42,7 @@ class FaultSchedule {
  private:
   struct State {
     bool active = false;
-    bool spent = false;  ///< the clock has already begun the fault
+    bool spent = false;  ///< the scheduled start of the fault has passed or was cancelled
     Nanoseconds since = 0;
     std::uint32_t replies = 0;
   };

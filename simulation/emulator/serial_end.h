@@ -1,5 +1,6 @@
 #pragma once
-// The board's end of a serial line: a device, or a pseudo-terminal. The daemon opens its other end.
+// The emulated board's end of a serial line, which is a serial device or a pseudo-terminal. The daemon opens
+// the other end.
 
 #include <string>
 
@@ -36,8 +37,9 @@ class SerialEnd {
 
   drivers::SerialLine line_;
   Descriptor end_;
-  // For a pseudo-terminal: the daemon's end, so that the line does not hang up when the daemon closes it. For
-  // a device: a descriptor that keeps other programs from opening it.
+  // For a pseudo-terminal: a descriptor of the daemon's end, so that the line does not hang up when the
+  // daemon closes it. For a device: a descriptor with a lock, so that other Modbus clients cannot use the
+  // device.
   Descriptor kept_;
   std::string link_;
   bool pseudo_ = false;

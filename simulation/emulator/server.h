@@ -19,7 +19,8 @@ namespace softgrip::simulation {
 
 struct ServerSockets {
   std::vector<Descriptor> modbus;  ///< listening sockets, one per link of a network
-  /// If set, a serial line replaces the network. It is opened with these settings, again after `disconnect`.
+  /// Settings of the serial line, which is opened again after the fault `disconnect`; empty: the links are on
+  /// a network.
   std::optional<drivers::SerialLine> line;
   std::optional<SerialEnd> end;
   Descriptor control;           ///< listening socket, or empty

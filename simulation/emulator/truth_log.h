@@ -3,8 +3,8 @@
 //
 //   time_s,channel,pressure_command_kpa,displacement_mm,pressure_kpa,reading_mm,object,watchdog_tripped
 //
-// displacement_mm and pressure_kpa are without noise. reading_mm is the sensor signal (empty: no valid
-// reading).
+// displacement_mm and pressure_kpa are true values without noise. reading_mm is the sensor reading; it is
+// empty if there is no valid reading.
 
 #include <cstdint>
 #include <fstream>
@@ -16,7 +16,7 @@ namespace softgrip::simulation {
 
 class TruthLog {
  public:
-  /// Writes one row per channel at every `decimation`-th call of add().
+  /// Creates the file. Every `decimation`-th call of add() writes one row per channel.
   TruthLog(const std::string& path, std::uint32_t decimation);
 
   void add(const Emulator& emulator);

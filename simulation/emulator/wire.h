@@ -1,5 +1,5 @@
 #pragma once
-// Names of the Modbus server that the emulator uses without a prefix.
+// Makes the names of drivers/modbus_server/ available in the namespace of the emulator.
 
 #include "drivers/modbus_server/connection.h"
 #include "drivers/modbus_server/registers.h"

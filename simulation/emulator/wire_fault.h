@@ -1,5 +1,5 @@
 #pragma once
-// Changes a good reply according to a fault of the wire.
+// Changes a correct reply according to a fault of the wire.
 
 #include "base/time.h"
 #include "simulation/emulator/fault.h"
@@ -7,7 +7,7 @@
 
 namespace softgrip::simulation {
 
-/// Returns the reply without a fault: one piece, without delay.
+/// Returns the correct reply, which is sent in one piece and without delay.
 [[nodiscard]] Reply good_reply(Wire wire, const Request& request, const Bytes& pdu);
 
 /// Returns true if this fault of the wire affects a request that comes `connected_for` after its connection
@@ -19,8 +19,8 @@ namespace softgrip::simulation {
 [[nodiscard]] bool carried_out(FaultKind kind) noexcept;
 
 /// Returns the reply that the client receives instead of good_reply(wire, request, pdu). A frame on a serial
-/// line has neither transaction id nor length. There, wrong_transaction is a wrong checksum, and wrong_length
-/// adds five bytes (fewer would be stray bytes).
+/// line has neither transaction id nor length. On a serial line, wrong_transaction therefore causes a wrong
+/// checksum, and wrong_length adds five bytes. Fewer bytes would be discarded as stray bytes.
 [[nodiscard]] Reply spoiled_reply(Wire wire, const FaultSpec& fault, const Request& request,
                                   const Bytes& pdu);
 

@@ -10,7 +10,7 @@ constexpr double pressure_span_kpa = 100;
 constexpr double nearest_mm = -5;
 constexpr double farthest_mm = 45;
 
-/// Returns both ends of the usual signal range, not of the range of the converter.
+/// Both ends of the usual signal range of a terminal. The range of its converter may be wider.
 struct Span {
   double low;
   double high;
@@ -84,8 +84,8 @@ drivers::OutputWiring output_at(const Place& place) {
   return wiring;
 }
 
-/// Returns the wiring of a pressure monitor. A monitor with an electrical input has the same scale as the
-/// valve.
+/// Returns the wiring of a pressure monitor. If the input is in V or mA, its full range represents the same
+/// pressures as that of the valve.
 drivers::InputWiring monitor_at(const Place& place, const drivers::OutputWiring& valve) {
   if (place.terminal.unit != drivers::ElectricalUnit::kilopascal) {
     return input_at(place, valve.scaling.y0, valve.scaling.y1);

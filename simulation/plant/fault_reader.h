@@ -9,9 +9,10 @@
 
 namespace softgrip::simulation {
 
-/// Reads the keys of a line fault other than its kind: `share` of a leak.
+/// Reads the additional keys of a line fault: `share` for a leak.
 void read_own_keys(document::MapReader& reader, LineFault& fault);
-/// Reads the keys of a sensor fault other than its kind: its size under `offset_key` [mm].
+/// Reads the additional keys of a sensor fault: for an offset, its size [mm], which is the value of
+/// `offset_key`.
 void read_own_keys(document::MapReader& reader, SensorFault& fault, std::string_view offset_key);
 /// Reads an object: `{position_mm, yielding}`.
 [[nodiscard]] PlantObject read_object(const document::Document& document, const document::Node& node,

@@ -23,10 +23,10 @@ struct LineFault {
   enum class Kind : std::uint8_t {
     none,
     blocked,  ///< commands have no effect; the finger keeps its pressure
-    leaking,  ///< the pressure is lower by a share of the command
+    leaking,  ///< the finger receives (1 - share) of the command
   };
   Kind kind = Kind::none;
-  double share = 0;  ///< leaking: 0 to 1
+  double share = 0;  ///< lost share of the command, 0 to 1; only for leaking
 };
 
 /// A fault of the displacement sensor.
@@ -34,7 +34,7 @@ struct SensorFault {
   enum class Kind : std::uint8_t {
     none,
     stuck,         ///< repeats its last value
-    offset,        ///< offset of value_mm, as after a jump
+    offset,        ///< each reading has the offset value_mm
     out_of_range,  ///< no valid reading; the board shows its error value or an electrical limit
   };
   Kind kind = Kind::none;
@@ -56,7 +56,7 @@ struct PlantSettings {
 /// advance() allocates no memory if sample_time_s is above 0.
 class Plant {
  public:
-  /// Starts at rest with command 0. The model must be valid.
+  /// Creates a finger at rest with the command 0 kPa. The model must be valid.
   explicit Plant(const PlantSettings& settings);
   Plant(const Plant&) = delete;
   Plant& operator=(const Plant&) = delete;
@@ -80,10 +80,10 @@ class Plant {
   [[nodiscard]] double pressure_kpa() const noexcept;
   /// Returns the reading of a temperature sensor [degC], with noise.
   [[nodiscard]] double measured_temperature_c() const noexcept;
-  /// Returns true while the sensor is out of range. reading_mm() is then not valid.
+  /// Returns true while the sensor has the fault out_of_range. reading_mm() is then not valid.
   [[nodiscard]] bool sees_nothing() const noexcept;
 
-  /// Places an object, or removes it. The finger reacts at the next advance().
+  /// Places an object. An empty value removes the object. The finger reacts at the next advance().
   void set_object(const std::optional<PlantObject>& object) noexcept;
   [[nodiscard]] const std::optional<PlantObject>& object() const noexcept;
   void set_fault(const LineFault& fault) noexcept;

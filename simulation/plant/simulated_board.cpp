@@ -68,7 +68,8 @@ void SimulatedBoard::Parts::move_to(Nanoseconds time) noexcept {
   plants_at = time;
 }
 
-/// Processes events and the watchdog at their own times, which differ from those of the exchanges.
+/// Advances the plants to `time`. Events and a trip of the watchdog are applied at their own times, which lie
+/// between the exchanges.
 void SimulatedBoard::Parts::act_until(Nanoseconds time) noexcept {
   while (true) {
     constexpr Nanoseconds never = std::numeric_limits<Nanoseconds>::max();
@@ -82,7 +83,7 @@ void SimulatedBoard::Parts::act_until(Nanoseconds time) noexcept {
       move_to(event_at);
       happen(settings.events[next_event++]);
     } else if (trip_at == time) {
-      break;  // fed before the time-out
+      break;  // the exchange at this time still feeds the watchdog
     } else {
       move_to(trip_at);
       tripped = true;
@@ -180,7 +181,7 @@ std::size_t SimulatedBoard::channels() const noexcept {
 
 drivers::BusStatus SimulatedBoard::connect(std::chrono::nanoseconds) noexcept {
   Parts& parts = *parts_;
-  // The plants continue while no client is connected.
+  // The plants also move while no client is connected.
   if (parts.started) parts.act_until(parts.clock.now());
   parts.connected = parts.bus != drivers::BusStatus::disconnected;
   if (!parts.connected) return parts.say(drivers::BusStatus::disconnected, "the simulated bus is down");

@@ -1,6 +1,6 @@
 #pragma once
-// A simulated rig in this process: several plants behind the board interface. It is deterministic: equal
-// settings, clock readings and commands give bit-identical results.
+// Simulates a rig in this process: a board to which several plants are connected. The simulation is
+// deterministic: equal settings, clock readings and commands give bit-identical results.
 
 #include <cstddef>
 #include <cstdint>
@@ -27,7 +27,7 @@ struct SimulatedEvent {
     write_refused,  ///< outputs keep their values; an exchange with a new value reports the refusal
     write_taken,    ///< outputs follow commands again
   };
-  /// Applies an event to all channels.
+  /// Value of `channel` for an event that applies to all channels.
   static constexpr std::size_t every_channel = static_cast<std::size_t>(-1);
 
   double at_s = 0;  ///< time since the first exchange
@@ -45,9 +45,9 @@ struct SimulatedChannel {
   bool measures_pressure = false;
   bool measures_temperature = false;
   double valve_min_kpa = 0;  ///< lowest output; below 0 for vacuum
-  double valve_max_kpa = 0;  ///< largest output, above the lowest; commands outside the range are refused
+  double valve_max_kpa = 0;  ///< highest output; commands outside the range are limited and reported
   double vented_kpa = 0;     ///< output after a watchdog trip
-  double sensor_min_mm = 0;  ///< lower limit of the measuring range; readings outside the range are marked
+  double sensor_min_mm = 0;  ///< lower end of the measuring range; readings outside it are not valid
   double sensor_max_mm = 0;
   int output_bits = 0;  ///< resolution over the output range; 0: not quantised
   int input_bits = 0;   ///< resolution over the measuring range and over the pressure range; 0: not quantised
@@ -56,13 +56,13 @@ struct SimulatedChannel {
 struct SimulatedBoardSettings {
   std::vector<SimulatedChannel> channels;
   std::vector<SimulatedEvent> events;  ///< events in any order
-  /// Time without an exchange after which the outputs change to `vented_kpa` [s], until connect(). 0: no
-  /// watchdog.
+  /// Time without an exchange after which the outputs change to `vented_kpa` [s]. They keep this value until
+  /// connect(). 0: no watchdog.
   double watchdog_timeout_s = 0;
 };
 
-/// An exchange at time t first advances the plants to t with the previous commands, then takes the readings,
-/// then applies the new commands. A reading therefore never depends on the command of the same exchange.
+/// An exchange at time t first advances the plants to t with the previous commands. The new commands have an
+/// effect only after t. A measured value therefore never depends on the command of the same exchange.
 class SimulatedBoard final : public drivers::Board {
  public:
   /// `clock` must outlive the board.
@@ -80,8 +80,8 @@ class SimulatedBoard final : public drivers::Board {
   [[nodiscard]] bool has_watchdog() const noexcept override;
   [[nodiscard]] std::chrono::nanoseconds watchdog_time() const noexcept override;
 
-  /// Returns the plant of a channel, for tests and scripts that change it (only from the thread that
-  /// exchanges).
+  /// Returns the plant of a channel, so that tests and scripts can change it. Only the thread that calls
+  /// exchange() may use it.
   [[nodiscard]] Plant& plant(std::size_t channel);
   /// Applies an event now.
   void happen(const SimulatedEvent& event) noexcept;
