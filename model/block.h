@@ -215,10 +215,4 @@ consteval bool keeps_contract() {
   return names[static_cast<std::size_t>(kind)];
 }
 
-/// "implicit", "lead", "preview", "bound", "ignored"
-[[nodiscard]] constexpr std::string_view name_of(Inverse inverse) {
-  constexpr std::array<std::string_view, 5> names{"implicit", "lead", "preview", "bound", "ignored"};
-  return names[static_cast<std::size_t>(inverse)];
-}
-
 }  // namespace softgrip::model
