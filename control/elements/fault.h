@@ -1,5 +1,6 @@
 #pragma once
-// Faults, which latch. Their codes are stable; they appear in events, recordings, metrics and the manual.
+// Defines the faults. A fault latches until it is reset. The codes are stable; they appear in events,
+// recordings, metrics and the manual.
 
 #include <cstdint>
 #include <span>
@@ -7,19 +8,19 @@
 
 namespace softgrip::control {
 
-/// The number is the stable code: 101 is "F101". Hundreds group them: 1 bus, 2 readings, 3 board and
-/// outputs, 4 model, 5 safety, 9 internal.
+/// The codes of the faults. The number of a code is stable and is shown after an F: 101 is "F101". The
+/// hundreds digit is the group: 1 bus, 2 readings, 3 board and outputs, 4 model, 5 safety, 9 internal.
 enum class FaultCode : std::uint16_t {
   none = 0,
-  bus_down = 101,              ///< no session, or no good exchange for too many cycles
+  bus_down = 101,              ///< no session, or no valid exchange for too many cycles
   bus_timed_out = 102,         ///< the board does not respond in time
   bus_bad_reply = 103,         ///< responses do not match the request
   bus_exception = 104,         ///< the board rejects the function or the address
-  reading_stale = 201,         ///< no new readings arrive
-  reading_out_of_range = 202,  ///< outside the sensor's electrical range
+  reading_stale = 201,         ///< no new reading of a channel arrives
+  reading_out_of_range = 202,  ///< the reading is outside the sensor's electrical range
   sensor_error = 203,          ///< the sensor's or the board's own error code
-  reading_jumped = 204,        ///< changed faster than a finger can move
-  reading_frozen = 205,        ///< did not change while the command changed
+  reading_jumped = 204,        ///< the reading changed faster than a finger can move
+  reading_frozen = 205,        ///< the reading stayed constant while the command changed
   displacement_beyond_limits = 206,
   pressure_not_followed = 207,  ///< the measured pressure differs from the command
   readback_mismatch = 301,      ///< the board's output differs from the written value
@@ -40,17 +41,17 @@ struct FaultInfo {
   std::string_view name;     ///< "bus_down"
   std::string_view meaning;  ///< one sentence
   std::string_view cause;    ///< usual cause
-  std::string_view remedy;   ///< action before acknowledging
-  std::string_view bound;    ///< number of cycles until it latches, as keys of the rig file
+  std::string_view remedy;   ///< action before the reset (acknowledge)
+  std::string_view bound;    ///< number of cycles until the fault latches, given as keys of the rig file
 };
 
-/// All faults in the order of their codes, without `none`.
+/// Returns all faults in the order of their codes, without `none`.
 [[nodiscard]] std::span<const FaultInfo> all_faults() noexcept;
 /// Returns the description of a fault. For `none` and unknown numbers, the entry has id "F000" and name
 /// "none".
 [[nodiscard]] const FaultInfo& info_of(FaultCode code) noexcept;
 
-/// Returns true if the fault shows that the outputs no longer follow the loop: they differ from the commands.
+/// Returns true if the fault means that the board's outputs can differ from the commands of the loop.
 [[nodiscard]] constexpr bool inhibits(FaultCode code) noexcept {
   return code == FaultCode::cycles_lost || code == FaultCode::board_watchdog_tripped ||
          code == FaultCode::write_refused || code == FaultCode::outputs_overwritten;
@@ -63,16 +64,16 @@ enum class RefusalCode : std::uint16_t {
   not_idle = 2,  ///< a sequence runs, starts or is being stopped
   interlock_open = 3,
   emergency_stop = 4,
-  sequence_unfit = 5,    ///< no sequence, or one that was prepared for another rig
+  sequence_unfit = 5,    ///< no sequence was given, or the sequence was prepared for another rig
   no_valid_reading = 6,  ///< a channel of the sequence has no valid reading
   nothing_to_stop = 7,
   nothing_to_acknowledge = 8,
-  cause_persists = 9,            ///< acknowledge while the cause of a latched fault is still there
+  cause_persists = 9,            ///< reset requested while the cause of a latched fault is still present
   overtaken = 10,                ///< a stop or vent request superseded the start before the loop accepted it
   nothing_to_release = 11,       ///< no sequence runs, and every channel is at its rest pressure
-  named_start_not_running = 12,  ///< a stop of one start, which does not run
+  named_start_not_running = 12,  ///< the request stops one given start, but no sequence of that start runs
 };
-/// Returns "R01" ...; name_of() returns a name in snake_case.
+/// Returns the id of a refusal, for example "R01". name_of() returns its name in snake_case.
 [[nodiscard]] std::string_view id_of(RefusalCode code) noexcept;
 [[nodiscard]] std::string_view name_of(RefusalCode code) noexcept;
 

@@ -12,8 +12,8 @@ namespace softgrip::control {
 enum class FeedforwardKind : std::uint8_t {
   none,        ///< PID alone
   bouc_wen,    ///< inverse of the Bouc-Wen element alone (Zhang et al. 2025, section 5)
-  full_model,  ///< inverse of the complete chain: implicit solution, lead for lag, preview for delay
-  planned,     ///< computed before the run by least squares over the reference; needs no inverse
+  full_model,  ///< inverse of the complete chain, with a lead for each lag and a preview for the dead time
+  planned,     ///< computed before the run by least squares over the reference; needs no inverse of the model
 };
 
 /// Names of the kinds in rig files and options. `bouc_wen` is the name of the block that it inverts.
@@ -26,7 +26,8 @@ inline constexpr std::array<std::string_view, 4> feedforward_names{"none", model
 struct FeedforwardSettings {
   FeedforwardKind kind = FeedforwardKind::none;
   /// Time from the computation of a command to the board's output [s]: the bus exchange and the conversion of
-  /// the board. The model's valve blocks do not contain it. full_model adds it to its preview. 0 to 1.
+  /// the board. The valve blocks of the model do not include this time. `full_model` adds it to its preview.
+  /// Range: 0 to 1.
   double extra_latency_s = 0;
 };
 

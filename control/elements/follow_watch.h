@@ -1,17 +1,19 @@
 #pragma once
-// Decides if a finger that moves less than its model is held by an object, or has changed.
+// Decides the reason why a finger moves less than its model: an object holds the finger, or the finger has
+// changed.
 
 #include <cmath>
 
 namespace softgrip::control {
 
-/// Detects if a finger is held by an object. A held finger stays where it made contact while the model
-/// continues. A finger whose gain has changed continues with its model, but less far. Until the model has
-/// moved far enough to decide, a finger counts as held.
+/// Detects that an object holds a finger. A held finger stays where it made contact while its model moves on.
+/// A finger whose gain has changed still moves with its model, but over a shorter distance. Until the model
+/// has moved far enough for a decision, the finger counts as held.
 class FollowWatch {
  public:
-  static constexpr double tells_from_mm = 1;  ///< the model's motion needed for a decision
-  static constexpr double least_share = 0.5;  ///< of that motion, if nothing holds the finger
+  static constexpr double tells_from_mm = 1;  ///< motion of the model that is needed for a decision
+  static constexpr double least_share = 0.5;  ///< smallest share of the model's motion that a finger covers
+                                              ///< if nothing holds it
 
   void reset() noexcept { touching_ = held_ = false; }
 

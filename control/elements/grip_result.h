@@ -1,5 +1,5 @@
 #pragma once
-// The result of a grip.
+// Defines the result of a grip.
 
 #include <cstdint>
 #include <string_view>

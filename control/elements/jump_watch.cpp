@@ -8,7 +8,7 @@
 namespace softgrip::control {
 namespace {
 
-/// Largest motion of a free finger in relation to its model.
+/// Largest ratio of the motion of a free finger to the motion of its model.
 constexpr double more_than_model = 1.5;
 
 /// Returns the part of a motion that the model does not explain; the sign is the direction [mm].

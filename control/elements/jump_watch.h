@@ -1,6 +1,6 @@
 #pragma once
-// Detects a sensor that jumps back and forth. plausibility.h rejects single jumps, which may be too short for
-// a fault. A sensor that jumps repeatedly is not reliable enough for grip detection.
+// Detects a sensor that jumps back and forth. plausibility.h rejects single jumps, but a single jump may be
+// too short to become a fault. A sensor that jumps repeatedly is not reliable enough for grip detection.
 
 #include <array>
 #include <cstddef>
@@ -10,9 +10,9 @@
 
 namespace softgrip::control {
 
-/// Counts jumps that reverse. A jump is the change between two readings beyond the change of the model. A
-/// free finger moves at most slightly more than its model. A part that slides, is lost or is pushed in also
-/// makes the finger jump, but in one direction only.
+/// Counts jumps that are opposite to the previous jump. A jump is the change between two readings that
+/// exceeds the change of the model. A free finger moves at most slightly more than its model. A part that
+/// slides, is lost or is pushed in also makes the finger jump, but in one direction only.
 class JumpWatch {
  public:
   static constexpr double window_s = 1;  ///< time in which the jumps are counted
@@ -36,7 +36,7 @@ class JumpWatch {
   double jump_mm_;
   std::uint32_t unsteady_jumps_;
   Nanoseconds longest_gap_;
-  bool known_ = false;  ///< there is an earlier reading to compare with
+  bool known_ = false;  ///< there is an earlier reading to which a new one is compared
   Nanoseconds last_at_ = 0;
   double last_mm_ = 0;
   double last_expected_mm_ = 0;

@@ -1,5 +1,5 @@
 #pragma once
-// Reports a limit that keeps the output below or above the demand for longer than a short time.
+// Reports a limit that has restricted a command for longer than a short time.
 
 #include <cstdint>
 #include <optional>
@@ -7,7 +7,8 @@
 
 namespace softgrip::control {
 
-/// The limit that restricts a command. The rest pressure is not included, because a released finger is at it.
+/// The limit that restricts a command. The rest pressure is not in this list, because the command of every
+/// released finger is at the rest pressure.
 enum class BindingLimit : std::uint8_t {
   none,
   rig_pressure,   ///< limits: pressure_max_kpa of the rig file
@@ -21,15 +22,15 @@ enum class BindingLimit : std::uint8_t {
 /// Returns the message, for example "pressure_max_kpa of the rig limits the pressure"; empty for none.
 [[nodiscard]] std::string_view words_of(BindingLimit limit) noexcept;
 
-/// Reports a limit after limits have restricted a command for `moment_s`. It also reports a different limit
-/// that has replaced it for as long, and the end of the restriction. Gaps shorter than `gap_s` are ignored:
-/// noise moves a command across its ceiling repeatedly.
+/// Reports a limit after limits have restricted a command for `moment_s`. If another limit then restricts the
+/// command for `moment_s`, or if the restriction ends, this is reported too. Gaps shorter than `gap_s` are
+/// ignored, because noise moves a command across its ceiling repeatedly.
 class LimitWatch {
  public:
   static constexpr double moment_s = 0.5;
   static constexpr double gap_s = 0.1;
 
-  /// Processes one tick. Returns a value if reported() has just changed.
+  /// Processes one tick. Returns reported() if it has just changed, otherwise nothing.
   std::optional<BindingLimit> observe(double time_s, BindingLimit now) noexcept;
   /// Returns the limit that was reported and is still active.
   [[nodiscard]] BindingLimit reported() const noexcept { return reported_; }
@@ -37,8 +38,8 @@ class LimitWatch {
  private:
   BindingLimit reported_ = BindingLimit::none;
   BindingLimit now_ = BindingLimit::none;
-  double since_s_ = 0;   ///< since when any limit is active
-  double change_s_ = 0;  ///< since when the present limit is active
+  double since_s_ = 0;   ///< time at which a limit became active
+  double change_s_ = 0;  ///< time at which the present limit became active
   double last_s_ = 0;
 };
 

@@ -14,7 +14,8 @@ LimitedCommand limit(const LimitSettings& limits, double wanted_kpa, double last
   // Without a usable last command, only the rest pressure is known to be safe.
   const double last = std::isfinite(last_kpa) ? in_range(limits, last_kpa) : resting_kpa(limits);
   if (std::isnan(wanted_kpa) || std::isnan(ceiling_kpa)) return {last, false, false, true, false};
-  // A ceiling neither evacuates a finger nor stops one on its way back to rest.
+  // A ceiling below the rest pressure must not evacuate a finger, and must not stop a finger that returns to
+  // rest.
   const double highest_kpa = std::max(ceiling_kpa, resting_kpa(limits));
   const bool capped = wanted_kpa > highest_kpa;
   const double inside = in_range(limits, capped ? highest_kpa : wanted_kpa);

@@ -1,8 +1,8 @@
 #pragma once
-// Limits commands. limit() is the only function that keeps a commanded pressure within its range and slew
-// limits. A feedforward that plans ahead calls the same functions. The safe output (ChannelOutput::safe_kpa)
-// has no slew limit. It is written when the loop stops or its commands time out. It is the rest pressure at
-// once, or the last command.
+// Limits commands. limit() is the only function that keeps a commanded pressure within its range and its slew
+// limits. The planner of the feedforward `planned` calls it too. The safe output (ChannelOutput::safe_kpa) is
+// written when the loop stops or its commands time out. It is either the last command, or the rest pressure
+// without a slew limit.
 
 #include <algorithm>
 #include <cmath>
@@ -19,8 +19,10 @@ struct LimitSettings {
   double slew_down_kpa_per_s = 0;     ///< > 0; largest rate of decrease
   double displacement_min_mm = 0;     ///< lower limit of references
   double displacement_max_mm = 0;     ///< > displacement_min_mm; upper limit of references
-  double displacement_margin_mm = 0;  ///< >= 0; a reading outside the range by more than this is a fault
-  double rest_kpa = 0;  ///< the pressure of every safe state; use resting_kpa(), which is in range
+  double displacement_margin_mm = 0;  ///< >= 0; a reading that is outside the range by more than this is a
+                                      ///< fault
+  double rest_kpa = 0;  ///< the pressure of every safe state; resting_kpa() returns this value limited to the
+                        ///< range
 };
 
 /// A command within the limits, and the limits that changed it.
@@ -41,16 +43,16 @@ struct LimitedCommand {
   return std::max(limits.pressure_min_kpa, std::min(limits.rest_kpa, limits.pressure_max_kpa));
 }
 
-/// Returns the pressure between `rest_kpa` and `bound_kpa` that is nearest to `kpa`. The result is no further
-/// from rest than the bound, and on its side: a bound below rest allows nothing above rest. An infinite bound
-/// allows everything.
+/// Returns the pressure between `rest_kpa` and `bound_kpa` that is nearest to `kpa`. For a bound above rest,
+/// the result is not below rest; for a bound below rest, it is not above rest. An infinite bound does not
+/// limit the pressure.
 [[nodiscard]] inline double no_further(double rest_kpa, double kpa, double bound_kpa) noexcept {
   if (std::isinf(bound_kpa)) return kpa;
   return std::clamp(kpa, std::min(rest_kpa, bound_kpa), std::max(rest_kpa, bound_kpa));
 }
 
-/// Returns the end of the pressure range that is further from rest. A channel with one side moves to this
-/// end.
+/// Returns the end of the pressure range that is further from rest. If all pressures are on one side of rest,
+/// the finger moves toward this end.
 [[nodiscard]] inline double far_end_kpa(const LimitSettings& limits) noexcept {
   const double rest_kpa = resting_kpa(limits);
   const bool above = limits.pressure_max_kpa - rest_kpa >= rest_kpa - limits.pressure_min_kpa;
@@ -68,9 +70,9 @@ struct LimitedCommand {
 inline constexpr double no_ceiling = std::numeric_limits<double>::infinity();
 
 /// Returns the command for `wanted_kpa` if `last_kpa` was written `elapsed_s` (>= 0) ago. The result is
-/// always inside the pressure range, even if the last command was not. Inside the range, the slew limits
-/// apply too. A ceiling below the present command is approached as fast as they permit. A ceiling below the
-/// rest pressure acts as a ceiling at the rest pressure.
+/// always inside the pressure range, even if the last command was outside. Inside the range, the slew limits
+/// apply too. If the ceiling is below the present command, the command decreases to the ceiling as fast as
+/// the slew limits permit. A ceiling below the rest pressure acts as a ceiling at the rest pressure.
 [[nodiscard]] LimitedCommand limit(const LimitSettings& limits, double wanted_kpa, double last_kpa,
                                    double elapsed_s, double ceiling_kpa = no_ceiling) noexcept;
 

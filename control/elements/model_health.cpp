@@ -8,12 +8,13 @@
 namespace softgrip::control {
 namespace {
 
-/// An unfit model becomes fit only below this share of the limit, so that the state does not change
-/// repeatedly.
+/// An unfit model becomes fit only if its error falls below this share of the limit, so that the state does
+/// not change repeatedly.
 constexpr double recovery_share = 0.7;
-/// After an alarm the CUSUM is limited, so that a model that fits again is soon healthy again.
+/// After an alarm, the CUSUM is limited to this multiple of its threshold, so that a model that fits again is
+/// soon healthy again.
 constexpr double cap_share = 1.5;
-/// Siegmund's correction for the overshoot of the discrete random walk, once for each threshold.
+/// Siegmund's correction of the threshold for the overshoot of the discrete random walk.
 constexpr double overshoot = 1.166;
 
 }  // namespace
@@ -54,7 +55,8 @@ ResidualWhitener::ResidualWhitener(const ModelHealthSettings& settings) noexcept
   const double memory = settings.correlation_time_s;
   slow_variance_ = settings.model_error_mm * settings.model_error_mm;
   keep_ = std::exp(-interval / memory);
-  // Moments of an Ornstein-Uhlenbeck process and of its average over one interval, given its start.
+  // Moments of an Ornstein-Uhlenbeck process and of its average over one interval, given the state at the
+  // start of the interval.
   observe_ = memory / interval * (1 - keep_);
   process_variance_ = slow_variance_ * (1 - keep_ * keep_);
   average_variance_ = slow_variance_ * memory / (interval * interval) *
@@ -106,7 +108,7 @@ bool ModelHealth::skip() noexcept {
 
 bool ModelHealth::end_tick() noexcept {
   if (++ticks_ < ticks_per_interval_) return false;
-  // Half an interval of readings is sufficient for a decision; less is not.
+  // An interval is evaluated if at least half of its ticks have a reading.
   const bool enough = 2 * observed_ >= ticks_per_interval_;
   const bool changed = enough && judge_interval();
   if (!enough) whitener_.reset();

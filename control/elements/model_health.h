@@ -1,14 +1,15 @@
 #pragma once
-// Detects if the model no longer describes the finger, by the residual of the model that runs in parallel.
+// Detects that the model no longer describes the finger. The criterion is the residual of the model that runs
+// in parallel.
 //
 // The residual of a healthy model is not white: parameter errors of a few percent cause errors that follow
-// the motion. It is modelled as the sum of a slow error and white noise of the sensor. The slow error is an
-// Ornstein-Uhlenbeck process with standard deviation model_error_mm and correlation
-// exp(-t / correlation_time_s). Readings are averaged over interval_s. A Kalman filter of this process turns
-// the averages into innovations. They are independent and have unit variance while the assumption holds. A
-// two-sided CUSUM (Page, Biometrika 41, 1954) accumulates them. Its threshold follows from the requested mean
-// time between false alarms by Siegmund's formula (Sequential Analysis, 1985, chapter 2). A model error that
-// is larger or slower than assumed causes more alarms, as intended.
+// the motion. The residual is modelled as the sum of a slow error and white noise of the sensor. The slow
+// error is an Ornstein-Uhlenbeck process with standard deviation model_error_mm and correlation exp(-t /
+// correlation_time_s). Readings are averaged over interval_s. A Kalman filter of this process turns the
+// averages into innovations, which are independent and have unit variance if the residual has these
+// properties. A two-sided CUSUM (Page, Biometrika 41, 1954) accumulates the innovations. Its threshold
+// follows from the requested mean time between false alarms by Siegmund's formula (Sequential Analysis, 1985,
+// chapter 2). A model error that is larger or slower than the settings state causes more alarms, as intended.
 
 #include <array>
 #include <cstddef>
@@ -19,14 +20,16 @@ namespace softgrip::control {
 enum class HealthState : std::uint8_t {
   unknown,  ///< nothing was observed yet
   healthy,
-  suspect,  ///< the residual drifts more than that of a healthy model: calibrate soon
+  suspect,  ///< the residual drifts more than that of a healthy model, so the model should be fitted again
+            ///< soon
   unfit,    ///< the residual exceeds the tolerance of grip detection and feedforward
 };
 [[nodiscard]] const char* name_of(HealthState state) noexcept;
 
-/// Properties of a healthy residual, and the limits for warnings. With the defaults, 40 models of the bench
-/// twin with wrong parameters were tested for five cycles of a 13 +- 7 mm sine. With errors up to 5 % none is
-/// suspect, up to 10 % five, up to 20 % twenty-three (checked by tests/control/tuning/tracking_run_test.cpp).
+/// Properties of a healthy residual, and the limits for warnings. The defaults were tested with models of the
+/// simulated finger whose parameters are wrong, 40 models per error, over five cycles of a 13 +- 7 mm sine.
+/// No model becomes suspect or unfit for parameter errors up to 5 %, 5 of 40 models for errors up to 10 %,
+/// and 23 of 40 for errors up to 20 % (checked by tests/control/tuning/tracking_run_test.cpp).
 struct ModelHealthSettings {
   double model_error_mm = 0.4;      ///< > 0
   double correlation_time_s = 4.0;  ///< > 0
@@ -40,14 +43,16 @@ struct ModelHealthSettings {
 };
 
 /// Returns the mean number of independent standard normal values until a two-sided CUSUM with this allowance
-/// first reaches `threshold` from zero. Siegmund's approximation: the error is a few percent from 50 on.
+/// first reaches `threshold` from zero. The result is Siegmund's approximation. Its error is a few percent
+/// for run lengths from 50 on.
 [[nodiscard]] double cusum_run_length(double allowance, double threshold) noexcept;
 /// Returns the threshold for which cusum_run_length() is `run_length` (at least 2).
 [[nodiscard]] double cusum_threshold(double allowance, double run_length) noexcept;
 
-/// Turns averages of a residual over intervals into innovations, which are independent and standard normal if
-/// the residual is as the settings state. It is a Kalman filter whose process noise correlates with its
-/// observation noise, because the average over an interval and the state at its end depend on the same noise.
+/// Turns averages of a residual over intervals into innovations. They are independent and standard normal if
+/// the residual has the properties in the settings. The filter is a Kalman filter whose process noise
+/// correlates with its observation noise, because the average over an interval and the state at its end
+/// depend on the same noise.
 class ResidualWhitener {
  public:
   explicit ResidualWhitener(const ModelHealthSettings& settings) noexcept;
@@ -64,16 +69,17 @@ class ResidualWhitener {
   double variance_;
 };
 
-/// The monitor of one channel.
+/// Monitors the model of one channel.
 class ModelHealth {
  public:
   ModelHealth(const ModelHealthSettings& settings, double tick_s) noexcept;
 
-  /// Restarts without history.
+  /// Discards all earlier residuals.
   void reset() noexcept;
   /// Processes a tick with a valid reading in free motion. Returns true if the state changed.
   bool observe(double residual_mm) noexcept;
-  /// Processes a tick without such a reading. An interval with too few readings is ignored.
+  /// Processes a tick without a valid reading in free motion. Returns true if the state changed. An interval
+  /// with too few readings is ignored.
   bool skip() noexcept;
 
   [[nodiscard]] HealthState state() const noexcept { return state_; }
@@ -87,7 +93,7 @@ class ModelHealth {
   ModelHealthSettings settings_;
   ResidualWhitener whitener_;
   double threshold_ = 0;
-  double forget_ = 0;  ///< share of one interval in the mean square
+  double forget_ = 0;  ///< weight of one interval in the mean square
   std::uint32_t ticks_per_interval_ = 1;
   std::uint32_t ticks_ = 0;
   std::uint32_t observed_ = 0;

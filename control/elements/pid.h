@@ -14,8 +14,9 @@ namespace softgrip::control {
 /// Method that prevents integrator windup while the command cannot follow the request.
 enum class AntiWindup : std::uint8_t {
   none,              ///< the integrator continues: for comparison only
-  conditional,       ///< the integrator stops while it would increase a limited request further
-  back_calculation,  ///< the limited part drives the integrator back within tracking_time_s
+  conditional,       ///< the integrator stops while its increment would move a limited request further beyond
+                     ///< the limit
+  back_calculation,  ///< the part that the limits remove drives the integrator back within tracking_time_s
 };
 
 struct PidSettings {
@@ -28,14 +29,15 @@ struct PidSettings {
   double tracking_time_s = 0.5;  ///< for back_calculation; > 0
 };
 
-/// One PID controller. Order of calls in a tick: step() for the request, the limits, sent() with the result.
+/// One PID controller. In each tick, the caller calls step() to get the request, applies the limits, and
+/// passes the limited command to sent().
 class Pid {
  public:
   Pid(const PidSettings& settings, double tick_s) noexcept;
 
-  /// Makes the next step() continue at `command_kpa`, regardless of its errors and feedforward: the
-  /// integrator absorbs the difference. Use it for a start, a change from hold or pressure to displacement,
-  /// and a new feedforward.
+  /// Makes the request of the next step() equal to `command_kpa`, regardless of the error and the
+  /// feedforward: the integrator absorbs the difference. Call this function at a start, at a change from hold
+  /// or pressure to displacement, and for a new feedforward.
   void align(double command_kpa) noexcept;
 
   /// Returns the feedback part of the request [kPa]; the request is the sum of feedforward_kpa and this part.
@@ -48,8 +50,9 @@ class Pid {
   /// continues the command, and the next step() continues from there.
   [[nodiscard]] double hold(double feedforward_kpa) noexcept;
 
-  /// Reports the part of the last request that the limits let pass. The anti-windup acts on the difference.
-  /// It can come from the pressure range, the slew limits or a feedforward beyond them.
+  /// Receives the command that remains of the last request after the limits. The anti-windup acts on the
+  /// difference between this command and the request. The difference can come from the pressure range, the
+  /// slew limits or a feedforward beyond these limits.
   void sent(double command_kpa) noexcept;
 
   [[nodiscard]] double integral_kpa() const noexcept { return integral_kpa_; }
@@ -63,7 +66,8 @@ class Pid {
   PidSettings settings_;
   double tick_s_;
   double filter_keep_;     ///< share of the derivative filter's state that remains per tick
-  double tracking_share_;  ///< share of the limited part that back-calculation removes per tick
+  double tracking_share_;  ///< back-calculation: share of the part removed by the limits that is taken from
+                           ///< the integral per tick
   double integral_kpa_ = 0;
   double rate_mm_per_s_ = 0;  ///< filtered derivative of the measurement
   double last_error_mm_ = 0;
@@ -74,7 +78,8 @@ class Pid {
   double align_to_kpa_ = 0;
   /// The state from which the next step() continues.
   enum class Memory : std::uint8_t {
-    none,           ///< only the integral; there is no earlier measurement for derivative or trapezoid
+    none,           ///< the integral alone: there is no earlier measurement for the derivative and the
+                    ///< trapezoidal rule
     measured,       ///< the last measurement
     aligning,       ///< the command of align()
     aligned_ahead,  ///< the command of align(), after a hold() that continued it

@@ -11,10 +11,10 @@ double between_s(Nanoseconds from, Nanoseconds to) {
   return static_cast<double>(to - from) * 1e-9;
 }
 
-/// Number of changes of the reading that characterise a sensor.
+/// Number of changes of the reading after which the longest run without a change is known for the sensor.
 constexpr std::uint32_t enough_changes = 50;
-/// A run without a change is implausible if it exceeds the longest previous run by this factor and also this
-/// time.
+/// A run without a change is implausible if it is longer than the longest previous run times this factor, and
+/// also longer than unlike_at_least.
 constexpr Nanoseconds unlike_times = 4;
 constexpr Nanoseconds unlike_at_least = ns_per_s / 10;
 

@@ -1,5 +1,5 @@
 #pragma once
-// Checks readings that are electrically valid: age, constant values, and speed of change.
+// Checks the age, the speed of change and the constancy of readings that are electrically valid.
 
 #include <cstddef>
 #include <cstdint>
@@ -13,24 +13,26 @@ namespace softgrip::control {
 inline constexpr std::size_t most_unsteady_jumps = 32;
 
 struct PlausibilitySettings {
-  double max_age_s = 0.05;          ///< > 0; an older reading is stale
-  double max_speed_mm_per_s = 500;  ///< > 0; above the speed of any motion of the finger
-  double jump_margin_mm = 0.5;      ///< >= 0; added for the sensor's noise
-  /// > 0; time for which the reading may stay constant while the command changes. Longer than the valve's
-  /// delay.
+  double max_age_s = 0.05;          ///< > 0; a reading that is older than this is stale
+  double max_speed_mm_per_s = 500;  ///< > 0; must be above the speed of any motion of the finger
+  double jump_margin_mm = 0.5;      ///< >= 0; added to the permitted change because of the sensor's noise
+  /// > 0; time for which the reading may stay constant while the command changes. It must be longer than the
+  /// valve's delay.
   double frozen_after_s = 1.0;
   double frozen_band_mm = 0;       ///< >= 0; smaller changes count as constant (a quantisation step)
-  double frozen_command_kpa = 10;  ///< > 0; change of the command that makes it implausible
-  /// > 0; or change of the free finger in that time, if the sensor's readings usually change
-  /// (stands_still()).
+  double frozen_command_kpa = 10;  ///< > 0; a reading that stays constant while the command changes by this
+                                   ///< amount is frozen
+  /// > 0; a reading that stays constant while the model of the free finger moves by this distance is frozen
+  /// too, if the sensor's readings usually change (stands_still()).
   double frozen_expected_mm = 2;
-  /// > 0; a larger change between two readings that the model does not explain is a jump (jump_watch.h).
+  /// > 0; if the part of a change between two readings that the model does not explain is larger than this,
+  /// the change is a jump (jump_watch.h).
   double jump_mm = 2;
   /// From 2 to most_unsteady_jumps. This number of reversing jumps within 1 s makes the sensor unsteady.
   std::uint32_t unsteady_jumps = 4;
 };
 
-/// The check of one channel.
+/// Checks the readings of one channel.
 class Plausibility {
  public:
   explicit Plausibility(const PlausibilitySettings& settings) noexcept;
@@ -38,16 +40,17 @@ class Plausibility {
   /// Forgets all earlier readings: the next valid reading is accepted.
   void reset() noexcept;
 
-  /// Returns the validity of `reading` at `now`; `command_kpa` is the last command sent. An invalidity
-  /// reported by the driver is kept. A jump is measured from the last valid reading. The permitted travel
-  /// grows with time, so a sensor that returns after a gap becomes valid again. `expected_mm` is the
-  /// free-motion model at the time of the reading.
+  /// Returns the validity of `reading` at `now`; `command_kpa` is the last command sent. If the driver
+  /// reports an invalid reading, its reason is returned. A jump is measured from the last valid reading. The
+  /// permitted travel grows with time, so a sensor that returns after a gap becomes valid again.
+  /// `expected_mm` is the displacement of the free-motion model at the time of the reading.
   [[nodiscard]] model::Validity judge(const model::Reading& reading, Nanoseconds now, double command_kpa,
                                       double expected_mm = 0) noexcept;
 
-  /// Returns true if the reading has been constant for much longer than ever before at this sensor, whose
-  /// last digits usually change. Then the sensor may be frozen, not the finger at rest. For a sensor with
-  /// often constant readings (coarse, slow, without noise) it returns false.
+  /// Returns true if the last digits of this sensor usually change, but the reading has been constant for
+  /// much longer than ever before. The sensor may then be frozen. A finger at rest does not explain the
+  /// constant reading. For a sensor with often constant readings (coarse, slow, without noise) the function
+  /// returns false.
   [[nodiscard]] bool stands_still() const noexcept { return stands_still_; }
 
  private:
@@ -55,7 +58,7 @@ class Plausibility {
   [[nodiscard]] bool frozen(const model::Reading& reading, double command_kpa, double expected_mm) noexcept;
   void learn(Nanoseconds run) noexcept;
 
-  /// Smallest and largest value since the last change of the reading.
+  /// Smallest and largest value of a signal since the last change of the reading.
   struct Travel {
     double lowest = std::numeric_limits<double>::infinity();
     double highest = -std::numeric_limits<double>::infinity();
@@ -74,7 +77,7 @@ class Plausibility {
   Nanoseconds still_since_ = 0;
   Travel command_kpa_;
   Travel expected_mm_;
-  std::uint32_t changes_ = 0;    ///< changes of the reading, up to the largest number that is counted
+  std::uint32_t changes_ = 0;    ///< number of changes of the reading; counted up to enough_changes
   Nanoseconds longest_run_ = 0;  ///< longest time between two changes
   bool stands_still_ = false;
 };

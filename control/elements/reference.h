@@ -16,7 +16,8 @@ struct ReferencePoint {
 
 /// A sequence of segments. Before the first and after the last segment, the reference is constant. Value,
 /// rate and acceleration are continuous over ramps and holds (quintic, minimum jerk). The acceleration of a
-/// sine begins with a step. Plain value without allocation. Times are seconds on the caller's clock.
+/// sine begins with a step. The object is a plain value and allocates no memory. Times are seconds on the
+/// caller's clock.
 class Reference {
  public:
   static constexpr std::size_t capacity = 8;
@@ -29,30 +30,32 @@ class Reference {
   void start(double time_s, const ReferencePoint& point) noexcept;
 
   // Each of the next functions appends a segment after end_s(). If `capacity` segments are still stored after
-  // the last forget_before(), it changes nothing and returns false.
+  // the last forget_before(), the function changes nothing and returns false.
 
-  /// Appends a minimum-jerk ramp with the peak speed `speed` (> 0, per s). After a cut() in motion it brakes
-  /// first.
+  /// Appends a minimum-jerk ramp with the peak speed `speed` (> 0, per s). If the reference was cut in
+  /// motion, it first brakes.
   bool ramp_to(double value, double speed) noexcept;
   /// Appends a minimum-jerk ramp of the duration `duration_s` (> 0).
   bool ramp_for(double value, double duration_s) noexcept;
   bool hold_for(double duration_s) noexcept;
-  /// Appends mean - amplitude cos(2 pi f t) for `cycles`. The reference should be at mean - amplitude before.
+  /// Appends mean - amplitude cos(2 pi f t) for `cycles`. The reference should have the value mean -
+  /// amplitude before the sine.
   bool sine(double mean, double amplitude, double frequency_hz, double cycles) noexcept;
 
-  /// Removes everything after `time_s` and ends there (holding until then if it ended before). The next
-  /// appended segment continues with the same value, rate and acceleration. A feedforward with preview has
-  /// already used the reference up to its preview. Therefore cut at now + preview for a change without a
-  /// step.
+  /// Removes the part of the reference after `time_s`, so that the reference ends at `time_s`. If it had
+  /// ended earlier, it holds its final value until `time_s`. The next appended segment continues with the
+  /// same value, rate and acceleration. A feedforward with preview has already used the reference up to now +
+  /// preview. For a change without a step, therefore cut at now + preview.
   void cut(double time_s) noexcept;
   /// Removes segments that ended before `time_s`, to make space. Earlier times then return the start value of
   /// the first segment that remains.
   void forget_before(double time_s) noexcept;
 
   [[nodiscard]] ReferencePoint at(double time_s) const noexcept;
-  /// Returns at(time_s).value in less than half of the time.
+  /// Returns at(time_s).value. It needs less than half of the computing time of at().
   [[nodiscard]] double value_at(double time_s) const noexcept;
-  /// Returns the end of the last segment. From there on final_value() holds.
+  /// Returns the time at which the last segment ends. From then on the reference is constant at
+  /// final_value().
   [[nodiscard]] double end_s() const noexcept;
   [[nodiscard]] double final_value() const noexcept;
 
@@ -65,7 +68,8 @@ class Reference {
     /// quintic: coefficients of the powers of (t - start_s); sine: mean, amplitude, angular frequency
     std::array<double, 6> c{};
   };
-  /// The segment at a time: moving, at its end, or none (nullptr).
+  /// The segment at a time, and the time within this segment at which it is evaluated. Without segments, the
+  /// pointer is null. `moves` is false before the first segment and after a segment has ended.
   struct Place {
     const Segment* segment = nullptr;
     double time_s = 0;

@@ -12,7 +12,8 @@ class RestWatch {
 
   void start() noexcept { seen_.reset(); }
 
-  /// Returns true if `value` has been at rest for long enough. Pass nothing if the value is unknown.
+  /// Returns true if `value` has been at rest for long enough. Pass an empty value if it is unknown; the
+  /// required time at rest then begins again.
   bool observe(double time_s, std::optional<double> value) noexcept {
     if (!value) {
       start();

@@ -13,7 +13,7 @@ constexpr double tolerance_mm = 1e-11;
 /// error of the equation is then at most 1e-11 mm.
 constexpr double last_step_kpa = 2e-5;
 /// A body without sharp kinks needs a few Newton steps. An iteration that has not converged after this number
-/// oscillates between two kinks; bisection then ends it.
+/// of steps oscillates between two kinks; bisection then ends it.
 constexpr int newton_iterations = 20;
 constexpr int most_iterations = 80;
 
@@ -38,7 +38,7 @@ ActuatorInverse::ActuatorInverse(const model::Model& body, double tick_s)
     (miss > 0 ? upper : lower) = x;
     lower_tried = lower_tried || x == lower_kpa;
     upper_tried = upper_tried || x == upper_kpa;
-    // A bound is reached or the bracket is empty: this is the nearest solution.
+    // The solution is beyond this bound or the bracket is empty, so the bound is the nearest solution.
     if (x == upper_kpa && miss < 0) return {x, false};
     if (x == lower_kpa && miss > 0) return {x, false};
     const double next = x - miss / y.v;
@@ -51,7 +51,8 @@ ActuatorInverse::ActuatorInverse(const model::Model& body, double tick_s)
       x = untried ? bound : middle;
       continue;
     }
-    // The slope has a kink where the pressure reverses, so a last step must not cross it.
+    // The slope has a kink at the pressure of the last tick, where the direction reverses. The final step
+    // must not cross this pressure.
     const bool same_side = (x - past_kpa_[0]) * (next - past_kpa_[0]) > 0;
     if (same_side && std::abs(next - x) <= last_step_kpa) return {next, true};
     if (next == x) return {x, true};

@@ -1,5 +1,5 @@
 #pragma once
-// Finds the pressure that brings the chain after the valve to a displacement one tick from now.
+// Finds the pressure for which the chain after the valve reaches a given displacement one tick from now.
 
 #include <array>
 
@@ -9,10 +9,11 @@
 namespace softgrip::control {
 
 /// If the instantaneous gain is positive (check_feedforward() ensures it), the displacement at the end of a
-/// tick increases with the pressure at its end, so the solution is unique. It is found by a Newton iteration
-/// on the implicit equation inside a bracket. The explicit "multiplicative" form computes the pressure from
-/// the hysteresis state of the last tick. It is a fixed-point iteration with loop gain beta/alpha and
-/// diverges from 1 on, so it is not used (tests/control/feedforward/actuator_inverse_test.cpp).
+/// tick increases with the pressure at the end of the tick, so the solution is unique. It is found by a
+/// Newton iteration on the implicit equation inside a bracket. The explicit "multiplicative" form, which
+/// computes the pressure from the hysteresis state of the last tick, is not used: it is a fixed-point
+/// iteration with the loop gain beta/alpha and diverges if this gain is 1 or more
+/// (tests/control/feedforward/actuator_inverse_test.cpp).
 class ActuatorInverse {
  public:
   /// @param body  a model of the chain after the valve (see body_of()).
@@ -22,8 +23,8 @@ class ActuatorInverse {
     double pressure_kpa = 0;
     bool reached = true;  ///< false: the nearest solution is a bound of the bracket
   };
-  /// Returns the pressure in [lower_kpa, upper_kpa] for `displacement_mm` after the load at the end of the
-  /// next tick, with an error of at most 1e-11 mm. Does not change the state.
+  /// Returns the pressure in [lower_kpa, upper_kpa] for which the output of the load is `displacement_mm` at
+  /// the end of the next tick. The error of the displacement is at most 1e-11 mm. Does not change the state.
   [[nodiscard]] Solution solve(double displacement_mm, double lower_kpa, double upper_kpa) const noexcept;
 
   /// Advances by one tick with a linear change to `pressure_kpa`.
@@ -31,7 +32,7 @@ class ActuatorInverse {
   /// Copies the state of a chain of the same model at `pressure_kpa`.
   void take_over(const model::Chain<double>& body, double pressure_kpa) noexcept;
 
-  /// Returns the displacement after the load one tick from now if the pressure changes linearly to
+  /// Returns the displacement at the output of the load one tick from now if the pressure changes linearly to
   /// `pressure_kpa`.
   [[nodiscard]] double displacement_at(double pressure_kpa) const noexcept;
   [[nodiscard]] double displacement_mm() const noexcept { return body_.after(model::Station::load); }
@@ -40,7 +41,8 @@ class ActuatorInverse {
  private:
   double tick_s_;
   model::Chain<double> body_;
-  std::array<double, 3> past_kpa_{};  ///< newest first; their parabola gives the next initial guess
+  std::array<double, 3> past_kpa_{};  ///< newest first; the parabola through the three gives the next initial
+                                      ///< guess
 };
 
 }  // namespace softgrip::control

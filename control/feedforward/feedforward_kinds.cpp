@@ -25,8 +25,8 @@ constexpr double peak_speed = 1.875;
 constexpr double late_kpa = 1e-6;
 /// A plan whose model differs from the reference by more than this is reported as out of reach.
 constexpr double missed_mm = 0.2;
-/// Largest difference between the start of a reference and the start of its plan. Beyond it, the plan is for
-/// another motion and would be worse than no plan.
+/// Largest difference between the start of a reference and the start of its plan. If the difference is
+/// larger, the plan was computed for another motion and would be worse than no plan.
 constexpr double off_plan_mm = 1;
 /// Largest rounding difference between two equal clocks.
 constexpr double clock_rounding_s = 1e-6;
@@ -34,13 +34,14 @@ constexpr double clock_rounding_s = 1e-6;
 constexpr double plan_fade_s = 3;
 
 model::Model bouc_wen_of(const model::Model& model) {
-  // The asymmetry belongs to the hysteresis element.
+  // The asymmetry is a part of the hysteresis element, so its block is kept.
   return model::only(model, [](const model::BlockInfo& info) {
     return model::is<model::BoucWen, model::AsymmetricBoucWen, model::DuhemHysteresis>(info);
   });
 }
 
-/// Returns the target of the element at `time_s`: the reference within the limits, without the offset [mm].
+/// Returns the target displacement of the model at `time_s`: the reference within the limits, minus the
+/// offset [mm].
 double wanted_mm(const LimitSettings& limits, const FeedforwardQuery& query, double time_s) noexcept {
   return limit_reference(limits, query.reference->value_at(time_s)).reference_mm - query.offset_mm;
 }
@@ -51,7 +52,8 @@ BoucWenFeedforward::BoucWenFeedforward(const model::Model& model, const LimitSet
     : limits_(limits), inverse_(bouc_wen_of(model), tick_s) {}
 
 void BoucWenFeedforward::enter(const RunningModel& running, const FeedforwardQuery&, double) noexcept {
-  // The time without calls is one segment from the last state. The hysteresis needs no intermediate points.
+  // The hysteresis needs no intermediate points, so the pressure change during the time without calls is
+  // applied as one segment.
   inverse_.advance(running.pressure_kpa());
 }
 
@@ -71,7 +73,8 @@ FullModelFeedforward::FullModelFeedforward(const model::Model& model, const Feed
       valve_(model, tick_s),
       preview_s_(tick_s + dead_time_s(model) + settings.extra_latency_s),
       inverse_(body_of(model), tick_s) {
-  // The immediate response moves with the slew of the pressure; creep accelerates with it.
+  // At the slew limit, the immediate response determines the speed of the finger, and the creep determines
+  // its acceleration.
   const model::Chain<double> body(body_of(model), {}, tick_s);
   const double at_once = body.peek(0.0, model::Dual<double>(0, 1)).v;
   const double after_tick = body.peek(tick_s, model::Dual<double>(0, 1)).v;
@@ -94,7 +97,7 @@ double FullModelFeedforward::command_toward(double wanted_kpa) noexcept {
   double next = wanted_kpa;
   const double time_constant_s = valve_.time_constant_s(now, wanted_kpa);
   if (time_constant_s > 0) {
-    // The remaining difference if the pressure changes as the target does.
+    // `left` is the difference that remains if the pressure changes as much as the target does in this tick.
     const double along = std::clamp(wanted_kpa - last_wanted_kpa_, -limits_.slew_down_kpa_per_s * tick_s_,
                                     limits_.slew_up_kpa_per_s * tick_s_);
     const double left = wanted_kpa - now - along;
@@ -114,7 +117,8 @@ void FullModelFeedforward::enter(const RunningModel& running, const FeedforwardQ
   valve_.take_over(running.valve());
   command_kpa_ = command_kpa;
   last_wanted_kpa_ = running.pressure_kpa();
-  // The fade begins from the model's position after the pressure has moved towards the present command.
+  // The fade-out begins at the position that the model reaches when the pressure has moved towards the
+  // present command for one tick.
   const double before_mm = inverse_.displacement_mm();
   ValveInverse alone = valve_;
   const double alone_kpa = std::min(alone.advance(running.pressure_kpa(), command_kpa), ceiling_kpa_);
@@ -129,7 +133,8 @@ void FullModelFeedforward::fade_from(double displacement_mm, double speed_mm_per
                                      double then_s) noexcept {
   const double difference_mm = displacement_mm - to.value;
   const double distance_mm = std::abs(difference_mm);
-  // Either limit is sufficient: for an element that responds immediately, or for one that creeps.
+  // The shorter time is sufficient: the speed limit applies to an element that responds immediately, the
+  // acceleration limit to one that creeps.
   const double by_speed_s = peak_speed * distance_mm / easy_mm_per_s_;
   const double by_acceleration_s = std::sqrt(peak_acceleration * distance_mm / easy_mm_per_s2_);
   fade_.start(then_s, {difference_mm, speed_mm_per_s - to.rate, 0});
@@ -176,7 +181,8 @@ void PlannedFeedforward::enter(const RunningModel&, const FeedforwardQuery&, dou
 double PlannedFeedforward::unplanned_mm(const FeedforwardQuery& query, double wanted_mm,
                                         double then_s) const noexcept {
   double least_mm = std::numeric_limits<double>::max();
-  // At a jump of the reference, the clocks must not differ by a rounding error.
+  // The two clocks can differ by a rounding error, which matters at a jump of the reference. Both sides of
+  // the jump are therefore compared.
   for (const double aside_s : {0.0, -clock_rounding_s, clock_rounding_s}) {
     const double on_plan_s = then_s - query.plan_origin_s + aside_s;
     const double planned_mm =

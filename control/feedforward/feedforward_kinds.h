@@ -18,7 +18,8 @@ namespace softgrip::control {
 /// Result of a feedforward in one tick.
 struct FeedforwardStep {
   double pressure_kpa = 0;
-  bool out_of_reach = false;  ///< the reference exceeds the limits; the pressure goes as far as they allow
+  bool out_of_reach = false;  ///< the reference exceeds the limits; the pressure goes as far as the limits
+                              ///< allow
 };
 
 /// Inputs of a feedforward. The reference is in mm of the finger. `offset_mm` is the reading minus the model.
@@ -26,13 +27,13 @@ struct FeedforwardQuery {
   const Reference* reference = nullptr;
   double time_s = 0;  ///< now, on the reference's clock
   double offset_mm = 0;
-  const PressurePlan* plan = nullptr;  ///< for `planned`
+  const PressurePlan* plan = nullptr;  ///< plan for the kind `planned`
   double plan_origin_s = 0;            ///< origin of the plan's clock on the reference's clock
 };
 
 // Each kind has three functions. enter() is called with the present outputs when tracking begins. step() is
-// called once per tick after that. preview_s() is the time by which the kind reads the reference ahead. A new
-// kind needs a class and a line in Feedforward.
+// called once per tick after that. preview_s() returns the time by which the kind reads the reference ahead.
+// A new kind needs a class and an entry in the variant of Feedforward.
 
 class NoFeedforward {
  public:
@@ -41,8 +42,9 @@ class NoFeedforward {
   [[nodiscard]] double preview_s() const noexcept { return 0; }
 };
 
-/// The published scheme: the pressure at which the Bouc-Wen element alone would follow the reference. The PID
-/// corrects the rest of the finger, the valve and all delays.
+/// The published scheme, which returns the pressure at which the Bouc-Wen element alone would follow the
+/// reference. The PID corrects the effect of the other elements of the finger, of the valve and of all
+/// delays.
 class BoucWenFeedforward {
  public:
   BoucWenFeedforward(const model::Model& model, const LimitSettings& limits, double tick_s);
@@ -55,21 +57,23 @@ class BoucWenFeedforward {
   ActuatorInverse inverse_;
 };
 
-/// Inverse of the complete chain from right to left. The pressure at the actuator is planned ahead. Each tick
-/// adds the pressure at which the chain after the valve reaches the reference one tick plus all dead time
-/// from now, if the plan was followed so far. The command follows from the plan (ValveInverse).
+/// Inverse of the complete chain, computed from the finger back to the valve. The pressure at the actuator is
+/// planned ahead. Each tick adds one pressure to this plan: the pressure at which the chain after the valve
+/// reaches the reference at the time "now + one tick + all dead times", provided that the plan was followed
+/// so far. The command follows from the plan (ValveInverse).
 ///
-/// The derivative of the lead is that of the plan, which has no sensor noise. The command stays inside the
-/// pressure range and the slew limits, and the plan is the effect of the limited command, so it does not wind
-/// up. If the reference is out of reach, the plan goes as far as the limits allow, reports it, and continues
-/// from there. Behind a lag, a slewing command cannot stop the pressure at once. The plan then approaches the
-/// reference no faster than it can brake (constant deceleration slew/tau), so a jump causes no ringing.
+/// The lead differentiates the plan, which contains no sensor noise. The command stays inside the pressure
+/// range and the slew limits. The plan is the effect of the limited command, so it does not wind up. If the
+/// reference is out of reach, the plan goes as far as the limits allow, step() reports it, and the plan
+/// continues from there. Behind a lag, a slewing command cannot stop the pressure at once. The plan then
+/// approaches the reference no faster than it can brake (constant deceleration slew/tau), so a jump of the
+/// reference causes no ringing.
 class FullModelFeedforward {
  public:
   FullModelFeedforward(const model::Model& model, const FeedforwardSettings& settings,
                        const LimitSettings& limits, double tick_s);
   /// Starts from the state of the running model. At that moment the model's free response and the reference
-  /// differ (creep, an offset of the reading). The difference fades out without a jump.
+  /// differ because of creep or an offset of the reading. The difference fades out without a jump.
   void enter(const RunningModel& running, const FeedforwardQuery& query, double command_kpa) noexcept;
   FeedforwardStep step(const FeedforwardQuery& query) noexcept;
   [[nodiscard]] double preview_s() const noexcept { return preview_s_; }
@@ -86,20 +90,23 @@ class FullModelFeedforward {
   ValveInverse valve_;
   double preview_s_;
   ActuatorInverse inverse_;
-  double command_kpa_ = 0;                  ///< of the last tick
+  double command_kpa_ = 0;                  ///< command of the last tick
   double last_wanted_kpa_ = 0;              ///< the pressure that the reference needed in the last tick
   double easy_mm_per_s2_;                   ///< acceleration of the finger within the slew limits
   double easy_mm_per_s_;                    ///< speed of the finger within the slew limits
-  std::array<double, 2> last_target_mm_{};  ///< newest first
-  double last_displacement_mm_ = 0;         ///< of the plan, one tick earlier
-  Reference fade_;  ///< the difference after enter() or a jump, on the reference's clock
+  std::array<double, 2> last_target_mm_{};  ///< targets of the last two ticks, newest first
+  double last_displacement_mm_ = 0;         ///< displacement of the plan one tick earlier
+  Reference fade_;  ///< fade-out of the difference after enter() or a jump of the reference, on the
+                    ///< reference's clock
 };
 
-/// A plan from before the run (control/sequences/planner.h), read ahead by the total dead time and half a
-/// tick for the hold. The plan does not include the offset of a finger from its model (offset_mm); the
-/// settled gain adds it. If there is no plan, or the reference starts more than 1 mm from the plan, the
-/// settled gain alone follows the reference until the next step. After each change of the source, the
-/// difference to the previous pressure fades out over 3 s. The PID corrects the rest.
+/// Follows a plan that was computed before the run (control/sequences/planner.h). The plan is read ahead by
+/// the total dead time, and by half a tick because the board holds its output for a tick. The plan does not
+/// include the offset of a finger from its model (offset_mm). The offset divided by the settled gain is added
+/// to the planned pressure. If there is no plan, or if the reference starts more than 1 mm from the plan, the
+/// pressure is computed from the reference with the settled gain alone until the next step. After each change
+/// between these sources, the difference from the previous pressure fades out over 3 s. The PID corrects the
+/// remaining error.
 class PlannedFeedforward {
  public:
   PlannedFeedforward(const model::Model& model, const FeedforwardSettings& settings,
@@ -121,7 +128,8 @@ class PlannedFeedforward {
   double origin_s_ = 0;
   bool on_plan_ = false;
   double last_kpa_ = 0;
-  double difference_kpa_ = 0;  ///< between the previous pressure and the start of the source
+  double difference_kpa_ = 0;  ///< difference between the previous pressure and the first pressure of the new
+                               ///< source
   double fade_left_s_ = 0;     ///< remaining time of the fade-out
   bool entering_ = true;
 };

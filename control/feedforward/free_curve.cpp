@@ -21,8 +21,8 @@ struct Level {
   double displacement_mm = 0;
 };
 
-/// Returns the levels from the lowest command on, each reached from rest, in the order of increasing
-/// displacement.
+/// Returns the levels in the order of increasing displacement. The first level belongs to the lowest command.
+/// Each level is reached from rest.
 std::vector<Level> levels_of(const model::Model& model, const LimitSettings& limits) {
   model::Chain<double> valve(valve_of(model), {}, curve_step_s);
   model::Chain<double> body(body_of(model), {}, curve_step_s);

@@ -1,6 +1,6 @@
 #pragma once
-// Computes the pressure that a free finger needs at a displacement. The pressure above it is gripping
-// pressure.
+// Computes the pressure that a free finger needs for a displacement. Pressure in excess of this value is
+// gripping pressure.
 
 #include <vector>
 
@@ -12,7 +12,7 @@ namespace softgrip::control {
 /// The displacement of a model's free finger at each command on the first motion away from rest. The
 /// displacement is taken three seconds after a jump to the command, when only slow creep remains. The inverse
 /// gives the command for a displacement. Beyond its ends the curve continues with its mean slope. The
-/// constructor simulates a few thousand steps; reading does not allocate.
+/// constructor simulates a few thousand steps. The other functions allocate no memory.
 class FreeCurve {
  public:
   FreeCurve(const model::Model& model, const LimitSettings& limits);
@@ -22,7 +22,7 @@ class FreeCurve {
   [[nodiscard]] double command_kpa(double displacement_mm) const noexcept {
     return at(command_kpa_, displacement_mm);
   }
-  /// Returns the pressure at the actuator in that state, after the valve [kPa].
+  /// Returns the pressure at the actuator, after the valve, in the same state [kPa].
   [[nodiscard]] double pressure_kpa(double displacement_mm) const noexcept {
     return at(pressure_kpa_, displacement_mm);
   }
@@ -36,7 +36,7 @@ class FreeCurve {
   double lowest_mm_ = 0;
   double step_mm_ = 0;  ///< 0: the model does not move, so the curve is a point
   double slope_kpa_per_mm_ = 0;
-  std::vector<double> command_kpa_;  ///< from lowest_mm_ on, at distances of step_mm_
+  std::vector<double> command_kpa_;  ///< commands for displacements from lowest_mm_ on, in steps of step_mm_
   std::vector<double> pressure_kpa_;
 };
 

@@ -1,5 +1,6 @@
 #pragma once
-// Computes displacement and speed of a model's free finger within its limits, for the check of the limits.
+// Computes the displacement and the speed that a model's free finger reaches within its limits. The result is
+// used to check the limits.
 
 #include "control/elements/limits.h"
 #include "model/model.h"

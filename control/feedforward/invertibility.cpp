@@ -38,8 +38,8 @@ constexpr std::string_view creep_alone =
     "spring) does";
 constexpr std::string_view planned_needs_none = "feedforward `planned` needs no elastic element";
 
-/// Below this gain, nothing responds immediately to the pressure: even a Kelvin-Voigt spring without effect
-/// has 1e-9 mm/kPa.
+/// Below this gain, no element responds immediately to the pressure. The value is above 1e-9 mm/kPa, which is
+/// the gain of a Kelvin-Voigt spring that has no effect.
 constexpr double least_gain_mm_per_kpa = 1e-8;
 
 /// The smallest slope of displacement over pressure that was found, and its pressure.
@@ -49,7 +49,8 @@ struct Worst {
   bool rising = false;
 };
 
-/// Computes both one-sided slopes at the state for `pressure_kpa`: immediate, and at the end of a tick.
+/// Computes the slopes of displacement over pressure at `pressure_kpa` for rising and falling pressure,
+/// immediately and at the end of a tick. Stores the smallest slope in `worst`.
 void look(const model::Chain<double>& chain, double pressure_kpa, double tick_s, Worst& worst) {
   constexpr double aside_kpa = 1e-7;
   for (const bool rising : {true, false}) {
@@ -63,8 +64,8 @@ void look(const model::Chain<double>& chain, double pressure_kpa, double tick_s,
 
 /// Moves a chain through its working range and checks every step. The first loading and the full unloading
 /// reach the outermost hysteresis states, regardless of the initial state. Inner loops and a slow pass cover
-/// the rest; in the slow pass, creep moves the blocks that depend on displacement. Both sides of 0 kPa are
-/// covered, up to the limits.
+/// the other states. In the slow pass, creep moves the blocks that depend on displacement. Pressures above
+/// and below 0 kPa are covered, up to the limits.
 Worst worst_gain(const model::Model& model, const LimitSettings& limits, double tick_s) {
   constexpr int steps = 200;
   constexpr std::array<double, 10> turns{1, 0, 1, 0.3, 0.8, 0.5, 0.6, 0, 0.4, 0};
@@ -91,7 +92,7 @@ Worst worst_gain(const model::Model& model, const LimitSettings& limits, double 
 }
 
 /// Returns the sentence on a Bouc-Wen element with an inverse response, or an empty string. `stiff` is the
-/// other immediate response to the pressure, and `stiff_name` is its name.
+/// immediate gain of the other elements, and `stiff_name` is the name of this gain.
 std::string wrong_way(const model::Model& model, double stiff, std::string_view stiff_name) {
   const model::Chain<double> chain(model);
   const auto* bouc_wen = chain.find<model::BoucWen<double>>();
@@ -119,7 +120,8 @@ tl::expected<void, Refusal> check_gain(const model::Model& model, const LimitSet
                                 backwards ? usual_cause : planned_needs_none});
 }
 
-/// The sensor does not move the finger, so it is not inverted.
+/// Returns true if the feedforward inverts the block or needs no inverse of it. Blocks of the sensor do not
+/// move the finger, so they need no inverse.
 bool is_undone(const BlockInfo& info) {
   if (info.station == Station::sensor || info.inverse == Inverse::ignored) return true;
   if (info.inverse == Inverse::implicit) return true;
@@ -133,7 +135,7 @@ tl::expected<void, Refusal> check_bouc_wen(const model::Model& model, const Limi
                                            double tick_s) {
   const auto part = model::only(model, [](const BlockInfo& info) {
     return model::is<model::BoucWen, model::AsymmetricBoucWen, model::DuhemHysteresis>(
-        info);  // the asymmetry belongs to it
+        info);  // the asymmetry is a part of the element
   });
   if (!model::position_of<model::BoucWen>(part)) {
     return tl::unexpected(
@@ -143,8 +145,8 @@ tl::expected<void, Refusal> check_bouc_wen(const model::Model& model, const Limi
   return check_gain(part, limits, tick_s, 0, "");
 }
 
-/// Checks that the model can be planned for: it must have an element that moves the finger, and a positive
-/// gain.
+/// Checks that a plan can be computed for the model: the model must have an element that moves the finger,
+/// and a positive gain.
 tl::expected<void, Refusal> check_planned(const model::Model& model, const LimitSettings& limits) {
   const auto elements = model::only(model, [](const BlockInfo& info) { return info.kind == Kind::element; });
   if (elements.blocks.empty())

@@ -21,14 +21,15 @@ struct Refusal {
   [[nodiscard]] std::string with_advice() const;
 };
 
-/// Checks that `settings.kind` can be computed for `model` over the working range: from 0 kPa to
-/// pressure_max_kpa, and to a pressure_min_kpa below 0, with each hysteresis state that can be reached. A
-/// refusal names the block or the numbers.
+/// Checks that `settings.kind` can be computed for `model` over the working range, with each hysteresis state
+/// that can be reached. The range extends from 0 kPa to pressure_max_kpa, and down to pressure_min_kpa if
+/// that is below 0. A refusal names the block or the values that prevent it.
 [[nodiscard]] tl::expected<void, Refusal> check_feedforward(const model::Model& model,
                                                             const FeedforwardSettings& settings,
                                                             const LimitSettings& limits, double tick_s);
 
-/// Returns the blocks that full_model cannot invert as text: "`a`, `b`". At present it can invert all blocks.
+/// Returns the names of the blocks that full_model cannot invert, as text: "`a`, `b`". At present it can
+/// invert all blocks.
 [[nodiscard]] std::string not_undone(std::span<const model::BlockInfo> blocks);
 
 }  // namespace softgrip::control

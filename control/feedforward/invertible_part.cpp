@@ -12,7 +12,7 @@
 namespace softgrip::control {
 namespace {
 
-/// Returns the displacements on a path on both sides of 0 kPa, up to the limits.
+/// Returns the displacements of the model on a pressure path above and below 0 kPa, up to the limits.
 std::vector<double> along_the_way(const model::Model& model, const LimitSettings& limits) {
   constexpr int steps = 100;
   constexpr double step_s = 0.05;

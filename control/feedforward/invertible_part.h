@@ -15,11 +15,11 @@ struct InvertiblePart {
   std::vector<std::string> left_out;  ///< ids of the removed blocks
 };
 
-/// Returns the model without the blocks that prevent `full_model`. These are the blocks without an inverse.
-/// If that is not enough, the block with the smallest effect is removed too. The effect is measured on a slow
-/// path from 0 kPa to each end of the limits and back, twice. Returns an empty value if no such part is
-/// accepted, or if the model is accepted unchanged.
-/// @param tick_s  > 0.
+/// Returns the model without the blocks that prevent `full_model`. First, the blocks without an inverse are
+/// removed. If `full_model` is still not possible, one more block is removed: the block with the smallest
+/// effect whose removal makes it possible. The effect is measured on a slow path from 0 kPa to each end of
+/// the limits and back, twice. Returns an empty value if no such part is accepted, or if the model is
+/// accepted unchanged.
 [[nodiscard]] std::optional<InvertiblePart> invertible_part(const model::Model& model,
                                                             const LimitSettings& limits, double tick_s);
 

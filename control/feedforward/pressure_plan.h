@@ -1,5 +1,6 @@
 #pragma once
-// A command that control/sequences/planner.h computed before the run. The tick reads it.
+// Defines a command over time that is computed before the run (control/sequences/planner.h). The control loop
+// reads it in each tick.
 
 #include <vector>
 
@@ -9,8 +10,9 @@
 
 namespace softgrip::control {
 
-/// A command over time, linear between its points. Its clock is that of the finger without dead time: a value
-/// must reach the valve one dead time earlier. Plain values; at() allocates nothing.
+/// A command over time, linear between its points. Its times are those of a finger without dead time: a value
+/// must reach the valve one dead time before its time. The members are plain values; at() allocates no
+/// memory.
 struct PressurePlan {
   double start_s = 0;  ///< time of the first point on the reference's clock
   double step_s = 0;   ///< time between points
@@ -19,7 +21,7 @@ struct PressurePlan {
   Reference reference;                  ///< the reference that was planned
   double begin_s = 0;                   ///< start of the step with this reference, on the plan's clock
   double rmse_mm = 0;                   ///< root mean square difference between model and reference
-  double worst_mm = 0;                  ///< largest difference
+  double worst_mm = 0;                  ///< largest difference between model and reference
 
   [[nodiscard]] bool empty() const noexcept { return pressure_kpa.empty(); }
   /// Returns the command [kPa]; outside the plan its first or last value; 0 for an empty plan.
@@ -39,11 +41,11 @@ struct SettledLine {
 };
 [[nodiscard]] SettledLine settled_line(const model::Model& model, const LimitSettings& limits);
 
-/// Returns the model without dead times, dead bands, additions of the sensor and blocks that are only noise.
+/// Returns the model without dead times, dead bands, blocks of the sensor and blocks that are only noise.
 [[nodiscard]] model::Model without_dead_time(const model::Model& model);
 
-/// Time by which a plan should start before a change of the reference, so that an inverse response is over by
-/// then [s].
+/// Time before a change of the reference at which a plan should start, so that an inverse response is over at
+/// the change [s].
 inline constexpr double plan_lead_s = 0.6;
 
 }  // namespace softgrip::control

@@ -9,7 +9,8 @@ namespace softgrip::control {
 namespace {
 
 constexpr double moves_kpa_per_s = 0.2;
-/// A smaller error beyond the overlap gives no information on the flow of a port [kPa].
+/// If the error exceeds the overlap by less than this, the pressure change gives no information on the flow
+/// of a port [kPa].
 constexpr double shows_kpa = 0.01;
 
 }  // namespace
@@ -36,7 +37,8 @@ double RegulatorInverse::command_for(double next_kpa) const noexcept {
   double opened_kpa = direction_of(way_kpa, tick_s_) * n.overlap_kpa + way_kpa / share;
   const double time_constant_s = fills ? n.filling_s : n.venting_s;
   if (n.full_open_kpa > 0 && time_constant_s > 0) {
-    // The largest opening at the end of the tick, after the pressure has approached.
+    // The largest useful opening: the port is still fully open at the end of the tick, when the pressure is
+    // closer to the command.
     const double comes_kpa = (n.full_open_kpa - n.overlap_kpa) * tick_s_ / time_constant_s;
     const double most_kpa = n.full_open_kpa + comes_kpa;
     opened_kpa = std::clamp(opened_kpa, -most_kpa, most_kpa);

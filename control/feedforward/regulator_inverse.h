@@ -1,18 +1,19 @@
 #pragma once
-// Finds the command with which a pressure regulator reaches a pressure one tick from now.
+// Finds the command for which a pressure regulator reaches a pressure one tick from now.
 
 #include "model/regulated_pressure.h"
 
 namespace softgrip::control {
 
-/// Returns the direction of a pressure change of `way_kpa` in a tick, -1 to 1. The value is full for a real
-/// motion and partial for a very small one. A small change with half a dead band would only add noise.
+/// Returns the direction of a pressure change of `way_kpa` in a tick, -1 to 1. The magnitude is 1 for a real
+/// motion and smaller for a very small one: to add half a dead band to a very small change would only add
+/// noise.
 [[nodiscard]] double direction_of(double way_kpa, double tick_s) noexcept;
 
-/// Inverse of a regulator whose command is held for a tick (model/regulated_pressure.h). It is a closed form
-/// from the present spool and integral. It assumes a linear integral over the tick and the same port flow as
-/// in the last tick. An error of 0.1 % of the change remains for the next tick, which starts from the actual
-/// pressure.
+/// Inverse of a regulator whose command is held for a tick (model/regulated_pressure.h). The command is
+/// computed in closed form from the present spool and integral. The formula assumes that the integral changes
+/// linearly over the tick and that the flow of the port is that of the last tick. An error of 0.1 % of the
+/// change remains. The next tick starts from the actual pressure and corrects it.
 class RegulatorInverse {
  public:
   /// @param tick_s  > 0.
@@ -22,7 +23,7 @@ class RegulatorInverse {
   void take_over(const model::RegulatedPressure<double>& regulated) noexcept;
 
   /// Returns the command for which the pressure is `next_kpa` at the end of the tick. If no port opens far
-  /// enough, returns a command that opens it fully. Does not change the state.
+  /// enough for this pressure, returns a command that opens the port fully. Does not change the state.
   [[nodiscard]] double command_for(double next_kpa) const noexcept;
   /// Advances by one tick and returns the pressure at its end [kPa].
   double advance(double command_kpa) noexcept;

@@ -12,13 +12,15 @@ namespace softgrip::control {
 /// Time at a constant command after which a finger is at rest: only slow creep remains [s].
 inline constexpr double rests_after_s = 3;
 
-/// Dead times can be exchanged with all blocks that do not depend on time. So they are removed from the
-/// chain, which runs ahead of the finger, and a past value is read instead. A delay of any length then costs
-/// one look-up, and the feedforward gets the state at which its plan begins.
+/// The running model without its dead times. A dead time may be exchanged with every block that does not
+/// depend on time. The dead times are therefore removed from the chain, and its output is read with a delay
+/// instead. The chain then runs ahead of the finger. A delay of any length costs one look-up, and the
+/// feedforward gets the state at which its plan begins.
 class RunningModel {
  public:
-  /// @param extra_latency_s  from the computation of a command to the board's output.
-  /// @param longest_age_s  largest age of a reading; an older one gets the oldest stored prediction.
+  /// @param extra_latency_s  time from the computation of a command to the board's output.
+  /// @param longest_age_s  largest age of a reading; for an older reading, the oldest stored prediction is
+  /// used.
   RunningModel(const model::Model& model, double tick_s, double extra_latency_s, double longest_age_s);
 
   /// Sets the state of rest under `command_kpa`.

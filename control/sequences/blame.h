@@ -10,17 +10,18 @@
 
 namespace softgrip::control {
 
-/// Returns the problems of a sequence that is read with these values.
+/// A function that reads a sequence with the given values of its parameters and returns the problems of the
+/// sequence.
 using Judge = std::function<document::Problems(const std::vector<Parameter>& parameters)>;
 
-/// Adds the problems that `judge` finds with these values. A problem is reported at the parameter if its
-/// value alone causes it, with the step's line in the message. It is reported at the step if several values
-/// cause it, or if the defaults have it too.
+/// Adds the problems that `judge` finds with the values of `parameters`. If the value of one parameter alone
+/// causes a problem, the problem is reported at this parameter, and the message gives the line of the step.
+/// If several values together cause it, or if the default values cause it too, it is reported at the step.
 void blame_values(const document::Document& document, const std::vector<Parameter>& parameters,
                   const Judge& judge, document::Problems& problems);
 
-/// Tests both ends of each range, one parameter at a time, with the others at their defaults. The start
-/// checks combinations of values. Adds nothing if the defaults are already wrong.
+/// Tests both ends of each range, one parameter at a time, while the others have their defaults. Combinations
+/// of values are not tested here, but at each start. Adds nothing if the defaults already have problems.
 void blame_ends(const document::Document& document, std::vector<Parameter> parameters, const Judge& judge,
                 document::Problems& problems);
 

@@ -217,7 +217,7 @@ Document with_values(const Document& document, const std::vector<Parameter>& par
   for (Node::Entry& entry : bound.root.entries) {
     if (entry.key == "steps") binder.bind(entry.value, {});
   }
-  // The part that could not be read may use the parameter.
+  // If the document could not be read completely, the missing part may use the parameter.
   if (document.complete) binder.report_unused();
   return bound;
 }

@@ -14,8 +14,8 @@ namespace softgrip::control {
 [[nodiscard]] std::vector<Parameter> read_parameters(const document::Document& document,
                                                      document::Problems& problems);
 
-/// Assigns the values of a start to the parameters. An unknown name, a repeated name and a value out of range
-/// are problems. They are reported at the parameter, or at the top of the document.
+/// Assigns the values that a start request gives to the parameters. An unknown name, a repeated name and a
+/// value out of range are problems. They are reported at the parameter, or at the top of the document.
 void set_values(std::span<const Argument> arguments, const document::Document& document,
                 std::vector<Parameter>& parameters, document::Problems& problems);
 

@@ -15,20 +15,21 @@ namespace {
 using Vector = Eigen::VectorXd;
 using Matrix = Eigen::MatrixXd;
 
-/// Shortest distance of the points of a plan [s].
+/// Shortest time between two points of a plan [s].
 constexpr double finest_step_s = 0.025;
-/// Length of the decided part of a window, and of its preview. The effect of later references on the best
-/// command now decays with exp(-z t). Here z is the zero of the inverse response, 7/s for the published
-/// model.
+/// Duration of the part of a window whose commands are kept, and of the preview that follows it. The effect
+/// of later references on the best command now decays with exp(-z t). Here z is the zero of the inverse
+/// response, 7/s for the published model.
 constexpr double decided_s = 4;
 constexpr double ahead_s = 1.5;
 /// Weight of the second difference of the command [mm/kPa], far below the required accuracy of a plan.
 constexpr double smooth_mm_per_kpa = 1e-3;
 /// Weight of the part of a command outside its bounds [mm/kPa].
 constexpr double bound_mm_per_kpa = 30;
-/// Difference for the derivatives of the chain [kPa].
+/// Pressure difference for the numerical derivatives of the chain [kPa].
 constexpr double aside_kpa = 1e-6;
-/// Limits of the iterations of one search and of all searches of a window. They bound the time of planning.
+/// Largest number of iterations of one search, and of all searches in one window. They limit the computing
+/// time.
 constexpr int most_iterations = 25;
 constexpr int most_iterations_of_window = 60;
 /// A window with a smaller root mean square error needs no second initial guess.
@@ -134,8 +135,8 @@ class Window {
       chain.step(step_s_, u[i]);
       miss[i] = chain.after(model::Station::load) - wanted_mm_[i];
     }
-    // The derivative is with respect to the command at point j with all later points shifted along: one
-    // segment becomes longer in its direction. A change of a single point would instead follow a small
+    // Column j is the derivative with respect to an equal change of point j and of all later points, which
+    // makes one segment longer in its direction. A change of point j alone would instead cause a small
     // hysteresis loop. The difference of neighbouring columns is the derivative with respect to the single
     // point.
     for (Eigen::Index j = 0; j < n; ++j) {
@@ -184,7 +185,7 @@ class Window {
   }
 
   const model::Chain<double>& begin_;
-  std::array<double, 2> before_kpa_;  ///< newest first
+  std::array<double, 2> before_kpa_;  ///< last two commands before the window, newest first
   Vector wanted_mm_;
   const LimitSettings& limits_;
   double step_s_;
@@ -193,8 +194,8 @@ class Window {
   int iterations_left_ = most_iterations_of_window;
 };
 
-/// Returns the best command from several initial guesses, until one is good. The slope jumps where the
-/// command reverses, and a search may stop at such a corner.
+/// Searches from several initial guesses until a command is good, and returns the best command. The slope
+/// jumps where the command reverses, and a search may stop at such a corner.
 Vector best_of(Window& window, const Vector& guess, const Vector& proportional) {
   Vector best = window.solve(guess);
   double least = window.cost_of(best);
@@ -277,7 +278,7 @@ PressurePlan Planner::plan(const Reference& reference, double from_s, double to_
   for (std::size_t done = 1; done < points && !stop.stop_requested();) {
     Vector wanted(n);
     for (Eigen::Index i = 0; i < n; ++i) wanted[i] = wanted_at(done + static_cast<std::size_t>(i));
-    // The guess is the undecided part of the previous window, then proportional to the reference. A constant
+    // The guess is the rest of the previous window, continued in proportion to the reference. A constant
     // guess would give poor derivatives, because hysteresis has different slopes up and down.
     const Vector proportional = wanted.unaryExpr(in_proportion);
     const Eigen::Index known = guess.size();

@@ -18,21 +18,23 @@ class Chain;
 
 namespace softgrip::control {
 
-/// Least squares over the reference within the pressure range and the slew limits:
+/// Finds the command u by least squares over the reference, within the pressure range and the slew limits:
 ///
 ///   minimise  sum (y(t_i) - r(t_i))^2 + (w (u_{i+1} - 2 u_i + u_{i-1}))^2
 ///
 /// Here y is the response of the model with lag and saturation, but without its dead time, which preview
-/// compensates. No inverse is needed, so models with an inverse response can be planned too: the plan acts
-/// before the reference changes, as far as its time allows.
+/// compensates. No inverse is needed, so models with an inverse response can be planned too: the plan starts
+/// to act before the reference changes.
 ///
-/// Levenberg-Marquardt over windows of a few seconds. Each window looks a little further ahead than it
-/// decides. So the time increases with the length of the reference, not with its cube. The derivatives are
-/// those of the chain: one column per point of the command, from this point to the end of the window. Bounds
-/// are heavy one-sided rows of the residuals; after that, limit() enforces them exactly.
+/// The problem is solved by the Levenberg-Marquardt method in windows of a few seconds. Each window extends a
+/// little beyond the part whose commands it determines. The computing time therefore increases with the
+/// length of the reference, not with its cube. The Jacobian has one column per point of the command; it is
+/// computed with the chain from this point to the end of the window. The bounds are one-sided residuals with
+/// a large weight. limit() then enforces the bounds exactly.
 class Planner {
  public:
-  /// Starts at rest under the lowest command. `tick_s` of the loop limits how fine a plan is.
+  /// Starts at rest under the rest pressure. The time between two points of a plan is at least the period
+  /// `tick_s` of the loop.
   Planner(const model::Model& model, const LimitSettings& limits, double tick_s);
 
   /// Returns the plan for a reference over [from_s, to_s]. The model continues from the end of the last plan,
@@ -40,8 +42,9 @@ class Planner {
   [[nodiscard]] PressurePlan plan(const Reference& reference, double from_s, double to_s,
                                   const std::stop_token& stop = {});
 
-  /// Advances the model while other commands move the finger: `command_kpa` after the start, within the
-  /// limits.
+  /// Advances the model by `duration_s` under commands that are not planned. `command_kpa` returns the
+  /// command at a time after the start of this motion. The commands are limited to the pressure range and the
+  /// slew limits.
   void drive(const std::function<double(double time_s)>& command_kpa, double duration_s);
 
   /// Returns the last command; displacement_mm() is the model's displacement after it.

@@ -18,7 +18,8 @@ namespace softgrip::control {
 namespace {
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
-/// Factor above the detection margin, so that noise does not hide a part again.
+/// Required ratio of the expected displacement shortfall to the detection margin, so that noise does not hide
+/// a detected part.
 constexpr double seen_from = 1.2;
 
 using document::Problems;
@@ -275,7 +276,7 @@ class Fitting {
     }
   }
 
-  /// A bound that the rest pressure satisfies cannot verify a grip.
+  /// Reports a pressure bound that the rest pressure already satisfies: such a bound cannot verify a grip.
   void check_pressure_bound(const Step& step, const ChannelSettings& channel) {
     const bool below = step.verify.below();
     const double bound_kpa = below ? step.verify.pressure_max_kpa : step.verify.pressure_min_kpa;
@@ -290,7 +291,8 @@ class Fitting {
            below ? "a lower pressure_max_kpa" : "pressure_max_kpa for a grip below the rest pressure");
   }
 
-  /// Detection, contact and squeeze compare a finger that moves upward from rest with its free motion.
+  /// Reports a step that uses detection, contact or squeeze below the rest pressure. These functions compare
+  /// a finger that moves upward from rest with its free motion.
   void check_side(const Step& step, const ChannelSettings& channel) {
     const double rest_kpa = resting_kpa(channel.limits);
     const bool detects = step.kind == StepKind::grip && step.verify.by == VerifyBy::detection;
@@ -348,14 +350,14 @@ class Fitting {
   Problems& problems_;
   document::Document source_;
   std::uint32_t gripped_ = 0;
-  /// By channel: the smallest gripping pressure that shows a part, once computed.
+  /// By channel: the smallest gripping pressure that shows a part; empty until it is computed.
   std::vector<std::optional<double>> least_squeeze_kpa_ =
       std::vector<std::optional<double>>(settings_.channels.size());
   /// The displacement that each channel follows before a step; NaN while it follows none.
   std::vector<double> follows_mm_ = std::vector<double>(settings_.channels.size(), unknown);
 };
 
-/// A sequence with other values of its parameters, fitted to a rig without planning.
+/// A sequence with other values of its parameters. It is fitted to a rig without planning.
 class Variation {
  public:
   Variation(const Sequence& sequence, const RigSettings& settings) : settings_(settings) {

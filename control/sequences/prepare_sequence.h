@@ -1,5 +1,6 @@
 #pragma once
-// Fits a sequence to a rig.
+// Fits a sequence to a rig: resolves the names of channels and checks all values against the limits of the
+// rig.
 
 #include <optional>
 #include <stop_token>
@@ -9,7 +10,7 @@
 
 namespace softgrip::control {
 
-/// Fits a sequence to a rig, and plans its motion for the channels that want it
+/// Fits a sequence to a rig, and plans the motion of the channels that use the feedforward `planned`
 /// (control/sequences/sequence_plans.h). Adds each step that does not fit to `problems` and then returns
 /// nullopt. A planned position that is out of reach is a warning. Returns nullopt also if `stop` ends the
 /// planning.

@@ -192,7 +192,8 @@ class FileReader {
     target.duration_s = by_duration.value_or(0);
   }
 
-  /// A move can fail only if it has a tolerance. Then its action on failure is required.
+  /// Reads the tolerance of a move. A move can fail only if it has a tolerance, so the action on failure is
+  /// then required.
   void tolerance(MapReader& map, Step& step) {
     step.tolerance_mm = map.optional_number("tolerance_mm", {0.01, 50});
     if (!step.tolerance_mm) return;
@@ -211,8 +212,8 @@ class FileReader {
         map.optional_number("squeeze_max_kpa", squeeze_kpa).value_or(bounds.squeeze_max_kpa);
   }
 
-  /// A step for which contact is a failure states the action that follows. A move with a tolerance has stated
-  /// it.
+  /// Reads the action on contact. If contact is a failure, the file must give the action on failure. For a
+  /// move with a tolerance, tolerance() has already read this action.
   void on_contact(MapReader& map, Step& step, OnContact otherwise) {
     const auto choice = map.optional_choice(
         "on_contact", names({OnContact::hold, OnContact::grip, OnContact::fail, OnContact::ignore}));
@@ -224,7 +225,8 @@ class FileReader {
     step.on_fail = on_fail(map);
   }
 
-  /// Without its own limit, the gripping pressure never exceeds its final value.
+  /// Reads the gripping pressure. If the step has no squeeze_max_kpa, its gripping pressure is limited to the
+  /// final value.
   static void squeeze(MapReader& map, Step& step) {
     const auto by = map.optional_number("squeeze_kpa", squeeze_kpa);
     if (!by) {
@@ -265,7 +267,8 @@ class FileReader {
     return result;
   }
 
-  /// A grip above rest needs a lowest pressure, a grip below rest a highest pressure.
+  /// Reads the bound for a verification by pressure. A grip above rest needs a lowest pressure, a grip below
+  /// rest a highest pressure.
   void pressure_bound(MapReader& map, Verify& verify) {
     const auto most = map.optional_number("pressure_max_kpa", pressure_kpa);
     if (!most) {
@@ -335,7 +338,8 @@ class FileReader {
     }
   }
 
-  /// The limit on the values of a document also limits the number of points.
+  /// Reads the points of a pressure profile. Their number is limited by the largest number of values in a
+  /// document.
   void points(MapReader& map, std::vector<Point>& points) {
     for (const Node* item : map.sequence("points", true)) {
       MapReader inner(document_, *item, problems_, "point");
@@ -355,7 +359,8 @@ class FileReader {
   Problems& problems_;
 };
 
-/// Parsing continues after an error, so the readable part can look complete.
+/// Returns true if the document has errors. Parsing continues after an error, so the part that was read can
+/// look complete.
 bool refused(const Document& document, const Problems& problems) {
   return !document.complete ||
          std::any_of(problems.list().begin(), problems.list().end(),

@@ -1,5 +1,5 @@
 #pragma once
-// Sequence files: YAML to Sequence. The file format is described in docs/reference/sequence-file.md.
+// Reads a Sequence from a YAML file. The file format is described in docs/reference/sequence-file.md.
 
 #include <optional>
 #include <span>
@@ -10,10 +10,10 @@
 
 namespace softgrip::control {
 
-/// Reads a sequence from a parsed document. The values of `arguments`, which a start requests, replace the
-/// defaults of the parameters. Adds all errors to `problems` and then returns nullopt. Returns nullopt also
-/// if parsing had refused a part of the document. The sequence must be valid with its defaults, at both ends
-/// of each parameter's range and with the requested values.
+/// Reads a sequence from a parsed document. The values of `arguments`, which come with a start request,
+/// replace the defaults of the parameters. Adds all errors to `problems` and then returns nullopt. Returns
+/// nullopt also if a part of the document could not be parsed. The sequence must be valid with its defaults,
+/// at both ends of each parameter's range and with the requested values.
 [[nodiscard]] std::optional<Sequence> read_sequence(const document::Document& document,
                                                     document::Problems& problems,
                                                     std::span<const Argument> arguments = {});

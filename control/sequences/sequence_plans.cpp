@@ -13,7 +13,7 @@
 namespace softgrip::control {
 namespace {
 
-/// Longest part of a hold that a plan covers, in which only creep must be followed [s].
+/// Longest part of a hold that a plan covers [s]. During a hold, the plan only compensates creep.
 constexpr double longest_hold_s = 20;
 /// A plan that misses its reference by more than this is reported.
 constexpr double missed_mm = 0.2;
@@ -34,7 +34,7 @@ class Walk {
     if (planned_ && plans) planner_.emplace(channel.model, channel.limits, tick_s);
   }
 
-  /// Begins a step and returns the time of its result.
+  /// Begins a step and returns the time at which its result is expected.
   double begin(PreparedStep& step, double time_s) {
     if (step.step.kind == StepKind::hold) {
       return time_s + (std::isfinite(step.step.hold_s) ? step.step.hold_s : longest_hold_s);
@@ -53,7 +53,8 @@ class Walk {
 
   [[nodiscard]] PreparedStep* step() const noexcept { return step_; }
 
-  /// Returns the time of its step to be planned, if the channel's next step began at `time_s`.
+  /// Returns the duration of the motion that must be planned for the present step if the channel's next step
+  /// begins at `time_s`; 0 if nothing must be planned [s].
   [[nodiscard]] double planned_s(double time_s) const {
     if (!planned_ || step_ == nullptr) return 0;
     const ChannelDemand demand = player_.demand(since_s_);
@@ -61,8 +62,9 @@ class Walk {
     return std::min({time_s, vent_s(), demand.reference->end_s() + longest_hold_s}) - since_s_;
   }
 
-  /// Returns the motion of the channel from the start of its step to the start of its next one. A step to a
-  /// displacement is planned; a step to a pressure is followed.
+  /// Moves the channel from the start of its present step to the start of its next step at `time_s`. For a
+  /// step to a displacement, returns the plan. For a step to a pressure, moves the model with the commands of
+  /// the step and returns an empty plan.
   PressurePlan go_on_until(double time_s, const std::stop_token& stop) {
     PressurePlan plan;
     if (planner_ && step_ != nullptr) {

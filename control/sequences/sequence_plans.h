@@ -10,7 +10,7 @@
 
 namespace softgrip::control {
 
-/// A plan with a large error: its model cannot follow the reference within the limits.
+/// A plan with a large error: the model cannot follow the reference within the limits.
 struct MissedPlan {
   std::size_t step = 0;
   std::size_t channel = 0;
@@ -21,13 +21,13 @@ struct MissedPlan {
 /// Longest planned motion of a channel in one sequence [s]. It limits the time of planning.
 inline constexpr double most_planned_s = 600;
 
-/// Computes the plans along the expected course of the sequence: each channel begins at rest under its lowest
-/// command, no step fails, and each settling time and window takes its shortest time. The references come
-/// from the player of the loop, so the plans are for the references that will be followed. A plan ends at the
-/// channel's next step; it covers at most 20 s of a hold, after which the last command remains.
-/// PlannedFeedforward (control/feedforward/feedforward_kinds.h) handles deviations. Fills PreparedStep::plans
-/// and PreparedSequence::planned_s; for a sequence longer than most_planned_s only the latter. After a stop
-/// request it returns soon, and the sequence must not be used.
+/// Computes the plans for the expected course of the sequence: each channel begins at rest under its rest
+/// pressure, no step fails, and each settling time and verification window is as short as possible. The
+/// references come from the same player that the loop uses, so they are the references that the loop will
+/// follow. A plan ends at the channel's next step. It covers at most 20 s of a hold, after which the last
+/// command remains. PlannedFeedforward (control/feedforward/feedforward_kinds.h) handles deviations. Fills
+/// PreparedStep::plans and PreparedSequence::planned_s. For a sequence longer than most_planned_s, it fills
+/// only planned_s. After a stop request it returns soon, and the sequence must not be used.
 [[nodiscard]] std::vector<MissedPlan> plan_steps(PreparedSequence& sequence, const RigSettings& settings,
                                                  const std::stop_token& stop = {});
 

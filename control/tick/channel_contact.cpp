@@ -1,5 +1,5 @@
-// Implements the contact handling of ChannelPlayer (control/tick/channel_player.h), which makes a grip
-// gentle.
+// Implements the contact handling of ChannelPlayer (control/tick/channel_player.h), which limits the pressure
+// on an object.
 
 #include <algorithm>
 #include <utility>
@@ -9,9 +9,10 @@
 namespace softgrip::control {
 
 namespace {
-/// Largest difference to a lower command that counts as reached [kPa].
+/// The command counts as reduced to a lower pressure if it exceeds this pressure by at most this difference
+/// [kPa].
 constexpr double taken_back_kpa = 0.05;
-/// Duration from which a contact is accepted: longer than noise and a single wrong reading [s].
+/// Time after which a contact is accepted: longer than noise and a single wrong reading [s].
 constexpr double contact_lasts_s = 0.02;
 using Mode = ChannelDemand::Mode;
 }  // namespace
@@ -25,15 +26,15 @@ OnContact ChannelPlayer::on_contact() const noexcept {
   return step_->squeeze.by_kpa > 0 ? OnContact::squeeze : OnContact::close;
 }
 
-/// Returns true if the motion can meet an object. A holding finger is in contact already, and an opening
-/// finger moves away.
+/// Returns true if the finger moves in a direction in which it can meet an object. A holding finger is in
+/// contact already, and an opening finger moves away.
 bool ChannelPlayer::under_way() const noexcept {
   if (!closing_ || result_ == GripResult::holding) return false;
   return stage_ == Stage::ramp || (stage_ == Stage::settle && !squeezing_) || stage_ == Stage::profile;
 }
 
 void ChannelPlayer::look_for_contact(double time_s, const ChannelOutput& seen) noexcept {
-  // Detection is only valid from rest upward.
+  // Contact can be detected only while the command is at or above the rest pressure.
   if (!contact_.touching() || seen.command_kpa < traits_.rest_kpa) {
     touching_since_s_.reset();
     return;
@@ -45,14 +46,16 @@ void ChannelPlayer::look_for_contact(double time_s, const ChannelOutput& seen) n
   if (contact_met_ == OnContact::squeeze) {
     begin_squeeze(time_s, seen);
   } else if (contact_met_ != OnContact::ignore && contact_met_ != OnContact::close) {
-    // The command withdraws pressure that has not reached the finger yet. Only the pressure at contact stays.
+    // A part of the commanded pressure has not reached the finger yet. The command is reduced to the pressure
+    // at contact.
     const double touched_with_kpa = seen.free_kpa + std::max(0.0, seen.squeeze_kpa);
     stay_at(no_further(traits_.rest_kpa, touched_with_kpa, seen.command_kpa), time_s);
     stopped_by_contact_ = true;
   }
 }
 
-/// Before the step ends, the command withdraws the pressure that had not reached the finger at contact.
+/// Waits until the command has been reduced to the pressure at contact. Then the step fails or passes,
+/// depending on its action on contact.
 Progress ChannelPlayer::stopped(const ChannelOutput& seen) noexcept {
   if (seen.command_kpa > pressure_.final_value() + taken_back_kpa) return Progress::pending;
   return step_->on_contact == OnContact::fail ? Progress::failed : pass();
@@ -83,8 +86,8 @@ double ChannelPlayer::squeezing_kpa(double time_s, const ChannelOutput& seen) co
                   by_pressure ? step_->target.value : infinite);
 }
 
-/// Returns false if contact is lost; the search then continues. If the object yields up to the target, the
-/// finger stops at the target.
+/// Returns false if contact is lost; the finger then moves towards its target again. If the object yields
+/// until the finger reaches the target, the pressure stays constant.
 bool ChannelPlayer::squeezes_on(double time_s, const ChannelOutput& seen) noexcept {
   const bool by_displacement = step_->target.quantity == Target::Quantity::displacement_mm;
   if (by_displacement && seen.displacement_mm >= step_->target.value) stay_at(pressure_kpa_, time_s);

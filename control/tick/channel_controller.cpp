@@ -15,11 +15,11 @@ using DemandMode = ChannelDemand::Mode;
 constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
 /// Time constant with which the offset follows the finger during re-synchronisation [s].
 constexpr double follow_time_s = 0.1;
-/// Time for which the residual must stay within the noise to be settled [s].
+/// Time for which the residual must stay within the noise until the finger counts as settled [s].
 constexpr double settled_after_s = 0.2;
-/// The residual of a settled finger, in standard deviations of the sensor's noise.
+/// Largest residual of a settled finger, in standard deviations of the sensor's noise.
 constexpr double settled_sigma = 4;
-/// Time constant of the filter that removes the reading's noise from the command for the free finger [s].
+/// Time constant of the filter that removes the noise of the reading from ChannelOutput::free_kpa [s].
 constexpr double need_filter_s = 0.03;
 /// A smaller reduction of the command by a limit is not reported [kPa].
 constexpr double unnoticed_kpa = 0.5;
@@ -83,9 +83,10 @@ void ChannelController::tick(const ChannelInput& input, ChannelOutput& channel) 
   send(input.demand, request(input.demand, ticks, channel), channel);
 }
 
-/// Splits the pressure into free-motion and gripping pressure. The free-motion pressure is the lower of two
-/// values: on the first loading, and in the present state, where creep and hysteresis can lower it. A moving
-/// finger is under more pressure than it needs at rest. If it is stopped there, that pressure grips.
+/// Splits the pressure into free-motion pressure and gripping pressure. The free-motion pressure is the lower
+/// of two values: the pressure on the first loading, and the pressure in the present state of the model,
+/// which creep and hysteresis can lower. A moving finger is under more pressure than it needs at rest. If an
+/// object stops the finger, the difference becomes gripping pressure.
 void ChannelController::weigh(double predicted_mm, ChannelOutput& channel) noexcept {
   channel.squeeze_kpa = not_known;
   if (!displacement_used_ || channel.validity != model::Validity::valid) return;
@@ -114,7 +115,7 @@ void ChannelController::send(const ChannelDemand& demand, double wanted_kpa,
                                                                  : BindingLimit::step_squeeze;
     return;
   }
-  // A vent moves at the slew limit as intended.
+  // A vent is intended to move at the slew limit, so this limit is not reported.
   const double behind_kpa = in_range(limits_, wanted_kpa) - limited.command_kpa;
   const bool slewed = limited.slewing && demand.mode != DemandMode::vent;
   channel.bound_by = !slewed || std::abs(behind_kpa) <= unnoticed_kpa ? BindingLimit::none
@@ -157,7 +158,8 @@ double ChannelController::take_reading(const ChannelInput& input, ChannelOutput&
   return predicted_mm;
 }
 
-/// A reading that the plausibility check rejects counts too: a rejected jump is a jump.
+/// Processes a reading for the detection of repeated jumps. Readings that the plausibility check rejects are
+/// included, because a rejected jump is a jump too.
 void ChannelController::watch_jumps(const model::Reading& reading, double predicted_mm,
                                     ChannelOutput& channel) noexcept {
   if (reading.validity == model::Validity::valid && std::isfinite(reading.displacement_mm)) {

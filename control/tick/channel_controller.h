@@ -1,6 +1,6 @@
 #pragma once
-// Controls one finger for one tick: from reading and reference to the command. Feedforward and PID pass the
-// limits. The model runs in parallel with the commands that were really sent.
+// Computes the command of one finger in one tick from its reading and its reference. The limits apply to the
+// sum of feedforward and PID. The model runs in parallel with the commands that were really sent.
 
 #include <cstdint>
 #include <optional>
@@ -21,22 +21,24 @@ namespace softgrip::control {
 
 struct ChannelInput {
   Nanoseconds now = 0;     ///< scheduled time of the tick
-  model::Reading reading;  ///< as the driver returned it
+  model::Reading reading;  ///< reading that the driver returned
   ChannelDemand demand;    ///< demand of the player or the supervisor
-  /// Moves the model's offset to the difference between reading and model. Used only at rest, before motion
+  /// Sets the model's offset to the difference between reading and model. Used only at rest, before motion
   /// starts; see ChannelOutput::synchronised.
   bool resynchronise = false;
-  /// The finger moves without contact, as far as is known. Only then does the residual describe the model.
+  /// True if the finger moves without contact, as far as is known. Only then does the residual show the error
+  /// of the model.
   bool free_motion = true;
 };
 
-/// The settings must satisfy their headers, and check_feedforward() (control/feedforward/invertibility.h)
-/// must have accepted model and feedforward. Otherwise there is no feedforward.
+/// The settings must be in the ranges that their headers state. If check_feedforward()
+/// (control/feedforward/invertibility.h) does not accept the model with the feedforward, the channel has no
+/// feedforward.
 class ChannelController {
  public:
   ChannelController(const ChannelSettings& settings, double tick_s);
 
-  /// Starts from rest with `command_kpa` (limited) at the board.
+  /// Starts from rest. The output of the board is `command_kpa` after the limits.
   void start(double command_kpa, ChannelOutput& channel) noexcept;
 
   /// Runs one period. On entry, `channel` holds the result of start() or of the last tick. On return, it
@@ -55,9 +57,9 @@ class ChannelController {
   /// The source of the command.
   enum class Loop : std::uint8_t {
     stopped,  ///< no tick since start()
-    open,     ///< the demand alone: hold, vent, pressure
+    open,     ///< the command follows the demand alone: hold, vent, pressure
     closed,   ///< feedforward and feedback
-    held,     ///< as closed, with constant feedback
+    held,     ///< feedforward and constant feedback
   };
   [[nodiscard]] bool tracking() const noexcept { return loop_ == Loop::closed || loop_ == Loop::held; }
 
@@ -75,7 +77,8 @@ class ChannelController {
   double tick_s_;
   LimitSettings limits_;
   double noise_mm_;
-  double need_share_;  ///< share of the distance to a new ChannelOutput::free_kpa per tick
+  double need_share_;  ///< share of the difference to a new value of ChannelOutput::free_kpa that is covered
+                       ///< per tick
   bool displacement_used_;
   RunningModel running_;
   FreeCurve curve_;
@@ -87,7 +90,7 @@ class ChannelController {
 
   Loop loop_ = Loop::stopped;
   Nanoseconds last_now_ = 0;
-  std::uint32_t sequence_ = 0;  ///< of the last reading
+  std::uint32_t sequence_ = 0;  ///< sequence number of the last reading
   double offset_mm_ = 0;
   /// During re-synchronisation: number of ticks since the residual settled.
   std::optional<std::int64_t> settled_ticks_;

@@ -13,16 +13,16 @@ namespace softgrip::control {
 struct ChannelDemand {
   enum class Mode : std::uint8_t {
     hold,          ///< the command does not change
-    vent,          ///< to the rest pressure, at the slew limit
+    vent,          ///< the command goes to the rest pressure at the slew limit
     pressure,      ///< the command is `pressure_kpa`, within the limits; no feedback
     displacement,  ///< feedforward and feedback follow `reference`
   };
   Mode mode = Mode::hold;
   double pressure_kpa = 0;               ///< for mode pressure
   const Reference* reference = nullptr;  ///< for mode displacement [mm]; on the clock of `time_s`
-  double time_s = 0;                     ///< now, on that clock
+  double time_s = 0;                     ///< present time on the clock of the reference
   /// For mode displacement with feedforward `planned`: the plan for the reference; nullptr without a plan.
-  /// Its clock is that of `time_s` minus plan_origin_s.
+  /// The time in the plan is the time on the reference's clock minus plan_origin_s.
   const PressurePlan* plan = nullptr;
   double plan_origin_s = 0;
   /// In mode displacement: the finger is in contact with an object. The feedback keeps its value, so the
@@ -30,7 +30,7 @@ struct ChannelDemand {
   bool feedback_held = false;
   /// Bounds of the step in every mode. The command stays at or below both, regardless of the demand.
   double pressure_max_kpa = std::numeric_limits<double>::infinity();
-  /// Relative to the command under which the free finger rests at the present displacement.
+  /// Bound of the pressure above the command under which the free finger rests at the present displacement.
   double squeeze_max_kpa = std::numeric_limits<double>::infinity();
 };
 

@@ -7,12 +7,12 @@
 namespace softgrip::control {
 
 namespace {
-/// Part of the past reference that is kept [s], because feedback compares a reading with the reference of its
-/// time.
+/// Duration of the past reference that is kept [s], because feedback compares a reading with the reference at
+/// the time of this reading.
 constexpr double kept_s = 1;
 using Mode = ChannelDemand::Mode;
 
-/// Returns false if the reference has no space.
+/// Appends a ramp to `value`. Returns false if the reference has no space for the ramp.
 bool append_ramp(Reference& reference, const Target& target, double value) noexcept {
   if (target.speed > 0) return reference.ramp_to(value, target.speed);
   if (target.duration_s > 0) return reference.ramp_for(value, target.duration_s);
@@ -73,7 +73,7 @@ void ChannelPlayer::begin(const Step& step, const PressurePlan* plan, double tim
       stage_ = Stage::ramp;
       break;
     case StepKind::release:
-      // An early release may start below the pressure of its target.
+      // A release that begins early may start below the target pressure. It must not increase the pressure.
       go_to(step.target,
             step.target.at_rest ? traits_.rest_kpa
                                 : no_further(traits_.rest_kpa, step.target.value, seen.command_kpa),
@@ -163,7 +163,8 @@ bool ChannelPlayer::idle(double time_s, const ChannelOutput& seen) noexcept {
 
 Progress ChannelPlayer::tick(double time_s, const ChannelOutput& seen) noexcept {
   take(seen);
-  // A frozen sensor looks like a finger at rest.
+  // While the sensor may be frozen, contact is evaluated only in a release, because a frozen sensor looks
+  // like a finger that an object stops.
   feel(seen, !seen.stands_still || step_->kind == StepKind::release);
   look_for_contact(time_s, seen);
   Progress progress = advance(time_s, seen);
@@ -209,7 +210,7 @@ Progress ChannelPlayer::advance(double time_s, const ChannelOutput& seen) noexce
     case Stage::done:
       break;
   }
-  // Without usable readings the channel cannot confirm the hold.
+  // Without usable readings, the channel cannot confirm that it holds the part.
   return verified_ && !usable(step_->verify, seen) ? Progress::pending : Progress::passed;
 }
 
@@ -278,7 +279,7 @@ Progress ChannelPlayer::verify(double time_s, const ChannelOutput& seen) noexcep
 }
 
 /// Purges, then waits until the finger is where the free-motion model predicts. Without displacement
-/// feedback, this cannot be confirmed.
+/// feedback, the step passes after the purge.
 Progress ChannelPlayer::release(double time_s) noexcept {
   if (time_s < stage_end_s_) return Progress::pending;
   stage_ = Stage::free;

@@ -19,13 +19,13 @@ enum class Progress : std::uint8_t { pending, passed, failed };
 
 /// Constant properties of a channel.
 struct ChannelTraits {
-  double margin_mm = 0;           ///< of grip detection
+  double margin_mm = 0;           ///< margin of grip detection
   double rest_kpa = 0;            ///< the rest pressure
   double preview_s = 0;           ///< time by which the feedforward reads the reference ahead
   bool displacement_used = true;  ///< the channel uses its displacement
 };
 
-/// In all functions, `seen` is the output of the last tick.
+/// Executes the steps of a sequence for one channel. In all functions, `seen` is the output of the last tick.
 class ChannelPlayer {
  public:
   explicit ChannelPlayer(const ChannelTraits& traits) noexcept
@@ -33,12 +33,14 @@ class ChannelPlayer {
 
   /// Prepares the first step: keeps the command, assumes no contact, and clears the last result.
   void reset() noexcept;
-  /// Starts an attempt at a step. `step` and `plan` (nullptr: none) must outlive the attempt. A
-  /// hold step continues with the plan of the step before.
+  /// Starts an attempt at a step. `step` and `plan` (nullptr: none) must outlive the attempt. A hold step
+  /// continues with the plan of the previous step.
   void begin(const Step& step, const PressurePlan* plan, double time_s, const ChannelOutput& seen) noexcept;
-  /// Returns to the start of the attempt, at the same speed.
+  /// Moves the channel back to the position or pressure at which the attempt began, with the speed of the
+  /// step.
   void back_off(double time_s, const ChannelOutput& seen) noexcept;
-  /// Executes a tick of the step, or of the return (passed: it is finished).
+  /// Executes a tick of the step, or of the return after back_off(). For a return, `passed` means that it is
+  /// finished.
   Progress tick(double time_s, const ChannelOutput& seen) noexcept;
   /// Executes a tick outside a sequence. Returns true once if a held part is lost.
   bool idle(double time_s, const ChannelOutput& seen) noexcept;
@@ -49,12 +51,12 @@ class ChannelPlayer {
   [[nodiscard]] bool touching() const noexcept { return contact_.touching(); }
   /// Returns true if the finger moves less than its model because an object is in its way.
   [[nodiscard]] bool held_back() const noexcept { return follow_.held(); }
-  /// Returns the action after contact in the motion; nothing without contact or after the first call of an
-  /// attempt.
+  /// Returns the action for a contact that occurred in the motion. Each contact is returned once. Returns
+  /// nothing if there is no new contact.
   [[nodiscard]] std::optional<OnContact> take_contact() noexcept;
   /// Returns true if the finger stays at the pressure of its first contact.
   [[nodiscard]] bool stopped_by_contact() const noexcept { return stopped_by_contact_; }
-  /// Returns the result if the step failed now: NO PART or ERROR.
+  /// Returns the result that the channel gets if the step fails now: NO PART or ERROR.
   [[nodiscard]] GripResult failure() const noexcept { return failure_; }
 
   [[nodiscard]] GripResult result() const noexcept { return result_; }
@@ -62,9 +64,9 @@ class ChannelPlayer {
   void answer(GripResult result, GripEvidence evidence) noexcept;
   /// Sets HOLDING after a verified grip. The grip is then monitored with the step's criterion.
   void answer_holding(double time_s) noexcept;
-  /// Returns the evidence of a verification of this channel.
+  /// Returns the evidence on which a verification by this criterion is based.
   [[nodiscard]] GripEvidence evidence_of(VerifyBy by) const noexcept;
-  /// Returns the displacement shortfall against free motion in the last tick [mm]; NaN if unknown.
+  /// Returns the displacement shortfall in the last tick: free motion minus reading [mm]; NaN if unknown.
   [[nodiscard]] double shortfall_mm() const noexcept { return shortfall_mm_; }
 
   /// Keeps the present command.
@@ -120,8 +122,8 @@ class ChannelPlayer {
   const Step* step_ = nullptr;
   Stage stage_ = Stage::done;
   ChannelDemand::Mode mode_ = ChannelDemand::Mode::hold;
-  Reference displacement_;  ///< of mode displacement [mm]
-  Reference pressure_;      ///< for mode pressure [kPa], except for profiles
+  Reference displacement_;  ///< reference for mode displacement [mm]
+  Reference pressure_;      ///< reference for mode pressure [kPa], except for profiles
   const PressurePlan* plan_ = nullptr;
   double plan_origin_s_ = 0;
   double profile_start_s_ = 0;
@@ -132,21 +134,22 @@ class ChannelPlayer {
   double deadline_s_ = 0;
   double shortfall_mm_ = 0;
   bool within_ = false;   ///< the displacement is within the tolerance
-  Bounds bounds_;         ///< of the step, or for a hold of the step before
+  Bounds bounds_;         ///< bounds of the step; in a hold, also those of the previous step
   bool profile_ = false;  ///< the pressure follows the step's profile
-  bool closing_ = false;  ///< the motion of the step is upward
-  /// Start of the present uninterrupted contact with the command at or above rest.
+  bool closing_ = false;  ///< the step increases the displacement or the pressure
+  /// Time since which the finger has been in contact without interruption and the command has been at or
+  /// above rest.
   std::optional<double> touching_since_s_;
   bool met_ = false;                      ///< contact occurred in this attempt
-  std::optional<OnContact> contact_met_;  ///< not read by take_contact() yet
+  std::optional<OnContact> contact_met_;  ///< action for a contact that take_contact() has not returned yet
   bool stopped_by_contact_ = false;
   bool squeezing_ = false;       ///< the pressure stays above the free-motion pressure by a fixed amount
-  double squeeze_from_kpa_ = 0;  ///< at squeeze_from_s_
+  double squeeze_from_kpa_ = 0;  ///< gripping pressure at squeeze_from_s_
   double squeeze_from_s_ = 0;
   Contact contact_;
   FollowWatch follow_;
   EvidenceWindow window_;
-  bool verified_ = false;  ///< in this attempt
+  bool verified_ = false;  ///< the grip was verified in this attempt
   HoldWatch hold_;
   Verify held_by_;  ///< criterion for the held part
   GripResult failure_ = GripResult::error;

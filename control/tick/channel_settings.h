@@ -16,7 +16,7 @@ namespace softgrip::control {
 /// One finger.
 struct ChannelSettings {
   std::string name;
-  model::Model model;  ///< of the free finger, without contact
+  model::Model model;  ///< model of the free finger, without contact
   PidSettings pid;
   FeedforwardSettings feedforward;
   LimitSettings limits;
@@ -24,9 +24,9 @@ struct ChannelSettings {
   ModelHealthSettings health;
   /// The channel has an input for the measured pressure (a monitor output of the valve).
   bool pressure_measured = false;
-  /// False: the displacement sensor is absent, or the work blocks it. Its readings are recorded but not used:
-  /// no faults, feedback or detection. Only pressure targets and verification by pressure (weaker) are
-  /// possible.
+  /// False: the displacement sensor is absent, or the work blocks it. Its readings are recorded, but they
+  /// cause no faults and are not used for feedback or detection. Only pressure targets and verification by
+  /// pressure (weaker) are possible.
   bool displacement_used = true;
 };
 

@@ -32,12 +32,14 @@ bool said_by_board(FaultCode code) noexcept {
   return inhibits(code) && code != FaultCode::cycles_lost;
 }
 
-/// Returns the number of commands in a time, including the current one and the compared one.
+/// Returns the number of commands with which a value is compared: the commands within the delay, plus one at
+/// each end.
 std::size_t window_of(double delay_s, double rate_hz) {
   return static_cast<std::size_t>(std::ceil(delay_s * rate_hz)) + 2;
 }
 
-/// Time for a finger under pressure to deflate after the daemon or the bus starts [windows].
+/// Time that a finger under pressure needs to deflate after the daemon or the bus starts, in multiples of the
+/// pressure window.
 constexpr std::size_t grace_windows = 4;
 
 }  // namespace
@@ -80,7 +82,8 @@ Fault FaultMonitor::bus(const BusHealth& bus, bool starting) noexcept {
   if (good) return {};
   const FaultCode code = bus.fault == FaultCode::none ? FaultCode::bus_down : bus.fault;
   const Fault fault{code, whole_rig, static_cast<double>(bus_cycles_)};
-  // If the daemon cannot reach the board, report the bus fault. The watchdog trip is only its consequence.
+  // If the daemon cannot reach the board, the watchdog trip is only a consequence of the bus fault, so the
+  // bus fault is reported.
   const bool unreached = !bus.connected && code == FaultCode::board_watchdog_tripped;
   note_cause({unreached ? FaultCode::bus_down : code, whole_rig, fault.value});
   if (starting && !said_by_board(bus.fault)) return {};
@@ -128,8 +131,8 @@ Fault FaultMonitor::channel(std::size_t index, const TickInput& input, const Cha
 Fault FaultMonitor::reading(Channel& channel, std::uint8_t index, const ChannelOutput& seen,
                             bool starting) const noexcept {
   const bool silent = seen.validity == model::Validity::none_yet || seen.validity == model::Validity::stale;
-  // While the bus is down, missing readings are due to its fault. In the first tick after it, the reading is
-  // still old.
+  // While the bus is down, the bus fault covers the missing readings. In the first tick after the bus fault,
+  // the reading is still old and counts as invalid.
   const bool invalid = seen.validity != model::Validity::valid && !(silent && (starting || !bus_good()));
   channel.invalid_cycles = invalid ? channel.invalid_cycles + 1 : 0;
   channel.beyond_cycles = seen.displacement_beyond ? channel.beyond_cycles + 1 : 0;
@@ -142,10 +145,11 @@ Fault FaultMonitor::reading(Channel& channel, std::uint8_t index, const ChannelO
   return {};
 }
 
-/// Returns true if the pressure has differed for pressure_cycles cycles. A cycle without an exchange changes
-/// no count, so an unreliable line cannot hide a burst line. Without a measured pressure there is no
-/// difference. During start-up, and after a gap that is a fault itself, the finger may still have its earlier
-/// pressure.
+/// Returns true if the measured pressure has differed from the commands for pressure_cycles cycles. A cycle
+/// without an exchange does not change the count, so an unreliable connection cannot hide a burst pressure
+/// line. If no pressure is measured, it counts as equal to the commands. During start-up, and after a bus
+/// failure that is itself a fault, the finger may still have its earlier pressure, so the pressure is not
+/// checked for a time.
 bool FaultMonitor::pressure_due(Channel& channel, double pressure_kpa, bool starting) const noexcept {
   if (settings_.pressure_cycles == 0) return false;
   if (starting || bus_cycles_ >= settings_.bus_down_cycles) {

@@ -1,6 +1,6 @@
 #pragma once
-// Detects fault conditions in a tick and decides when they have lasted long enough to be a fault. Latches
-// nothing.
+// Detects fault conditions in a tick and decides when they have lasted long enough to be a fault. The
+// supervisor latches the faults.
 
 #include <array>
 #include <cstddef>
@@ -18,13 +18,14 @@ class FaultMonitor {
  public:
   explicit FaultMonitor(const RigSettings& settings);
 
-  /// Checks one tick. `seen` is the output of the last tick; the read-back is compared with its commands and
-  /// earlier ones. While `starting`, a missing response is no fault, because the board has not responded yet.
-  /// Returns the most severe fault that is due now, in the order of the checks below.
+  /// Checks one tick. `seen` is the output of the last tick. The read-back is compared with the commands in
+  /// `seen` and with earlier commands. While `starting`, a missing response is no fault, because the board
+  /// has not responded yet. Returns the most severe fault that is due now. The order of the checks below is
+  /// the order of severity.
   Fault observe(const TickInput& input, std::span<const ChannelOutput> seen, bool starting) noexcept;
 
-  /// Returns the most severe cause that is present in this tick and is a fault or may become one. While it is
-  /// present, a reset would not last.
+  /// Returns the most severe fault condition in this tick. It is a fault or may become one. A fault that is
+  /// reset while its condition is present would latch again.
   [[nodiscard]] const Fault& cause() const noexcept { return cause_; }
   /// Returns true if this tick has no bus fault.
   [[nodiscard]] bool bus_good() const noexcept { return bus_cycles_ == 0; }
@@ -45,13 +46,13 @@ class FaultMonitor {
   Fault reading(Channel& channel, std::uint8_t index, const ChannelOutput& seen,
                 bool starting) const noexcept;
   bool pressure_due(Channel& channel, double pressure_kpa, bool starting) const noexcept;
-  /// Returns true if the pressure is outside the range of the newest `window` commands by more than the
+  /// Returns true if the pressure `kpa` is outside the range of the newest `window` commands by more than the
   /// tolerance.
   [[nodiscard]] bool off(const Channel& channel, double kpa, std::size_t window,
                          double tolerance_kpa) const noexcept;
 
   FaultSettings settings_;
-  std::size_t readback_window_ = 0;  ///< commands, the newest included
+  std::size_t readback_window_ = 0;  ///< number of commands, including the newest
   std::size_t pressure_window_ = 0;
   std::vector<bool> displacement_used_;
   std::vector<Channel> channels_;

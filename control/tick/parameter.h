@@ -11,7 +11,7 @@ namespace softgrip::control {
 struct Parameter {
   std::string name;
   std::string unit;  ///< as at the end of keys: "kpa", "mm_per_s"; empty for a plain number
-  double lower = 0;  ///< both limits are allowed
+  double lower = 0;  ///< lower and upper are allowed values
   double upper = 0;
   double default_value = 0;
   std::string about;      ///< one sentence
@@ -19,7 +19,7 @@ struct Parameter {
   double value = 0;       ///< value with which the sequence was read
 };
 
-/// An argument of a start: the name of a parameter and its value, in the parameter's unit.
+/// An argument of a start request: the name of a parameter and its value, in the parameter's unit.
 struct Argument {
   std::string name;
   double value = 0;

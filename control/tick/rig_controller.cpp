@@ -29,7 +29,7 @@ std::string_view name_of(SequenceEnd end) noexcept {
 
 RigController::Channel::Channel(const RigSettings& rig, const ChannelSettings& settings)
     : controller(settings, 1 / rig.rate_hz),
-      // Without displacement feedback, a finger is at rest if its command has not changed.
+      // Without displacement feedback, a finger counts as at rest if its command has not changed.
       rest(settings.displacement_used ? rig.rest_band_mm : 0, rig.rest_time_s),
       longest_age(nanoseconds(settings.plausibility.max_age_s)),
       displacement_used(settings.displacement_used) {}
@@ -83,9 +83,10 @@ const TickOutput& RigController::tick(const TickInput& input) noexcept {
   return output_;
 }
 
-/// Only a sequence may move a pressure away from rest. When it ends, a command that the board does not have
-/// is forgotten. If the outputs are known to be nearer to rest, this happens at once. Otherwise it obeys the
-/// slew limits, because a command on its way may still be written.
+/// Limits the command of a channel to the pressure at the board's output while no sequence runs, because only
+/// a sequence may move a pressure away from rest. If the bus no longer applies the commands, the command
+/// changes at once. Otherwise it changes at the slew limits, because a command on its way may still be
+/// written.
 void RigController::stay_within_outputs(std::size_t index, double last_kpa, const TickInput& input) noexcept {
   if (may_rise(supervisor_.state()) || index >= input.outputs_kpa.size()) return;
   const Channel& channel = channels_[index];
@@ -97,8 +98,8 @@ void RigController::stay_within_outputs(std::size_t index, double last_kpa, cons
   command_kpa = no_further(channel.rest_kpa(), allowed_kpa, command_kpa);
 }
 
-/// Invalidates readings after a gap. A tick decides on the readings of the last tick. After a gap, they do
-/// not show if a part is held or if a finger is at rest.
+/// Invalidates the readings of the last tick after a gap between two ticks. A tick bases its decisions on
+/// these readings. After a gap, they do not show if a part is held or if a finger is at rest.
 void RigController::forget_old_readings(Nanoseconds now) noexcept {
   const Nanoseconds gap = last_now_ == no_tick ? 0 : now - last_now_;
   last_now_ = now;
@@ -192,7 +193,8 @@ void RigController::conclude_sequence(const SequencePlayer::Outcome& outcome, Ph
   if (outcome.finished) supervisor_.sequence_ended(outcome.end, outcome.action, phase, output_.events);
 }
 
-/// In a gap the board may have vented, which the bus reports with the next exchange. Until then no step ends.
+/// Executes the sequence. During a gap the board may have vented, which the bus reports only with the next
+/// exchange. No step ends before that exchange.
 void RigController::play(const TickInput& input, double time_s) noexcept {
   const Nanoseconds age = input.now - input.readings.front().sampled_at;
   const bool silent = input.bus.fault == FaultCode::none && input.bus.consecutive_failures == 0 &&
@@ -266,7 +268,8 @@ void RigController::look_for_pressure() noexcept {
   }
 }
 
-/// Updates the results of the sequence, and the safe output of each channel if the loop stops now.
+/// Updates the results of the sequence in the output. Also updates the safe output, which each channel gets
+/// if the loop stops now.
 void RigController::conclude() noexcept {
   const std::uint32_t venting = supervisor_.venting_on_leaving(player_.phase());
   for (std::size_t i = 0; i < channels_.size(); ++i) {

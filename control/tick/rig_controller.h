@@ -23,7 +23,7 @@ namespace softgrip::control {
 class RigController {
  public:
   explicit RigController(const RigSettings& settings);
-  // The loop reads the output in this object.
+  // The loop reads the output in this object, so the object must not be copied.
   RigController(const RigController&) = delete;
   RigController& operator=(const RigController&) = delete;
 
@@ -50,7 +50,7 @@ class RigController {
     bool valid_before = true;
     bool unsteady_before = false;
     bool resynchronise = false;
-    /// The reason found in the last check for rest.
+    /// The reason why the finger had not settled at the last check.
     UnsettledReason unsettled = UnsettledReason::none;
   };
 

@@ -1,6 +1,7 @@
 #pragma once
-// Grip sequences as plain values: as written in the file (Sequence), and fitted to one rig
-// (PreparedSequence). The file's keys have the same names; docs/reference/sequence-file.md describes them.
+// Defines grip sequences as plain values: as written in the file (Sequence), and fitted to one rig
+// (PreparedSequence). The keys of the file have the same names; docs/reference/sequence-file.md describes
+// them.
 
 #include <cmath>
 #include <cstddef>
@@ -29,12 +30,12 @@ constexpr std::uint32_t channel_bit(std::size_t channel) noexcept {
 
 /// The kind of a step; its name is the key of the step in the file.
 enum class StepKind : std::uint8_t {
-  move,      ///< to a target, with a ramp
-  grip,      ///< to a target, then verification: HOLDING or NO PART
-  hold,      ///< stays and re-verifies: PART LOST when the object is lost
-  release,   ///< to rest, purge: RELEASED
-  track,     ///< a displacement over time, with feedback (studies)
-  pressure,  ///< a pressure over time, without feedback (experiments)
+  move,      ///< moves to a target along a ramp
+  grip,      ///< moves to a target, then verifies the grip: HOLDING or NO PART
+  hold,      ///< keeps the command and verifies again: PART LOST when the object is lost
+  release,   ///< moves towards rest, then purges: RELEASED
+  track,     ///< follows a displacement over time, with feedback (studies)
+  pressure,  ///< follows a pressure over time, without feedback (experiments)
 };
 [[nodiscard]] std::string_view name_of(StepKind kind) noexcept;
 
@@ -42,21 +43,21 @@ enum class StepKind : std::uint8_t {
 enum class OnFail : std::uint8_t {
   vent,      ///< the sequence ends, and all channels go to the rest pressure
   hold,      ///< the sequence ends, and the command does not change
-  abort,     ///< the sequence ends with the safe_action of the rig file for the phase
-  release,   ///< continue with the next release step; without one, as vent
-  carry_on,  ///< `continue`: continue with the next step
+  abort,     ///< the sequence ends with the safe_action of the rig file for the present phase
+  release,   ///< the sequence continues with the next release step; if there is none, as for vent
+  carry_on,  ///< `continue` in the file: the sequence continues with the next step
 };
 /// Returns the name in the file: "vent", "hold", "abort", "release", "continue".
 [[nodiscard]] std::string_view name_of(OnFail action) noexcept;
 
 /// The action if a finger meets an object during its motion.
 enum class OnContact : std::uint8_t {
-  hold,     ///< stays at the pressure of the first contact; its step is done
+  hold,     ///< the finger stays at the pressure of the first contact, and its step is done
   grip,     ///< as hold, and the sequence continues with its next grip step at once
-  fail,     ///< stays at the pressure, and the step fails
-  ignore,   ///< continues without a reaction
-  squeeze,  ///< of a grip with squeeze_kpa: adds this gripping pressure (not in files)
-  close,    ///< of any other grip: continues to its target with constant feedback (not in files)
+  fail,     ///< the finger stays at the pressure of the first contact, and the step fails
+  ignore,   ///< the motion continues without a reaction
+  squeeze,  ///< for a grip with squeeze_kpa: adds this gripping pressure (not a value in files)
+  close,    ///< for any other grip: continues to its target with constant feedback (not a value in files)
 };
 /// Returns "hold", "grip", "fail", "ignore", "squeeze" or "close".
 [[nodiscard]] std::string_view name_of(OnContact action) noexcept;
@@ -76,16 +77,20 @@ struct Target {
   double value = 0;
   bool at_rest = false;   ///< the rest pressure of the channel instead of value
   double speed = 0;       ///< 0: use duration_s
-  double duration_s = 0;  ///< 0 with speed 0: as fast as the limits allow
+  double duration_s = 0;  ///< 0 and speed 0: as fast as the limits allow
 };
 
 struct Verify {
   VerifyBy by = VerifyBy::detection;
-  double window_s = 0.3;  ///< time for which the evidence must hold
-  double displacement_min_mm = -std::numeric_limits<double>::infinity();  ///< for position; with detection,
-  double displacement_max_mm = std::numeric_limits<double>::infinity();   ///< both must agree
-  double pressure_min_kpa = 0;                                        ///< by pressure, for grips above rest
-  double pressure_max_kpa = std::numeric_limits<double>::infinity();  ///< by pressure, for grips below rest
+  double window_s = 0.3;  ///< time for which the evidence must be present
+  double displacement_min_mm = -std::numeric_limits<double>::infinity();  ///< for position, or in addition
+                                                                          ///< for detection
+  double displacement_max_mm = std::numeric_limits<double>::infinity();   ///< for position, or in addition
+                                                                          ///< for detection
+  double pressure_min_kpa = 0;                                        ///< for pressure, if the grip is above
+                                                                      ///< rest
+  double pressure_max_kpa = std::numeric_limits<double>::infinity();  ///< for pressure, if the grip is below
+                                                                      ///< rest
   /// Returns true for verification by a pressure below rest.
   [[nodiscard]] bool below() const noexcept { return std::isfinite(pressure_max_kpa); }
 };
@@ -100,7 +105,7 @@ struct Point {
 /// Pressure over time of a pressure step: points or a test signal, `cycles` times.
 struct Profile {
   std::vector<Point> points;  ///< times from 0, not decreasing; a jump is two points at one time
-  std::optional<model::SignalName> signal;  ///< instead of points
+  std::optional<model::SignalName> signal;  ///< test signal instead of points
   double scale = 1;                         ///< factor for the signal
   std::uint32_t cycles = 1;
 };
@@ -108,8 +113,8 @@ struct Profile {
 [[nodiscard]] double cycle_s(const Profile& profile) noexcept;
 /// Returns the duration of all cycles [s].
 [[nodiscard]] double duration_s(const Profile& profile) noexcept;
-/// Returns the pressure of the profile at `time_s` after its start [kPa]: before it the first value, after it
-/// the last value, at a jump the value after the jump. Does not allocate.
+/// Returns the pressure of the profile at `time_s` after its start [kPa]. Before the start it is the first
+/// value, after the end the last value, and at a jump the value after the jump. Does not allocate.
 [[nodiscard]] double value_at(const Profile& profile, double time_s) noexcept;
 
 /// Displacement of a track step over time: mean - amplitude cos(2 pi f t), which starts at its lowest value.
@@ -123,14 +128,15 @@ struct Sine {
 /// Upper bounds of the command in a step.
 struct Bounds {
   double pressure_max_kpa = std::numeric_limits<double>::infinity();
-  /// Relative to the command under which the free finger rests at the present displacement.
+  /// Bound of the pressure above the command under which the free finger rests at the present displacement.
   double squeeze_max_kpa = std::numeric_limits<double>::infinity();
 };
 
 /// The gripping pressure of a grip after its first contact.
 struct Squeeze {
-  double by_kpa = 0;           ///< above the pressure of the free finger there; 0: only the target applies
-  double speed_kpa_per_s = 0;  ///< > 0 with by_kpa
+  double by_kpa = 0;           ///< pressure above that of the free finger at the same displacement; 0: only
+                               ///< the target applies
+  double speed_kpa_per_s = 0;  ///< > 0 if by_kpa is above 0
 };
 
 /// One step as written.
@@ -138,15 +144,17 @@ struct Step {
   StepKind kind = StepKind::move;
   std::string name;  ///< name for messages; by default the kind
   document::Location at;
-  std::vector<std::string> channels;   ///< empty: those of the sequence
+  std::vector<std::string> channels;   ///< empty: all channels of the sequence
   Target target;                       ///< for move, grip, release
   Sine sine;                           ///< for track
   Profile profile;                     ///< for pressure
   double settle_s = 0;                 ///< waiting time after the ramp
-  std::optional<double> tolerance_mm;  ///< for move: the step fails if it is not reached by timeout_s
-  Bounds bounds;                       ///< for all kinds but release; for a hold only if it states its own
+  std::optional<double> tolerance_mm;  ///< for move: the step fails if the target is not reached within this
+                                       ///< by timeout_s
+  Bounds bounds;                       ///< for all kinds but release; for a hold only if the file gives
+                                       ///< bounds for it
   OnContact on_contact = OnContact::ignore;
-  bool on_contact_stated = false;  ///< the file states it
+  bool on_contact_stated = false;  ///< the file gives on_contact
   Squeeze squeeze;                 ///< for grip
   Verify verify;                   ///< for grip
   double hold_s = 0;               ///< infinite: until a release is requested
@@ -160,7 +168,7 @@ struct Step {
 /// The time at which an open interlock has an effect.
 enum class Interlock : std::uint8_t {
   start,   ///< a start is refused
-  always,  ///< also a running sequence is stopped
+  always,  ///< a start is refused, and a running sequence is stopped
 };
 
 /// A sequence as written in the file.
@@ -169,9 +177,9 @@ struct Sequence {
   std::string about;  ///< one line; may be empty
   Interlock interlock = Interlock::start;
   std::vector<std::string> channels;  ///< empty: all channels of the rig
-  std::vector<Parameter> parameters;  ///< with the values used in the steps
+  std::vector<Parameter> parameters;  ///< the parameters with the values that the steps use
   std::vector<Step> steps;
-  std::string file;  ///< as the user named it
+  std::string file;  ///< name of the file as the user wrote it
   std::string text;  ///< the file's text, for messages and for the recording's provenance
 };
 
@@ -179,9 +187,11 @@ struct Sequence {
 struct PreparedStep {
   Step step;
   std::uint32_t channels = 0;      ///< bit i: channel i takes part
-  std::uint16_t release_step = 0;  ///< step after on_fail: release; the number of steps if none
-  std::uint16_t grip_step = 0;     ///< step after on_contact: grip; the number of steps if none
-  /// By channel of the rig, for feedforward `planned`; empty without plans.
+  std::uint16_t release_step = 0;  ///< next release step, for `on_fail: release`; the number of steps if
+                                   ///< there is none
+  std::uint16_t grip_step = 0;     ///< next grip step, for `on_contact: grip`; the number of steps if there
+                                   ///< is none
+  /// Plans by channel of the rig, for feedforward `planned`; empty without plans.
   std::vector<PressurePlan> plans;
   /// Returns the plan of a channel; nullptr without one.
   [[nodiscard]] const PressurePlan* plan_of(std::size_t channel) const noexcept {
@@ -193,13 +203,13 @@ struct PreparedStep {
 struct PreparedSequence {
   std::string name;
   Interlock interlock = Interlock::start;
-  std::uint32_t channels = 0;  ///< channels of all steps
-  std::uint32_t needs_detection =
-      0;                  ///< those that are verified by detection: their free model must agree at rest
-  std::uint64_t rig = 0;  ///< rig_key() of the settings it was prepared for
-  std::vector<Argument> parameters;  ///< values of its parameters, for status and events
+  std::uint32_t channels = 0;         ///< channels of all steps
+  std::uint32_t needs_detection = 0;  ///< channels that are verified by detection: the free-motion model must
+                                      ///< agree with their reading at rest
+  std::uint64_t rig = 0;              ///< rig_key() of the settings it was prepared for
+  std::vector<Argument> parameters;   ///< values of its parameters, for status and events
   std::vector<PreparedStep> steps;
-  double planned_s = 0;  ///< duration of the planned motion; of the channel with the longest one
+  double planned_s = 0;  ///< duration of the planned motion of the channel for which it is longest
 };
 
 /// Returns a hash of the rig settings on which a prepared sequence depends.

@@ -50,7 +50,8 @@ SequencePlayer::Outcome SequencePlayer::tick(double time_s, std::span<const Chan
     }
   });
   if (to_grip) return go_to_step(now().grip_step, time_s, seen, events);
-  // The sequence reacts to a lost part at once. All other results wait for the other fingers.
+  // The sequence reacts to a lost part at once. In all other cases it waits until every finger of the step
+  // has a result.
   if (done_ != now().channels && !(holds && refused_ != 0)) {
     return {};
   }
@@ -85,7 +86,7 @@ SequencePlayer::Outcome SequencePlayer::go_to_step(std::size_t index, double tim
   return next_step(index, time_s, seen, events);
 }
 
-/// Returns true if the sequence continues with its next grip.
+/// Reports a new contact of the channel. Returns true if the sequence continues with its next grip step.
 bool SequencePlayer::take_contact(std::size_t channel, const ChannelOutput& seen,
                                   EventList& events) noexcept {
   const std::optional<OnContact> met = channels_[channel].take_contact();
@@ -166,7 +167,7 @@ SequencePlayer::Outcome SequencePlayer::finished(OnFail action, EventList& event
   return {true, end_, action};
 }
 
-/// Sets ERROR for every participating channel without a result after a failure.
+/// Sets ERROR for every channel of the sequence that has no result.
 void SequencePlayer::answer_the_rest(EventList& events) noexcept {
   for (std::size_t i = 0; i < channels_.size(); ++i) {
     if ((sequence_->channels & channel_bit(i)) != 0 && channels_[i].result() == GripResult::none) {
@@ -247,7 +248,7 @@ bool SequencePlayer::free_motion(std::size_t channel, bool at_rest) const noexce
   const ChannelPlayer& player = channels_[channel];
   if (player.result() == GripResult::holding) return false;
   if (player.stopped_by_contact()) return false;
-  // These steps expect no contact. A difference means a blocked line or a changed finger.
+  // These steps expect no contact. A difference from the model means a blocked line or a changed finger.
   if (plays(StepKind::track) || plays(StepKind::pressure)) return true;
   const bool may_touch = plays(StepKind::grip) || plays(StepKind::hold) || plays(StepKind::release);
   return may_touch ? !player.touching() : at_rest || !player.held_back();

@@ -1,6 +1,6 @@
 #pragma once
-// Executes a prepared sequence: all channels of a step start together, and the next step starts when the last
-// of them has a result. Does not allocate after construction.
+// Executes a prepared sequence. All channels of a step start together, and the next step starts when all of
+// them have a result. Does not allocate after construction.
 
 #include <cstddef>
 #include <cstdint>
@@ -25,17 +25,19 @@ class SequencePlayer {
   struct Outcome {
     bool finished = false;
     SequenceEnd end = SequenceEnd::done;
-    OnFail action = OnFail::hold;  ///< of a finished sequence: vent, hold or abort
+    OnFail action = OnFail::hold;  ///< for a finished sequence: vent, hold or abort
   };
   /// Executes a tick of the running sequence.
   Outcome tick(double time_s, std::span<const ChannelOutput> seen, EventList& events) noexcept;
 
-  /// Handles a release request: continues with the next release step. Without one, the sequence is finished
-  /// and must be vented. If the request comes before a hold, the sequence is stopped, not done.
+  /// Handles a release request: continues with the next release step. If there is none, the sequence is
+  /// finished and must be vented. If the request does not come during a hold, the sequence ends as stopped
+  /// instead of done.
   Outcome release(double time_s, std::span<const ChannelOutput> seen, EventList& events) noexcept;
 
-  /// Ends the sequence from outside. Channels without a result get ERROR. So do channels that were HOLDING,
-  /// if this is no longer certain: after a fault, or if they are half released and not `venting`.
+  /// Ends the sequence because of a stop or a fault. Channels without a result get ERROR. A channel that was
+  /// HOLDING gets ERROR too if it may no longer hold the part: after a fault, or if its release was
+  /// interrupted and it is not in `venting`.
   void interrupt(SequenceEnd end, std::uint32_t venting, EventList& events) noexcept;
   /// Executes a tick without a sequence: verifies held parts again.
   void idle_tick(double time_s, std::span<const ChannelOutput> seen, EventList& events) noexcept;
@@ -45,7 +47,7 @@ class SequencePlayer {
   void refuse(std::uint32_t channels, EventList& events) noexcept;
   /// Returns true if any channel has NO PART, PART LOST, RELEASED or ERROR.
   [[nodiscard]] bool has_answers() const noexcept;
-  /// Clears these results.
+  /// Clears the results NO PART, PART LOST, RELEASED and ERROR.
   void acknowledge(std::uint32_t request, EventList& events) noexcept;
 
   [[nodiscard]] ChannelDemand demand(std::size_t channel, double time_s) const noexcept;
@@ -53,8 +55,8 @@ class SequencePlayer {
   [[nodiscard]] std::uint16_t step() const noexcept { return step_; }
   /// Returns the phase of the rig, which selects the safe action.
   [[nodiscard]] Phase phase() const noexcept;
-  /// Returns true if the finger moves without contact, as far as is known. `at_rest`: its command is the rest
-  /// pressure.
+  /// Returns true if the finger moves without contact, as far as is known. `at_rest`: the command of the
+  /// channel is the rest pressure.
   [[nodiscard]] bool free_motion(std::size_t channel, bool at_rest) const noexcept;
 
  private:
@@ -89,9 +91,9 @@ class SequencePlayer {
 
   std::vector<ChannelPlayer> channels_;
   Play play_ = Play::nothing;
-  const PreparedSequence* sequence_ = nullptr;  ///< while one runs
+  const PreparedSequence* sequence_ = nullptr;  ///< the running sequence; nullptr if none runs
   std::uint16_t step_ = 0;
-  std::uint32_t attempts_ = 0;           ///< at the present step
+  std::uint32_t attempts_ = 0;           ///< number of retries of the present step
   SequenceEnd end_ = SequenceEnd::done;  ///< failed after the first failure of a step
   std::uint32_t done_ = 0;               ///< channels with a result of the step
   std::uint32_t refused_ = 0;            ///< channels whose result is a failure

@@ -1,5 +1,6 @@
 #pragma once
-// Defines the settings of a RigController as plain values. The daemon reads the rig file (daemon/).
+// Defines the settings of a RigController as plain values. The reader of the rig file (rig/rig_file.h)
+// creates them.
 
 #include <array>
 #include <cstddef>
@@ -47,29 +48,35 @@ struct DetectionSettings {
 struct SafetySettings {
   /// Action of a stop, a fault or a shutdown, by the phase in which it occurs.
   std::array<SafeAction, phase_count> safe_action{};
-  /// Action of an emergency stop. Use `hold` only if its circuit does not vent by itself: a held command
-  /// would fill the fingers again when the circuit is reset.
+  /// Action of an emergency stop. Use `hold` only if the circuit of the emergency stop does not vent the
+  /// fingers: a held command would fill vented fingers again when the circuit is reset.
   SafeAction on_emergency_stop = SafeAction::vent;
-  /// The board sets its outputs to the rest pressure if communication stops. Then bus faults vent in every
-  /// phase, because a held command would pressurise the fingers again on reconnection.
+  /// True if the board sets its outputs to the rest pressure when communication stops. Then bus faults vent
+  /// in every phase, because a held command would pressurise the fingers again on reconnection.
   bool board_vents_when_silent = true;
 };
 
-/// Number of cycles for which a condition may last before it is a fault. They set the guaranteed reaction
-/// times of the rig.
+/// Number of cycles for which a condition may last before it is a fault. These numbers determine the
+/// guaranteed reaction times of the rig.
 struct FaultSettings {
-  std::uint32_t bus_down_cycles = 5;         ///< cycles in a row without a good exchange
-  std::uint32_t invalid_reading_cycles = 3;  ///< cycles in a row in which a channel's reading is not valid
-  std::uint32_t displacement_cycles = 3;     ///< cycles in a row outside the limits' displacement range
-  std::uint32_t readback_cycles = 5;         ///< consecutive cycles in which the read-back differs
-  double readback_tolerance_kpa = 1;         ///< differs: outside the window's commands by more than this
+  std::uint32_t bus_down_cycles = 5;         ///< consecutive cycles without a valid exchange
+  std::uint32_t invalid_reading_cycles = 3;  ///< consecutive cycles in which a channel's reading is not valid
+  std::uint32_t displacement_cycles = 3;     ///< consecutive cycles outside the displacement range of the
+                                             ///< limits
+  std::uint32_t readback_cycles = 5;         ///< consecutive cycles in which the read-back differs from the
+                                             ///< commands
+  double readback_tolerance_kpa = 1;         ///< the read-back differs if it is outside the range of the past
+                                             ///< commands by more than this
   double readback_delay_s = 0.1;             ///< duration of the window of past commands
   std::uint32_t pressure_cycles = 0;  ///< consecutive cycles with a wrong measured pressure; 0: not checked
-  double pressure_tolerance_kpa = 5;  ///< differs: outside the window's commands by more than this
+  double pressure_tolerance_kpa = 5;  ///< the pressure differs if it is outside the range of the past
+                                      ///< commands by more than this
   double pressure_delay_s = 0.5;      ///< duration of the window of past commands
   bool model_unfit_is_fault = false;  ///< false: model health is only reported
-  bool unsteady_is_fault = false;     ///< a sensor that jumps back and forth; false: it is only reported
-  std::uint32_t overrun_cycles = 0;   ///< this number of cycles missed at once is a fault; 0: only counted
+  bool unsteady_is_fault = false;     ///< true: a sensor that jumps back and forth is a fault; false: it is
+                                      ///< only reported
+  std::uint32_t overrun_cycles = 0;   ///< number of cycles missed at once that is a fault; 0: missed cycles
+                                      ///< are only counted
 };
 
 /// All settings of a RigController.
@@ -78,7 +85,7 @@ struct RigSettings {
   std::vector<ChannelSettings> channels;  ///< 1 to max_channels, names unique
   SafetySettings safety;
   double rest_band_mm = 0.2;   ///< a finger is at rest while its readings stay within this band ...
-  double rest_time_s = 0.3;    ///< ... for this time; a sequence starts from there
+  double rest_time_s = 0.3;    ///< ... for this time; a sequence starts only from rest
   double rest_timeout_s = 10;  ///< a start without rest within this time ends with ERROR
   DetectionSettings detection;
   FaultSettings faults;

@@ -40,7 +40,7 @@ void Supervisor::latch(const SupervisorInputs& inputs, SupervisorOutputs& output
   told_ |= place;
   events.add(Event{Event::Kind::fault_latched, fault.channel, static_cast<std::uint16_t>(fault.code), 0,
                    fault.value, GripEvidence::none});
-  // A later fault occurs while the rig is idle. The phase of the first fault determines which channels hold.
+  // After the first fault the player is idle, so the phase of the first fault determines which channels hold.
   const bool first = state_ != State::faulted;
   if (first) fault_phase_ = inputs.phase;
   if (action_for(fault.code, fault_phase_) == SafeAction::vent) venting_ = all_;
@@ -53,7 +53,7 @@ void Supervisor::latch(const SupervisorInputs& inputs, SupervisorOutputs& output
 
 SafeAction Supervisor::action_for(FaultCode code, Phase phase) const noexcept {
   const auto number = static_cast<unsigned>(code);
-  // The output differs from the command that was held.
+  // The board's output no longer has the command that would be held.
   if (code == FaultCode::board_watchdog_tripped || code == FaultCode::outputs_overwritten)
     return SafeAction::vent;
   // Inputs that cannot be read may hide an emergency stop.
@@ -153,7 +153,8 @@ void Supervisor::answer_stop(const SupervisorInputs& inputs, const Request& requ
   }
 }
 
-/// Only the loop knows which start runs in this tick, so the decision is made here and not at the client.
+/// Stops the rig if the start that the request names is running. Only the loop knows which start runs in this
+/// tick, so the decision is made here and not at the client.
 void Supervisor::answer_stop_of(const SupervisorInputs& inputs, const Request& request,
                                 SupervisorOutputs& outputs, EventList& events) noexcept {
   if (playing() && start_request_ == request.of_start) {
@@ -164,7 +165,8 @@ void Supervisor::answer_stop_of(const SupervisorInputs& inputs, const Request& r
   events.add(Event::Kind::request_refused, RefusalCode::named_start_not_running, request.id);
 }
 
-/// Marks a start that may still wait in the queue: a stop overtakes waiting starts.
+/// Marks the start that a stop request names if this start may still wait in the queue. The start is then
+/// refused, because a stop overtakes waiting starts.
 void Supervisor::withdraw(const Request& stop) noexcept {
   const bool may_wait = stop.of_start > taken_ && stop.of_start < stop.id;
   if (!may_wait || withdrawn(stop.of_start)) return;
@@ -176,7 +178,7 @@ bool Supervisor::withdrawn(std::uint32_t start) const noexcept {
   return start != 0 && std::find(withdrawn_.begin(), withdrawn_.end(), start) != withdrawn_.end();
 }
 
-/// Vents all channels. Never refused, because it ends each hold, also after a fault.
+/// Vents all channels. The request is never refused, because it ends each hold, also after a fault.
 void Supervisor::answer_vent(const Request& request, SupervisorOutputs& outputs, EventList& events) noexcept {
   venting_ = all_;
   if (state_ == State::faulted || state_ == State::starting) {

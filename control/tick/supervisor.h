@@ -18,12 +18,12 @@
 
 namespace softgrip::control {
 
-/// State of the search for rest.
+/// Progress of the wait for rest before a sequence starts.
 enum class Rest : std::uint8_t { pending, at_rest, timed_out };
 
 /// Inputs of the supervisor in addition to the tick input. Masks: bit i is channel i.
 struct SupervisorInputs {
-  Fault fault;  ///< due now
+  Fault fault;  ///< fault that is due now
   Fault cause;  ///< present condition that is a fault or may become one
   bool bus_good = false;
   std::uint32_t ready = 0;    ///< channels that have a valid reading or need none
@@ -54,9 +54,10 @@ class Supervisor {
 
   [[nodiscard]] State state() const noexcept { return state_; }
   [[nodiscard]] const Fault& first_fault() const noexcept { return first_fault_; }
-  /// Outside `running`: channels that go to their rest pressure. The others keep their command.
+  /// Returns the channels that go to their rest pressure while the state is not `running`. The others keep
+  /// their command.
   [[nodiscard]] std::uint32_t venting() const noexcept { return venting_; }
-  /// Returns the channels to vent if the loop ends now, for a phase of the player.
+  /// Returns the channels to vent if the loop ends now while the player is in `phase`.
   [[nodiscard]] std::uint32_t venting_on_leaving(Phase phase) const noexcept;
   [[nodiscard]] const PreparedSequence* sequence() const noexcept { return sequence_; }
 
@@ -70,7 +71,7 @@ class Supervisor {
                     EventList& events) noexcept;
   [[nodiscard]] RefusalCode refusal_of_start(const TickInput& input,
                                              const SupervisorInputs& inputs) const noexcept;
-  /// Reports a refusal.
+  /// Returns true if the start is refused, and reports the refusal.
   [[nodiscard]] bool refuses_start(const TickInput& input, const SupervisorInputs& inputs,
                                    EventList& events) const noexcept;
   void answer_check(const TickInput& input, const SupervisorInputs& inputs, EventList& events) const noexcept;
@@ -97,13 +98,16 @@ class Supervisor {
   State state_ = State::starting;
   Fault first_fault_;
   Phase fault_phase_ = Phase::idle;  ///< phase of the player when the fault occurred
-  std::uint32_t told_ = 0;           ///< faults reported since the latch, by their index in all_faults()
+  std::uint32_t told_ = 0;           ///< bit mask of the faults reported since the first fault latched; bit i
+                                     ///< is entry i of all_faults()
   std::uint32_t venting_ = 0;
-  const PreparedSequence* sequence_ = nullptr;  ///< from the accepted start to its end
+  const PreparedSequence* sequence_ = nullptr;  ///< from the accepted start to the end of the sequence
   std::uint32_t start_request_ = 0;
-  std::uint32_t halted_by_ = 0;  ///< newest request to stop any sequence, or to vent
-  std::uint32_t taken_ = 0;      ///< newest request of another kind; these arrive in the order of their ids
-  /// Starts that a stop named before they arrived. No more can wait in the queue of the loop.
+  std::uint32_t halted_by_ = 0;  ///< id of the newest request to stop any sequence, or to vent
+  std::uint32_t taken_ = 0;      ///< id of the newest request of another kind; these arrive in the order of
+                                 ///< their ids
+  /// Ids of starts that were named by a stop request before they arrived. The queue of the loop cannot hold
+  /// more starts.
   static constexpr std::size_t most_withdrawn = 64;
   std::array<std::uint32_t, most_withdrawn> withdrawn_{};
   std::size_t next_withdrawn_ = 0;  ///< index of the next entry

@@ -34,7 +34,8 @@ GainPoint centre_of_best(const Corners& corners) {
   return centre;
 }
 
-/// Moves the worst of the sorted corners.
+/// Performs one step of the simplex method: replaces the worst of the sorted corners, or moves all corners
+/// towards the best one.
 void move_worst(Corners& corners, const std::function<double(const GainPoint&)>& cost) {
   const GainPoint centre = centre_of_best(corners);
   const GainPoint worst = corners[3].second;

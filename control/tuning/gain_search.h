@@ -9,21 +9,23 @@
 
 namespace softgrip::control {
 
-/// The variables of the search: ln kp, ln ki and a variable for the derivative, which depends on the caller.
+/// The variables of the search: ln kp, ln ki and a variable for the derivative, whose meaning the caller
+/// defines.
 using GainPoint = std::array<double, 3>;
 
 /// Nelder and Mead's simplex (Computer Journal 7, 1965).
 struct Simplex {
   GainPoint edges{0.4, 0.4, 0.02};  ///< distances from the start to the other corners
-  int iterations = 60;              ///< each costs one or two evaluations
-  double done_share = 0;            ///< ends when the corners' costs differ by less than this share
+  int iterations = 60;              ///< number of iterations; each needs one or two evaluations of the cost
+  double done_share = 0;            ///< the search ends when the costs of the corners differ by less than
+                                    ///< this share
 };
-/// Returns the best corner at the end.
+/// Returns the best corner of the simplex at the end of the search.
 [[nodiscard]] GainPoint nelder_mead(const std::function<double(const GainPoint&)>& cost,
                                     const GainPoint& start, double cost_at_start, const Simplex& simplex);
 
 struct GainSearch {
-  int iterations = 60;  ///< of the simplex after the grid search
+  int iterations = 60;  ///< iterations of the simplex after the grid search
   /// Step of the 5 x 6 grid in kp and ki: 1 uses all points.
   int coarseness = 1;
 };

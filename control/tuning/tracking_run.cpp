@@ -52,7 +52,7 @@ class Bench {
         finger_(run.finger, {}, tick_s_, run.seed),
         seed_(derived_seed(run.seed, 1)) {}
 
-  /// Sends the `command` of the tick at its exchange. Returns the reading of the same exchange.
+  /// Advances to the exchange of the tick and writes the command. Returns the reading of the same exchange.
   double exchange(double command_kpa) {
     if (exchange_s_ > 0) finger_.step(exchange_s_, out_kpa_);
     out_kpa_ = quantised(command_kpa, run_.command_step_kpa);
@@ -60,7 +60,8 @@ class Bench {
     return quantised(finger_.reading_mm() + run_.noise_mm * normal_at(seed_, readings_++),
                      run_.reading_step_mm);
   }
-  /// Returns the finger's displacement at the middle of the rest of the tick, and at its end.
+  /// Returns the finger's displacement in the middle between the exchange and the end of the tick, and at the
+  /// end.
   std::array<double, 2> rest_of_tick() {
     std::array<double, 2> places{};
     for (double& place : places) {
@@ -82,7 +83,7 @@ class Bench {
 };
 
 /// Smallest and largest instantaneous slope of the model over its working range in two cycles. The hysteresis
-/// may differ after the first cycle.
+/// in the second cycle may differ from the first.
 struct GainRange {
   double smallest = std::numeric_limits<double>::max();
   double largest = 0;
@@ -210,7 +211,7 @@ LoopMargins loop_margins(const model::Model& model, const PidSettings& pid, cons
   const double dead_s = dead_time_s(model) + 0.5 * tick_s + age_s;
   LoopMargins margins;
   for (const double gain : {gains.smallest, gains.largest}) {
-    bool beyond = true;  // |L| > 1 so far, as it is at the lowest frequency with an integrator
+    bool beyond = true;  // true while |L| > 1; this holds at the lowest frequency with an integrator
     double phase = 0;
     std::complex<double> before = 0;
     const auto steps = static_cast<int>(std::log(0.5 / tick_s / lowest_hz) / std::log(step_factor));

@@ -18,7 +18,8 @@ namespace {
 using Point = GainPoint;
 
 constexpr double filter_share = 0.125;
-/// The smallest cost of a loop that lacks margin [mm]. The cost increases with the missing margin.
+/// Smallest cost of a loop whose stability margin is too small [mm]. The cost increases with the missing
+/// margin.
 constexpr double no_margin_mm = 100;
 constexpr double most_error_mm = 50;
 

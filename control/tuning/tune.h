@@ -17,39 +17,39 @@ struct TuneTask {
   ChannelSettings channel;  ///< model, feedforward and limits; its gains are not used
   model::Model finger;
   double rate_hz = 200;
-  double exchange_s = 0;  ///< from the tick to the exchange, as in TrackingRun
+  double exchange_s = 0;  ///< time from the tick to the exchange, as in TrackingRun
   double mean_mm = 13;
   double amplitude_mm = 7;
-  std::vector<double> frequencies_hz{0.1, 0.3};  ///< of the tracked sines
+  std::vector<double> frequencies_hz{0.1, 0.3};  ///< frequencies of the tracked sines
   double noise_mm = 0.03;
   double mismatch = 0.05;       ///< largest relative error of each parameter of a finger
   int draws = 6;                ///< number of fingers
   double most_sensitivity = 2;  ///< largest Ms of each finger; 2: gain margin 2, phase margin 29 degrees
   std::uint64_t seed = 1;
-  int iterations = 40;  ///< of the search after the grid
+  int iterations = 40;  ///< iterations of the simplex search after the grid search
 };
 
 /// The optimum, its margin and its errors.
 struct Tuned {
   PidSettings pid;
   double sensitivity = 0;   ///< worst Ms of the fingers
-  double crossover_hz = 0;  ///< lowest of the fingers
+  double crossover_hz = 0;  ///< lowest crossover of the fingers
   double rmse_mm = 0;       ///< root mean square over fingers and frequencies
-  double exact_mm = 0;      ///< for `finger` without variation and noise
-  double noisy_mm = 0;      ///< for `finger` without variation, with noise
-  double mismatch_mm = 0;   ///< for the random fingers, without noise
+  double exact_mm = 0;      ///< tracking error for `finger` without variation and noise
+  double noisy_mm = 0;      ///< tracking error for `finger` without variation, with noise
+  double mismatch_mm = 0;   ///< tracking error for the random fingers, without noise
   int evaluations = 0;
   std::string limited_by;  ///< limiting factor, as text
 };
 
-/// Minimises the tracking error over the fingers within the bound on Ms. A grid search in kp and ki is
-/// followed by the simplex of Nelder and Mead (Computer Journal 7, 1965). The simplex varies kp, ki and the
-/// derivative time. The filter time of the derivative is an eighth of the derivative time, at least two
-/// ticks.
+/// Minimises the tracking error over all fingers. The largest Ms must stay within its bound. A grid search in
+/// kp and ki is followed by the simplex of Nelder and Mead (Computer Journal 7, 1965). The simplex varies kp,
+/// ki and the derivative time. The filter time of the derivative is an eighth of the derivative time, at
+/// least two ticks.
 [[nodiscard]] Tuned tune(const TuneTask& task);
 
-/// Chooses a sine that the model reaches: mean and amplitude are shares of its displacement at the highest
-/// pressure.
+/// Chooses a sine that the model reaches. Mean and amplitude are shares of the model's displacement at the
+/// highest pressure.
 void choose_reference(TuneTask& task);
 
 }  // namespace softgrip::control
