@@ -1,5 +1,6 @@
 #pragma once
-// Distributes small values from one thread to several without a lock: the events of the loop.
+// Distributes small values, such as the events of the loop, from one thread to several threads without a
+// lock.
 
 #include <array>
 #include <atomic>
@@ -12,15 +13,15 @@
 
 namespace softgrip::daemon {
 
-/// Tests replace this function with one that interrupts each copy in the middle.
+/// Does nothing. Tests replace this class by one that interrupts each copy in the middle.
 struct NoInterruption {
   static void halfway() noexcept {}
 };
 
-/// Distributes items from one thread to any number of readers. The writer never waits: a new item replaces
-/// the oldest. Each reader has its own thread and pace. A reader that lags by more than the capacity loses
-/// items, which are counted, and delays no other thread. Memory is allocated at construction only. T is a
-/// plain value.
+/// Distributes items from one thread to any number of readers. The writer never waits: if the buffer is full,
+/// a new item replaces the oldest. Each reader has its own thread and pace. A reader that lags by more than
+/// the capacity loses items, which are counted, and does not delay any other thread. Memory is allocated at
+/// construction only. T is a plain value.
 template <class T, class Interruption = NoInterruption>
 class Broadcast {
   static_assert(std::is_trivially_copyable_v<T>);
@@ -45,12 +46,12 @@ class Broadcast {
     newest_.store(pushed_, std::memory_order_release);
   }
 
-  /// Starts with the oldest stored item.
+  /// One reader. It starts with the oldest stored item.
   class Reader {
    public:
     explicit Reader(const Broadcast& from) noexcept : from_(&from) {}
 
-    /// Returns true and the next item, if there is one.
+    /// Takes the next item and returns true. Returns false if there is no new item.
     bool pop(T& item) noexcept {
       for (;;) {
         const std::uint64_t newest = from_->newest_.load(std::memory_order_acquire);
@@ -93,7 +94,7 @@ class Broadcast {
   static constexpr std::uint64_t writing = UINT64_MAX;
 
   struct Slot {
-    std::atomic<std::uint64_t> turn{0};  ///< the number of its item, from 1
+    std::atomic<std::uint64_t> turn{0};  ///< number of the item in this slot, from 1
     std::array<std::atomic<std::uint64_t>, std::tuple_size_v<Words>> words{};
   };
   [[nodiscard]] Slot& slot_of(std::uint64_t index) noexcept { return slots_[index & (slots_.size() - 1)]; }

@@ -20,7 +20,7 @@ bool is_answer(BusStatus status) noexcept {
 }
 
 /// Returns true if the session cannot be used again: the board may still send the response to an old request,
-/// or waits for the set-up of a new session.
+/// or it waits for the set-up of a new session.
 bool loses_session(BusStatus status) noexcept {
   return !is_answer(status) || status == BusStatus::watchdog_tripped;
 }
@@ -87,7 +87,7 @@ void Bus::step(Nanoseconds due) noexcept {
   if (!listen()) return;
   const bool connected = session_ != Session::none;
   if (ensure_session()) {
-    // Opening a session takes time, so commands that arrived meanwhile count.
+    // Opening a session takes time, so the commands that arrived during this time are used.
     if (!connected && shared_.commands.fetch()) unheard_ = 0;
     exchange();
   } else {
@@ -96,7 +96,8 @@ void Bus::step(Nanoseconds due) noexcept {
   publish();
 }
 
-/// Returns false until the loop has sent its first commands.
+/// Fetches the commands of the loop and detects their time-out. Returns false until the loop has sent its
+/// first commands.
 bool Bus::listen() noexcept {
   if (shared_.commands.fetch()) {
     spoken_ = true;
@@ -168,7 +169,7 @@ void Bus::exchange() noexcept {
   }
   if (status != BusStatus::ok) {
     if (loses_session(status)) {
-      // If each session fails at its first exchange, the board must not be connected to in each cycle.
+      // If each session fails at its first exchange, the daemon must not connect to the board in each cycle.
       if (session_ != Session::proven) put_off_next_attempt();
       session_ = Session::none;
     }
@@ -179,8 +180,8 @@ void Bus::exchange() noexcept {
     return;
   }
   report_.outputs_kpa = written_kpa_;
-  // If this thread was stopped during the exchange, the commands may have arrived too late for the old
-  // outputs.
+  // If this thread was stopped during the exchange, the commands may have reached the board after its
+  // watchdog time, when it had already changed its outputs.
   judge_gap(ended, 0);
   last_good_ = began;
   note_success(ended - began);
@@ -212,8 +213,9 @@ void Bus::note_success(Nanoseconds duration) noexcept {
   note_clients();
 }
 
-/// Reports another client once per session, so that a client that reconnects often does not fill the log. If
-/// only writes feed the watchdog, another client that writes is detected by the outputs.
+/// Reports another client once per session, so that a client that reconnects often does not fill the log.
+/// This is done only if reading feeds the board's watchdog. If only writing feeds it, another client that
+/// writes is detected by the change of the outputs.
 void Bus::note_clients() noexcept {
   if (told_clients_ || !board_.fed_by_readers()) return;
   const unsigned clients = board_.clients();
@@ -225,7 +227,7 @@ void Bus::note_clients() noexcept {
 }
 
 void Bus::note_failure(BusStatus status) noexcept {
-  // The board may have applied the write or not.
+  // It is not known if the board has applied the write.
   for (std::size_t i = 0; i < channels_; ++i) {
     report_.outputs_kpa[i] = control::no_further(rest_kpa_[i], written_kpa_[i], report_.outputs_kpa[i]);
   }
@@ -238,7 +240,7 @@ void Bus::note_failure(BusStatus status) noexcept {
   }
   const bool others = status == BusStatus::overwritten;
   if (others || status == BusStatus::watchdog_tripped) rest_outputs();
-  // A watchdog that has tripped also overwrites the outputs.
+  // A watchdog that has tripped changes the outputs too, so this change does not show another client.
   const bool known = others && inhibited_ == FaultCode::board_watchdog_tripped;
   if (control::inhibits(fault_of(status)) && !known) inhibit(fault_of(status));
   statistics_.failures.add();
@@ -249,9 +251,10 @@ void Bus::note_failure(BusStatus status) noexcept {
   tell(BusEvent::Kind::failed, status, board_.detail());
 }
 
-/// Handles outputs that the board reports nearer to rest than they were written: the last commands would move
-/// them away from rest again. A hold remains, because a gateway that repeats an old reading must not open a
-/// grip. It ends with the first commands that do not hold.
+/// Accepts outputs that are nearer to rest, according to the board, than the written commands. To write the
+/// last commands again would move these outputs away from rest. Outputs whose safe action is hold are
+/// excluded, because a gateway that repeats an old reading must not open a grip. This exclusion ends with the
+/// first commands without this action.
 void Bus::respect_found_outputs() noexcept {
   const Commands& commands = shared_.commands.value();
   for (std::size_t i = 0; i < channels_; ++i) {
@@ -261,15 +264,15 @@ void Bus::respect_found_outputs() noexcept {
   }
 }
 
-/// Reports once per outage why no new session can be opened, if this differs from the reason why the last one
-/// ended. Example: a converter was removed, and another one has its name.
+/// Reports once per outage the reason why no new session can be opened, if this reason differs from the one
+/// for which the last session ended. Example: a converter was removed, and another one has its name.
 void Bus::note_refusal(BusStatus status) noexcept {
   if (told_refused_ || std::strncmp(told_.data(), board_.detail(), told_.size() - 1) == 0) return;
   told_refused_ = true;
   tell(BusEvent::Kind::not_connected, status, board_.detail());
 }
 
-/// Assumes the board's safe outputs if the board was not fed for longer than its watchdog time.
+/// Assumes that the board has set its safe outputs if it was not fed for longer than its watchdog time.
 void Bus::judge_gap(Nanoseconds now, Nanoseconds margin) noexcept {
   if (watchdog_ == 0 || !last_good_ || now - *last_good_ < watchdog_ - margin) return;
   rest_outputs();

@@ -18,23 +18,24 @@
 
 namespace softgrip::daemon {
 
-/// Returns the fault of a failed exchange for the supervisor; none for ok.
+/// Returns the fault that the supervisor gets for a failed exchange; none for ok.
 [[nodiscard]] control::FaultCode fault_of(drivers::BusStatus status) noexcept;
 
 /// The only class that communicates with the board. It writes nothing before the loop has sent its first
-/// commands, which are safe ones.
+/// commands, which are safe outputs.
 ///
 /// Outputs move away from rest only while a sequence runs. If the outputs no longer follow the loop's
 /// commands, the bus is inhibited. It then writes nothing further from rest than the present outputs, and
-/// reports the reason. It follows commands again under three conditions. They come from a tick that knew of
-/// the inhibition. No sequence runs in that tick. They are no further from rest than the outputs. The bus is
-/// inhibited if
-/// - the commands of the loop time out: the safe outputs of its last commands are written (cycles_lost);
-/// - the board's watchdog must have tripped, by the time since the last good exchange, or reports that it
-/// has: the rest pressures are written (board_watchdog_tripped);
-/// - the board rejected a write (write_refused). Outputs that it then reports nearer to rest count as the
-/// present outputs, unless the safe action is to hold: another client may have written between two requests
-/// of the exchange, but a gateway may also repeat an old reading;
+/// reports the reason. It follows commands again under three conditions. The commands come from a tick that
+/// has read the new value of BusHealth::inhibit. No sequence runs in that tick. The commands are no further
+/// from rest than the outputs. The bus is inhibited if
+/// - the commands of the loop time out: the safe outputs of the last commands are written (cycles_lost);
+/// - the last successful exchange is older than the watchdog time of the board, or the board reports that its
+/// watchdog has tripped: the rest pressures are written (board_watchdog_tripped);
+/// - the board rejected a write (write_refused). If the board then reports outputs that are nearer to rest,
+/// these are the present outputs, because another client may have written between two requests of the
+/// exchange. This does not apply to outputs whose safe action is hold, because a gateway may also repeat an
+/// old reading;
 /// - another Modbus client writes to the board: the rest pressures are written (outputs_overwritten).
 class Bus {
  public:
@@ -94,14 +95,17 @@ class Bus {
 
   BusReport report_;
   std::array<double, control::max_channels> written_kpa_ = BusReport::anything;
-  std::array<double, control::max_channels> found_kpa_ = BusReport::anything;  // since the last good exchange
+  std::array<double, control::max_channels> found_kpa_ = BusReport::anything;  // outputs reported with a
+                                                                               // rejected write, since the
+                                                                               // last successful exchange
   Session session_ = Session::none;
   bool spoken_ = false;                                      // the loop has sent commands at least once
-  control::FaultCode inhibited_ = control::FaultCode::none;  // why the bus is inhibited, or none
+  control::FaultCode inhibited_ = control::FaultCode::none;  // reason why the bus is inhibited, or none
   std::uint32_t unheard_ = 0;                                // steps since the loop's last commands
   std::optional<Nanoseconds> last_good_;                     // start of the last successful exchange
   bool told_failed_ = false;                                 // the present failure has been logged
-  bool told_refused_ = false;                                // and the reason why no session can be opened
+  bool told_refused_ = false;                                // the reason why no session can be opened has
+                                                             // been logged
   std::array<char, sizeof(BusEvent::detail)> told_{};        // the last failure in the log
   bool told_clients_ = false;  // the other client of the board has been logged in this session
   Nanoseconds pause_ = 0;      // pause before the attempt after the next one

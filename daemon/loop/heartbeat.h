@@ -8,11 +8,11 @@
 
 namespace softgrip::daemon {
 
-/// Checks counters that the threads increase. Each has its own time-out: a bus thread may stop for as long as
-/// opening a session takes, but a loop may not.
+/// Checks counters that the threads increase. Each counter has its own time-out: a bus thread may stop for as
+/// long as opening a session takes, but a loop may not.
 class Heartbeat {
  public:
-  /// `patience` has the time-out of each counter [ns]. The time starts with the first beats().
+  /// `patience` has the time-out of each counter [ns]. The times begin with the first call of beats().
   explicit Heartbeat(const std::vector<Nanoseconds>& patience);
 
   /// Returns false if a counter has not changed for longer than its time-out. `counts` has the counters in

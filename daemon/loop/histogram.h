@@ -11,10 +11,10 @@
 
 namespace softgrip::daemon {
 
-/// Counts of durations in nanoseconds. Bins are exact below 128 ns. Above, their width is 1/128 of the start
-/// of their octave, so the error is below 0.8 % from 1 ns to 68 s, in 30 kB. Negative durations count as 0,
-/// longer ones in the last bin. add() needs a few plain loads and stores, without locks and locked
-/// instructions.
+/// Counts of durations in nanoseconds. Bins are exact below 128 ns. Above 128 ns, the width of a bin is 1/128
+/// of the start of its octave, so the error is below 0.8 % from 1 ns to 68 s. The bins need 30 kB. Negative
+/// durations are counted as 0, and durations above 68 s in the last bin. add() needs a few plain loads and
+/// stores, without locks and locked instructions.
 class Histogram {
  public:
   /// Called by one thread only.

@@ -19,11 +19,11 @@ namespace softgrip::daemon {
 /// No function here allocates, locks, logs, throws or enters the kernel, except for the clock and the sleep.
 class Loop {
  public:
-  /// A row is recorded every `decimation` ticks, at least 1. All references must outlive the loop.
+  /// A row is recorded every `decimation` (>= 1) ticks. All references must outlive the loop.
   Loop(control::RigController& controller, std::uint32_t decimation, const Clock& clock, SharedState& shared,
        LoopStatistics& statistics) noexcept;
 
-  /// Executes ticks on the schedule until shared.shutdown_requested is set, followed by leave().
+  /// Executes ticks on the schedule until shared.shutdown_requested is set, then calls leave().
   void run(PeriodicSchedule schedule) noexcept;
 
   /// Executes a tick that was due at `due`, for callers with their own timing.
@@ -50,8 +50,8 @@ class Loop {
   std::uint32_t decimation_;
   std::uint64_t ticks_ = 0;
   std::uint32_t unreported_ = 0;      // ticks since the bus last reported
-  std::uint32_t inhibit_ = 0;         // the newest number from the bus
-  std::uint32_t overrun_cycles_ = 0;  // input of the next tick
+  std::uint32_t inhibit_ = 0;         // newest BusHealth::inhibit that the bus has reported
+  std::uint32_t overrun_cycles_ = 0;  // cycles missed before the next tick
   Nanoseconds woken_ = 0;
   Nanoseconds ended_ = 0;
 };

@@ -58,7 +58,7 @@ RealTimeStep prepare_heap(std::size_t bytes) {
   RealTimeStep step{"heap", Outcome::not_asked, "",
                     "an allocation of the threads beside the loop may page-fault"};
   if (bytes == 0) return step;
-  // Keeps freed blocks in the process, and takes large ones from the same heap instead of new mappings.
+  // Keeps freed blocks in the process, and allocates large blocks from the same heap instead of new mappings.
   const bool accepted = mallopt(M_TRIM_THRESHOLD, -1) == 1 && mallopt(M_MMAP_MAX, 0) == 1;
   faults_of_a_heap_block(bytes);
   const long faults = faults_of_a_heap_block(bytes);
@@ -73,7 +73,8 @@ RealTimeStep prepare_heap(std::size_t bytes) {
   return step;
 }
 
-/// Tests MCL_FUTURE: returns the reason if a new page is not known to be resident; empty if it is.
+/// Tests MCL_FUTURE with a new page. Returns the reason if the page is not known to be resident, or an empty
+/// text if it is resident.
 std::string doubt_of_a_new_mapping() {
   const auto bytes = static_cast<std::size_t>(page_bytes());
   void* page = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
@@ -180,7 +181,8 @@ RealTimeStep set_processors(const std::vector<int>& cpus, std::string_view who) 
 RealTimeStep set_scheduling(int priority, std::string_view who) {
   RealTimeStep step{fmt::format("scheduling of {}", who), Outcome::not_asked, "",
                     "the thread waits behind every other process: wake-ups may come milliseconds late"};
-  // Matters only without SCHED_FIFO: the kernel may then delay each wake-up by 50 us to save power.
+  // The timer slack matters only without SCHED_FIFO: the kernel may then delay each wake-up by 50 us to save
+  // power.
   prctl(PR_SET_TIMERSLACK, 1UL);
   if (priority <= 0) return step;
   step.outcome = Outcome::failed;
@@ -208,7 +210,8 @@ RealTimeStep set_scheduling(int priority, std::string_view who) {
   return step;
 }
 
-/// Not inlined: its frame is the part of the stack that the thread will use later.
+/// Uses the part of the stack that the thread will need later. The function is not inlined, because this part
+/// is its own frame.
 [[gnu::noinline]] long touch_stack(std::size_t bytes) {
   const long before = page_faults();
   auto* memory = static_cast<volatile char*>(__builtin_alloca(bytes));
@@ -313,7 +316,8 @@ RealTimeStep kernel_step() {
   RealTimeStep step{"kernel", Outcome::not_asked, "", ""};
   utsname name{};
   uname(&name);
-  // /sys/kernel/realtime is missing on some real-time kernels from 6.12 on; the version text is not.
+  // /sys/kernel/realtime is missing on some real-time kernels from 6.12 on, but their version text contains
+  // PREEMPT_RT.
   const bool real_time = std::string_view(name.version).find("PREEMPT_RT") != std::string_view::npos ||
                          access("/sys/kernel/realtime", F_OK) == 0;
   step.detail = fmt::format(

@@ -34,7 +34,7 @@ class RealTimeReport {
   std::vector<RealTimeStep> steps_;
 };
 
-/// Keeps the processors out of deep sleep states until it is destroyed.
+/// Keeps the processors out of deep sleep states as long as this object exists.
 class ProcessorLatencyRequest {
  public:
   ProcessorLatencyRequest() = default;
@@ -53,11 +53,12 @@ class ProcessorLatencyRequest {
 [[nodiscard]] ProcessorLatencyRequest prepare_process(const rig::RealTimeSettings& settings,
                                                       RealTimeReport& report);
 
-/// Prepares the calling thread: processors, scheduling at `priority`, stack. `who` is its name in the report.
+/// Prepares the calling thread: its processors, its scheduling at `priority` and its stack. `who` is the name
+/// of the thread in the report.
 void prepare_thread(const rig::RealTimeSettings& settings, int priority, std::string_view who,
                     RealTimeReport& report);
 
-/// Reports if the running kernel is PREEMPT_RT, as a step that never fails.
+/// Returns a step that states if the running kernel is PREEMPT_RT. This step never fails.
 [[nodiscard]] RealTimeStep kernel_step();
 
 }  // namespace softgrip::daemon

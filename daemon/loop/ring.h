@@ -1,5 +1,5 @@
 #pragma once
-// A bounded queue from one thread to another without a lock: rows, events and requests.
+// A bounded queue for rows, events and requests from one thread to another, without a lock.
 
 #include <algorithm>
 #include <atomic>
@@ -10,8 +10,9 @@
 
 namespace softgrip::daemon {
 
-/// Single producer, single consumer. Neither side waits: push() fails if there is no space, pop() returns the
-/// available items. Memory is allocated at construction only. T is a plain value.
+/// A queue for a single producer and a single consumer. Neither side waits: push() fails if there is no
+/// space, and pop() returns the available items. Memory is allocated at construction only. T is a plain
+/// value.
 template <class T>
 class Ring {
  public:
@@ -20,7 +21,8 @@ class Ring {
 
   [[nodiscard]] std::size_t capacity() const noexcept { return items_.size(); }
 
-  /// Producer: adds `count` items, each written in place by fill(item, index), or none (false).
+  /// Called by the producer. Adds `count` items and returns true; fill(item, index) writes each item in
+  /// place. If there is no space for all of them, adds none and returns false.
   template <class Fill>
   bool push(std::size_t count, Fill&& fill) noexcept {
     const std::size_t tail = tail_.load(std::memory_order_relaxed);
@@ -37,7 +39,7 @@ class Ring {
   }
   bool push(const T& item) noexcept { return push(std::span<const T>(&item, 1)); }
 
-  /// Consumer: moves up to items.size() items out and returns their number.
+  /// Called by the consumer. Moves up to items.size() items out and returns their number.
   std::size_t pop(std::span<T> items) noexcept {
     const std::size_t head = head_.load(std::memory_order_relaxed);
     if (known_tail_ - head < items.size()) known_tail_ = tail_.load(std::memory_order_acquire);
@@ -48,7 +50,7 @@ class Ring {
   }
   bool pop(T& item) noexcept { return pop(std::span<T>(&item, 1)) == 1; }
 
-  /// Both sides: returns the number of waiting items, which may change at any time.
+  /// Called by either side. Returns the number of waiting items, which may change at any time.
   [[nodiscard]] std::size_t size() const noexcept {
     const std::size_t head = head_.load(std::memory_order_acquire);
     return tail_.load(std::memory_order_acquire) - head;

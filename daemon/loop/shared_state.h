@@ -23,9 +23,11 @@ struct Commands {
   std::array<double, control::max_channels> command_kpa{};
   /// The output if the loop stops sending commands.
   std::array<double, control::max_channels> safe_kpa{};
-  bool may_rise = false;      ///< a sequence runs; otherwise a command away from rest is a late old command
+  bool may_rise = false;      ///< a sequence runs; if not, a command further from rest is an old one that
+                              ///< arrived late
   std::uint32_t inhibit = 0;  ///< control::BusHealth::inhibit that this tick had read
-  bool last = false;          ///< the loop has ended; write these until the board confirms them
+  bool last = false;          ///< the loop has ended; the bus writes these commands until the board confirms
+                              ///< them
 };
 
 /// From the bus to the loop: readings and state of the bus.
@@ -36,15 +38,15 @@ struct BusReport {
     return outputs_kpa;
   }();
   std::array<model::Reading, control::max_channels> readings{};
-  /// A bound [kPa]: no output is nearer to rest. It is the last write, or, if the board
-  /// has not confirmed that write, the one of the last two writes that is nearer to rest. It is the rest
-  /// pressure if these writes are on different sides of rest, or if the board's watchdog has acted. Infinite
-  /// before the first write.
+  /// Bound of the outputs [kPa]: no output is nearer to rest than this. The bound is the last write. If the
+  /// board has not confirmed the last write, it is the one of the last two writes that is nearer to rest. If
+  /// these writes are on different sides of rest, or if the board's watchdog has acted, it is the rest
+  /// pressure. Before the first write it is infinite.
   std::array<double, control::max_channels> outputs_kpa = anything;
   control::BusHealth health;
 };
 
-/// From the bus to the log: a change.
+/// From the bus to the log: a change of the bus.
 struct BusEvent {
   enum class Kind : std::uint8_t {
     connected,       ///< the board has answered in a new session
@@ -53,7 +55,7 @@ struct BusEvent {
     loop_silent,     ///< no new commands from the loop: the safe outputs are written
     loop_back,       ///< the loop's commands are written again
     another_client,  ///< another client feeds the board's watchdog; `detail`: number of clients
-    not_connected,   ///< no session can be opened again, for another reason than `failed` stated
+    not_connected,   ///< no session can be opened again, and the reason differs from that of `failed`
   };
   Kind kind = Kind::connected;
   Nanoseconds at = 0;
@@ -69,7 +71,7 @@ struct Record {
   control::ChannelOutput output;
 };
 
-/// From the loop to the log and to the recorder. The events of a tick are pushed before its rows.
+/// From the loop to the log and to the recorder: an event. The events of a tick are pushed before its rows.
 struct StampedEvent {
   Nanoseconds at = 0;
   control::Event event;
@@ -88,7 +90,8 @@ struct Snapshot {
   control::BusHealth bus;
 };
 
-/// Inputs that are levels, not requests; the reader of the lines (daemon/panel/panel.h) stores them.
+/// Inputs that are levels, not requests. The thread that reads the digital lines (daemon/panel/panel.h)
+/// stores them.
 struct InputLevels {
   std::atomic<bool> emergency_stop{false};
   std::atomic<bool> interlock_open{false};
@@ -115,8 +118,8 @@ struct PanelEvent {
 };
 
 struct SharedState {
-  /// `record_capacity`: rows by which the recorder may lag; `event_capacity`: events by which a reader may
-  /// lag.
+  /// `record_capacity`: largest number of rows by which the recorder may lag. `event_capacity`: largest
+  /// number of events by which a reader may lag.
   explicit SharedState(std::size_t record_capacity, std::size_t event_capacity = 4096)
       : records(record_capacity), events(event_capacity) {}
 
@@ -127,18 +130,19 @@ struct SharedState {
   Ring<Record> records;
   Broadcast<StampedEvent> events;
   Ring<PanelEvent> panel_events{64};
-  Ring<control::Request> vents{16};  ///< read before ...
-  Ring<control::Request> stops{16};  ///< ... these, which are read before ...
-  /// ... these: stops of one named start, at most one for each. The capacity covers all waiting starts and
-  /// some that were read a moment ago.
+  Ring<control::Request> vents{16};  ///< requests to vent; read first
+  Ring<control::Request> stops{16};  ///< requests to stop any sequence; read second
+  /// Requests to stop one given start, at most one for each start; read third. The capacity covers all
+  /// waiting starts and some that were read a moment ago.
   Ring<control::Request> named_stops{128};
   Ring<control::Request> requests{64};
-  std::atomic<control::State> state{control::State::starting};  ///< of the last tick
+  std::atomic<control::State> state{control::State::starting};  ///< state in the last tick
   std::atomic<bool> under_pressure{false};                      ///< a finger is pressurised without motion
   std::atomic<bool> enable_on{false};                           ///< last written level of the enable output
   InputLevels inputs;
-  std::atomic<std::uint64_t> records_dropped{0};  ///< no space: the recorder lagged
-  std::atomic<std::uint64_t> events_dropped{0};   ///< more events in a tick than its capacity
+  std::atomic<std::uint64_t> records_dropped{0};  ///< rows dropped because the recorder lagged
+  std::atomic<std::uint64_t> events_dropped{0};   ///< events dropped because a tick had more events than its
+                                                  ///< capacity
   std::atomic<bool> shutdown_requested{false};    ///< to the loop: end after a last, safe tick
   std::atomic<bool> safe_state_confirmed{false};  ///< from the bus: the board confirmed the last commands
 };

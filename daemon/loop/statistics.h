@@ -23,8 +23,8 @@ class Counter {
 /// An overrun (missed cycle) is a period of the schedule in which no tick started.
 struct LoopStatistics {
   Histogram wake_up;      ///< from the scheduled time to the first instruction of the tick
-  Histogram compute;      ///< from there to the end of the tick
-  Histogram reading_age;  ///< of the oldest channel, at the tick that uses it
+  Histogram compute;      ///< from the first instruction to the end of the tick
+  Histogram reading_age;  ///< age of the oldest reading at the tick that uses it
   Counter ticks;
   Counter overruns_woken_late;  ///< overruns because the thread woke a period late or more
   Counter overruns_took_long;   ///< overruns because a tick took too long
@@ -37,9 +37,9 @@ struct BusStatistics {
   Counter exchanges;
   Counter failures;
   Counter overruns;
-  Counter sessions;                         ///< successful connects
+  Counter sessions;                         ///< number of successful connections to the board
   std::atomic<std::uint64_t> attempts{0};   ///< attempts to connect since the last successful exchange
-  std::atomic<Nanoseconds> retry_pause{0};  ///< upper limit of the time until the next one
+  std::atomic<Nanoseconds> retry_pause{0};  ///< upper limit of the time until the next attempt
 };
 
 }  // namespace softgrip::daemon

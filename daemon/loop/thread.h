@@ -14,7 +14,7 @@ class Thread {
  public:
   struct Options {
     std::string name;  ///< at most 15 bytes, as shown by `ps -L` and the kernel
-    /// std::thread would need 8 MiB, and mlockall() would make all of it resident.
+    /// Size of the stack. std::thread would need 8 MiB, and mlockall() would make all of it resident.
     std::size_t stack_bytes = 1024 * 1024;
   };
 

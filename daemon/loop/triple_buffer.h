@@ -35,9 +35,10 @@ class TripleBuffer {
     publish();
   }
 
-  /// Fetches the newest value if it was not fetched yet. Returns true if it did.
+  /// Fetches the newest value and returns true. Returns false if this value was fetched before.
   bool fetch() noexcept {
-    // Reads the flag first: an exchange without a new value would publish an old value as new.
+    // The flag is read first, because an exchange without a new value would replace the present value by an
+    // older one.
     if ((middle_.load(std::memory_order_relaxed) & fresh) == 0) return false;
     const std::uint8_t taken = middle_.exchange(read_, std::memory_order_acq_rel);
     read_ = taken & index_mask;

@@ -142,7 +142,7 @@ bool Panel::loop_hangs(Nanoseconds now) noexcept {
 
 /// Returns true if the enable output must be on. It is switched on when the rig is ready. The rig file
 /// decides its state after a fault. An emergency stop, lost inputs and a stalled loop always switch it off.
-/// While the state is not known yet, it does not change.
+/// While the rig is starting, the output does not change.
 bool Panel::enable_wanted(State state, bool hangs) const noexcept {
   if (hangs || lost_ || shared_.inputs.emergency_stop.load(std::memory_order_relaxed)) return false;
   if (works(state)) return true;

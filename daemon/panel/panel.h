@@ -1,6 +1,6 @@
 #pragma once
-// Buttons and lamps: reads the digital inputs for the loop, and sets the digital outputs by the state of the
-// loop.
+// Handles the panel with buttons and lamps: reads the digital inputs for the loop, and sets the digital
+// outputs according to the state of the loop.
 
 #include <array>
 #include <atomic>
@@ -20,11 +20,12 @@ namespace softgrip::daemon {
 /// takes milliseconds, which is too long for a tick or an exchange. The thread waits for an edge, and also
 /// reads the levels every `look_interval_s`. The loop gets two flags and the time of the last read.
 ///
-/// If pressure is on although nothing moves, the active lamp blinks, 0.5 s on and 0.5 s off. This is the
-/// ready lamp of an idle rig, or the fault lamp of a faulted one.
+/// If fingers are pressurised although nothing moves, the active lamp blinks, 0.5 s on and 0.5 s off. This is
+/// the ready lamp of an idle rig, or the fault lamp of a faulted rig.
 ///
 /// The emergency stop counts as pressed at start-up. It counts as released after the loop has latched it and
-/// the line has been steadily released. Motion then still needs a reset (acknowledge).
+/// the line has been released for the debounce time without interruption. Before a motion, a reset
+/// (acknowledge) is still needed.
 class Panel {
  public:
   /// All references must outlive the object. Sets the inputs of `shared` to their values for unknown lines.
@@ -43,7 +44,8 @@ class Panel {
   /// Waits for an edge, at most until an action is due or the look interval is over, and then acts.
   void step() noexcept;
 
-  /// Switches the enable output and the ready lamp off permanently. Any thread; safe in a signal handler.
+  /// Switches the enable output and the ready lamp off permanently. May be called in any thread and in a
+  /// signal handler.
   void drop() noexcept;
 
  private:
@@ -67,9 +69,9 @@ class Panel {
   Nanoseconds stale_after_;
   std::optional<TripInput> emergency_stop_;
   std::optional<TripInput> part_;
-  bool latched_ = false;  // the loop has latched the emergency stop of the start-up
+  bool latched_ = false;  // the loop has latched the emergency stop that counts as pressed at start-up
   bool lost_ = false;
-  std::uint64_t ticks_ = 0;  // ticks of the loop, and since when they have not changed
+  std::uint64_t ticks_ = 0;  // number of ticks of the loop, unchanged since ticked_
   Nanoseconds ticked_ = 0;
   bool hung_ = false;
   std::array<std::optional<bool>, drivers::gpio_role_count> written_{};

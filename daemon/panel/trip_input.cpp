@@ -19,7 +19,7 @@ void TripInput::change(bool trips, Nanoseconds at) noexcept {
   known_ = true;
   asks_ = trips;
   since_ = at;
-  // Any edge on a clear line is suspicious, even an edge whose partner is missing.
+  // Any edge on a clear line makes the line suspect, even if the opposite edge is missing.
   if (suspect_ == never) suspect_ = at;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
-// An input that stops the rig: trips if the level is doubtful, clears only after the level has been steady.
+// An input that stops the rig. It trips if the level is doubtful, and clears only after the level has been
+// steady.
 
 #include "base/periodic_schedule.h"
 
@@ -22,7 +23,8 @@ class TripInput {
   void level(bool trips, Nanoseconds now) noexcept;
 
   [[nodiscard]] bool tripped() const noexcept { return tripped_; }
-  /// Returns the time of the next call of level() if nothing else happens; very late if nothing is pending.
+  /// Returns the time at which level() must be called next if no edge arrives; INT64_MAX if no change is
+  /// pending.
   [[nodiscard]] Nanoseconds due() const noexcept;
 
  private:
@@ -32,10 +34,11 @@ class TripInput {
 
   Nanoseconds debounce_;
   bool tripped_ = true;
-  bool known_ = false;           // the level was read
+  bool known_ = false;           // the level has been read at least once
   bool asks_ = true;             // the line is at its trip level ...
   Nanoseconds since_ = 0;        // ... and has been steady since this time
-  Nanoseconds suspect_ = never;  // while clear: time since when it has not been steadily clear
+  Nanoseconds suspect_ = never;  // while the input is clear: time of the first change since the line was last
+                                 // steady
 };
 
 }  // namespace softgrip::daemon

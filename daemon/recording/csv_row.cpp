@@ -19,7 +19,7 @@ constexpr std::string_view columns =
     "deficit_mm,"  // words-ok: a documented column
     "age_s,state,step,validity,result,saturated,slewing";
 constexpr std::string_view pressure_column = "pressure_kpa,", temperature_column = "temperature_c,";
-/// Length of all words in a row except numbers and the channel's name.
+/// Largest total length of the words in a row, without the numbers and the channel's name.
 constexpr std::size_t longest_words = 128;
 
 /// The texts "00" to "99".
@@ -32,7 +32,7 @@ constexpr std::array<char, 200> digit_pairs = [] {
   return pairs;
 }();
 
-/// Writes `digits` decimals of `fraction` without trailing zeros; nothing for 0.
+/// Writes `digits` decimals of `fraction` without trailing zeros. Writes nothing if `fraction` is 0.
 template <int digits>
 char* write_fraction(char* to, std::uint64_t fraction) noexcept {
   static_assert(digits % 2 == 0);

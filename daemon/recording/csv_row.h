@@ -13,10 +13,10 @@ namespace softgrip::daemon {
 /// Length of the longest text of write_decimal().
 inline constexpr std::size_t longest_decimal = 32;
 
-/// Writes a number with at most six decimals, without trailing zeros, and returns the end. A nanometre or a
-/// millipascal is far below the resolution of any sensor of a rig, and this takes a quarter of the time of a
-/// shortest round-trip text. Writes nothing for a number that is not finite. Above 1e12 it uses the shortest
-/// round-trip form.
+/// Writes a number with at most six decimals, without trailing zeros, and returns the end of the text. A
+/// nanometre or a millipascal is far below the resolution of any sensor of a rig. Six decimals take a quarter
+/// of the time of a shortest round-trip text. Writes nothing for a number that is not finite. Above 1e12, the
+/// number is written as the shortest round-trip text.
 [[nodiscard]] char* write_decimal(char* to, double value) noexcept;
 
 /// Writes nanoseconds as seconds, exactly and without trailing zeros.
@@ -25,8 +25,8 @@ inline constexpr std::size_t longest_decimal = 32;
 /// The rows of one recording. Columns: see docs/reference/recording.md.
 class CsvRows {
  public:
-  /// `with_pressure`: adds the column of the measured pressure, because a channel measures it;
-  /// `with_temperature` likewise for the temperature.
+  /// `with_pressure`: adds the column of the measured pressure, for rigs that measure it. `with_temperature`:
+  /// adds the column of the temperature.
   CsvRows(std::vector<std::string> channel_names, bool with_pressure, bool with_temperature = false);
 
   [[nodiscard]] std::string header() const;

@@ -66,7 +66,7 @@ EventEntry entry_of(const Table& table, Which which) {
 
 using Sequence = control::PreparedSequence;
 
-/// Returns the remaining cause of a refused reset.
+/// Returns the cause because of which a reset was refused.
 control::FaultCode refused_because_of(const Event& event) {
   return static_cast<control::FaultCode>(static_cast<std::uint16_t>(event.value));
 }
@@ -317,7 +317,8 @@ std::string_view name_of(Severity severity) noexcept {
 std::uint64_t EventLog::add(EventEntry entry) {
   const std::scoped_lock lock(mutex_);
   entry.id = ++last_id_;
-  // Clients choose the names of sequences. A count per name would grow without limit.
+  // Clients choose the names of sequences, so these codes are not counted separately: the number of counts
+  // would grow without limit.
   const bool named = entry.kind == "sequence_started" || entry.kind == "step_started";
   ++counts_[{entry.kind, named ? std::string() : entry.code, entry.channel}];
   entries_.push_back(std::move(entry));
@@ -328,7 +329,7 @@ std::uint64_t EventLog::add(EventEntry entry) {
 std::vector<EventEntry> EventLog::since(std::uint64_t id, std::size_t limit) const {
   const std::scoped_lock lock(mutex_);
   if (id >= last_id_) return {};
-  // The ids are consecutive.
+  // The ids of the stored events are consecutive.
   const std::uint64_t known = last_id_ - entries_.size();
   const auto first = entries_.begin() + static_cast<std::ptrdiff_t>(std::max(id, known) - known);
   const auto count = std::min<std::size_t>(limit, static_cast<std::size_t>(entries_.end() - first));

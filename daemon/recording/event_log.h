@@ -1,5 +1,5 @@
 #pragma once
-// Texts of events for the socket API, the recordings and the log.
+// Describes events for the socket API, the recordings and the log, and stores them.
 
 #include <cstddef>
 #include <cstdint>
@@ -23,15 +23,16 @@ enum class Severity : std::uint8_t { information, warning, error };
 struct EventEntry {
   std::uint64_t id = 0;  ///< from 1, without gaps
   double time_s = 0;     ///< since the start of the daemon or of the recording
-  std::string kind;      ///< "fault_latched", "bus_failed", ...; a contract
+  std::string kind;      ///< "fault_latched", "bus_failed", ...; clients may depend on these names
   Severity severity = Severity::information;
   std::string channel;        ///< name of the channel; empty for the complete rig
-  std::string code;           ///< "F101", "R02", "HOLDING", a state, a step; by kind; may be empty
+  std::string code;           ///< depends on the kind: "F101", "R02", "HOLDING", a state, a step; may be
+                              ///< empty
   std::string text;           ///< one sentence
-  std::uint32_t request = 0;  ///< the request that it answers, or 0
+  std::uint32_t request = 0;  ///< id of the request that the event answers, or 0
   std::string client;         ///< name of the client that made the request; empty: unknown
-  double value = 0;           ///< a related number, or 0
-  std::vector<control::Argument> parameters;  ///< of sequence_started: the values of the sequence
+  double value = 0;           ///< a number that belongs to the event, or 0
+  std::vector<control::Argument> parameters;  ///< for sequence_started: the values of the parameters
 };
 
 /// Describes an event of the controller. The caller sets `time_s` and `id`. `sequence` is the running or
@@ -45,12 +46,13 @@ struct EventEntry {
 /// Returns "information", "warning" or "error".
 [[nodiscard]] std::string_view name_of(Severity severity) noexcept;
 
-/// Returns "F202 reading_out_of_range of left"; without a finger if it concerns the complete rig.
+/// Returns "F202 reading_out_of_range of left", or only the code and the name if the fault concerns the
+/// complete rig.
 [[nodiscard]] std::string title_of(const control::Fault& fault,
                                    const std::vector<std::string>& channel_names);
 
-/// Returns the meaning of a refusal and its remedy, as sentences. `cause`: for cause_persists, the remaining
-/// cause.
+/// Returns the meaning of a refusal and its remedy, as sentences. For the refusal cause_persists, `cause` is
+/// the cause that is still present.
 [[nodiscard]] std::string sentences_of(control::RefusalCode refusal, const control::Fault& cause,
                                        const std::vector<std::string>& channel_names);
 

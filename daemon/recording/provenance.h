@@ -21,13 +21,13 @@ struct Provenance {
   std::string rig;  ///< name of the rig
   std::vector<SourceFile> files;
   std::vector<std::string> channel_names;
-  bool simulated = false;          ///< without a board: fingers, valves and sensors are simulated
-  bool measures_pressure = false;  ///< a channel measures its pressure
+  bool simulated = false;          ///< there is no board: fingers, valves and sensors are simulated
+  bool measures_pressure = false;  ///< at least one channel has a measured pressure
   bool measures_temperature = false;
   double rate_hz = 0;
   std::uint32_t decimation = 1;
-  std::optional<std::uint64_t> seed;  ///< of a simulated board
-  bool virtual_time = false;          ///< a recording then contains no wall-clock time
+  std::optional<std::uint64_t> seed;  ///< seed of a simulated board
+  bool virtual_time = false;          ///< true: a recording contains no wall-clock time
 };
 
 }  // namespace softgrip::daemon

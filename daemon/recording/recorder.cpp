@@ -75,8 +75,8 @@ void Recorder::drain() {
     for (std::size_t i = 0; i < count; ++i) take(batch_[i]);
     if (recording_ && recording_->text.size() >= text_bytes) flush(false);
   }
-  // In virtual time, hours pass in seconds and there are no live readers, so the kernel gets complete
-  // buffers.
+  // In virtual time, hours pass in seconds, and no program reads the file while it grows. The kernel
+  // therefore gets complete buffers only.
   if (recording_ && !provenance_.virtual_time) flush(false);
   show();
 }
@@ -254,7 +254,7 @@ void Recorder::end(const char* state) {
 }
 
 void Recorder::block() {
-  // The folder of the user exists already, so a second attempt would fail with the same error.
+  // The user's folder exists already, so a second attempt would fail with the same error.
   blocked_ = only_folder_.empty() ? now_ + retry_pause : std::numeric_limits<Nanoseconds>::max();
 }
 

@@ -25,18 +25,18 @@ struct RecorderStatus {
   bool active = false;
   std::string folder;  ///< folder of the present or last recording; empty before the first
   std::uint64_t rows = 0;
-  std::uint64_t dropped_rows = 0;  ///< since the daemon's start
+  std::uint64_t dropped_rows = 0;  ///< rows that were lost since the daemon's start
   std::string error;               ///< error of the present or last recording
 };
 
 /// Decides when recordings start and end, and writes them. A recording starts with a sequence and ends 0.5 s
-/// after its motion. A fault outside a sequence gets its own recording, which starts history_s before it. A
-/// disk error is reported as an event and ends that recording; the next one is tried again. All calls except
-/// status() come from one thread.
+/// after its motion. A fault outside a sequence gets its own recording, which starts history_s before the
+/// fault. A disk error is reported as an event and ends the recording. A new recording is tried after a
+/// pause. All calls except status() come from one thread.
 class Recorder {
  public:
-  /// `only_folder`: if it is not empty, all data are recorded in this folder from start to stop, in each
-  /// mode. `origin`: time 0 of the event log. All references must outlive the recorder.
+  /// `only_folder`: if it is not empty, all data are recorded in this folder from start to stop, for every
+  /// recording mode. `origin`: time 0 of the event log. All references must outlive the recorder.
   Recorder(const rig::RecorderSettings& settings, const Provenance& provenance, std::string only_folder,
            Nanoseconds origin, SharedState& shared, EventLog& events, const SequenceStore& sequence_store);
   Recorder(const Recorder&) = delete;
@@ -45,7 +45,8 @@ class Recorder {
   Recorder& operator=(Recorder&&) = delete;
   ~Recorder();
 
-  /// Reads the ring and passes the rows to the kernel. Must be called at least every flush_interval_s.
+  /// Reads the new rows and events of the loop and passes the rows to the kernel. Must be called at least
+  /// every flush_interval_s.
   void drain();
   /// Calls drain() and ends the recording.
   void finish();
@@ -81,8 +82,8 @@ class Recorder {
   Nanoseconds origin_;
   SharedState& shared_;
   Broadcast<StampedEvent>::Reader loop_events_;
-  std::optional<StampedEvent> waiting_;  // newer than the newest row
-  std::uint64_t events_lost_ = 0;        // number of lost events that was reported
+  std::optional<StampedEvent> waiting_;  // an event that is newer than the newest row
+  std::uint64_t events_lost_ = 0;        // number of lost events at the last report
   EventLog& events_;
   const SequenceStore& sequence_store_;
   CsvRows rows_;

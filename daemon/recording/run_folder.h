@@ -10,8 +10,8 @@
 namespace softgrip::daemon {
 
 /// Returns a sentence if `path` already holds a recording, because a recording is never overwritten. Returns
-/// an empty string if a run may be recorded there, or if `path` is empty. It permits a check before any
-/// motion.
+/// an empty string if a run may be recorded in `path`, or if `path` is empty. The caller can thus check the
+/// folder before any motion.
 [[nodiscard]] std::string recorded_already(const std::string& path);
 
 /// Writes a recording and handles errors of the disk. After the first failed write of run.csv it writes no
@@ -31,8 +31,8 @@ class RunFolder {
   ~RunFolder();
 
   [[nodiscard]] const std::string& path() const noexcept { return path_; }
-  /// Passes complete lines to the kernel, so that a kill of the process does not lose them. False after a
-  /// failure.
+  /// Passes complete lines to the kernel, so that they are not lost if the process is killed. Returns false
+  /// after a failure.
   bool append(std::string_view lines);
   /// Waits until the appended lines are on the disk.
   bool sync();

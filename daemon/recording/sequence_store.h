@@ -15,12 +15,12 @@ namespace softgrip::daemon {
 struct LoadedSequence {
   control::Sequence written;
   control::PreparedSequence prepared;
-  std::string sha256;          ///< of the text
+  std::string sha256;          ///< hash of the text of the sequence
   document::Problems remarks;  ///< warnings only: differences between the file and the motion
 };
 
-/// Sequences by the number of the request that starts them. The loop has a plain pointer to an entry. The
-/// entry remains until its request was refused, or until its run has ended and has been recorded.
+/// Stores sequences by the number of the request that starts them. The loop has a plain pointer to an entry.
+/// The entry remains until its request was refused, or until its run has ended and has been recorded.
 class SequenceStore {
  public:
   void put(std::uint32_t request, std::shared_ptr<const LoadedSequence> sequence);

@@ -34,7 +34,8 @@ namespace {
 /// Prefix of an IPv4 address in IPv6 notation.
 constexpr std::array<unsigned char, 12> mapped_prefix{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0xff, 0xff};
 
-/// Returns a normal form: "::1" and "0:0::1" are the same board, and so are "::ffff:10.0.0.5" and "10.0.0.5".
+/// Returns the normal form of an address, because "::1" and "0:0::1" are the same board, and so are
+/// "::ffff:10.0.0.5" and "10.0.0.5".
 std::string numeric(const std::string& host) {
   std::array<unsigned char, sizeof(in6_addr)> address{};
   std::array<char, INET6_ADDRSTRLEN> text{};
@@ -61,7 +62,7 @@ std::string name_of(const drivers::ModbusAddress& link, std::uint8_t unit) {
   return "serial " + real_path(std::get<drivers::SerialLine>(link).device);
 }
 
-/// Returns the same name for all words of a converter.
+/// Returns a name for a converter. The name does not depend on the word with which the rig file selects it.
 std::string name_of(const std::vector<ComputerDevice>& there, const std::string& word,
                     const std::string& root) {
   const auto device = only_device(there, word, "converter");
@@ -96,7 +97,7 @@ std::string taken(const std::string& board, pid_t process) {
       board, in_brackets(process));
 }
 
-/// Returns the state of a process as in /proc: R, S, D, T ...; nothing if it is not visible.
+/// Returns the state of a process as in /proc: R, S, D, T ...; returns nothing if the process is not visible.
 std::optional<char> state_of(pid_t process) {
   std::ifstream file(fmt::format("/proc/{}/stat", process));
   std::string text;
@@ -106,7 +107,7 @@ std::optional<char> state_of(pid_t process) {
   return text[name_end + 2];
 }
 
-/// Returns true if the process is stopped, dead or blocked in a system call, so that it drives nothing.
+/// Returns true if the process is stopped, dead or blocked in a system call, so that it cannot drive a board.
 bool stands_still(pid_t process) {
   constexpr int looks = 5;
   constexpr Nanoseconds pause = 50'000'000;
@@ -118,7 +119,8 @@ bool stands_still(pid_t process) {
   return true;
 }
 
-/// Returns the process that locked the file, as it wrote it into the file; 0: unknown.
+/// Returns the process that locked the file. The process has written its id into the file. Returns 0 if it is
+/// unknown.
 pid_t holder_of(int file) {
   std::array<char, 16> text{};
   if (::pread(file, text.data(), text.size() - 1, 0) <= 0) return 0;
@@ -127,12 +129,13 @@ pid_t holder_of(int file) {
 
 void write_holder(int file) {
   const std::string text = std::to_string(::getpid()) + "\n";
-  // The number is used for messages only.
+  // The process id is used for messages only, so an error of the write is ignored.
   if (::ftruncate(file, 0) == 0) [[maybe_unused]]
     const ssize_t written = ::pwrite(file, text.data(), text.size(), 0);
 }
 
-/// Returns the holder of a name, or nothing if it cannot be seen: it does not listen, or its queue is full.
+/// Returns the process that holds the name of a socket. Returns nothing if the process is not visible because
+/// it does not listen, or because its queue is full.
 std::optional<Peer> holder_of(const sockaddr_un& address, socklen_t length) {
   // Between bind() and listen(), a softgrip program is not visible yet.
   constexpr int attempts = 5;
@@ -152,7 +155,7 @@ std::string standing_still(const std::string& board, pid_t process) {
                      in_brackets(process));
 }
 
-/// Returns the sentence for a holder that is ignored.
+/// Returns the sentence about a holder that is ignored.
 std::string without_right(const std::string& board, const std::optional<Peer>& holder) {
   if (holder && holder->trusted) return standing_still(board, holder->process);
   const std::string who =
@@ -191,7 +194,8 @@ LockedFile& LockedFile::operator=(LockedFile&& other) noexcept {
 }
 
 LockedFile::~LockedFile() {
-  // A program that has opened the file meanwhile detects by the name that it must open the new one.
+  // Another program may have opened the same file meanwhile. The missing name shows this program that it must
+  // create a new file.
   if (file_ && folder_->still_names(name_, file_.get())) folder_->remove(name_);
 }
 
@@ -212,7 +216,8 @@ tl::expected<void, std::string> BoardLock::add_file(const std::shared_ptr<const 
       remarks_.push_back(standing_still(board, process));
       return {};
     }
-    // A holder that ended between open() and flock() has removed the name.
+    // If the previous holder ended between open() and flock(), it has removed the name, and the file must be
+    // opened again.
     if (!folder->still_names(name, file->get())) continue;
     write_holder(file->get());
     files_.emplace_back(folder, name, std::move(*file));

@@ -1,10 +1,11 @@
 #pragma once
-// Ensures that one softgrip program drives a board: the program holds a lock, which ends with the process.
+// Ensures that only one softgrip program drives a board. The program holds a lock, which ends with the
+// process.
 //
 // The lock has two parts. The first is a locked file in the runtime folder, which only root and the service
-// can create. The second is the name of an abstract socket. It works also after the removal of the file, and
-// between the users of the service's group. Each user of the machine can bind such a name, so a holder counts
-// only if it is trusted (trusted_user.h).
+// can create. The second is the name of an abstract socket. This name also protects the board after the
+// removal of the file, and between the users of the service's group. Each user of the machine can bind such a
+// name, so the holder of the name is respected only if it is trusted (trusted_user.h).
 
 #include <cstdint>
 #include <memory>
@@ -19,8 +20,8 @@
 
 namespace softgrip::daemon {
 
-/// Returns the devices that a rig drives: "modbus 192.168.1.5 port 502 unit 1", a serial device or a
-/// converter by its real path; one entry each. The list is empty for a simulated board.
+/// Returns the names of the devices that a rig drives: "modbus 192.168.1.5 port 502 unit 1", or the real path
+/// of a serial device or a converter. The list is empty for a simulated board.
 [[nodiscard]] std::vector<std::string> driven_by(const rig::RigFile& rig);
 
 /// A file of the runtime folder that this process has locked. The destructor removes the file.
@@ -42,17 +43,17 @@ class LockedFile {
 /// The purpose of a lock.
 enum class LockPurpose : std::uint8_t {
   drive,
-  /// Safe outputs. They yield to another running softgrip program. They are written in spite of a lock that
-  /// cannot be created, or a holder that does not run (stopped, or blocked in a system call).
+  /// To write the safe outputs. This purpose yields to another softgrip program that runs. It ignores a lock
+  /// that cannot be created, and a holder that does not run (stopped, or blocked in a system call).
   vent,
 };
 
-/// The lock of this process until it ends in any way. It applies to the processes of one machine that share
-/// /run, and to those of one network namespace. Another machine on the same Modbus TCP board is detected on
-/// the network (F304).
+/// The lock on the boards of a rig. The process holds it until it ends in any way. The lock excludes other
+/// processes of the machine that share /run, and other processes of the network namespace. Another machine on
+/// the same Modbus TCP board is detected on the network (F304).
 class BoardLock {
  public:
-  /// Locks all boards of the rig. The error names the program that holds a lock, or the reason.
+  /// Locks all boards of the rig. The error names the program that holds a lock, or gives another reason.
   [[nodiscard]] static tl::expected<BoardLock, std::string> take(const rig::RigFile& rig,
                                                                  LockPurpose purpose = LockPurpose::drive);
 

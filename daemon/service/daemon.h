@@ -30,8 +30,10 @@ struct DaemonOptions {
   /// Runs without sleeping and without a clock: as fast as possible, with equal results for equal seeds.
   /// Requires a simulated board, and has no socket.
   bool virtual_time = false;
-  std::shared_ptr<const LoadedSequence> sequence;  ///< started when the rig is idle; run() ends after it
-  std::optional<double> duration_s;  ///< run() ends after this time; virtual time needs one of the two
+  std::shared_ptr<const LoadedSequence> sequence;  ///< sequence that is started when the rig is idle; run()
+                                                   ///< ends after it
+  std::optional<double> duration_s;  ///< run() ends after this time; virtual time needs a sequence or a
+                                     ///< duration
   std::string record_folder;         ///< all data are recorded in this folder
   bool listen = true;                ///< opens the socket of the rig file
   /// Opens the digital lines; if empty, the GPIO chips of this machine are used.
@@ -47,10 +49,10 @@ struct DaemonOptions {
 
 /// The reason why run() ended.
 enum class Ending : std::uint8_t {
-  asked,              ///< by a signal, or after the duration; without a sequence
-  interrupted,        ///< by a signal or the duration, before the sequence had ended
+  asked,              ///< a signal or the duration ended a run without a sequence
+  interrupted,        ///< a signal or the duration ended the run before its sequence had ended
   sequence_ended,     ///< see Outcome::sequence_end
-  sequence_refused,   ///< by the state of the rig
+  sequence_refused,   ///< the state of the rig did not permit the start
   not_idle,           ///< the rig did not become idle, so the sequence was not started
   real_time_refused,  ///< `real_time: required: true`, and a setting could not be verified
   socket_failed,      ///< the socket could not be opened
@@ -68,20 +70,22 @@ struct Outcome {
   std::optional<control::SequenceEnd> sequence_end;
   Snapshot last;  ///< the last tick
   std::vector<std::string> channel_names;
-  std::string recording_error;        ///< reason why record_folder is incomplete; empty: it is complete
+  std::string recording_error;        ///< reason why record_folder is incomplete; empty if it is complete
   bool safe_state_confirmed = false;  ///< the board confirmed the safe outputs at the end
-  bool pressure_left_on = false;      ///< control::pressed() of the safe output of a channel
-  double vents_after_s = 0;           ///< time until the watchdog vents the remaining pressure [s]; 0: never
+  bool pressure_left_on = false;      ///< the safe output of at least one channel is under pressure
+                                      ///< (control::pressed())
+  double vents_after_s = 0;           ///< time until the board's watchdog vents the remaining pressure [s];
+                                      ///< 0: never
   int signal = 0;  ///< the first signal that requested the end, before the outputs were safe; 0: none
   std::uint64_t ticks = 0;
   std::uint64_t overruns = 0;
   double wall_s = 0;  ///< duration of the run
 };
 
-/// Returns false if run() ended before the board was opened. Its outputs are then unknown.
+/// Returns false if run() ended before the board was opened. The outputs of the board are then unknown.
 [[nodiscard]] bool reached_the_board(Ending ending) noexcept;
 
-/// Returns the exit code 0, 1, 3, 4, 5 or 6, as in the manual.
+/// Returns the exit code 0, 1, 3, 4, 5 or 6. The manual describes these codes.
 [[nodiscard]] ExitCode exit_code_of(const Outcome& outcome) noexcept;
 
 /// Creates the board of a rig file, not yet connected. `clock` must outlive the board.
@@ -115,7 +119,7 @@ class Daemon {
 
 /// Creates a daemon and runs it to its end. The error is that of Daemon::create().
 [[nodiscard]] tl::expected<Outcome, std::string> run_daemon(rig::RigFile rig, DaemonOptions options);
-/// run_daemon(), or the replacement of a test.
+/// A function with the effect of run_daemon(). Tests replace it.
 using DaemonRunner =
     std::function<tl::expected<Outcome, std::string>(rig::RigFile rig, DaemonOptions options)>;
 

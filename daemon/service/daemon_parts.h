@@ -1,5 +1,5 @@
 #pragma once
-// The parts of Daemon that both kinds of run use.
+// The parts of Daemon that runs in real time and runs in virtual time share.
 
 #include <memory>
 #include <optional>
@@ -57,7 +57,7 @@ struct DaemonParts {
   std::uint64_t delivered = 0;  // id of the last event passed to on_event
 };
 
-/// Updates the result from the one-shot run, finished or not.
+/// Updates the result from the one-shot run, which may have finished or not.
 void conclude_one_shot_run(const OneShotRun& one_shot_run, Outcome& outcome);
 
 /// Runs ticks as fast as possible in this thread only.

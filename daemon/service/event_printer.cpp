@@ -32,7 +32,8 @@ spdlog::level::level_enum level_of(Severity severity) {
   return spdlog::level::info;
 }
 
-/// Longest time that a blocked reader of the standard error may delay a line, once [ms].
+/// Longest time for which a line waits for a blocked reader of the standard error [ms]. Later lines do not
+/// wait.
 constexpr int patience_ms = 200;
 
 /// The standard error, whose reader may be blocked. A line that cannot be written is dropped, so that the
@@ -57,7 +58,8 @@ class StandardError final : public spdlog::sinks::base_sink<std::mutex> {
            : level == spdlog::level::warn ? "\033[33m\033[1m"
                                           : "\033[32m";
   }
-  /// A pipe that is ready accepts a complete line, so this does not wait.
+  /// Writes a line if the pipe is ready. A pipe that is ready accepts a complete line, so the write does not
+  /// wait.
   void write(const std::string& line) {
     pollfd ready{STDERR_FILENO, POLLOUT, 0};
     const bool writable = ::poll(&ready, 1, blocked_ ? 0 : patience_ms) > 0;
@@ -76,7 +78,8 @@ class StandardError final : public spdlog::sinks::base_sink<std::mutex> {
 EventPrinter::EventPrinter(bool beside) {
   auto sink = std::make_shared<StandardError>();
   if (beside) {
-    // The writer's thread blocks all signals: a signal in it would end the process without the safe outputs.
+    // A signal in the thread of the writer would end the process without the safe outputs, so this thread
+    // blocks all signals.
     sigset_t all;
     sigset_t before;
     sigfillset(&all);

@@ -17,12 +17,13 @@ class thread_pool;
 
 namespace softgrip::daemon {
 
-/// Not used in the loop. If events of one kind come faster than 20 in 10 s, they are counted instead of
-/// printed.
+/// Prints events and reports. The loop does not use this class. If events of one kind come faster than 20 in
+/// 10 s, they are counted instead of printed.
 class EventPrinter {
  public:
-  /// `beside`: a thread of the printer writes the lines, so that a blocked reader cannot delay the caller;
-  /// the oldest lines are lost in this case. Otherwise each line is written before the call returns.
+  /// `beside`: a thread of the printer writes the lines, so that a blocked reader cannot delay the caller. If
+  /// too many lines wait for the reader, the oldest are lost. If `beside` is false, each line is written
+  /// before the call returns.
   explicit EventPrinter(bool beside);
 
   void print(const EventEntry& event);

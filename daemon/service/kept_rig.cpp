@@ -32,8 +32,8 @@ std::string name_of(const std::string& config) {
   return "rig-" + sha256(absolute(config)) + ".json";
 }
 
-/// Returns the folder if a restart of the machine removes it, because the state of the boards is unknown
-/// then.
+/// Returns the runtime folder. Returns nothing if a restart of the machine does not remove this folder,
+/// because the state of the boards is unknown after a restart.
 std::optional<RuntimeFolder> folder() {
   auto opened = RuntimeFolder::open();
   if (!opened || !opened->ends_with_the_machine()) return std::nullopt;

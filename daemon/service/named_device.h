@@ -16,8 +16,8 @@ struct NamedDevice {
   std::vector<std::string> written;  ///< attributes of a converter that the daemon writes: out_voltage0_raw
 };
 
-/// Returns nothing for a device that the rig file does not name. `device`: name in the kernel, gpiochip0 or
-/// iio:device0. `chips`: folder of the GPIO chips' files.
+/// Returns the parts of `device` that the rig uses, or nothing if the rig file does not name this device.
+/// `device`: name in the kernel, gpiochip0 or iio:device0. `chips`: folder of the GPIO chips' files.
 [[nodiscard]] std::optional<NamedDevice> named_device(const rig::RigFile& rig, const std::string& device,
                                                       const std::filesystem::path& chips = "/dev");
 

@@ -1,5 +1,5 @@
 #pragma once
-// The panel and its thread, from opening the lines to releasing them.
+// Runs the panel in its thread, from opening the digital lines to releasing them.
 
 #include <memory>
 #include <optional>
@@ -24,7 +24,7 @@ class PanelRun {
   PanelRun& operator=(PanelRun&&) = delete;
   ~PanelRun() { stop(); }
 
-  /// Requests the lines. If it fails, returns false and sets ending and message in `outcome`.
+  /// Requests the lines. If the request fails, returns false and sets ending and message in `outcome`.
   bool open(Outcome& outcome);
   /// Starts reading the lines. Adds the result of the thread's scheduling to `report`.
   void start(RealTimeReport& report);

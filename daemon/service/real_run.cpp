@@ -1,4 +1,4 @@
-// Runs in real time: the threads in the order in which they begin and end.
+// Runs the daemon in real time: starts its threads in order, and ends them in order.
 
 #include <algorithm>
 #include <atomic>
@@ -35,14 +35,14 @@ namespace {
 constexpr Nanoseconds longest_join = ns_per_s;
 /// Time between two checks of this thread [ns].
 constexpr Nanoseconds look_pause = ns_per_s / 20;
-/// Time for which loop and bus may stop beyond the rig file's limits before the service manager's watchdog is
-/// no longer fed. A machine that is busy for a moment must not restart the daemon [ns].
+/// Time for which loop and bus may stop beyond the limits of the rig file before the service manager's
+/// watchdog is no longer fed [ns]. A short overload of the machine must not restart the daemon.
 constexpr Nanoseconds heartbeat_patience = ns_per_s / 2;
-/// Longest time of one turn of the service thread: clients are not served meanwhile.
+/// Longest time of one turn of the service thread. No client is served during a turn.
 constexpr Nanoseconds service_patience = 2 * ns_per_s;
 /// Longest time for the recorder and the service thread to end after the outputs are safe.
 constexpr Nanoseconds longest_end = 3 * ns_per_s;
-/// Time between two turns of the service thread without a socket [ns].
+/// Time between two turns of the service thread if the daemon has no socket [ns].
 constexpr Nanoseconds service_pause = ns_per_s / 50;
 /// Time from the start of the threads to the first tick [ns].
 constexpr Nanoseconds lead_time = ns_per_s / 100;
@@ -84,7 +84,7 @@ class RealRun {
   void forget_if_rested();
   void start_threads();
   void start();
-  /// Handles exceptions of this thread: they are reported, and the run ends in order with all threads.
+  /// Catches exceptions of this thread. They are reported, and the run ends in order with all threads.
   void guarded(const std::function<void()>& action);
   void prepare(int priority, const char* who, RealTimeReport& report);
   void look_after();
@@ -158,7 +158,7 @@ void RealRun::loop_body() {
 }
 
 void RealRun::bus_body() {
-  // 1 lower than the loop, so that a late exchange does not delay a tick.
+  // The priority is 1 lower than that of the loop, so that a late exchange does not delay a tick.
   const int priority = parts_.rig.real_time.priority;
   prepare(priority > 1 ? priority - 1 : priority, "the bus", bus_report_);
   parts_.bus.run(PeriodicSchedule(start_ + parts_.bus_offset(), parts_.period()),
@@ -252,7 +252,7 @@ void RealRun::start() {
     outcome_.ending = Ending::real_time_refused;
     outcome_.message = "real_time is required, but a setting could not be verified";
   }
-  // A loop with a shutdown request before its first tick still sends the safe outputs.
+  // A loop that gets a shutdown request before its first tick still sends the safe outputs.
   if (outcome_.ending != Ending::asked) parts_.shared.shutdown_requested.store(true);
   start_ = parts_.clock.now() + lead_time;
   go_.count_down();
@@ -302,7 +302,7 @@ void RealRun::look_after() {
   }
 }
 
-/// A blocked thread cannot be joined, and without it no orderly end is possible.
+/// Ends the process at once. A blocked thread cannot be joined, so an orderly end is not possible.
 void RealRun::end_without(const char* hangs, ExitCode code) {
   parts_.tell("internal_error", Severity::error,
               fmt::format("{}; the process ends without waiting for it.", hangs));
@@ -363,7 +363,8 @@ void RealRun::note_and_keep(const BoardLock& lock) {
                   kept.error()));
 }
 
-/// While a finger may be pressurised, the safe outputs need the rig of this run.
+/// Removes the stored rig if all outputs are at rest. As long as a finger may be pressurised, the safe
+/// outputs need the rig of this run.
 void RealRun::forget_if_rested() {
   if (outcome_.safe_state_confirmed && !outcome_.pressure_left_on) forget_rig(parts_.rig.path);
 }

@@ -39,7 +39,7 @@ void make(const std::string& place) {
   const bool of_service = place == service_folder;
   if (::mkdir(place.c_str(), of_service ? 0755 : 0700) != 0 || !of_service) return;
   const std::optional<uid_t> user = service_user();
-  // A machine without this user has no service either: root keeps the folder.
+  // A machine without this user has no service either, so root remains the owner of the folder.
   if (user) [[maybe_unused]]
     const int given = ::chown(place.c_str(), *user, static_cast<gid_t>(-1));
 }

@@ -18,7 +18,7 @@ using drivers::BusStatus;
 
 namespace {
 
-/// Shorter than TimeoutStopSec= of the unit.
+/// Longest time of the attempt. It is shorter than TimeoutStopSec= of the unit.
 constexpr std::chrono::nanoseconds unit_patience = std::chrono::seconds(8);
 constexpr int exchanges_that_confirm = 2;
 

@@ -1,5 +1,5 @@
 #pragma once
-// Receives signals by waiting for them instead of by interruption.
+// Receives signals in a waiting call instead of in a signal handler.
 
 #include <array>
 #include <csignal>

@@ -28,8 +28,6 @@ namespace {
 
 using namespace softgrip;
 
-// Exit codes of all programs of the project.
-
 struct Arguments {
   std::string config;
   std::string sequence;
@@ -85,7 +83,8 @@ void declare(CLI::App& program, Arguments& arguments) {
       "The configuration is read once; restart to change it.");
 }
 
-/// fmt::print() throws if nothing can be written, and the reason would be lost.
+/// Writes a message to the standard error. fmt::print() would throw if nothing can be written, and the
+/// message would be lost.
 void complain(const std::string& sentence) {
   std::fputs(("softgripd: " + sentence + "\n").c_str(), stderr);
 }
@@ -126,7 +125,8 @@ ExitCode end_of_safe_outputs(const daemon::SafeOutputsReport& report) {
   return daemon::exit_code_of(report.end);
 }
 
-/// Prefers the rig that the last softgripd read, because the rig file may be incomplete during an edit.
+/// Writes the safe outputs. Prefers the rig that the last softgripd read, because the rig file may be
+/// incomplete during an edit.
 ExitCode safe_outputs(const Arguments& arguments) {
   const char* result = std::getenv("SERVICE_RESULT");
   if (!daemon::safe_outputs_needed(result == nullptr ? "" : result)) {
@@ -217,12 +217,13 @@ int main(int argc, char** argv) {
     } catch (const CLI::ParseError& error) {
       return program.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::usage);
     }
-    // The other modes report by their exit code, not by their output.
+    // Only --check reports by its output. The other modes report by their exit code.
     const ExitCode code = arguments.safe_outputs      ? safe_outputs(arguments)
                           : arguments.check           ? with_output_checked(check(arguments), "softgripd")
                           : !arguments.device.empty() ? say_whether_named(arguments)
                                                       : run(arguments);
-    // A signal is the usual end of a daemon, but it interrupts a run with its own end.
+    // Without a sequence or a duration, a signal is the usual end of the daemon. Otherwise a signal
+    // interrupts the run.
     const bool has_an_end = !arguments.sequence.empty() || arguments.duration_s;
     if (has_an_end && ending_signal() != 0) end_by_signal(ending_signal());
     return static_cast<int>(code);

@@ -7,7 +7,7 @@ namespace softgrip::daemon {
 
 namespace {
 
-/// Ticks between two turns of recorder, service and events.
+/// Number of ticks between two calls of look(), which serves the recorder, the service and the events.
 constexpr std::uint64_t ticks_per_look = 64;
 
 void exchange(DaemonParts& parts, Nanoseconds due) {

@@ -40,7 +40,7 @@ constexpr std::string_view nested_key = "parameters";
 constexpr std::size_t most_parameters = 64;
 constexpr std::size_t longest_name = 64;
 
-/// Parses a flat JSON object. If it is not one, `problem` contains the reason.
+/// Parses a flat JSON object. If the line is not a flat JSON object, `problem` contains the reason.
 SortedJson parse_object(std::string_view line, std::string& problem) {
   std::array<std::vector<std::string>, 2> keys;  // keys of the object, and of the nested object
   const auto look = [&](int depth, SortedJson::parse_event_t event, SortedJson& parsed) {
@@ -62,7 +62,7 @@ SortedJson parse_object(std::string_view line, std::string& problem) {
   return object;
 }
 
-/// Removes keys from the object while reading, so that the remaining keys are unknown.
+/// Reads the keys of an object and removes each key that was read, so that the remaining keys are unknown.
 class Reader {
  public:
   explicit Reader(SortedJson& object) : object_(object) {}
@@ -96,7 +96,7 @@ class Reader {
     }
     value = given.get<std::string>();
   }
-  /// The text appears in events and logs.
+  /// Reads a name. It may not contain control characters, because it appears in events and logs.
   void name(const char* key, std::string& value) {
     text(key, value);
     const bool printable = std::none_of(value.begin(), value.end(), [](char letter) {
@@ -142,7 +142,8 @@ class Reader {
   }
 
  private:
-  /// Returns null if the key is absent. A key with the value null is an error.
+  /// Removes a key and returns its value. Returns null if the key is absent. A key with the value null is an
+  /// error.
   SortedJson take(const char* key) {
     const auto found = object_.find(key);
     if (found == object_.end()) return nullptr;

@@ -27,7 +27,7 @@ Failure failure(const std::string& path, std::string_view what) {
   return Failure(fmt::format("{}: {}: {}", path, what, std::strerror(errno)));
 }
 
-/// Returns an empty value if the path is too long for a socket.
+/// Returns the address of a socket file. Returns an empty value if the path is too long for a socket.
 std::optional<sockaddr_un> address_of(const std::string& path) {
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
@@ -36,7 +36,7 @@ std::optional<sockaddr_un> address_of(const std::string& path) {
   return address;
 }
 
-/// Returns true if a program listens there; otherwise errno states the reason.
+/// Returns true if a program listens at the address; otherwise errno gives the reason.
 bool answers(const sockaddr_un& address) {
   const Descriptor probe(socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
   const auto* generic = reinterpret_cast<const sockaddr*>(&address);
@@ -46,7 +46,8 @@ bool answers(const sockaddr_un& address) {
 /// Removes the file of a daemon that has ended. Returns false if a daemon responds.
 bool clear_away(const sockaddr_un& address) {
   if (answers(address)) return false;
-  // A file that is not a socket also refuses a connection. It remains, and bind() reports that it exists.
+  // A connection to a file that is not a socket is refused too. Such a file remains, and bind() reports that
+  // it exists.
   struct stat status {};
   const bool refused = errno == ECONNREFUSED;
   if (refused && lstat(address.sun_path, &status) == 0 && S_ISSOCK(status.st_mode)) unlink(address.sun_path);

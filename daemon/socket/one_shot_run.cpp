@@ -8,7 +8,8 @@ namespace softgrip::daemon {
 
 namespace {
 
-/// Time after the end of the sequence, because a recording ends half a second after the motion [ns].
+/// Time for which the run continues after the sequence, because a recording ends half a second after the
+/// motion [ns].
 constexpr Nanoseconds tail = ns_per_s;
 
 bool at_rest(control::State state) noexcept {

@@ -16,23 +16,24 @@ class OneShotRun {
  public:
   enum class State : std::uint8_t {
     waiting,  ///< waits until the rig is idle
-    asked,    ///< the start was requested from the loop
+    asked,    ///< the start was passed to the loop
     running,
     ended,
-    refused,   ///< by the state of the rig; see refusal()
+    refused,   ///< the state of the rig did not permit the start; see refusal()
     not_idle,  ///< the rig did not become idle in time
   };
 
-  /// `patience`: longest time until the rig must be idle [ns].
+  /// `patience`: longest wait for an idle rig [ns].
   OneShotRun(std::shared_ptr<const LoadedSequence> sequence, Nanoseconds patience);
 
-  /// Must be called periodically by the thread that calls the service, after its pump().
+  /// Performs the next action that is due. Must be called periodically by the thread that calls the service,
+  /// after Service::pump().
   void step(Service& service, Nanoseconds now);
 
   [[nodiscard]] State state() const noexcept { return state_; }
   [[nodiscard]] bool over() const noexcept { return state_ >= State::ended; }
   [[nodiscard]] control::RefusalCode refusal() const noexcept { return refusal_; }
-  /// Returns the end of the sequence after it has ended.
+  /// Returns the way in which the sequence ended; nothing before its end.
   [[nodiscard]] std::optional<control::SequenceEnd> end() const noexcept { return end_; }
 
  private:

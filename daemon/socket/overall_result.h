@@ -8,9 +8,9 @@
 
 namespace softgrip::daemon {
 
-/// Returns the result for the fingers in `members` (bit i: results[i]). It is the worst one of error,
-/// part_lost and no_part if any finger has it; otherwise the result that all fingers share; otherwise none.
-/// The result is also `none` without members.
+/// Returns the result for the fingers in `members` (bit i: results[i]). If any finger has error, part_lost or
+/// no_part, the result is the first of these three that occurs. Otherwise it is the result that all fingers
+/// share. It is `none` if they share no result, or if `members` is 0.
 [[nodiscard]] control::GripResult overall_result(std::span<const control::GripResult> results,
                                                  std::uint32_t members) noexcept;
 

@@ -17,18 +17,18 @@
 
 namespace softgrip::daemon {
 
-/// Returns null if the client gave no id.
+/// Returns the id as JSON, or null if the client gave no id.
 [[nodiscard]] nlohmann::ordered_json id_json(std::optional<std::uint64_t> id);
 [[nodiscard]] nlohmann::ordered_json error_json(std::string_view code, std::string_view message);
 [[nodiscard]] nlohmann::ordered_json problems_json(const std::vector<document::Problem>& problems);
 [[nodiscard]] nlohmann::ordered_json sequences_json(const std::vector<SequenceLoader::Listed>& sequences);
-/// Describes the sequence of a start that was only checked.
+/// Describes a sequence for the reply to a start that was only checked.
 [[nodiscard]] nlohmann::ordered_json checked_json(const LoadedSequence& sequence);
 
 /// The data of a reply to hello.
 struct Greeting {
   std::string_view software_version;
-  std::string_view started_at;  ///< start time of the daemon, UTC, for the event ids
+  std::string_view started_at;  ///< start time of the daemon, UTC; the event ids belong to it
   Role role = Role::look;
   std::string_view client;  ///< name that the client gave
   double longest_answer_s = 0;
@@ -36,7 +36,8 @@ struct Greeting {
 [[nodiscard]] nlohmann::ordered_json hello_json(const Greeting& greeting,
                                                 const rig::SocketSettings& settings);
 
-/// Returns the line that refuses a client before its first request, or a line that cannot be parsed.
+/// Returns the reply for a client that is refused before its first request, or for a line that cannot be
+/// parsed.
 [[nodiscard]] std::string error_line(std::optional<std::uint64_t> id, std::string_view code,
                                      std::string_view message);
 

@@ -1,5 +1,6 @@
 #pragma once
-// Defines the permissions of a client of the socket API, by the socket of its connection.
+// Defines the permissions of a client of the socket API. They depend on the socket to which the client is
+// connected.
 
 #include <cstdint>
 #include <string_view>
@@ -7,8 +8,8 @@
 namespace softgrip::daemon {
 
 enum class Role : std::uint8_t {
-  look,     ///< `socket: look:` of the rig file
-  operate,  ///< `socket: path:`
+  look,     ///< read-only; socket `socket: look:` of the rig file
+  operate,  ///< may move the gripper; socket `socket: path:`
 };
 /// Returns "look" or "operate".
 [[nodiscard]] constexpr std::string_view name_of(Role role) noexcept {

@@ -19,12 +19,12 @@ namespace softgrip::daemon {
 
 namespace {
 
-/// Longest delay of a start by planning without a message: a share of the motion, and a margin for machine
-/// load.
+/// If the planning of a sequence takes longer than this share of its motion plus this margin for machine
+/// load, the delay of a start is reported.
 constexpr double longest_planning_share = 0.1;
 constexpr double planning_slack_s = 0.2;
 
-/// Returns true for a name of a file directly in the directory that is not hidden.
+/// Returns true if `name` is the name of a visible file in the directory itself, not in a subdirectory.
 bool is_plain_name(const std::string& name) {
   return !name.empty() && name.front() != '.' && name.find('/') == std::string::npos &&
          name.find('\0') == std::string::npos;
@@ -32,7 +32,7 @@ bool is_plain_name(const std::string& name) {
 
 constexpr std::string_view ending = ".yaml";
 
-/// Returns the most similar name, or the list of names.
+/// Returns a hint with the most similar name, or with the list of names.
 std::string hint_of(const std::string& name, const std::string& directory,
                     const std::vector<std::string>& names) {
   if (names.empty()) return fmt::format("there are no sequences in {}", directory);

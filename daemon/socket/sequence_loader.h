@@ -19,7 +19,7 @@ namespace softgrip::daemon {
 
 class SequenceLoader {
  public:
-  /// `directory`: folder of the names given by clients.
+  /// `directory`: folder with the sequences that clients start by name.
   SequenceLoader(control::RigSettings rig, std::string directory);
 
   // Loading is thread-safe. It takes up to 1 s for 10 s of planned motion (feedforward `planned`), and may
@@ -38,12 +38,12 @@ class SequenceLoader {
   [[nodiscard]] Result load_text(const std::string& name, const std::string& text, Arguments arguments = {},
                                  const std::stop_token& stop = {}) const;
 
-  /// A file of the directory, described without a rig.
+  /// A file of the directory, read without fitting it to a rig.
   struct Listed {
     std::string name;  ///< name for a start, without `.yaml`
     std::string about;
     std::vector<control::Parameter> parameters;
-    document::Problems problems;  ///< reasons why it cannot be started
+    document::Problems problems;  ///< reasons why the sequence cannot be started
   };
   /// Returns all sequences of the directory by name, at most `most_listed`. Reads their files, which may
   /// block on the disk.

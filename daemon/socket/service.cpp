@@ -14,7 +14,7 @@ using EventKind = control::Event::Kind;
 
 namespace {
 
-/// Number of requests whose clients' names are stored.
+/// Largest number of requests for which the name of the client is stored.
 constexpr std::size_t most_clients = 256;
 
 /// Returns the fault to which a reply refers.
@@ -144,7 +144,7 @@ void Service::take(const StampedEvent& stamped) {
     std::fill(results_.begin(), results_.end(), control::GripResult::none);
     overall_ = control::GripResult::none;
   }
-  // The loop does not use the sequence any more.
+  // The loop no longer uses the sequence.
   if (event.kind == EventKind::request_refused || event.kind == EventKind::start_checked)
     sequence_store_.drop(event.request);
   if (event.kind == EventKind::sequence_finished) {

@@ -1,5 +1,5 @@
 #pragma once
-// Passes requests to the loop and its events to all threads that are not real-time.
+// Passes requests to the loop, and the events of the loop to all threads that are not real-time.
 
 #include <cstdint>
 #include <map>
@@ -21,23 +21,23 @@ class Service {
   Service(std::vector<std::string> channel_names, Nanoseconds origin, SharedState& shared, EventLog& log,
           SequenceStore& sequence_store);
 
-  /// Passes a request to the loop. Returns its id, or an empty value if the loop has not taken the last ones
-  /// yet. Vent and stop have separate queues that are read before all others, and always return an id. If
-  /// their queue is full, it is the id of a waiting request with the same effect. `client` appears in the
-  /// resulting events; it may be empty.
+  /// Passes a request to the loop. Returns the id of the request, or an empty value if the queue is full
+  /// because the loop has not taken the earlier requests yet. Vent and stop have separate queues, which are
+  /// read before all others, and always return an id. If their queue is full, the id is that of a waiting
+  /// request with the same effect. `client` appears in the resulting events; it may be empty.
   std::optional<std::uint32_t> submit(control::Request::Kind kind,
                                       std::shared_ptr<const LoadedSequence> sequence = nullptr,
                                       const std::string& client = {});
 
-  /// Passes a stop of only the sequence that the request `start` began or will begin. Returns its id, or the
-  /// id of an earlier stop of the same start without a reply. Returns nothing if the loop has not read the
-  /// last ones yet.
+  /// Passes a request to stop only the sequence that the request `start` began or will begin. Returns the id
+  /// of this stop. If an earlier stop of the same start has no reply yet, returns the id of that stop
+  /// instead. Returns nothing if the queue is full because the loop has not taken the earlier requests yet.
   std::optional<std::uint32_t> submit_stop_of(std::uint32_t start, const std::string& client = {});
 
-  /// Moves the events of loop and bus into the log, and notes replies.
+  /// Moves the events of loop and bus into the log, and stores the replies of the loop.
   void pump();
 
-  /// Returns the loop's reply to a request. Each reply except `pending` is given once.
+  /// Returns the loop's reply to a request. Each reply except `pending` is returned only once.
   struct Answer {
     enum class Kind : std::uint8_t { pending, accepted, refused };
     Kind kind = Kind::pending;
@@ -57,19 +57,19 @@ class Service {
 
   /// Returns the running or last sequence; nullptr before the first.
   [[nodiscard]] const std::shared_ptr<const LoadedSequence>& sequence() const noexcept { return sequence_; }
-  /// Returns the request that started it, or 0.
+  /// Returns the request that started sequence(), or 0.
   [[nodiscard]] std::uint32_t sequence_request() const noexcept { return sequence_request_; }
 
-  /// Returns the client of a request. The text is empty if the client is unknown, or if too many requests
-  /// followed.
+  /// Returns the client of a request. The text is empty if the client is unknown. The name of a client is
+  /// forgotten after many newer requests.
   [[nodiscard]] std::string client_of(std::uint32_t request) const;
   /// Returns true if the request has started a sequence that has not ended.
   [[nodiscard]] bool runs(std::uint32_t request) const noexcept {
     return request != 0 && request == sequence_request_ && ending_.request != request;
   }
 
-  /// The first failure since the last successful exchange, or the reason why no session can be opened again:
-  /// the name of its BusStatus, and a sentence. Both are empty while the board responds.
+  /// The first failure since the last successful exchange, or the reason why no session can be opened again.
+  /// `kind` is the name of its BusStatus, and `text` is a sentence. Both are empty while the board responds.
   struct BusFailure {
     std::string kind;
     std::string text;
@@ -96,16 +96,16 @@ class Service {
   std::uint32_t last_request_ = 0;
   std::uint32_t last_vent_ = 0;
   std::uint32_t last_stop_ = 0;
-  std::map<std::uint32_t, Answer> answers_;          // of submitted requests whose reply was not read
-  std::map<std::uint32_t, std::uint32_t> stops_of_;  // by start: its stop without a reply
-  std::vector<control::GripResult> results_;         // by channel, for the sequence
+  std::map<std::uint32_t, Answer> answers_;          // replies by request, until they are taken
+  std::map<std::uint32_t, std::uint32_t> stops_of_;  // by start: the stop of this start that has no reply yet
+  std::vector<control::GripResult> results_;         // results by channel in the present sequence
   control::GripResult overall_ = control::GripResult::none;
   std::map<std::uint32_t, std::string> clients_;  // clients of the newest requests
   std::shared_ptr<const LoadedSequence> sequence_;
   std::uint32_t sequence_request_ = 0;
   Ending ending_;
   BusFailure bus_failure_;
-  std::uint64_t events_dropped_ = 0;  // number of lost events that was reported
+  std::uint64_t events_dropped_ = 0;  // number of lost events at the last report
 };
 
 }  // namespace softgrip::daemon

@@ -26,7 +26,8 @@ constexpr Nanoseconds longest_answer = ns_per_s;
 /// Longest interval between calls of on_time(), normally and while a client waits for the loop's reply.
 constexpr Nanoseconds longest_pause = ns_per_s / 50;
 constexpr Nanoseconds pause_while_asked = ns_per_s / 1000;
-/// Number of events for one subscriber per turn, so that other subscribers get theirs.
+/// Largest number of events that are sent to one subscriber per turn, so that other subscribers are served
+/// too.
 constexpr std::size_t most_fed = 50;
 
 }  // namespace
@@ -124,14 +125,14 @@ Json SocketApi::refusal_of(ClientId client, const ClientRequest& request) const 
 }
 
 /// Returns the name of the client whose sequence runs or is requested; nullptr if there is none. A client
-/// without a name, or one that has disconnected, owns nothing.
+/// that has no name or has disconnected does not own a sequence.
 const std::string* SocketApi::owner() const {
   const auto found = clients_.find(owner_client());
   return found == clients_.end() || found->second.name.empty() ? nullptr : &found->second.name;
 }
 
-/// Returns the client whose sequence runs, or whose start is the first without a reply of the loop; 0: none.
-/// It may have disconnected.
+/// Returns the client whose sequence runs. If no sequence runs, returns the client of the first start to
+/// which the loop has not replied yet, or 0 if there is none. The client may have disconnected.
 ClientId SocketApi::owner_client() const {
   const std::uint32_t running = sources_.service.sequence_request();
   if (sources_.service.runs(running)) return starts_.client_of(running);
@@ -212,7 +213,8 @@ Nanoseconds SocketApi::on_time(Nanoseconds now) {
   return next;
 }
 
-/// Planning uses its own thread: vent and stop requests never wait for a plan or a disk.
+/// Loads the sequence of a start in a separate thread, so that vent and stop requests never wait for a plan
+/// or a disk.
 void SocketApi::start(ClientId client, const ClientRequest& request, Nanoseconds now) {
   take_planned(now);
   if (planned_) {
@@ -234,7 +236,7 @@ void SocketApi::start(ClientId client, const ClientRequest& request, Nanoseconds
   std::thread(std::move(load)).detach();
 }
 
-/// Returns null if a start may have this id; otherwise the error.
+/// Returns null if a start may have this id. Otherwise returns the error.
 Json SocketApi::refusal_of_id(const std::string& start_id) const {
   if (starts_.is_forbidden(start_id))
     return error_json("abandoned", "a stop of this start arrived before the start");
@@ -273,8 +275,8 @@ void SocketApi::stop_of(ClientId client, const ClientRequest& request, Nanosecon
   wait_for(number, {client, request.id, now + longest_answer, {}, {}});
 }
 
-/// Reading uses its own thread, so vent requests never wait for a disk. A blocked directory costs one thread,
-/// regardless of the number of requests.
+/// Lists the sequences of the directory. A separate thread reads them, so that vent requests never wait for a
+/// disk. A blocked directory costs one thread, regardless of the number of requests.
 void SocketApi::list_sequences(ClientId client, std::optional<std::uint64_t> id) {
   if (!listing_) {
     std::packaged_task<std::vector<SequenceLoader::Listed>()> read(
@@ -298,7 +300,7 @@ void SocketApi::abandon_planned() noexcept {
   planned_->stop.request_stop();
 }
 
-/// A stop or a vent also cancels a planned motion.
+/// Refuses the start whose sequence is being loaded, because a stop or a vent has arrived.
 void SocketApi::refuse_planned() {
   if (!planned_ || planned_->abandoned) return;
   abandon_planned();
@@ -311,7 +313,7 @@ void SocketApi::take_planned(Nanoseconds now) {
   Planned planned = std::move(*planned_);
   planned_.reset();
   SequenceLoader::Result sequence = planned.loaded.get();
-  // A client that disconnected before the motion no longer wants it.
+  // If the client disconnected before the motion, the sequence is not started.
   if (!planned.abandoned) loaded(planned, std::move(sequence), now);
 }
 
@@ -338,7 +340,8 @@ std::optional<std::uint32_t> SocketApi::ask(ClientId client, std::optional<std::
   return number;
 }
 
-/// Replies `busy` if the loop's queue was full, so the request has no number.
+/// Stores who waits for the loop's reply to a request. If the loop's queue was full, the request has no
+/// number, and the reply is `busy`.
 void SocketApi::wait_for(std::optional<std::uint32_t> number, Asked asked) {
   if (number) {
     asked_.insert({*number, std::move(asked)});
@@ -385,8 +388,8 @@ Json SocketApi::dated(const EventEntry& event, Nanoseconds now) {
   return json;
 }
 
-/// Returns the wall-clock time of the log's time 0. The value is kept unless the wall clock was set, so that
-/// a repeated event has the same time.
+/// Returns the wall-clock time at time 0 of the log. The value changes only if the wall clock was set, so
+/// that a repeated event has the same time.
 Nanoseconds SocketApi::wall_origin(Nanoseconds now) {
   constexpr Nanoseconds was_set = ns_per_s / 2;
   const Nanoseconds origin = wall_time_now() - (now - sources_.origin);
@@ -402,7 +405,8 @@ void SocketApi::tell_events(ClientId client, const ClientRequest& request, Nanos
   ok(client, request.id, {{"events", std::move(list)}, {"newest", events_.newest()}});
 }
 
-/// Event ids of another run of the daemon are not comparable, so all stored events are new.
+/// Subscribes a client to events. If `started_at` is that of another run of the daemon, the client's event
+/// ids are not comparable, so the client gets all stored events.
 void SocketApi::subscribe(ClientId client, const ClientRequest& request) {
   const std::uint64_t newest = events_.newest();
   const bool of_another = !request.started_at.empty() && request.started_at != started_at_;
@@ -412,7 +416,8 @@ void SocketApi::subscribe(ClientId client, const ClientRequest& request) {
      {{"since", since}, {"oldest", events_.oldest()}, {"newest", newest}, {"started_at", started_at_}});
 }
 
-/// A client that does not read gets the events later, while they are kept. No thread waits for it.
+/// Sends new events to the subscribers. A client that does not read gets the events later, as long as they
+/// are stored. No thread waits for such a client.
 void SocketApi::feed(Nanoseconds now) {
   const std::uint64_t newest = events_.newest();
   for (auto& [client, subscription] : subscriptions_) {

@@ -23,7 +23,7 @@
 
 namespace softgrip::daemon {
 
-/// Identifies a connection; never used again.
+/// Id of a connection. An id is never used for another connection.
 using ClientId = std::uint64_t;
 
 /// All calls come from one thread, the one that calls Service.
@@ -37,7 +37,7 @@ class SocketApi {
             const EventLog& events, Send send);
   SocketApi(const SocketApi&) = delete;
   SocketApi& operator=(const SocketApi&) = delete;
-  /// Cancels the current planning without waiting for it: its thread may hang in the file system.
+  /// Cancels the current planning without waiting for it, because its thread may hang in the file system.
   ~SocketApi();
 
   /// Registers a new client. An unregistered client is read-only.
@@ -51,13 +51,14 @@ class SocketApi {
   [[nodiscard]] bool keeps_place(ClientId client) const;
   /// Returns true while the sequence of a start is being loaded. on_time() continues after that.
   [[nodiscard]] bool loads() const noexcept { return planned_.has_value(); }
-  /// Sends due replies of the loop and watched states. Returns the latest time of the next call.
+  /// Sends the replies of the loop and the watched states that are due. Returns the latest time of the next
+  /// call.
   Nanoseconds on_time(Nanoseconds now);
 
  private:
   struct Client {
     Role role = Role::look;
-    std::string name;  ///< from its hello
+    std::string name;  ///< name from the client's hello
   };
   struct Asked {  // a request to the loop
     ClientId client = 0;
@@ -76,14 +77,14 @@ class SocketApi {
     Nanoseconds due = 0;
   };
 
-  struct Planned {  // being loaded by a separate thread
+  struct Planned {  // a start whose sequence is being loaded by a separate thread
     ClientId client = 0;
     std::optional<std::uint64_t> id;
     std::future<SequenceLoader::Result> loaded;
     std::stop_source stop;
     std::string start_id;  ///< name given by the client; may be empty
     bool dry_run = false;
-    bool abandoned = false;  ///< no client waits for it
+    bool abandoned = false;  ///< no client waits for the result
   };
 
   struct Listing {  // the sequence directory, read by a separate thread

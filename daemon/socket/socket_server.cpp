@@ -23,13 +23,14 @@ namespace {
 
 /// Largest number of new clients per call, so that the present clients are served too.
 constexpr int most_accepts = 4;
-/// Times for which a client keeps its place: a new client without a request, and a client after its last
-/// request or its last received reply.
+/// Times for which a silent client keeps its place: before its first request, and after its last request or
+/// its last received reply.
 constexpr Nanoseconds first_word = ns_per_s / 10;
 constexpr Nanoseconds longest_silence = 5 * ns_per_s;
-/// Number of additional clients beyond those with places.
+/// Largest number of clients that are connected without a place.
 constexpr std::size_t most_standing = 32;
-/// A client's turn in one call ends after this time and at most one more line.
+/// Longest time for which the lines of one client are processed in one call. A line that was begun is
+/// finished.
 constexpr std::chrono::microseconds longest_turn(500);
 /// Without a free descriptor, a new client cannot even be refused. Time until the next attempt [ns].
 constexpr Nanoseconds accept_pause = ns_per_s / 10;
@@ -123,8 +124,9 @@ void SocketServer::accept_some(const Entrance& entrance) {
   }
 }
 
-/// Returns an invalid descriptor if no client waits, or if no descriptor is free even after the client that
-/// was silent for longest was disconnected. A read-only client cannot displace an operating one.
+/// Accepts a new client. Returns an invalid descriptor if no client waits. If no descriptor is free,
+/// disconnects the client that was silent for longest and tries again; a read-only client cannot displace an
+/// operating one. Returns an invalid descriptor if this does not help.
 Descriptor SocketServer::accept_one(const Entrance& entrance) {
   for (;;) {
     Descriptor socket(accept4(entrance.listener.get(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
@@ -138,16 +140,17 @@ Descriptor SocketServer::accept_one(const Entrance& entrance) {
   }
 }
 
-/// Returns true if the client has ended, has been silent for long, or `any` is true. A client that keeps its
-/// place is not displaced, because its running sequence would lose its owner.
+/// Returns true if the client may be displaced: it has ended, has been silent for long, or `any` is true. A
+/// client that keeps its place is not displaced, because its running sequence would lose its owner.
 bool SocketServer::may_go(std::uint64_t id, const Client& client, bool any) const {
   if (client.ended_at != 0) return true;
   if (handlers_.keeps_place && handlers_.keeps_place(id)) return false;
   return any || now_ - client.active_at >= (client.spoke ? longest_silence : first_word);
 }
 
-/// Displaces one client of the role, if possible. The order is: a client without a place, one that never sent
-/// a line, the one that was silent for longest. Returns false if there is none.
+/// Displaces one client of the role, if possible. The first choice is a client that has ended, then a client
+/// without a place, then one that never sent a line, then the one that was silent for longest. Returns false
+/// if no client may be displaced.
 bool SocketServer::displace_one(Role role, bool any) {
   const auto rank = [](const Client& client) {
     return std::tuple(client.ended_at == 0, !client.stands, client.spoke, client.active_at);
@@ -204,7 +207,7 @@ bool SocketServer::has_line(const Client& client) {
   return client.input.find('\n') != std::string::npos;
 }
 
-/// Processes lines of a client within its turn, as long as no reply waits to be read.
+/// Processes the lines of a client until its turn ends. Stops when the client has not read all replies.
 void SocketServer::take_lines(std::uint64_t id, Client& client) {
   const auto began = std::chrono::steady_clock::now();
   std::size_t begin = 0;
@@ -221,7 +224,7 @@ void SocketServer::take_lines(std::uint64_t id, Client& client) {
     if (std::chrono::steady_clock::now() - began > longest_turn) break;
   }
   client.input.erase(0, begin);
-  // The end of a line that is too long may be missing.
+  // A line that is too long may have no end yet.
   if (std::min(client.input.find('\n'), client.input.size()) > settings_.max_line_bytes) {
     send(id,
          error_line(std::nullopt, "too_long",
@@ -265,8 +268,8 @@ void SocketServer::write_to(Client& client, Nanoseconds now) {
   }
 }
 
-/// The client has closed its end. The server still reads the lines that it sent before, because a stop or a
-/// vent may be among them.
+/// Ends the output to a client that has closed its end. The server still reads the lines that the client sent
+/// before, because a stop or a vent may be among them.
 void SocketServer::stop_writing(Client& client) {
   client.deaf = true;
   client.output.clear();

@@ -1,5 +1,6 @@
 #pragma once
-// Exchanges lines over a Unix domain socket within all bounds. It does not interpret the lines.
+// Exchanges lines over a Unix domain socket, with limits for sizes, times and the number of clients. It does
+// not interpret the lines.
 
 #include <cstdint>
 #include <functional>
@@ -18,8 +19,8 @@
 
 namespace softgrip::daemon {
 
-/// The listening sockets, one per role, and their clients. Each role has its own places. All calls come from
-/// one thread.
+/// The listening sockets, one per role, and their clients. Each role has its own number of places. All calls
+/// come from one thread.
 class SocketServer {
  public:
   struct Handlers {
@@ -44,10 +45,11 @@ class SocketServer {
   /// Must be called before the first poll().
   void set_handlers(Handlers handlers) { handlers_ = std::move(handlers); }
 
-  /// Waits for events, at most until `until`, and processes a part of them, so that each client has its turn
-  /// in the next call. If all places are taken, a new client gets the place of one that has been silent for
-  /// long and does not keep its place. If there is none, the new client may send one line, which is refused
-  /// unless it is urgent. Urgent lines of a client that has closed its end meanwhile are processed.
+  /// Waits for events, at most until `until`, and processes a part of the lines of each client; the next call
+  /// processes the others. If all places are taken, a new client gets the place of a client that has been
+  /// silent for long and does not keep its place. If there is no such client, the new client may send one
+  /// line, which is refused unless it is urgent. If a client has closed its end meanwhile, its urgent lines
+  /// are still processed.
   void poll(Nanoseconds now, Nanoseconds until);
 
   /// Queues a line for a client. Returns false if the client has disconnected, or if `skippable` is true and
@@ -62,12 +64,12 @@ class SocketServer {
     Role role = Role::look;
     std::string input;
     std::string output;
-    Nanoseconds stalled_since = 0;  // output waits, and nothing was read since this time; 0: no
-    Nanoseconds ended_at = 0;       // the client will send no more lines; 0: it may
+    Nanoseconds stalled_since = 0;  // time since which output waits and nothing was read; 0: no output waits
+    Nanoseconds ended_at = 0;       // time at which the client ended: it will send no more lines; 0: it may
     Nanoseconds active_at = 0;      // time of the last sent or read line, or of the connection
     bool spoke = false;             // it has sent a line
     bool stands = false;            // it has no place
-    bool closing = false;           // after the output is sent
+    bool closing = false;           // the connection is closed after the output is sent
     bool deaf = false;              // it reads no more; its last lines are still processed
     bool dead = false;
   };

@@ -1,5 +1,5 @@
 #pragma once
-// Stores recent starts, so that a stop can name one of them.
+// Stores recent starts, so that a stop can refer to one of them.
 
 #include <cstddef>
 #include <cstdint>
@@ -13,7 +13,7 @@ namespace softgrip::daemon {
 /// A start that was passed to the loop.
 struct KnownStart {
   std::uint32_t request = 0;
-  std::string id;            ///< id given by the client; empty: none
+  std::string id;            ///< id given by the client; empty if it gave none
   std::uint64_t client = 0;  ///< the client that requested it
 };
 
@@ -24,8 +24,8 @@ class StartLedger {
 
   /// `running`: the request of the running or last sequence, or 0.
   void add(KnownStart start, std::uint32_t running);
-  /// Stores a start that a stop has named before it arrived, so that it must not run. Keeps the newest
-  /// `most`.
+  /// Stores the id of a start that must not run, because a stop for it arrived first. Keeps the newest `most`
+  /// ids.
   void forbid(std::string start_id);
 
   [[nodiscard]] bool has(std::uint32_t request) const;

@@ -19,7 +19,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr double us_per_ns = 1e-3;
 
-/// JSON has no NaN, so it becomes null.
+/// Returns a number as JSON. NaN becomes null, because JSON has no NaN.
 Json number(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);
 }
@@ -49,7 +49,7 @@ Json json_of_latched(const Snapshot& snapshot, const std::vector<std::string>& n
   return json;
 }
 
-/// Returns the path that was given to the daemon.
+/// Returns the path of the rig file that was given to the daemon.
 Json rig_file_of(const Provenance& provenance) {
   for (const SourceFile& file : provenance.files) {
     if (file.role == "rig") return file.path;
@@ -57,7 +57,7 @@ Json rig_file_of(const Provenance& provenance) {
   return nullptr;
 }
 
-/// Returns null if there is no text.
+/// Returns the text as JSON, or null if there is no text.
 Json text_or_null(std::string_view text, bool is_there) {
   return is_there ? Json(text) : Json(nullptr);
 }
@@ -153,7 +153,7 @@ Json json_of(const RealTimeReport* report) {
   return {{"degraded", report->degraded()}, {"steps", std::move(steps)}};
 }
 
-/// Returns the states of the digital lines; null for lines that the rig does not have.
+/// Returns the states of the digital lines. They are null for lines that the rig does not have.
 Json json_of_gpio(const rig::GpioSettings* gpio, const SharedState* shared) {
   if (gpio == nullptr || shared == nullptr) return nullptr;
   const InputLevels& inputs = shared->inputs;

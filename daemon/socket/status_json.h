@@ -1,5 +1,6 @@
 #pragma once
-// The replies of the socket API about the daemon, as JSON. docs/reference/socket-api.md is the contract.
+// Builds the replies of the socket API about the daemon, as JSON. docs/reference/socket-api.md specifies
+// them.
 
 #include <string>
 #include <vector>
@@ -32,8 +33,8 @@ struct StatusSources {
   const SharedState* shared = nullptr;        ///< required if gpio is set
 };
 
-/// Returns {"code", "name", "channel"} of a fault; the channel is null for the complete rig; null without a
-/// fault.
+/// Returns {"code", "name", "channel"} of a fault; the channel is null for the complete rig. Returns null if
+/// there is no fault.
 [[nodiscard]] nlohmann::ordered_json fault_title_json(const control::Fault& fault,
                                                       const std::vector<std::string>& channel_names);
 [[nodiscard]] nlohmann::ordered_json status_json(const StatusSources& sources);
@@ -42,7 +43,7 @@ struct StatusSources {
                                                      bool with_histograms);
 [[nodiscard]] nlohmann::ordered_json event_json(const EventEntry& event);
 
-/// Returns one line. Bytes that are not UTF-8 are replaced.
+/// Returns the JSON as one line. Bytes that are not UTF-8 are replaced.
 [[nodiscard]] std::string line_of(const nlohmann::ordered_json& json);
 
 }  // namespace softgrip::daemon

@@ -13,7 +13,7 @@
 namespace softgrip::daemon {
 
 /// Returns null if no finger is pressurised. Otherwise returns `channels` (a list of `name` and
-/// `command_kpa`), `command` (vents them) and `text` (both in one or two sentences).
+/// `command_kpa`), `command` (the command line that vents them) and `text` (one or two sentences with both).
 [[nodiscard]] nlohmann::ordered_json under_pressure_json(
     const std::vector<control::ChannelSettings>& channels, const Snapshot& snapshot);
 
