@@ -7,7 +7,7 @@ namespace softgrip::document {
 
 namespace {
 
-/// Reads a text line by line and keeps the open brackets.
+/// Reads a text line by line and keeps the list of open brackets.
 class Scan {
  public:
   void line(std::string_view text, int number) {
@@ -31,7 +31,7 @@ class Scan {
   [[nodiscard]] std::vector<Bracket> open() const { return open_; }
 
  private:
-  /// Returns the number of characters after this one that were also read.
+  /// Reads the character at `i` and returns the number of further characters that were read with it.
   std::size_t step(std::string_view text, std::size_t i, int number) {
     const char c = text[i];
     if (quote_ != 0) {
@@ -57,7 +57,8 @@ class Scan {
   std::vector<Bracket> open_;
   char quote_ = 0;
   bool begins_value_ = true;
-  bool folded_ = false;  // inside a text with `|` or `>` whose line has the indentation below
+  bool folded_ = false;  // the text is inside a `|` or `>` block; the line that opened it has the indentation
+                         // below
   std::size_t folded_indent_ = 0;
 };
 

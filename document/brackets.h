@@ -1,5 +1,5 @@
 #pragma once
-// Finds the brackets that are open at a place of a text, for messages about brackets that are never closed.
+// Finds the brackets that are open at a place of a text. Messages about unclosed brackets use them.
 
 #include <cstddef>
 #include <string_view>
@@ -16,8 +16,8 @@ struct Bracket {
 };
 
 /// Returns the brackets that are open before `place`, the innermost last. Brackets in quotes, comments,
-/// folded texts and in the middle of plain texts do not count. A bracket that is closed by the other kind
-/// counts as open.
+/// folded texts and in the middle of plain texts are ignored. A bracket that a bracket of the other kind
+/// closes is still open.
 [[nodiscard]] std::vector<Bracket> open_brackets(std::string_view text, Location place);
 
 }  // namespace softgrip::document

@@ -1,5 +1,5 @@
 #pragma once
-// Recognises UTF-8 and control characters in bytes, and makes both visible.
+// Recognises UTF-8 and control characters in bytes, and converts both to a visible form.
 
 #include <cstddef>
 #include <string>
@@ -11,11 +11,12 @@ namespace softgrip::document {
 /// (overlong forms, surrogates and values above U+10FFFF included). `text` is not empty.
 [[nodiscard]] std::size_t character_length(std::string_view text) noexcept;
 
-/// Returns true if the valid character of 1 or 2 bytes is a control character: U+0000-001F, U+007F-009F.
+/// Returns true if the valid character, which has 1 or 2 bytes, is a control character: U+0000-001F,
+/// U+007F-009F.
 [[nodiscard]] bool is_control(std::string_view character) noexcept;
 
-/// Appends the first character of `text` to `out` in a form that is safe for a terminal, and removes it from
-/// `text`. Returns the number of columns that it needs. `text` is not empty.
+/// Appends the first character of `text` to `out` in a form that is safe for a terminal, and removes this
+/// character from `text`. Returns the number of columns that the form needs. `text` is not empty.
 std::size_t append_visible(std::string& out, std::string_view& text);
 
 }  // namespace softgrip::document

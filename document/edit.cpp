@@ -42,7 +42,8 @@ std::size_t Edit::line_end(std::size_t offset) const {
   return end;
 }
 
-/// Returns the offset after a plain scalar, or after a list of plain scalars in brackets.
+/// Returns the offset after the end of a plain scalar, or of a list of plain scalars in brackets. Returns
+/// nothing for other nodes.
 std::optional<std::size_t> Edit::end_of(const Node& node) const {
   const std::string& text = document_.text;
   const auto begin = offset_of(text, node.at);
@@ -110,8 +111,8 @@ bool Edit::comment_above(const Node::Entry& entry, std::string_view mark, std::s
 
 std::string Edit::text() const {
   std::vector<Change> changes = changes_;
-  // Changes are applied from the end, so that earlier offsets remain valid. Two changes at one place keep
-  // their order.
+  // Changes are applied from the end of the text, so that the offsets of earlier changes remain valid. Two
+  // changes at one place keep their order.
   std::stable_sort(changes.begin(), changes.end(),
                    [](const Change& a, const Change& b) { return a.offset < b.offset; });
   std::string text = document_.text;

@@ -12,7 +12,8 @@ namespace softgrip::document {
 
 namespace {
 
-/// A unit as keys write it. `to_base` converts to the unit that the project uses for the quantity.
+/// A unit as it appears in keys. `to_base` is the factor from this unit to the unit that the project uses for
+/// the quantity.
 struct Unit {
   std::string_view name;
   std::string_view quantity;
@@ -56,8 +57,8 @@ std::string rounded(double number) {
   return {buffer.data(), end};
 }
 
-/// Returns true if `key` lacks only the unit, as `delay` for `delay_s`: all words that `candidate` has in
-/// addition are units of the project or `per`.
+/// Returns true if `key` lacks only the unit, as `delay` does for `delay_s`: all words of `candidate` that
+/// `key` does not have are units of the project or `per`.
 bool lacks_unit(std::string_view key, std::string_view candidate) {
   if (candidate.size() <= key.size() + 1 || candidate.substr(0, key.size()) != key ||
       candidate[key.size()] != '_') {
@@ -70,11 +71,11 @@ bool lacks_unit(std::string_view key, std::string_view candidate) {
   });
 }
 
-/// Two keys that differ in one word, where both words are units of one quantity.
+/// The units of two keys that differ in one word only. Both words are units of the same quantity.
 struct OtherUnit {
   const Unit* used;
   const Unit* wanted;
-  double factor;  // from the value in `used` to the value in `wanted`
+  double factor;  // converts a value in `used` to a value in `wanted`
 };
 
 std::optional<OtherUnit> other_unit(std::string_view key, std::string_view candidate) {

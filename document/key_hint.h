@@ -9,15 +9,15 @@
 
 namespace softgrip::document {
 
-/// The known key that was probably meant by an unknown key, or an empty key.
+/// The known key that was probably meant by an unknown key; both texts are empty if there is none.
 struct KeyHint {
   std::string key;
   std::string hint;
 };
 
-/// Returns the probable key and a hint.
+/// Returns the known key that was probably meant, and a hint for the message.
 /// @param key    the unknown key
-/// @param value  its value
+/// @param value  the value of the unknown key
 /// @param known  permitted keys that the map does not contain yet
 [[nodiscard]] KeyHint hint_for_key(std::string_view key, const Node& value,
                                    const std::vector<std::string>& known);
@@ -26,8 +26,8 @@ struct KeyHint {
 /// `speed_mm_per_s`; empty if the key has no unit.
 [[nodiscard]] std::string_view unit_at_end(std::string_view key);
 
-/// Returns "did you mean 0.13?" for a number out of range that becomes valid in a related unit. The key
-/// states the unit. Returns an empty text if no unit fits.
+/// Returns a hint such as "did you mean 0.13?" if a number out of range is in the range after conversion from
+/// a related unit. The unit of `key` is the required unit. Returns an empty text if no unit fits.
 [[nodiscard]] std::string hint_for_range(std::string_view key, double value, double lower, double upper);
 
 }  // namespace softgrip::document

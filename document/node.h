@@ -1,5 +1,5 @@
 #pragma once
-// A parsed YAML document as plain values with their locations. Parsing is strict: see parse().
+// Defines a parsed YAML document as plain values with their locations. Parsing is strict: see parse().
 
 #include <cstddef>
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace softgrip::document {
 
-/// Bounds of a document. A document beyond them is refused before it needs much time or memory.
+/// Bounds of a document. A document that exceeds a bound is refused before it needs much time or memory.
 struct Bounds {
   std::size_t bytes = 256 * 1024;
   std::size_t nodes = 20'000;
@@ -25,8 +25,9 @@ struct Node {
   Location at;
   std::string scalar;          ///< the text of a scalar, unquoted
   bool quoted = false;         ///< the scalar was quoted, so it is a text, never a number
-  std::string stands_for;      ///< name with `$` if the file has a parameter here; or empty
-  bool refused = false;        ///< already reported or truncated: it is not checked again
+  std::string stands_for;      ///< name of a parameter with `$`, if the file has the parameter in place of
+                               ///< this value; otherwise empty
+  bool refused = false;        ///< the node was already reported or is truncated; it is not checked again
   std::vector<Node> items;     ///< items of a sequence
   std::vector<Entry> entries;  ///< entries of a map in the order of the text, with unique keys
 };
@@ -41,24 +42,23 @@ struct Document {
   std::string file;
   std::string text;
   Node root;
-  /// False if parsing stopped before the end. A missing key may then be in the rest of the text, so readers
-  /// do not report it.
+  /// False if parsing stopped before the end. Readers then do not report missing keys, because the key may be
+  /// in the rest of the text.
   bool complete = true;
 
-  /// Returns a problem at `at`, with the text of the line.
+  /// Returns a problem at the location `at`. The problem contains the text of this line.
   [[nodiscard]] Problem problem(Location at, std::string message, std::string hint = {}) const;
 };
 
-/// Parses one YAML document. Refuses, each with its place: anchors, aliases, tags, merge keys, duplicate
-/// keys, keys that are not a plain word, directives, several documents, anything beyond `bounds`, bytes that
-/// are not UTF-8, control characters, tabs as indentation and syntax errors. Adds the problems to `problems`,
-/// and returns the readable part of the document: the first of duplicate keys, and no value for a refused
-/// alias.
+/// Parses one YAML document. Adds a problem at the location of each of the following: anchors, aliases, tags,
+/// merge keys, duplicate keys, keys that are not a plain word, directives, several documents, anything beyond
+/// `bounds`, bytes that are not UTF-8, control characters, tabs as indentation and syntax errors. Returns the
+/// readable part of the document. For duplicate keys, this is the first one. A refused alias has no value.
 [[nodiscard]] Document parse(std::string file, std::string text, Problems& problems,
                              const Bounds& bounds = {});
 
-/// Reads a complete file of at most `bounds.bytes` and parses it. A file that cannot be read is a problem at
-/// 1:1.
+/// Reads a complete file of at most `bounds.bytes` and parses it. If the file cannot be read, adds a problem
+/// at 1:1.
 [[nodiscard]] Document parse_file(const std::string& path, Problems& problems, const Bounds& bounds = {});
 
 }  // namespace softgrip::document

@@ -12,7 +12,7 @@ bool is_digit(char c) {
   return c >= '0' && c <= '9';
 }
 
-/// The parts of a decimal number; empty if the text is not one.
+/// The parts of a decimal number.
 struct Decimal {
   std::string_view digits;  // input of from_chars: without a leading +
   std::string_view whole;   // the digits before the point
@@ -66,8 +66,8 @@ bool one_of(std::string_view word, std::initializer_list<std::string_view> words
   return std::find(words.begin(), words.end(), word) != words.end();
 }
 
-/// Removes the separators of digits or replaces the decimal mark. Returns an empty text if the rest is not a
-/// number.
+/// Replaces each `from` in the text by `to`, which removes separators of digits or changes the decimal mark.
+/// Returns an empty text if the result is not a number.
 std::string repaired(std::string_view text, char from, std::string_view to) {
   if (text.find(from) == std::string_view::npos) return {};
   std::string out;
@@ -81,7 +81,7 @@ std::string repaired(std::string_view text, char from, std::string_view to) {
   return split(out) ? out : std::string{};
 }
 
-/// Suggests the probable meaning of a text that is not a decimal number.
+/// Returns a hint about the probable meaning of a text that is not a decimal number.
 std::string hint_for(std::string_view text) {
   const std::string word = lower(text);
   if (one_of(word, {".nan", ".inf", "-.inf", "+.inf", "nan", "inf", "-inf", "+inf", "infinity"})) {
@@ -109,7 +109,8 @@ Parsed<T> refused(std::string message, std::string hint) {
   return {std::nullopt, std::move(message), std::move(hint)};
 }
 
-/// Returns the decimal number in a node, or a message in `out`.
+/// Returns the parts of the decimal number in a node. If the node does not contain one, stores a message in
+/// `out`.
 template <class T>
 std::optional<Decimal> decimal_of(const Node& node, std::string_view wanted, Parsed<T>& out) {
   const std::string must = "must be " + std::string(wanted) + ", found ";

@@ -1,6 +1,6 @@
 #pragma once
-// Converts texts to numbers: plain decimals only, independent of the locale. Explains why a text is not a
-// number.
+// Converts texts to numbers. Only plain decimal numbers are accepted, independent of the locale. The reason
+// for a refusal is explained.
 
 #include <cstdint>
 #include <optional>
@@ -15,7 +15,7 @@ namespace softgrip::document {
 template <class T>
 struct Parsed {
   std::optional<T> value;
-  std::string message;  ///< follows after "`key` ": "must be a number, found `fast`"
+  std::string message;  ///< to be written after "`key` ": "must be a number, found `fast`"
   std::string hint;
 };
 
@@ -31,7 +31,8 @@ struct Parsed {
 /// after the comma.
 [[nodiscard]] std::string hint_for_comma(const Node& before, Location after, std::string_view text_after);
 
-/// Returns the kind of a node, for "found ...": "a list", "a map", "nothing", "`text`".
+/// Returns the kind of a node as a text that follows "found" in a message: "a list", "a map", "nothing",
+/// "`text`".
 [[nodiscard]] std::string found(const Node& node);
 
 }  // namespace softgrip::document

@@ -16,8 +16,8 @@ namespace softgrip::document {
 
 namespace {
 
-/// Thrown through the parser when a bound is reached. The first event beyond the bound ends the parser, which
-/// bounds its recursion, because it reports each level before it descends.
+/// Thrown through the parser when a bound is reached. The first event beyond the bound ends the parser. This
+/// also limits the recursion of the parser, because it reports each level before it descends.
 struct Abandoned {};
 
 Location location_of(const YAML::Mark& mark) {
@@ -95,14 +95,15 @@ class TreeBuilder final : public YAML::EventHandler {
       if (is_key) {
         frames_.pop_back();
       } else {
-        // The end of `[1, 2` is unknown; items of a block list are complete.
+        // It is unknown if the list `[1, 2` is complete. A block list contains complete items only.
         frames_.back().node.refused = frames_.back().flow;
         close();
       }
     }
   }
 
-  /// Marks the last value as refused. The parser may have read the words of an invalid key as a part of it.
+  /// Marks the last value as refused, because the parser may have read the words of an invalid key as a part
+  /// of this value.
   void distrust_last_value() {
     if (frames_.empty() || frames_.back().node.entries.empty()) return;
     frames_.back().node.entries.back().value.refused = true;
@@ -126,7 +127,8 @@ class TreeBuilder final : public YAML::EventHandler {
     if (problems_.full()) throw Abandoned{};
   }
 
-  /// Called for each node: counts it and refuses its tag and anchor.
+  /// Counts a node and refuses its tag and anchor. Must be called for each node. Returns the location of the
+  /// node.
   Location begin(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor) {
     const Location at = location_of(mark);
     last_at_ = at;
@@ -145,8 +147,8 @@ class TreeBuilder final : public YAML::EventHandler {
     return at;
   }
 
-  /// Returns false if a quoted text starts at `mark` and is not closed before the end of the file. After a
-  /// line break the parser accepts such a text.
+  /// Returns false if a quoted text starts at `mark` and is not closed before the end of the file. The parser
+  /// accepts such a text after a line break.
   [[nodiscard]] bool is_closed(const YAML::Mark& mark) const {
     const std::string& text = document_.text;
     auto position = static_cast<std::size_t>(std::max(mark.pos, 0));
@@ -163,8 +165,8 @@ class TreeBuilder final : public YAML::EventHandler {
     return false;
   }
 
-  /// Returns the end of the text before a missing value. The parser reports the location of the next token,
-  /// which may be several lines below.
+  /// Returns the location of a missing value: the end of the text before it. The parser would report the
+  /// location of the next token, which may be several lines below.
   [[nodiscard]] Location empty_value_at(const YAML::Mark& mark) const {
     const std::string& text = document_.text;
     auto position = std::min(static_cast<std::size_t>(std::max(mark.pos, 0)), text.size());
@@ -252,7 +254,7 @@ class TreeBuilder final : public YAML::EventHandler {
   Location last_at_;
 };
 
-/// Returns the place that the parser names, or its last place.
+/// Returns the location in the error, or the last location of the parser if the error has none.
 Location place_of(const YAML::ParserException& error, const TreeBuilder& builder) {
   return error.mark.is_null() ? builder.last_at() : location_of(error.mark);
 }
@@ -299,8 +301,8 @@ Document parse_file(const std::string& path, Problems& problems, const Bounds& b
   document.file = path;
   document.complete = false;
   const auto file = open_regular(path);
-  // Reads one byte more than allowed, so that the check of the text can refuse the file without reading all
-  // of it.
+  // One byte more than allowed is read. If the file is too large, check_text() detects this without the rest
+  // of the file.
   auto text = file ? read_start(*file, bounds.bytes + 1) : tl::unexpected(file.error());
   if (!text) {
     problems.add({path, {}, {}, "the file cannot be read: " + text.error(), {}});

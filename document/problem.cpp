@@ -9,7 +9,7 @@ namespace softgrip::document {
 
 namespace {
 
-// A longer line is shown only around the column [bytes].
+// Length above which a line is shown only around the column [bytes].
 constexpr std::size_t line_bytes = 100;
 
 /// The part of `line` to show: all of it, or a window around `column` (from 0) at boundaries of characters.
@@ -26,13 +26,13 @@ Window window_of(std::string_view line, std::size_t column) {
   std::size_t begin = column < line_bytes / 2 ? 0 : std::min(column, line.size()) - line_bytes / 2;
   begin = std::min(begin, line.size() - line_bytes);
   std::size_t end = begin + line_bytes;
-  // At most three steps, because a text that is not UTF-8 has no boundaries of characters.
+  // A text that is not UTF-8 has no boundaries of characters, so the window moves by at most three bytes.
   for (int i = 0; i < 3 && inside_character(begin); ++i) ++begin;
   for (int i = 0; i < 3 && inside_character(end); ++i) ++end;
   return {begin, end};
 }
 
-/// Appends the line and a caret under the column.
+/// Appends the line of the problem, and a second line with a caret under the column.
 void append_line(std::string& out, const Problem& problem) {
   const std::string_view line = problem.line_text;
   const std::size_t column = static_cast<std::size_t>(std::max(problem.at.column, 1)) - 1;
@@ -138,7 +138,7 @@ std::string Problems::format() const {
 
 std::string nearest(std::string_view word, const std::vector<std::string>& candidates) {
   std::string best;
-  // A third of the letters, and at least one, may differ. With more differences, a typing error is
+  // A third of the letters may differ, and at least one letter. With more differences, a typing error is
   // improbable.
   std::size_t best_distance = std::max<std::size_t>(1, word.size() / 3) + 1;
   for (const std::string& candidate : candidates) {

@@ -1,5 +1,5 @@
 #pragma once
-// Problems of a text document with their places. A user sees all of them together.
+// Defines problems of a text document with their locations. All problems of a document are shown together.
 
 #include <cstddef>
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace softgrip::document {
 
-/// A place in a text. Line and column count from 1; the column counts bytes.
+/// A place in a text. Line and column are numbered from 1. The column is counted in bytes.
 struct Location {
   int line = 1;
   int column = 1;
@@ -19,18 +19,18 @@ struct Location {
 
 /// A problem of a document.
 struct Problem {
-  std::string file;       ///< as the user named it
+  std::string file;       ///< name of the file as the user wrote it
   Location at;            ///< place in the file
   std::string line_text;  ///< text of the line, without its line break; may be empty
   std::string message;    ///< the problem in one sentence
-  std::string hint;       ///< the probable intention, or empty
+  std::string hint;       ///< what the user probably meant, or empty
 
   bool operator==(const Problem&) const = default;
 };
 
 /// All problems of one or several documents, in the order in which they were found. A document with an error
 /// is refused. A document that has only warnings is accepted, and the warnings are shown. The first `most`
-/// errors and the first `most` warnings are stored, the others only counted.
+/// errors and the first `most` warnings are stored. Further ones are only counted.
 class Problems {
  public:
   static constexpr std::size_t most = 200;
@@ -38,17 +38,18 @@ class Problems {
   void add(Problem problem);
   void warn(Problem problem);
 
-  /// The next two functions count errors only, including those that are not stored.
+  /// These two functions consider errors only, including errors that are not stored.
   [[nodiscard]] bool empty() const noexcept { return error_count_ == 0; }
   [[nodiscard]] std::size_t size() const noexcept { return error_count_; }
-  /// Returns true if further errors are only counted, so a further search is useless.
+  /// Returns true if no further error will be stored, so that a further search is useless.
   [[nodiscard]] bool full() const noexcept { return error_count_ >= most; }
   [[nodiscard]] const std::vector<Problem>& list() const noexcept { return errors_; }
   [[nodiscard]] const std::vector<Problem>& warnings() const noexcept { return warnings_; }
 
-  /// Returns a block per problem: `file:line:col: message` (`file:line:col: warning: message`), the line, a
-  /// caret under the column, and the hint. Files are in the order of their first problem, and problems of a
-  /// file in the order of lines. The text ends with a line break unless it is empty.
+  /// Returns a block of lines for each problem: `file:line:col: message` (`file:line:col: warning: message`),
+  /// the text of the line, a caret under the column, and the hint. Files are in the order of their first
+  /// problem, and the problems of a file are in the order of their lines. The text ends with a line break
+  /// unless it is empty.
   [[nodiscard]] std::string format() const;
 
   /// Returns the problems without repetitions. Problems repeat if a file was read more than once.
@@ -64,8 +65,8 @@ class Problems {
 /// Returns the candidate with the smallest edit distance to `word`, or an empty text if none is similar.
 [[nodiscard]] std::string nearest(std::string_view word, const std::vector<std::string>& candidates);
 
-/// Returns `text` in a form that is safe for a terminal: control characters and bytes that are not UTF-8
-/// become \n, \t or \xNN. "..." replaces the part after `most` bytes.
+/// Returns `text` in a form that is safe for a terminal. Control characters and bytes that are not UTF-8
+/// become \n, \t or \xNN. If `text` is longer than `most` bytes, "..." replaces the rest.
 [[nodiscard]] std::string shown(std::string_view text, std::size_t most = 60);
 /// Returns a name or a value in backticks, as messages show it.
 [[nodiscard]] std::string in_backticks(std::string_view word);

@@ -13,7 +13,7 @@ namespace softgrip::document {
 
 namespace {
 
-/// Returns "at least 0", "at most 10" or "0 to 10".
+/// Returns the allowed range as a text: "at least 0", "at most 10" or "0 to 10".
 std::string allowed(double lower, double upper, bool no_lower, bool no_upper) {
   if (no_lower) return "at most " + written(upper);
   if (no_upper) return "at least " + written(lower);
@@ -297,7 +297,7 @@ void MapReader::warn(std::string_view key, std::string message, std::string hint
 }
 
 void MapReader::report_unknown(const Node::Entry& entry) {
-  // A key that the map contains already cannot be the intended key.
+  // A key that the map already contains cannot be the one that was meant by the unknown key.
   std::vector<std::string> candidates = missing_;
   for (const std::string& key : known_) {
     if (!has(key) && std::find(missing_.begin(), missing_.end(), key) == missing_.end()) {
@@ -309,7 +309,7 @@ void MapReader::report_unknown(const Node::Entry& entry) {
     std::string comma = hint_for_comma((&entry - 1)->value, entry.key_at, entry.key);
     if (!comma.empty()) hint = {"", std::move(comma)};
   }
-  // The unknown key explains the missing one, so one mistake is reported as one problem.
+  // The unknown key explains why the key of the hint is missing, so one mistake is reported as one problem.
   std::erase(missing_, hint.key);
   if (hint.hint.empty() && !known_.empty() && known_.size() <= 12)
     hint.hint = "known here: " + listed(known_);

@@ -1,5 +1,6 @@
 #pragma once
-// Reads a parsed document by type and range. Each key that is not read is reported as unknown.
+// Reads the values of a parsed document and checks their types and ranges. Each key that is not read is
+// reported as unknown.
 
 #include <cstdint>
 #include <limits>
@@ -18,10 +19,11 @@ struct Range {
   double upper = std::numeric_limits<double>::max();
 };
 
-/// Reads one map. Each getter marks its key as known. finish() reports all other keys with the most similar
-/// known key, and recognises a known key without its unit (`delay` for `delay_s`) or with another unit
-/// (`delay_ms`). It also reports a missing key, unless an unknown key explains it. Getters do not throw: they
-/// add a problem and return a harmless value, so that one pass finds all errors of a document.
+/// Reads one map. Each getter marks its key as known. finish() reports all other keys as unknown, with the
+/// most similar known key. It recognises a known key without its unit (`delay` for `delay_s`) or with another
+/// unit (`delay_ms`). It also reports a missing key, unless an unknown key explains why it is missing.
+/// Getters do not throw. They add a problem and return a harmless value, so that all errors of a document are
+/// found together.
 class MapReader {
  public:
   /// `what` is the name of the map in messages ("channel 'left'"). A node that is not a map is reported once.
@@ -30,13 +32,13 @@ class MapReader {
   MapReader& operator=(const MapReader&) = delete;
   MapReader(MapReader&&) = delete;
   MapReader& operator=(MapReader&&) = delete;
-  /// Calls finish() if the caller did not.
+  /// Calls finish() if the caller has not called it.
   ~MapReader();
 
   /// Reads a required number in `range`. If it is missing, not a number, not finite or out of range, adds a
   /// problem and returns the nearest allowed value (or 0 limited to the range).
   double number(std::string_view key, Range range);
-  /// Reads a number in `range` under a key that may be absent. A wrong value is a problem, as for number().
+  /// Reads a number in `range` under a key that may be absent. A wrong value is reported as for number().
   std::optional<double> optional_number(std::string_view key, Range range);
   /// Reads a required whole number in [lower, upper].
   std::int64_t integer(std::string_view key, std::int64_t lower, std::int64_t upper);
@@ -50,26 +52,29 @@ class MapReader {
   /// Reads one of `choices` and returns its index (0 after a problem).
   std::size_t choice(std::string_view key, const std::vector<std::string>& choices);
   std::optional<std::size_t> optional_choice(std::string_view key, const std::vector<std::string>& choices);
-  /// Returns the node under a key, regardless of its kind (nullptr if absent; a problem if `required`).
+  /// Returns the node under a key, regardless of its kind. If the key is absent, returns nullptr and, if
+  /// `required`, reports a problem.
   const Node* child(std::string_view key, bool required);
-  /// Returns the items of a sequence under a key (empty if absent; a problem if `required`).
+  /// Returns the items of a sequence under a key. If the key is absent, returns an empty list and, if
+  /// `required`, reports a problem.
   std::vector<const Node*> sequence(std::string_view key, bool required);
-  /// Reads a required list of `count` numbers in `range`, as `at_v: [0, 10]`. Always returns `count` numbers.
+  /// Reads a required list of `count` numbers in `range`, for example `at_v: [0, 10]`. Always returns `count`
+  /// numbers.
   std::vector<double> numbers(std::string_view key, std::size_t count, Range range);
   std::optional<std::vector<double>> optional_numbers(std::string_view key, std::size_t count, Range range);
 
   /// Returns true if the map contains the key. Does not count as reading it.
   [[nodiscard]] bool has(std::string_view key) const;
-  /// Returns true if the map contains the key and its getter found no problem. Call it before a check of
-  /// several keys.
+  /// Returns true if the map contains the key and its getter found no problem. Use it before a check that
+  /// combines the values of several keys.
   [[nodiscard]] bool good(std::string_view key) const;
   /// Returns all keys in the order of the text.
   [[nodiscard]] std::vector<std::string> keys() const;
-  /// Returns the location of a key, or of the map itself.
+  /// Returns the location of a key, or the location of the map if it does not contain the key.
   [[nodiscard]] Location where(std::string_view key) const;
-  /// Reports a problem at a key's value that only the caller can detect.
+  /// Reports a problem with the value of a key. Used for problems that only the caller can detect.
   void report(std::string_view key, std::string message, std::string hint = {});
-  /// Reports a warning at a key's value: the value is permitted but probably not meant.
+  /// Reports a warning about the value of a key: the value is permitted but probably not meant.
   void warn(std::string_view key, std::string message, std::string hint = {});
   /// Reports keys that were not read and required keys that are missing. No getter may be called after it.
   void finish();
@@ -99,7 +104,7 @@ class MapReader {
   bool finished_ = false;
 };
 
-/// Reads the number of a scalar node within `range`; otherwise adds a problem and returns nothing.
+/// Returns the number in a scalar node if it is within `range`. Otherwise adds a problem and returns nothing.
 [[nodiscard]] std::optional<double> number_in(const Document& document, const Node& node, Range range,
                                               Problems& problems, std::string_view what);
 

@@ -1,5 +1,5 @@
 #pragma once
-// Explains the syntax errors of the YAML parser.
+// Explains the syntax errors that the YAML parser finds.
 
 #include <string>
 #include <string_view>

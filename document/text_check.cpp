@@ -9,7 +9,7 @@ namespace softgrip::document {
 
 namespace {
 
-/// The first place of one kind of problem, and the number of its occurrences.
+/// The first location of one kind of problem, and the number of occurrences.
 struct Trouble {
   std::optional<Location> first;
   std::string what;
