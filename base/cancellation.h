@@ -1,6 +1,6 @@
 #pragma once
-// Ends a long computation early. The request is stored in the thread budget of the computation. All of its
-// threads see the request there, and functions need no argument for it.
+// Ends a long computation early. The request to end is stored in the thread budget of the computation. All
+// threads of the computation can read it there, so functions need no argument for it.
 
 #include "base/thread_budget.h"
 
@@ -15,8 +15,8 @@ struct WorkCancelled {};
   return budget != nullptr && budget->stop_requested();
 }
 
-/// Throws WorkCancelled if the computation of the calling thread must end early. The loops of a fit call it,
-/// so a computation ends within one simulation of the model on its logs.
+/// Throws WorkCancelled if the computation of the calling thread must end early. The loops of a fit call this
+/// function, so a computation ends within one simulation of the model on its recordings.
 inline void end_if_cancelled() {
   if (is_cancelled()) throw WorkCancelled{};
 }

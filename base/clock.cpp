@@ -30,8 +30,8 @@ void MonotonicClock::sleep_until(Nanoseconds due) const noexcept {
 }
 
 Nanoseconds time_asleep() noexcept {
-  // An interruption between the reads makes the difference wrong. So the quickest of three measurements is
-  // used.
+  // An interruption between the reads makes the difference wrong. Therefore, the quickest of three
+  // measurements is used.
   Nanoseconds quickest = std::numeric_limits<Nanoseconds>::max();
   Nanoseconds ahead = 0;
   for (int i = 0; i < 3; ++i) {

@@ -1,5 +1,6 @@
 #pragma once
-// Clocks: all time in the project comes from CLOCK_BOOTTIME of the machine or from a virtual clock of a test.
+// Defines the clocks. All times in the project come from CLOCK_BOOTTIME of the machine or from the virtual
+// clock of a test.
 
 #include <algorithm>
 
@@ -20,11 +21,12 @@ class Clock {
   virtual void sleep_until(Nanoseconds due) const noexcept = 0;
 };
 
-/// Returns CLOCK_BOOTTIME. It cannot be set and, unlike CLOCK_MONOTONIC, it counts while the machine is
-/// suspended. The board's watchdog also counts during that time, so the daemon must see the pause.
+/// Returns the time of CLOCK_BOOTTIME. This clock cannot be set. Unlike CLOCK_MONOTONIC, it also runs while
+/// the machine is suspended. The board's watchdog runs during this time too, so the daemon must see the
+/// pause.
 [[nodiscard]] Nanoseconds monotonic_now() noexcept;
 
-/// The clock monotonic_now() for functions that also accept another clock.
+/// The clock that monotonic_now() reads, for functions that accept any Clock.
 class MonotonicClock final : public Clock {
  public:
   [[nodiscard]] Nanoseconds now() const noexcept override;
@@ -43,8 +45,9 @@ class VirtualClock final : public Clock {
   mutable Nanoseconds now_ = 0;
 };
 
-/// Returns the time by which CLOCK_BOOTTIME is ahead of CLOCK_MONOTONIC, in whole milliseconds [ns]: the
-/// total time in suspend. The kernel stamps edges with CLOCK_MONOTONIC.
+/// Returns the total time for which the machine was suspended: the difference of CLOCK_BOOTTIME and
+/// CLOCK_MONOTONIC, in whole milliseconds [ns]. It is needed because the kernel gives the times of edges on
+/// CLOCK_MONOTONIC.
 [[nodiscard]] Nanoseconds time_asleep() noexcept;
 
 }  // namespace softgrip

@@ -1,6 +1,6 @@
 #pragma once
-// Finds the device of this computer that a file names. Converters, GPIO chips and serial adapters share this
-// rule.
+// Finds the device of this computer that a configuration file names. Converters, GPIO chips and serial
+// adapters are found by the same rule.
 
 #include <filesystem>
 #include <string>
@@ -20,7 +20,7 @@ struct DeviceWord {
 struct ComputerDevice {
   std::string node;               ///< name in the kernel, which may change at every start: iio:device0
   std::filesystem::path folder;   ///< folder in sysfs, without symbolic links; empty: unknown
-  std::vector<DeviceWord> words;  ///< words that remain when the name in the kernel changes
+  std::vector<DeviceWord> words;  ///< words that stay the same when the name in the kernel changes
 
   /// Adds a word if `text` is not empty.
   void add(std::string_view kind, std::string text);
@@ -31,8 +31,8 @@ struct ComputerDevice {
 /// Returns, for example, "iio:device0 (name `mcp4725`, address `1-0060`)".
 [[nodiscard]] std::string text_of(const ComputerDevice& device);
 
-/// Returns the device of an entry of a bus in sysfs (/sys/bus/iio/devices/iio:device0). The device has its
-/// address on the bus (1-0060, spi0.1) and the serial number of its USB device. It has neither if the entry
+/// Returns the device of an entry of a bus in sysfs (/sys/bus/iio/devices/iio:device0). Its words are its
+/// address on the bus (1-0060, spi0.1) and the serial number of its USB device. They are missing if the entry
 /// is not a symbolic link.
 [[nodiscard]] ComputerDevice device_at(const std::filesystem::path& entry);
 /// Returns the devices of all entries whose name begins with `prefix`, in alphabetical order.
@@ -44,12 +44,13 @@ struct ComputerDevice {
 /// The reason why a word does not identify one device.
 struct UnclearDevice {
   bool several = false;  ///< true: the word matches several devices; false: it matches none
-  std::string message;   ///< with all devices that match
-  std::string hint;      ///< a word to write instead
+  std::string message;   ///< lists all devices that match
+  std::string hint;      ///< a word that the user can write instead
 };
 
-/// Returns the only device that `word` matches: by its node, one of its words, or the path of a folder in
-/// sysfs that contains it. `kind` is used in messages: "converter", "GPIO chip", "serial device".
+/// Returns the only device that `word` matches. A word matches the node of a device, one of its words, or the
+/// path of a sysfs folder that contains the device. `kind` is used in messages: "converter", "GPIO chip",
+/// "serial device".
 [[nodiscard]] tl::expected<ComputerDevice, UnclearDevice> only_device(
     const std::vector<ComputerDevice>& devices, const std::string& word, std::string_view kind);
 /// Returns the error for a word that matches all devices in `found`. `devices` contains all devices.

@@ -1,5 +1,5 @@
 #pragma once
-// Waits for a descriptor until a point in time.
+// Waits until a descriptor is ready or a deadline has passed.
 
 #include <cstdint>
 
@@ -8,13 +8,13 @@
 namespace softgrip {
 
 enum class Waited : std::uint8_t {
-  ready,      ///< also after an error or a hang-up, which the next call reports
+  ready,      ///< the descriptor is ready or has an error or a hang-up, which the next call on it reports
   timed_out,  ///< the deadline has passed
   failed,     ///< errno contains the reason
 };
 
-/// Waits for events of poll() until `deadline` on CLOCK_BOOTTIME. select() would not accept descriptors above
-/// 1023.
+/// Waits for events of poll() until `deadline` on CLOCK_BOOTTIME. select() is not used, because it does not
+/// accept descriptors above 1023.
 [[nodiscard]] Waited wait_for(int descriptor, short events, Nanoseconds deadline) noexcept;
 
 }  // namespace softgrip

@@ -12,7 +12,7 @@ namespace {
 
 std::atomic<int> noted{0};
 
-/// Shells report 128 plus the signal as the exit code of a process that a signal ended.
+/// Offset of the exit code of a process that a signal ended: shells report 128 plus the signal.
 constexpr int shell_offset = 128;
 
 }  // namespace
@@ -41,7 +41,7 @@ void end_by_signal(int signal) noexcept {
   sigaddset(&only, signal);
   pthread_sigmask(SIG_UNBLOCK, &only, nullptr);
   ::raise(signal);
-  // Reached only if the default action of the signal does not end a process.
+  // This point is reached only if the default action of the signal does not end a process.
   ::_exit(shell_offset + signal);
 }
 

@@ -1,15 +1,15 @@
 #pragma once
 // Stores the signal that requested the end of this process until the process has cleaned up.
 //
-// A shell ends its loop only if the program died by the signal. If a program answers Ctrl-C with an ordinary
-// exit code, the loop starts the next program.
-// code of its own lets the loop start the next program.
+// A shell ends its loop on Ctrl-C only if the running program was ended by the signal. If the program ends
+// with an ordinary exit code, the loop starts the next program.
 
 #include <string>
 
 namespace softgrip {
 
-/// Stores the signal by which the process must end. Only the first signal is stored. Safe in any thread.
+/// Stores the signal by which the process must end. Only the first signal is stored. May be called in any
+/// thread.
 void note_ending_signal(int signal) noexcept;
 
 /// Returns the stored signal, or 0.

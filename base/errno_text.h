@@ -1,5 +1,5 @@
 #pragma once
-// Texts of errno values, without allocation.
+// Returns texts of errno values without allocating memory.
 
 #include <cstring>
 

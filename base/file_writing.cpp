@@ -1,4 +1,4 @@
-// The only functions that create files. base/files.h has the contract.
+// Implements the only functions that create files. base/files.h specifies them.
 
 #include <fcntl.h>
 #include <sys/random.h>
@@ -34,7 +34,7 @@ Error error_of(int result) {
 /// Returns a name in the folder of `target` that no other process uses and that cannot be guessed.
 std::string temporary_name(const fs::path& target) {
   std::uint64_t number = 0;
-  // Without random numbers from the kernel, O_EXCL still prevents two writers from using one file.
+  // If the kernel returns no random number, O_EXCL still prevents two writers from using one file.
   if (::getrandom(&number, sizeof number, GRND_NONBLOCK) < 0) number = static_cast<std::uint64_t>(::getpid());
   char name[48];
   (void)std::snprintf(name, sizeof name, ".softgrip-%016llx.part", static_cast<unsigned long long>(number));
@@ -48,13 +48,15 @@ struct Rights {
   mode_t mode = 0;
 };
 
-/// A user without the permission to change the owner remains the owner.
+/// Sets owner, group and permissions of a file. A failure to change the owner is ignored: without the
+/// permission for this change, the user remains the owner.
 Error give_rights(int file, const Rights& rights) {
   [[maybe_unused]] const int given = ::fchown(file, rights.owner, rights.group);
   return error_of(::fchmod(file, rights.mode));
 }
 
-/// Creates a file with `contents`. Without `rights` it has the default permissions of this process.
+/// Creates a file with `contents`. If `rights` is empty, the file has the default permissions of this
+/// process.
 Error write_new(int folder, const std::string& name, std::string_view contents,
                 const std::optional<Rights>& rights, Sync sync) {
   Descriptor file(::openat(folder, name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC,
@@ -85,8 +87,8 @@ void sync_folder(const fs::path& folder) {
 
 enum class Existing { replaced, refused };
 
-/// Creates or replaces a file. No other function does. `target` is relative to `folder`, which may be
-/// AT_FDCWD.
+/// Creates or replaces a file. No other function creates files under their final names. `target` is relative
+/// to `folder`, which may be AT_FDCWD.
 Error put(int folder, const fs::path& target, std::string_view contents, Existing existing,
           const std::optional<Rights>& rights, Sync sync) {
   const std::string temporary = temporary_name(target);

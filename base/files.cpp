@@ -32,7 +32,7 @@ Failure not_regular(mode_t mode) {
   return Failure(std::string("it is ") + kind + ", not a regular file");
 }
 
-/// `folder` may be AT_FDCWD.
+/// Opens a regular file for reading. `folder` may be AT_FDCWD.
 tl::expected<RegularFile, std::string> open_at(int folder, const std::string& name, bool through_links) {
   struct ::stat about {};
   // Check the type before opening, because opening alone starts some devices, such as a watchdog timer.
@@ -43,13 +43,14 @@ tl::expected<RegularFile, std::string> open_at(int folder, const std::string& na
   RegularFile file{
       Descriptor(::openat(folder, name.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC | links)), 0};
   if (!file.descriptor || ::fstat(file.descriptor.get(), &about) != 0) return reason(errno);
-  // Another process may have replaced the file since the check.
+  // Another process may have replaced the file after the first check.
   if (!S_ISREG(about.st_mode)) return not_regular(about.st_mode);
   file.size = static_cast<std::size_t>(about.st_size);
   return file;
 }
 
-/// Returns the number of bytes that were read, 0 at the end; -1 after an error, which is in errno.
+/// Returns the number of bytes that were read, or 0 at the end of the file. Returns -1 after an error and
+/// sets errno.
 ssize_t read_some(int descriptor, char* bytes, std::size_t size) {
   ssize_t count = 0;
   do {

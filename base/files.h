@@ -14,13 +14,14 @@ namespace softgrip {
 /// A regular file that is open for reading.
 struct RegularFile {
   Descriptor descriptor;
-  std::size_t size = 0;  ///< [bytes] when it was opened
+  std::size_t size = 0;  ///< size when the file was opened [bytes]
 };
 
-/// Opens a regular file for reading, through links. It never waits for another process: a pipe, a device, a
-/// socket, a folder and a file that another process has leased are errors. The error is the reason, without
-/// the path. Use it for every file that another user or program can replace. The file system itself can still
-/// block: a network mount whose server does not respond holds every call on it.
+/// Opens a regular file for reading and follows symbolic links. The call never waits for another process: a
+/// pipe, a device, a socket, a folder and a file that another process has leased are errors. The error is the
+/// reason, without the path. Use this function for every file that another user or program can replace. The
+/// file system itself can still block: a call on a network mount whose server does not respond does not
+/// return.
 [[nodiscard]] tl::expected<RegularFile, std::string> open_regular(const std::string& path);
 
 /// Opens the regular file `name` of an open folder as open_regular() does. A symbolic link is an error.
@@ -33,37 +34,40 @@ struct RegularFile {
 /// Returns the contents of a regular file of at most `bound` bytes. The error is a sentence with the reason.
 [[nodiscard]] tl::expected<std::string, std::string> read_file(const std::string& path, std::size_t bound);
 
-/// Returns true if the path leads to a file or a folder, through links. These two functions do not throw,
-/// unlike those of std::filesystem: for an unreadable folder or an impossible name they return false.
+/// Returns true if the path leads to a file or a folder; symbolic links are followed. Unlike the functions of
+/// std::filesystem, is_there() and is_folder() do not throw. They return false for an unreadable folder or an
+/// impossible name.
 [[nodiscard]] bool is_there(const std::string& path) noexcept;
 [[nodiscard]] bool is_folder(const std::string& path) noexcept;
 
 /// Returns true if both paths lead to the same file (device and inode), through symbolic and hard links.
 [[nodiscard]] bool same_file(const std::string& one, const std::string& other) noexcept;
 
-/// Functions that write a file. Each of them leaves `path` unchanged unless it returns a value. After a full
-/// disk, a signal or a power failure, `path` contains the old file or the new one, never a part. The new file
-/// is written under another name in the same folder and then renamed. A killed process can leave a file
-/// `.softgrip-*.part`. Errors are sentences.
+/// Durability of a written file. The functions below leave `path` unchanged if they return an error. After a
+/// full disk, a signal or a power failure, `path` contains the complete old file or the complete new file.
+/// The new file is written under another name in the same folder and then renamed. A killed process can leave
+/// a file `.softgrip-*.part`. Errors are sentences.
 enum class Sync {
-  none,  ///< the kernel decides when to write: after a power failure the file can be empty
-  disk,  ///< the file is on the disk before it gets its name
+  none,  ///< the kernel decides when it writes the file to the disk; after a power failure the file can be
+         ///< empty
+  disk,  ///< the file is written to the disk before it gets its name
 };
 
-/// Writes a result and creates missing folders. An existing file is replaced; its owner and permissions
-/// remain. A symbolic link is replaced by the file.
+/// Writes a file and creates missing folders. An existing file is replaced; its owner and permissions remain.
+/// A symbolic link is replaced by the file.
 [[nodiscard]] tl::expected<void, std::string> write_file(const std::string& path, std::string_view contents,
                                                          Sync sync = Sync::disk);
 
-/// Replaces the contents of a file that must exist. A symbolic link remains a link.
+/// Replaces the contents of a file that must exist. If `path` is a symbolic link, the link remains and its
+/// target is replaced.
 [[nodiscard]] tl::expected<void, std::string> replace_file(const std::string& path,
                                                            std::string_view contents);
 
-/// Writes a file. If it exists already, this is an error.
+/// Writes a new file. An existing file is an error.
 [[nodiscard]] tl::expected<void, std::string> create_file(const std::string& path, std::string_view contents);
 
-/// Writes the file `name` of an open folder with mode 0600. It is not synchronised to the disk, because such
-/// files are not needed after a restart of the machine.
+/// Writes the file `name` of an open folder with mode 0600. The file is not synchronised to the disk, because
+/// such files are not needed after a restart of the machine.
 [[nodiscard]] tl::expected<void, std::string> write_private_file(const Descriptor& folder,
                                                                  const std::string& name,
                                                                  std::string_view contents);

@@ -1,16 +1,17 @@
 #pragma once
-// Parses JSON text of other users and programs.
+// Parses JSON text that other users and programs have written.
 
 #include <string_view>
 
 namespace softgrip {
 
-/// Depth of nested arrays and objects that parse_json() keeps.
+/// Largest depth of nested arrays and objects that parse_json() keeps.
 inline constexpr int deepest_json = 64;
 
-/// Parses a text with nlohmann's type `Json` (json or ordered_json). Deeper values are omitted, because the
-/// library's copy and print functions recurse once per level, and a text of brackets would exhaust the stack.
-/// Invalid JSON gives a discarded value, which is not an object, array, text or number.
+/// Parses a text with nlohmann's type `Json` (json or ordered_json). Values that are nested deeper than
+/// deepest_json are omitted. The copy and print functions of the library recurse once per level, so a text of
+/// many brackets would exhaust the stack. For invalid JSON, the result is a discarded value, which is not an
+/// object, array, text or number.
 template <class Json>
 [[nodiscard]] Json parse_json(std::string_view text) {
   return Json::parse(

@@ -9,14 +9,15 @@ namespace softgrip {
 
 /// Returns the shortest text that reads back as the same double ("nan" and "inf" included).
 [[nodiscard]] std::string shortest(double value);
-/// Returns shortest(), but without an exponent if that is short. Used in messages about values in files.
+/// Returns the same text as shortest(), but without an exponent if the text remains short. Used in messages
+/// about values in files.
 [[nodiscard]] std::string written(double value);
-/// Returns `digits` significant digits without trailing zeros, and without an exponent from 1e-4 to 1e7; "-"
-/// for NaN or infinity.
+/// Returns the number with `digits` significant digits and without trailing zeros. Numbers from 1e-4 to 1e7
+/// have no exponent. Returns "-" for NaN or infinity.
 [[nodiscard]] std::string significant(double value, int digits = 4);
-/// Returns `decimals` digits after the point; "-" for NaN or infinity.
+/// Returns the number with `decimals` digits after the point. Returns "-" for NaN or infinity.
 [[nodiscard]] std::string fixed(double value, int decimals);
-/// Reads a number. The text must contain nothing else except blanks around it.
+/// Reads a number. The text may contain blanks around the number, and nothing else.
 [[nodiscard]] std::optional<double> to_number(std::string_view text);
 
 }  // namespace softgrip

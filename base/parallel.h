@@ -16,10 +16,10 @@
 
 namespace softgrip {
 
-/// Calls work(i) for i in [0, count), in any order, on at most `threads` threads (0: one per core) of those
-/// that are idle in the thread budget. If calls throw, the first exception is thrown again after all have
-/// ended. After a request to end early, no further item begins, and WorkCancelled is thrown. work(i) should
-/// write its result into slot i of a prepared array.
+/// Calls work(i) for each i in [0, count), in any order. The calls run on the calling thread and on idle
+/// threads of the thread budget, but on at most `threads` threads (0: one per core). If calls throw, the
+/// first exception is thrown again after all threads have ended. After a request to end early, no further
+/// item begins, and WorkCancelled is thrown. work(i) should write its result into slot i of a prepared array.
 template <class Work>
 void parallel_for(std::size_t count, unsigned threads, Work&& work) {
   ThreadBudget own(threads);
@@ -53,7 +53,7 @@ void parallel_for(std::size_t count, unsigned threads, Work&& work) {
       });
     }
     run();
-    // While this thread waits, the threads that still compute may start one more.
+    // This thread waits now, so another thread of the budget may compute in its place.
     budget.give_back(1);
     others.clear();
     budget.go_on();
@@ -61,8 +61,8 @@ void parallel_for(std::size_t count, unsigned threads, Work&& work) {
   if (failure) std::rethrow_exception(failure);
 }
 
-/// Calls work(i) as parallel_for() does, on the idle threads of the current budget; without a budget, on the
-/// calling thread alone.
+/// Calls work(i) as parallel_for() does, on the idle threads of the current budget. If the thread has no
+/// budget, all calls run on the calling thread.
 template <class Work>
 void parallel_for_idle(std::size_t count, Work&& work) {
   parallel_for(count, ThreadBudget::current() != nullptr ? 0 : 1, std::forward<Work>(work));

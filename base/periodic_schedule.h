@@ -9,8 +9,8 @@
 
 namespace softgrip {
 
-/// Ticks are due at start + k * period. After an overrun, the next tick is the next one of the schedule:
-/// missed ticks are not repeated in a burst, and the phase is kept.
+/// Ticks are due at start + k * period. After an overrun, the schedule continues with the next regular tick:
+/// missed ticks are not repeated in a burst, and the phase of the schedule does not change.
 class PeriodicSchedule {
  public:
   PeriodicSchedule(Nanoseconds start, Nanoseconds period) noexcept : period_(period), due_(start) {}
@@ -19,7 +19,8 @@ class PeriodicSchedule {
   /// Returns the due time of the current tick.
   [[nodiscard]] Nanoseconds due() const noexcept { return due_; }
 
-  /// Advances to the first tick that is not over at `now`. Returns the number of ticks that were skipped.
+  /// Advances by one period, and then to the first tick that is due at or after `now`. Returns the number of
+  /// ticks that were skipped.
   std::uint64_t advance(Nanoseconds now) noexcept {
     due_ += period_;
     if (now <= due_) return 0;

@@ -1,5 +1,6 @@
 #pragma once
-// Random numbers as a function of seed and index: without state, and equal on each machine.
+// Computes random numbers as a function of seed and index. The functions have no state, and their results are
+// equal on all machines.
 
 #include <cmath>
 #include <cstdint>
@@ -20,12 +21,12 @@ namespace softgrip {
   return scattered(scattered(seed) ^ (part * 0xd1342543de82ef95ULL + 1));
 }
 
-/// Returns the n-th uniform number of a seed, in (0, 1).
+/// Returns the n-th uniform random number of a seed, in (0, 1).
 [[nodiscard]] constexpr double uniform_at(std::uint64_t seed, std::uint64_t n) noexcept {
   return (static_cast<double>(scattered(seed ^ scattered(n)) >> 11) + 0.5) * 0x1.0p-53;
 }
 
-/// Returns the n-th standard normal number of a seed (Box-Muller).
+/// Returns the n-th standard normal random number of a seed (Box-Muller).
 [[nodiscard]] inline double normal_at(std::uint64_t seed, std::uint64_t n) noexcept {
   const double radius = std::sqrt(-2.0 * std::log(uniform_at(seed, 2 * n)));
   return radius * std::cos(2.0 * std::numbers::pi * uniform_at(seed, 2 * n + 1));

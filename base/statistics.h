@@ -1,5 +1,5 @@
 #pragma once
-// Statistics that several folders use.
+// Statistical functions that several folders use.
 
 #include <algorithm>
 #include <cmath>
@@ -12,8 +12,8 @@ namespace softgrip {
   return x * x;
 }
 
-/// Returns the median; of an even number of values the upper of the two in the middle; 0 without values.
-/// Changes the order of `values`.
+/// Returns the median. For an even number of values, this is the larger of the two middle values; without
+/// values it is 0. Changes the order of `values`.
 template <class T>
 [[nodiscard]] T median_of(std::span<T> values) {
   if (values.empty()) return T{};
@@ -22,12 +22,13 @@ template <class T>
   return *middle;
 }
 
-/// Returns the standard deviation of the noise between samples, estimated by the median magnitude of third
-/// differences. Smooth signals and single steps have almost no effect. 0 for fewer than 4 values.
+/// Returns the standard deviation of the white noise of samples. It is estimated from the median magnitude of
+/// the third differences, on which smooth signals and single steps have almost no effect. Returns 0 for fewer
+/// than 4 values.
 [[nodiscard]] double third_difference_noise(std::span<const double> values);
 
-/// Sums for a straight line through pairs of values. Pairs with a value that is not finite are skipped.
-/// Variances and covariance are multiplied by the square of the count.
+/// Sums for the regression line through pairs of values. Pairs with a value that is not finite are skipped.
+/// The variances and the covariance are multiplied by the square of the number of pairs.
 struct PairSums {
   double count = 0, x = 0, y = 0, xx = 0, yy = 0, xy = 0;
 
@@ -42,7 +43,7 @@ struct PairSums {
   }
   [[nodiscard]] double variance_x() const { return count * xx - x * x; }
   [[nodiscard]] double covariance() const { return count * xy - x * y; }
-  /// Returns the slope of y over x by least squares; meaningless if x does not vary.
+  /// Returns the slope of y over x by least squares. The result is meaningless if x does not vary.
   [[nodiscard]] double slope() const { return covariance() / variance_x(); }
   /// Returns the correlation coefficient; 0 if x or y does not vary.
   [[nodiscard]] double correlation() const {

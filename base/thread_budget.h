@@ -10,14 +10,14 @@
 
 namespace softgrip {
 
-/// Threads that a task may use. All calls of parallel_for() in the task and in its threads share the budget:
-/// if the last items of an outer loop leave threads idle, the inner loops use them. The result does not
-/// depend on the threads if each item writes to its own slot.
+/// The number of threads that a task may use. All calls of parallel_for() in the task and in its threads
+/// share this budget: if the last items of an outer loop leave threads idle, the inner loops use these
+/// threads. If each item writes to its own slot, the result does not depend on the number of threads.
 class ThreadBudget {
  public:
-  /// Sets the budget of the calling thread, and of the threads started from it, until the destructor:
-  /// `threads` at a time (0: one per core), including the calling thread. Has no effect if the thread has a
-  /// budget already.
+  /// Sets the budget of the calling thread, and of the threads started from it, until the destructor runs. At
+  /// most `threads` threads (0: one per core) compute at a time, including the calling thread. Has no effect
+  /// if the thread already has a budget.
   /// @param stop  requests an early end of the task (base/cancellation.h).
   explicit ThreadBudget(unsigned threads, std::stop_token stop = {}) noexcept : stop_(std::move(stop)) {
     if (current_ != nullptr) return;
@@ -47,10 +47,12 @@ class ThreadBudget {
     return 0;
   }
   void give_back(std::size_t threads) noexcept { idle_ += static_cast<std::ptrdiff_t>(threads); }
-  /// Called by a thread that continues after it waited. For a moment, one thread too many may compute.
+  /// Must be called by a thread that continues after it has waited. For a short time, one thread too many may
+  /// compute.
   void go_on() noexcept { --idle_; }
 
-  /// Sets the budget of the calling thread, which was started for it, until that thread ends.
+  /// Sets the budget of the calling thread until this thread ends. The thread was started to compute for this
+  /// budget.
   static void share(ThreadBudget& budget) noexcept { current_ = &budget; }
 
  private:

@@ -1,5 +1,5 @@
 #pragma once
-// The time type of the project: whole nanoseconds of one clock.
+// Defines the time type of the project: whole nanoseconds of one clock.
 
 #include <cmath>
 #include <cstdint>
@@ -11,7 +11,8 @@ using Nanoseconds = std::int64_t;
 
 inline constexpr Nanoseconds ns_per_s = 1'000'000'000;
 
-/// Converts to seconds. The division is rounded correctly; a product with 1e-9 could give 13.120000000000001.
+/// Converts nanoseconds to seconds. The division is rounded correctly. A multiplication by 1e-9 would not be,
+/// and could give 13.120000000000001.
 [[nodiscard]] constexpr double seconds(Nanoseconds duration) noexcept {
   return static_cast<double>(duration) / 1e9;
 }

@@ -1,5 +1,5 @@
 #pragma once
-// The version of this build, for provenance.
+// Returns the version of this build, for provenance.
 
 #include <string_view>
 

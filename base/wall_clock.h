@@ -1,5 +1,5 @@
 #pragma once
-// The wall clock, for messages and file names, never for control.
+// Reads the wall clock, for messages and file names. It is never used for control.
 
 #include <string>
 
@@ -7,14 +7,15 @@
 
 namespace softgrip {
 
-/// Converts a time of the machine's clock (base/clock.h) to nanoseconds since 1970 (UTC). Uses the present
-/// difference of the clocks, so setting the wall clock also changes the result for past times.
+/// Converts a time of the machine's clock (base/clock.h) to nanoseconds since 1970 (UTC). The conversion uses
+/// the present difference between the two clocks. If the wall clock is set, the results for past times change
+/// too.
 [[nodiscard]] Nanoseconds wall_time(Nanoseconds moment);
 /// Returns the present time of the wall clock.
 [[nodiscard]] Nanoseconds wall_time_now();
 
-/// Returns "2025-11-20T03:46:12Z" with `decimals` (0 to 9) decimal places of the second. Texts with equal
-/// decimals sort in the order of time. Digits are truncated, not rounded.
+/// Returns a text such as "2025-11-20T03:46:12Z". The second has `decimals` (0 to 9) decimal places, which
+/// are truncated, not rounded. Texts with the same number of decimals sort in the order of time.
 [[nodiscard]] std::string utc_text(Nanoseconds wall, int decimals = 0);
 
 }  // namespace softgrip
