@@ -24,7 +24,7 @@ using Failure = tl::unexpected<NotCommissioned>;
 constexpr double gentle_share = 0.3;
 /// A motion below this share of the model's motion counts as no motion.
 constexpr double least_motion = 0.1;
-/// Largest allowed motion, as a share of the way to displacement_max_mm.
+/// Largest allowed displacement, as a share of the distance from rest to displacement_max_mm.
 constexpr double range_share = 0.9;
 constexpr int most_corrections = 8;
 /// Additional time of a motion: finding rest, connecting to the board and disconnecting [s].
@@ -47,8 +47,9 @@ sysid::Waveform gentle(const sysid::RigLimits& limits) {
               limits);
 }
 
-/// A finger behaves differently when it reaches a displacement for the first time, or for the first time
-/// after a long pause. Afterwards its rest position has changed.
+/// Returns the motion that precedes the first run. A finger behaves differently when it reaches a
+/// displacement for the first time, or for the first time after a long pause, and its rest position changes
+/// afterwards.
 sysid::Waveform first_load(const sysid::RigLimits& limits) {
   return slow("first_load", "so that both runs begin after the same loads", 1, 2, limits);
 }
@@ -64,7 +65,7 @@ std::vector<sysid::Waveform> chosen(const std::vector<std::string>& names, const
   return result;
 }
 
-/// The motion of a finger relative to its first reading.
+/// The displacement of a finger in a log, relative to its first reading.
 struct Reach {
   double rest_mm = std::nan("");
   double motion_mm = 0;
@@ -91,9 +92,10 @@ double expected_mm(const ExperimentRig& rig, const sysid::Waveform& waveform) {
   return reach_of(log).motion_mm;
 }
 
-/// Returns the largest pressure at which no experiment brings the finger near the end of its range.
-/// @param ratio    motion of the finger relative to its model.
-/// @param rest_mm  reading before the motion.
+/// Returns the limits of the rig, with a largest pressure at which no experiment exceeds `range_share` of the
+/// displacement range.
+/// @param ratio    measured displacement divided by the displacement of the model.
+/// @param rest_mm  reading at rest.
 sysid::RigLimits limits_for(const ExperimentRig& rig, const std::vector<std::string>& experiments,
                             double ratio, double rest_mm) {
   sysid::RigLimits limits = rig.limits(0, 0);
@@ -170,7 +172,7 @@ class Commissioning {
     return check_free(*loaded);
   }
 
-  /// Plays one run: a rest before each experiment.
+  /// Plays the experiments of one run, with a rest before each, and appends their logs.
   tl::expected<void, NotCommissioned> play_all(const std::string& folder, const std::string& run,
                                                std::vector<sysid::Log>& logs) {
     for (const sysid::Waveform& waveform : chosen(options_.experiments, runs_.limits)) {
@@ -218,8 +220,8 @@ class Commissioning {
 
   const ExperimentRig& rig_;
   const CommissioningOptions& options_;
-  // Created after the consent. A signal between two motions also removes the recordings before the process
-  // ends.
+  // Created after the user's consent. It holds signals back, so that a signal between two motions does not
+  // end the process before the recordings are removed.
   std::optional<daemon::Signals> signals_;
   CommissioningRuns runs_;
   std::uint64_t motions_ = 0;

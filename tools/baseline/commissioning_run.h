@@ -14,8 +14,8 @@
 
 namespace softgrip::tools {
 
-/// Returns the default experiments of the menu: several heights, rates over two decades, holds and small
-/// loops.
+/// Returns the names of the default experiments from the experiment menu. They cover several pressure levels,
+/// pressure rates over two decades, holds and small hysteresis loops.
 [[nodiscard]] const std::vector<std::string>& usual_commissioning();
 
 struct CommissioningOptions {
@@ -31,23 +31,25 @@ struct CommissioningRuns {
   std::vector<sysid::Log> first;   ///< one log per experiment, of the selected channel
   std::vector<sysid::Log> second;  ///< logs of the repeated experiments
   sysid::RigLimits limits;         ///< limits of the experiments
-  double minutes = 0;              ///< time on the rig, by the durations of the experiments
+  double minutes = 0;              ///< time on the rig: planned durations of the motions and rests [min]
 };
 
-/// The reason why there are no runs. The rig is vented, and no files remain.
+/// The reason why the experiment was not completed. The rig is vented, and no files remain.
 struct NotCommissioned {
   ExitCode code = ExitCode::failed;
   std::string why;  ///< a sentence
 };
 
-/// Plays the commissioning experiment twice. First, a gentle pressure shows that the finger moves. It also
-/// limits the experiments: within the limits of the channel, and to 90 % of the way to displacement_max_mm as
-/// predicted by the model and scaled by the measured motion. Then the finger is loaded twice to the largest
-/// pressure, so that both runs begin in the same state.
+/// Plays the commissioning experiment twice. First, a gentle motion shows that the finger moves, and its
+/// displacement is compared with the model of the rig file. The largest pressure of the experiments is then
+/// limited to the channel's limit, and to the pressure at which the finger is expected to use 90 % of the
+/// distance from rest to displacement_max_mm. Then the finger is loaded twice to this pressure, so that both
+/// runs begin in the same state.
 ///
-/// Every log is checked against the rig file's model of the channel. ExitCode::not_acceptable: the finger
-/// hardly moves or touches an object, or the rig plays something else or has a fault. ExitCode::failed: no
-/// consent, or Ctrl-C. Signals are held back during the runs.
+/// Every log is checked against the rig file's model of the channel. Returns ExitCode::not_acceptable if the
+/// finger hardly moves or touches an object, if the rig does not play the requested experiment, or if it has
+/// a fault. Returns ExitCode::failed if consent is refused or the user presses Ctrl-C. Signals are held back
+/// during the runs.
 [[nodiscard]] tl::expected<CommissioningRuns, NotCommissioned> play_commissioning(
     const ExperimentRig& rig, const CommissioningOptions& options);
 
