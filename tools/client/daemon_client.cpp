@@ -89,7 +89,7 @@ tl::expected<DaemonClient, ClientFailure> DaemonClient::connect(const std::strin
 
 tl::expected<DaemonClient, ClientFailure> DaemonClient::connect_at_once(const std::string& path) {
   auto client = connect(path, SOCK_NONBLOCK, longest_send);
-  // Only connect() must not block. A blocking send() writes a line completely.
+  // Only connect() must not block. Afterwards send() may block, so that it writes a line completely.
   if (client) ::fcntl(client->descriptor(), F_SETFL, 0);
   return client;
 }
@@ -104,7 +104,7 @@ tl::expected<DaemonClient, ClientFailure> DaemonClient::connect(const std::strin
   std::memcpy(address.sun_path, path.data(), path.size());
   Descriptor socket{::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | flags, 0)};
   const timeval limit{send_limit.count() / 1000, send_limit.count() % 1000 * 1000};
-  // The limit also applies to connect().
+  // SO_SNDTIMEO also limits the duration of connect().
   if (!socket || ::setsockopt(socket.get(), SOL_SOCKET, SO_SNDTIMEO, &limit, sizeof limit) != 0 ||
       ::connect(socket.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
     return tl::unexpected{cannot_connect(path, errno)};

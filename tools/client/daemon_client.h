@@ -17,8 +17,8 @@ namespace softgrip::tools {
 /// Returns the default path of softgripd's socket: $SOFTGRIP_SOCKET, or the path of the packaged service.
 [[nodiscard]] std::string default_socket_path();
 
-/// Returns "file:line:col: message" for each problem of a sequence that the daemon reports. Each begins on a
-/// new line.
+/// Returns the text of the problems of a sequence that the daemon reports: "file:line:col: message" for each,
+/// on a new line.
 [[nodiscard]] std::string listed(const nlohmann::ordered_json& problems);
 
 /// The reason why a request failed, for the user, and the exit code of the program.
@@ -34,15 +34,16 @@ class DaemonClient {
 
   /// Connects to the daemon. If no daemon runs, the failure explains how to start one.
   [[nodiscard]] static tl::expected<DaemonClient, ClientFailure> connect(const std::string& path);
-  /// Connects without waiting. Fails if the daemon has too many connections to accept. A later request waits
-  /// for at most `longest_send`. With connect(), connecting and each request wait for at most
-  /// `longest_answer`.
+  /// Connects without waiting. Fails if the daemon's queue of unaccepted connections is full. A later request
+  /// waits at most `longest_send` until it is sent. With connect(), this limit is `longest_answer`, for
+  /// connecting and for each request.
   [[nodiscard]] static tl::expected<DaemonClient, ClientFailure> connect_at_once(const std::string& path);
   static constexpr std::chrono::milliseconds longest_send{50};
 
-  /// Sends a request without waiting for the response. next_line() reports a request that could not be sent.
-  /// If the daemon gave a reason before it closed the connection, the reason is in its last line. The
-  /// connection ends if the daemon does not accept the request.
+  /// Sends a request without waiting for the response. If sending fails, the next call of next_line() that
+  /// finds no more lines returns the failure. Lines that the daemon sent before it closed the connection are
+  /// still returned, and the last one may state the reason. If the daemon does not accept the request in
+  /// time, the connection ends.
   void send(const nlohmann::ordered_json& request);
   /// Returns the `result` of a response from next_line(), or a failure if the daemon refused, like ask().
   [[nodiscard]] static tl::expected<nlohmann::ordered_json, ClientFailure> result_of(
@@ -58,7 +59,7 @@ class DaemonClient {
   [[nodiscard]] tl::expected<std::optional<nlohmann::ordered_json>, ClientFailure> next_line(
       std::chrono::milliseconds patience);
 
-  /// For poll().
+  /// Returns the descriptor for poll().
   [[nodiscard]] int descriptor() const noexcept { return socket_.get(); }
 
  private:
@@ -76,7 +77,7 @@ class DaemonClient {
 
 /// Returns true if a daemon runs on this socket, even if it does not respond: it then controls the board.
 [[nodiscard]] bool daemon_runs(const std::string& path);
-/// The remedy if no daemon may run.
+/// The remedy for a command that cannot run beside the daemon.
 inline constexpr const char* stop_the_daemon =
     "softgripd runs and holds the board: stop it first (systemctl stop softgripd)";
 

@@ -9,7 +9,7 @@
 namespace softgrip::tools {
 
 /// Returns the text at `key` without control characters, shortened to `most` characters. Returns "-" if there
-/// is none.
+/// is no text.
 [[nodiscard]] std::string text_at(const nlohmann::ordered_json& json, const char* key,
                                   std::size_t most = 200);
 [[nodiscard]] std::optional<double> number_at(const nlohmann::ordered_json& json, const char* key);

@@ -19,11 +19,11 @@ class KeyDialogue {
     bool leave = false;
     std::optional<nlohmann::ordered_json> request;  ///< request to the daemon
   };
-  /// Processes the keys that were typed since the last call. `ran` is the sequence that a start offers, or
-  /// empty. After a question, the remaining keys are dropped, so that pasted text cannot confirm it. Arrow
-  /// keys and function keys are ignored.
+  /// Processes the keys that were typed since the last call. `ran` is the sequence that the start key offers
+  /// to run; empty: none. If a key causes a question, the keys typed after it are dropped, so that pasted
+  /// text cannot confirm the question. Arrow keys and function keys are ignored.
   Outcome take(std::string_view typed, double time_s, const std::string& ran);
-  /// Withdraws a question after `patience_s`. Returns true if this call withdrew it.
+  /// Withdraws a question that has waited for `patience_s`. Returns true if this call withdrew it.
   bool lapse(double time_s);
 
   /// Returns the question that waits for an answer, or "".

@@ -8,17 +8,18 @@
 
 namespace softgrip::tools {
 
-/// The subfolder for the results in the folder of the recordings. softgrip-health.service writes there.
+/// Name of the subfolder of the recordings' folder to which softgrip-health.service writes its results.
 inline constexpr const char* health_folder = "health";
-/// A result of this age is out of date [s].
+/// A result that is older than this is out of date [s].
 inline constexpr double health_old_s = 3 * 86400.0;
 
-/// Returns health.json of this folder with the added member `age_s`. Returns null if it cannot be read.
+/// Returns the content of health.json in the folder `recordings`/health with the added member `age_s`.
+/// Returns null if the file cannot be read.
 /// @param recordings  folder of the recordings, or empty if there is none.
 [[nodiscard]] nlohmann::ordered_json last_health(const std::string& recordings);
 
-/// One line per finger that has changed, or one line for all fingers, and one line if the result is out of
-/// date. The list is empty if `health` is null.
+/// One line about the health of the fingers. The list contains one line per changed finger, or one line for
+/// all fingers together, and one line if the result is out of date. It is empty if `health` is null.
 struct HealthLine {
   std::string text;
   bool good = true;

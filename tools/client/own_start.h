@@ -1,5 +1,5 @@
 #pragma once
-// Identifies starts that their program may have to stop: the daemon stops a single one by its `start_id`
+// Gives a start its own `start_id`. With this id, a program can stop its own start without stopping any other
 // (docs/reference/socket-api.md, "A stop of one start").
 
 #include <optional>
@@ -14,7 +14,8 @@ namespace softgrip::tools {
 /// Returns a unique id for a start.
 [[nodiscard]] std::string new_start_id();
 
-/// Checks that the daemon can stop a single start. Returns nullopt if it can, else the reason not to start.
+/// Checks that the daemon can stop a single start by its id. Returns nullopt if it can, else the reason for
+/// not requesting a start.
 [[nodiscard]] std::optional<ClientFailure> cannot_name_starts(DaemonClient& client);
 
 /// Returns the request that stops only the start with this id.

@@ -11,11 +11,11 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// The names of the shapes are short words, as in the protocol.
+// Names in this namespace are short words, as in the protocol, so they need a namespace of their own.
 namespace reply_shape {
 
-/// The daemon needs five levels. The limit is needed because copying and printing JSON use the stack for each
-/// level.
+/// Largest accepted nesting depth. Messages of the daemon need five levels. A limit is necessary because
+/// copying and printing JSON use the stack for each level.
 constexpr std::size_t deepest = 32;
 
 /// The kinds of values as bits, because a field may allow several kinds.
@@ -32,7 +32,7 @@ struct Field {
 
 struct Shape {
   std::span<const Field> fields;
-  bool is_whole = true;  ///< the required fields must be present
+  bool is_whole = true;  ///< false: required fields may be missing
 };
 
 constexpr Field problem_fields[] = {{"file", text},      {"line", count},   {"column", count},
@@ -91,7 +91,7 @@ constexpr Field status_fields[] = {{"version", text},
                                    {"recording", object, &recording},
                                    {"real_time", object | null, &real_time}};
 constexpr Shape status{status_fields};
-/// A result can be a status, so no field is required.
+/// Shape of a result that can be a status or another object, so no field is required.
 constexpr Shape perhaps_status{status_fields, false};
 
 constexpr Field parameter_fields[] = {{"name", text},    {"unit", text},      {"lower", number},

@@ -15,12 +15,13 @@ namespace softgrip::tools {
 /// Adds --set, which may be given several times.
 void add_set_option(CLI::App& command, std::vector<std::string>& settings);
 
-/// Parses the values of --set. If a name is missing or a value is not a number, prints a sentence to the
-/// standard error and returns ExitCode::usage. Only the sequence knows the valid names and ranges.
+/// Parses the values of --set. If a parameter has no name or its value is not a number, prints a sentence to
+/// the standard error and returns ExitCode::usage. The names and ranges are not checked here, because only
+/// the sequence defines them.
 [[nodiscard]] tl::expected<std::vector<control::Argument>, ExitCode> arguments_of(
     const std::vector<std::string>& settings);
 
-/// Returns the parameters for the socket's `start`: {"squeeze_kpa": 4}.
+/// Returns the parameters as JSON for the `start` command of the socket: {"squeeze_kpa": 4}.
 [[nodiscard]] nlohmann::ordered_json json_of(const std::vector<control::Argument>& arguments);
 
 }  // namespace softgrip::tools

@@ -30,7 +30,7 @@ Tone tone_of_result(const std::string& result) {
   return Tone::bad;
 }
 
-/// The value and the mark of a bar, on one scale.
+/// The value of a bar and its mark, with the range of their common scale.
 struct Bar {
   double lower = 0;
   double upper = 1;
@@ -115,7 +115,7 @@ void add_trends_below(std::vector<std::string>& lines, const ViewStyle& style, c
   lines.push_back(line.text());
 }
 
-/// Adds the limit that has restricted the pressure for more than a moment.
+/// Adds the text of the limit that restricts the pressure, if the status reports one.
 void add_limit(std::vector<std::string>& lines, const Json& channel, const ViewStyle& style) {
   const std::string words = text_at(channel, "limit_text");
   if (words == "-") return;

@@ -11,14 +11,14 @@
 
 namespace softgrip::tools {
 
-/// The parts of a status that a screen may arrange, one line each. A missing value is shown as "-".
+/// The parts of a status that a screen can arrange, as lines. A missing value is shown as "-".
 struct StatusParts {
   std::vector<std::string> head;  ///< state and sequence, pressurised fingers, the fault
   std::vector<std::vector<std::string>> channels;
-  std::vector<std::string> board;      ///< and the connection attempts if it does not respond
-  std::vector<std::string> machinery;  ///< loop, recording
+  std::vector<std::string> board;      ///< connection to the board, and the attempts to restore it
+  std::vector<std::string> machinery;  ///< control loop and recording
 };
-/// Formats the parts. With `trends` (one per channel), the trends replace the bars.
+/// Formats the parts. With `trends` (one per channel), bars are replaced by the trends.
 [[nodiscard]] StatusParts parts_of(const nlohmann::ordered_json& status, const ViewStyle& style,
                                    const std::vector<ChannelTrends>* trends = nullptr);
 

@@ -14,11 +14,12 @@ class Trend {
  public:
   static constexpr std::size_t seconds_kept = 300;
 
-  /// Adds a value. `time_s` normally never decreases. A decrease (another daemon) restarts the trend.
+  /// Adds a value. `time_s` normally never decreases. If it decreases, another daemon has started, and the
+  /// trend begins again.
   void add(double time_s, std::optional<double> value);
 
   /// Returns at most `cells` characters, one per second, newest last. Each is one column wide. The scale
-  /// covers the shown values, but at least `least_span` (> 0).
+  /// covers the shown values. Its span is at least `least_span` (> 0).
   [[nodiscard]] std::vector<std::string> glyphs(std::size_t cells, double least_span, bool unicode) const;
 
  private:
