@@ -1,10 +1,10 @@
 #pragma once
-// One subcommand of `softgrip`. A command is one file under commands/ that defines
+// A subcommand of `softgrip` is one file under commands/ that defines
 //
 //   void add_NAME(CLI::App& program, ExitCode& outcome);
 //
-// and one line in commands.h. The function adds its subcommand to `program`; when the user chose it, its
-// callback runs the command and leaves the exit code in `outcome`.
+// and one line in commands.h. The function adds its subcommand to `program`. If the user chose this
+// subcommand, its callback runs it and stores the exit code in `outcome`.
 
 #include <optional>
 #include <string>

@@ -14,7 +14,7 @@ struct Choice {
   std::string about;
   bool takes_value = false;
   bool repeats = false;
-  std::vector<std::string> words;  ///< allowed values; empty: files
+  std::vector<std::string> words;  ///< allowed values; empty: any file name
 };
 
 struct Command {
@@ -22,7 +22,7 @@ struct Command {
   std::string about;
   std::vector<Choice> options;
   std::vector<Choice> places;
-  bool asks_for_sequences = false;  ///< names of the daemon's sequences
+  bool asks_for_sequences = false;  ///< the values are the names of the daemon's sequences
 };
 
 constexpr const char* ask_for_sequences = "sequences --names 2>/dev/null";
@@ -57,7 +57,7 @@ Choice choice_of(const CLI::Option& option) {
 
 Command command_of(const CLI::App& app);
 
-/// Adds the subcommands of a command: their names, and all options and arguments of each.
+/// Adds the subcommands of a command: their names, and the options and arguments of each of them.
 void add_nested(const CLI::App& app, Command& command) {
   Choice place;
   for (const CLI::App* nested : app.get_subcommands([](const CLI::App*) { return true; })) {
@@ -123,7 +123,7 @@ std::string quoted(const std::string& text, std::string_view escaped, std::strin
   return out;
 }
 
-// bash: an argument without candidates is completed as a file, by `-o default`.
+// bash: the option `-o default` completes an argument without candidates as a file name.
 
 void bash_values(std::string& out, const std::string& command, const std::vector<Choice>& options) {
   for (const Choice& option : options) {

@@ -17,13 +17,14 @@ namespace softgrip::tools {
 /// file (/dev/stdout, a pipe) is opened and written. The error is one sentence.
 [[nodiscard]] tl::expected<void, std::string> write_output(const std::string& path, std::string_view text);
 
-/// Returns true for "-" and for an existing path that is not a regular file. Its name does not define a
-/// format.
+/// Returns true for "-" and for an existing path that is not a regular file. The name of such an output does
+/// not define its format.
 [[nodiscard]] bool is_stream(const std::string& path);
 
-/// Returns ExitCode::usage and prints a sentence if one of `outputs` and one of `inputs` are the same file:
-/// same device and inode, through links. An input may be a recording's folder, which includes its run.csv and
-/// run.json. Empty paths and "-" never match. Call this before any computation.
+/// Returns ExitCode::usage and prints a sentence if one of `outputs` is the same file as one of `inputs`.
+/// Files are the same if device and inode are equal after links are resolved. An input may be a recording's
+/// folder, which stands for its run.csv and run.json. Empty paths and "-" never match. Call this before any
+/// computation.
 [[nodiscard]] std::optional<ExitCode> refuse_overwriting(const std::vector<std::string>& outputs,
                                                          const std::vector<std::string>& inputs);
 
@@ -38,8 +39,8 @@ namespace softgrip::tools {
 /// Creates the parent folder of a file if it is missing. "-" is always writable.
 [[nodiscard]] tl::expected<void, std::string> prepare_parent(const std::string& path);
 
-/// Returns the stream for the summary: the standard output, or the standard error if the output itself goes
-/// there.
+/// Returns the stream for the summary of a command that writes its output to `path`: the standard output, or
+/// the standard error if the output itself is written to the standard output.
 [[nodiscard]] std::FILE* report_stream(const std::string& path);
 
 }  // namespace softgrip::tools

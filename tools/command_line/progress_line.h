@@ -11,8 +11,8 @@
 
 namespace softgrip::tools {
 
-/// Estimates the remaining time of a stage from its elapsed time. Texts state the progress as "3 of 20". A
-/// text without these numbers, or with another total, begins a new stage.
+/// Estimates the remaining time of a stage from its elapsed time. The texts state the progress as "3 of 20".
+/// A text without such a progress, or with another total, begins a new stage.
 class RestEstimate {
  public:
   /// Returns the remaining time [s] after `text`, which was shown at `now_s`. A negative value means unknown.
