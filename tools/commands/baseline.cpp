@@ -39,7 +39,7 @@ struct BaselineOptions {
   std::vector<std::string> data;
   std::vector<std::string> check;
   std::string rig;
-  std::string rig_channel;  ///< channel of the rig; "": that of --channel
+  std::string rig_channel;  ///< channel of the rig; "": the channel given by --channel
   std::vector<std::string> experiments = usual_commissioning();
   double rest_s = CommissioningOptions{}.rest_s;
   std::string gauge;
@@ -56,7 +56,7 @@ struct BaselineOptions {
 struct Runs {
   std::vector<sysid::Log> healthy, again;
   BaselineContents contents;
-  Json rig;  ///< the rig that played them; null: recorded before
+  Json rig;  ///< the rig that played the logs; null: the logs were recorded before
 };
 
 tl::expected<model::Model, ExitCode> model_of(const BaselineOptions& options,
@@ -95,7 +95,7 @@ double left_mm(const BaselineOptions& options, const model::Model& model,
   return count > 0 ? std::sqrt(squares / count) : 0;
 }
 
-/// Compares a second run of the healthy finger with the first. Returns null if there is no second run.
+/// Compares a second run of the healthy finger with the first run. Returns null if there is no second run.
 tl::expected<Json, ExitCode> checked(const BaselineOptions& options, const Runs& runs,
                                      const model::Model& model, bool& holds) {
   if (runs.again.empty()) return Json(nullptr);
@@ -219,7 +219,7 @@ ExitCode keep(const BaselineOptions& options, Runs runs, const std::vector<std::
   return holds ? ExitCode::done : ExitCode::not_acceptable;
 }
 
-/// Checks an existing baseline: its files, and the comparison of its second run with its first.
+/// Checks the files of an existing baseline and compares its second run with its first run again.
 ExitCode checked_again(BaselineOptions options) {
   const std::string folder = options.check.front();
   const auto baseline = sysid::read_baseline(folder);

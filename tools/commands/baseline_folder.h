@@ -29,14 +29,14 @@ struct BaselineContents {
 /// Reads the files of logs unchanged.
 [[nodiscard]] tl::expected<std::vector<BaselineFile>, std::string> files_of(
     const std::vector<sysid::Log>& logs);
-/// Reads any one file unchanged.
+/// Reads one file of any kind unchanged.
 [[nodiscard]] tl::expected<BaselineFile, std::string> baseline_file(const std::string& path);
 
 /// Returns the names of the files that write_baseline() writes or replaces. `*` stands for a number.
 [[nodiscard]] std::vector<std::string> baseline_files();
 
-/// Writes the folder. A new folder appears completely or not at all, and Ctrl-C waits for it. Returns the
-/// text of baseline.json.
+/// Writes the folder. A new folder appears completely or not at all, and Ctrl-C takes effect only after the
+/// folder is written. Returns the text of baseline.json.
 /// @param about  further members of baseline.json.
 [[nodiscard]] tl::expected<std::string, std::string> write_baseline(const std::string& folder,
                                                                     const BaselineContents& contents,

@@ -76,7 +76,8 @@ std::string names_of(const rig::RigFile& rig) {
   return with_commas(rig.settings.channels, &control::ChannelSettings::name);
 }
 
-/// Sets the pressures of the two positions to the given values, or with set_places().
+/// Sets the pressures of the two positions to the values of --at-kpa, or to the default of set_places().
+/// Refuses values outside the limits.
 std::optional<ExitCode> set_pressures(const CalibrateOptions& options, const control::LimitSettings& limits,
                                       calibrate::Settings& settings) {
   calibrate::set_places(settings, limits);
@@ -92,7 +93,7 @@ std::optional<ExitCode> set_pressures(const CalibrateOptions& options, const con
       "--at-kpa LOW HIGH: LOW must be below HIGH, and both must be within the limits of the rig file");
 }
 
-/// Each answer applies to one visit. Two answers apply to all visits.
+/// Returns the prepared answers, one per visit. Two answers are repeated for all visits to the two positions.
 std::vector<std::string> spread(const std::vector<std::string>& answers, std::size_t repeats) {
   std::vector<std::string> all;
   if (answers.size() != 2) return answers;
@@ -231,7 +232,7 @@ tl::expected<calibrate::Settings, ExitCode> prepare(CalibrateOptions& options, c
   return settings;
 }
 
-/// Connects, measures, and leaves the rest pressures.
+/// Connects, measures, returns the channels to their rest pressures and writes the results.
 ExitCode carry_out(const rig::RigFile& rig, const CalibrateOptions& options,
                    const calibrate::Settings& settings) {
   const auto lock = daemon::BoardLock::take(rig);

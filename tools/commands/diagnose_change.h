@@ -18,7 +18,7 @@ struct ChangeQuestion {
   std::string figures;  ///< folder for the figures as files; "": no figures
   std::vector<std::string> call;
   bool json = false;
-  bool explain = false;  ///< prints the comparison behind each name
+  bool explain = false;  ///< prints the comparison on which each reported cause is based
 };
 
 /// Diagnoses the change, writes diagnosis.json and report.html, and prints the result.

@@ -45,8 +45,8 @@ bool is_simulated(const rig::RigFile& rig) {
   return std::holds_alternative<simulation::SimulatedBoardSettings>(rig.board);
 }
 
-/// Examines the rig through the daemon, and the programs that connect clients to it. Only the disk and the
-/// clock remain to be examined then. Returns the daemon's status, or null.
+/// Examines the rig through the daemon, and the programs that connect clients to the daemon. The caller then
+/// has only the disk and the clock left to examine. Returns the daemon's status, or null.
 Json ask_running(DaemonClient& client, const std::string& rig, doctor::Findings& findings) {
   const auto status = client.ask({{"command", "status"}});
   const auto statistics = status ? client.ask({{"command", "statistics"}}) : status;
@@ -107,8 +107,8 @@ ExitCode conclude(const DoctorOptions& options, const doctor::Examination& exami
   return findings.worst() == doctor::Verdict::fail ? ExitCode::not_acceptable : ExitCode::done;
 }
 
-/// Requests the name of the rig. A rig file in the present folder may belong to another rig, so it is not
-/// used.
+/// Prints that the user must name the rig. A rig file in the present folder is not used, because it may
+/// belong to another rig.
 ExitCode ask_for_a_name(const std::string& socket) {
   const std::string near = configuration_path("rig.yaml");
   std::string hint;

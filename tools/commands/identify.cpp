@@ -54,7 +54,7 @@ sysid::ShowProgress progress_on(ProgressLine& line, model::OutputUnit output_uni
 
 constexpr const char* automatic = "auto";
 
-/// Returns the structures to choose from if no structure was given.
+/// Returns the model structures among which the command chooses, or nullopt if the user gave a structure.
 std::optional<sysid::StructureQuestion> question_of(const IdentifyOptions& options) {
   using sysid::HysteresisForm, sysid::StructureQuestion;
   if (options.structure == name_of(HysteresisForm::bouc_wen)) return StructureQuestion::bouc_wen;

@@ -60,8 +60,8 @@ bool ask(const Fact& fact, const Fact::Question& question, RigDraft& draft,
   }
 }
 
-/// Takes the fact from the option, an answer or the default. Returns an exit code if none of them is
-/// available.
+/// Takes the value of a fact from its option, from the user's answer or from its default. Returns an exit
+/// code if none of these is available.
 std::optional<ExitCode> settle(const Fact& fact, const InitOptions& options, RigDraft& draft,
                                calibrate::TerminalOperator& person) {
   const auto given = options.facts.find(fact.key);

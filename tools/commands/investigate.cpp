@@ -80,7 +80,8 @@ struct Playground {
   sysid::RigLimits limits;
   std::string name;
   std::string channel;
-  std::optional<ExperimentRig> rig;  ///< from a rig file: the closed loop can be measured on it
+  std::optional<ExperimentRig> rig;  ///< the rig of the rig file, on which the closed loop can be measured;
+                                     ///< nullopt: --rig-command is used
 };
 
 tl::expected<Playground, ExitCode> playground_of(const InvestigateOptions& options,
@@ -165,7 +166,7 @@ ExitCode exit_code_of(const Investigation& investigation) {
 ExitCode conclude(const InvestigateOptions& options, const model::Model& given, const Playground& ground,
                   const Investigation& investigation) {
   ConsequenceOptions wanted;
-  wanted.experiment.most_minutes = 0;  // causes that are still open were judged in the last step
+  wanted.experiment.most_minutes = 0;  // the last step has already searched for an experiment
   wanted.closed_loop = !options.no_closed_loop && investigation.end != InvestigationEnd::stopped;
   wanted.seed = options.diagnosis.seed;
   const Consequences consequences = consequences_of(investigation.last, wanted);

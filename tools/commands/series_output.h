@@ -18,8 +18,8 @@ class App;
 
 namespace softgrip::tools {
 
-/// Returns the series of logs that a model predicted. `records` contains their scores. `held_out`: the model
-/// was fitted to none of these logs.
+/// Returns the measured and predicted series of logs. `records` contains the scores of the prediction.
+/// `held_out` states that the model was fitted to none of these logs.
 [[nodiscard]] std::vector<sysid::LogSeries> series_of(const std::vector<sysid::Log>& logs,
                                                       const std::vector<sysid::Record>& records,
                                                       const std::vector<sysid::Score>& scores,

@@ -41,7 +41,7 @@ tl::expected<std::uint64_t, ClientFailure> newest_event(DaemonClient& client) {
   return result->value("newest", std::uint64_t{0});
 }
 
-/// The daemon may have to plan the motion before the start.
+/// Time limit of the response to a start, because the daemon may have to plan the motion first.
 constexpr std::chrono::seconds longest_planning{90};
 
 /// The reason why a start is no longer followed: a signal, or a failure of the daemon or the standard output.
@@ -50,8 +50,8 @@ struct Break {
   ClientFailure failure;
 };
 
-/// Follows one start from the request to the end of the sequence or of the wait. If the wait ends early for
-/// any reason, the sequence is stopped: it must not continue after the program has ended.
+/// Follows one start from the request until the sequence ends or the wait is over. If following ends early
+/// for any reason, the sequence is stopped, because it must not continue after the program has ended.
 class FollowedStart {
  public:
   FollowedStart(const StartOptions& options, DaemonClient& client)
@@ -138,7 +138,8 @@ tl::expected<ExitCode, Break> FollowedStart::follow(std::uint64_t request, std::
   }
 }
 
-/// Uses a separate connection, because the daemon may still owe a response on the other one.
+/// Requests the stop over a separate connection, because a response may still be pending on the other
+/// connection. Returns true if the daemon confirms the stop.
 bool FollowedStart::stop_confirmed() {
   auto client = DaemonClient::connect(options_.daemon.socket);
   if (!client) return false;

@@ -47,7 +47,8 @@ void print(const Json& status, bool json) {
   std::fflush(stdout);
 }
 
-/// A signal is the normal end. It is an interruption if the user requested a number of updates.
+/// Returns the exit code after a signal. A signal is the normal end, except if the user requested a number of
+/// updates: then it is an interruption.
 ExitCode ended_by(int signal, std::uint64_t count) {
   if (count > 0) note_ending_signal(signal);
   return ExitCode::done;
@@ -86,7 +87,7 @@ double now_s() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-/// Returns the message after the daemon has accepted a command: "stopping", "started pick_stone" or
+/// Returns the message for a command that the daemon has accepted: "stopping", "started pick_stone" or
 /// "acknowledged F202 reading_out_of_range of left".
 std::string done_of(const Json& request, const Json& result) {
   const std::string command = request.value("command", "");
@@ -97,9 +98,9 @@ std::string done_of(const Json& request, const Json& result) {
   return sentence_of_acknowledged(result);
 }
 
-/// Shows the screen and processes keys until `q`, a signal that ends programs, the end of the daemon, or
-/// `count` updates (0: no limit). The terminal is restored in each case, and also while Ctrl-Z has stopped
-/// the program.
+/// Shows the screen and processes keys until the user presses `q`, a signal ends the program, the daemon
+/// ends, or `count` updates were shown (0: no limit). The terminal is restored in each case, and also while
+/// Ctrl-Z has stopped the program.
 class LiveWatch {
  public:
   explicit LiveWatch(DaemonClient& client)
@@ -150,7 +151,8 @@ void LiveWatch::ask_for_events() {
   if (events_asked_ || now_s() < events_due_s_) return;
   events_asked_ = true;
   events_due_s_ = now_s() + event_pause_s;
-  // The first request only fetches the id of the newest event, because old events are not shown.
+  // The first request only fetches the id of the newest event, because events from before the start of the
+  // program are not shown.
   ask({{"command", "events"}, {"since", newest_event_}, {"limit", events_known_ ? event_page : 1}});
 }
 
@@ -246,7 +248,8 @@ void LiveWatch::draw() {
   screen_->draw(screen_of(state_, style, terminal_rows()));
 }
 
-/// A start without a response may still begin after the program has ended.
+/// Restores the terminal and reports each start without a response, because such a start may still begin
+/// after the program has ended.
 void LiveWatch::leave() {
   screen_.reset();
   for (const auto& [id, request] : asked_) {
