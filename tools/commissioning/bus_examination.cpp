@@ -25,8 +25,8 @@ using drivers::BusStatus;
 using drivers::ModbusAddress;
 using drivers::WordOrder;
 
-// Functions that read registers, and exceptions that say what to try (Modbus Application Protocol V1.1b3, 6
-// and 7).
+// Function codes that read registers, and exception codes that suggest what to try next (Modbus Application
+// Protocol V1.1b3, sections 6 and 7).
 constexpr std::uint8_t read_holding = 3;
 constexpr std::uint8_t read_input = 4;
 constexpr unsigned illegal_function = 1;
@@ -95,8 +95,8 @@ class BusInquiry {
   }
 
  private:
-  /// Sends the request. Opens a session first if none is open: time-outs and wrong responses close the
-  /// session.
+  /// Sends the request. Opens a session first if none is open, because a time-out or a wrong response closes
+  /// the session.
   Heard ask(const RegisterRead& question) {
     const double patience_s = std::max(rig_.loop.exchange_deadline_s, shortest_patience_s);
     Heard heard{BusStatus::timed_out, 0, {}, {}};
@@ -156,7 +156,8 @@ class BusInquiry {
         "compare the function code, address and count in the board map with the manual of the board");
   }
 
-  /// A board offers its inputs either as holding registers (function 3) or as input registers (function 4).
+  /// Tries the other function for reading. A board offers its inputs either as holding registers (function 3)
+  /// or as input registers (function 4).
   bool try_other_function(const Heard& heard, Findings& findings) {
     const drivers::RegisterBlock& inputs = map_.inputs.registers;
     const int left = inputs.address + static_cast<int>(inputs.registers()) - asked_.address;
@@ -227,7 +228,7 @@ class BusInquiry {
     return false;
   }
 
-  /// Judges a time-out or a malformed response: tries another framing, then another unit id.
+  /// Handles a time-out or a malformed response: tries another framing, then another unit id.
   void judge_silence(const Heard& heard, Findings& findings) {
     if (const auto* tcp = std::get_if<drivers::TcpAddress>(&address_)) {
       drivers::TcpAddress other = *tcp;
@@ -298,7 +299,7 @@ class BusInquiry {
         if (auto shown = read_as(there, order)) fits.push_back({order, by, std::move(*shown)});
       }
     }
-    // If two interpretations fit, the cause is not certain.
+    // If more than one interpretation fits, the cause is not certain.
     if (fits.size() != 1) return;
     const Fit& fit = fits.front();
     const std::string name(drivers::name_of(fit.order));

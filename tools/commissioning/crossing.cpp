@@ -52,8 +52,8 @@ Shown who_showed(std::span<const Motion> motions, const Followed& followed) {
   return shown;
 }
 
-/// Follows `shown` from `first`. Returns an empty vector if the path does not return to `first` through other
-/// channels.
+/// Returns the cycle that begins at `first` and continues with the channel that responded to each motion.
+/// Returns an empty vector if this sequence does not return to `first` through other channels.
 std::vector<std::size_t> circle_from(const Shown& shown, std::size_t first) {
   std::vector<std::size_t> circle{first};
   for (auto next = shown[first]; next && *next != first; next = shown[*next]) {
@@ -68,7 +68,7 @@ std::vector<std::vector<std::size_t>> circles_of(const Shown& shown) {
   std::vector<std::vector<std::size_t>> circles;
   for (std::size_t i = 0; i < shown.size(); ++i) {
     const std::vector<std::size_t> circle = circle_from(shown, i);
-    // Report each cycle once: from its lowest channel.
+    // Report each cycle once, when the search begins at its lowest channel.
     if (!circle.empty() && *std::min_element(circle.begin(), circle.end()) == i) circles.push_back(circle);
   }
   return circles;

@@ -1,5 +1,5 @@
 #pragma once
-// Finds swapped wires: when one finger was moved, the sensor of another finger responded.
+// Finds swapped wires or lines: one finger is moved, and the sensor of another finger responds.
 
 #include <cstddef>
 #include <span>
@@ -15,20 +15,20 @@ struct Crossing {
   enum class Kind : std::uint8_t {
     sensors,   ///< displacement
     monitors,  ///< pressure
-    valves,    ///< sensors and monitors show the same cycle: outputs or lines behind the valves are swapped
+    valves,    ///< outputs, or lines behind the valves: sensors and monitors show the same cycle
   };
   Kind kind = Kind::sensors;
   std::vector<std::size_t> channels;  ///< at least two
 };
 
-/// Finds the swapped channels in the motions of all channels, one channel at a time. `motions[i]` belongs to
-/// channel i and is empty if the channel was not moved. `rest` contains the readings before the motions. A
-/// channel counts only if exactly one sensor or exactly one monitor followed it.
+/// Finds the swapped channels in the motions of all channels, which were moved one at a time. `motions[i]`
+/// belongs to channel i and is empty if the channel was not moved. `rest` contains the readings before the
+/// motions. A motion is evaluated only if exactly one sensor or exactly one pressure monitor responded to it.
 [[nodiscard]] std::vector<Crossing> find_crossings(const rig::RigFile& rig,
                                                    std::span<const ChannelSample> rest,
                                                    std::span<const Motion> motions);
 
-/// Adds one failure per cycle. It names the terminals to swap.
+/// Adds one failure per cycle. Its advice names the terminals to swap.
 void tell_crossings(const rig::RigFile& rig, std::span<const Crossing> crossings, Findings& findings);
 
 /// Returns true if `channel` is in a cycle of the given kind.

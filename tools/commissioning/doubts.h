@@ -8,12 +8,12 @@
 
 namespace softgrip::tools::calibrate {
 
-/// As a share of the range that the limits allow, or of the model's motion.
+/// Largest tolerated deviation, as a share of the range that the limits allow or of the model's motion.
 inline constexpr double most_share_off = 0.2;
 
-/// Returns one warning per line that deviates from the line of the rig file by more than `most_share_off`.
-/// Also warns if the motion of the finger between the two pressures deviates that far from its model. Empty:
-/// no warning.
+/// Compares each calibrated line with the line in the rig file. Returns one warning for each line whose
+/// deviation exceeds `most_share_off`. Also warns if the motion of the finger between the two pressures
+/// deviates by more than this share from the motion of its model. The list is empty if there is no warning.
 [[nodiscard]] std::vector<std::string> doubts(const rig::RigFile& rig, const Results& results);
 
 }  // namespace softgrip::tools::calibrate

@@ -1,6 +1,6 @@
 #pragma once
-// Lists the facts of a rig-file template. Each fact is given as an option or typed as the response to a
-// question.
+// Lists the facts that a rig-file template needs. The user states each fact by an option or by the answer to
+// a question.
 
 #include <optional>
 #include <string>
@@ -14,9 +14,9 @@ namespace softgrip::tools {
 struct Fact {
   std::string key;    ///< the option's name: "board"
   std::string about;  ///< the option's help
-  int words = 1;      ///< number of values; a fact with one value may be given several times
-  /// The question, which depends on the facts known so far, and the default value. Nullopt: no question is
-  /// needed.
+  int words = 1;      ///< number of values; an option with one value may be given several times
+  /// Returns the question, whose text depends on the facts known so far, and the default answer. Returns
+  /// nullopt if no question is needed.
   struct Question {
     std::string text;
     std::string otherwise;  ///< default value; empty: there is none

@@ -1,5 +1,5 @@
 #pragma once
-// The findings of `softgrip doctor`: one line each, with advice.
+// The findings of `softgrip doctor`: one line per finding, with advice.
 
 #include <string>
 #include <string_view>
@@ -9,7 +9,7 @@
 
 namespace softgrip::tools::doctor {
 
-/// `not_judged`: depends on another finding that failed, so it was not checked.
+/// Result of a check. `not_judged`: not checked, because another finding that it depends on has failed.
 enum class Verdict { ok, not_judged, warn, fail };
 /// "ok", "not_judged", "warn", "fail"
 [[nodiscard]] std::string_view name_of(Verdict verdict) noexcept;
@@ -30,7 +30,7 @@ class Findings {
   void fail(std::string name, std::string text, std::string advice) {
     add({std::move(name), Verdict::fail, std::move(text), std::move(advice)});
   }
-  /// `because` names the problem to correct first.
+  /// Adds a finding that was not checked. `because` names the problem that must be corrected first.
   void not_judged(std::string name, const std::string& because) {
     add({std::move(name), Verdict::not_judged, "not judged: " + because, ""});
   }
@@ -44,7 +44,7 @@ class Findings {
   std::vector<Finding> list_;
 };
 
-/// The data of the lines above and below the findings.
+/// The data of the title line above the findings and of the verdict below them.
 struct Examination {
   std::string rig;       ///< name of the rig
   std::string rig_file;  ///< path of the rig file

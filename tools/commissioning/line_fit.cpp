@@ -8,8 +8,9 @@
 namespace softgrip::tools::calibrate {
 namespace {
 
-/// A bend is significant if it divides the straight line's sum of squared residuals by at least this factor.
-/// With hundreds of readings, a ratio of 1.5 is far beyond chance (F test with two extra parameters).
+/// A bend is significant if the sum of squared residuals of the straight line is at least this multiple of
+/// that of the fit with a bend. With hundreds of readings, a ratio of 1.5 is far beyond chance (F test with
+/// two extra parameters).
 constexpr double improvement = 1.5;
 /// Number of candidate bends along the ramp.
 constexpr int bends = 200;
@@ -77,7 +78,7 @@ double uncertainty(const std::vector<Visit>& visits, const Line& line) {
   return std::hypot(of_means, drift, line.repeat_spread.value_or(0) / 2);
 }
 
-/// Fits a constant up to the bend and a ramp behind it by least squares. Returns the sum of squared
+/// Fits a constant up to the bend and a ramp beyond it by least squares. Returns the sum of squared
 /// residuals.
 double fit_bend(const std::vector<double>& command, const std::vector<double>& response, double bend,
                 double& gain) {

@@ -14,15 +14,16 @@ namespace softgrip::tools::calibrate {
 
 /// One visit to one of the two positions.
 struct Visit {
-  bool upper = false;     ///< the position with the larger command; by hand, the second position
+  bool upper = false;     ///< at the position with the larger command; if a person moves the target, at the
+                          ///< second position
   double electrical = 0;  ///< mean [V or mA]
   double noise = 0;       ///< standard deviation of one electrical reading
-  double drift = 0;       ///< difference of the means of the second and the first half of the visit
-  std::size_t count = 0;  ///< readings in the mean
+  double drift = 0;  ///< absolute difference between the means of the first and the second half of the visit
+  std::size_t count = 0;  ///< number of readings in the mean
   double reference = 0;   ///< reading of the gauge or manometer [mm or kPa]
 };
 
-/// A calibration that does not meet these demands is refused.
+/// Requirements on a calibration. A calibration that does not meet them is refused.
 struct Demands {
   double least_span = 0;             ///< smallest difference of the references [mm or kPa]
   double least_electrical_span = 0;  ///< smallest difference of the electrical values [V or mA]
@@ -31,14 +32,14 @@ struct Demands {
 
 /// A straight line through the visits, fitted by least squares.
 struct Line {
-  drivers::TwoPoints points;      ///< on the line, at the mean electrical value of each position
-  double slope = 0;               ///< mm or kPa per V or mA; the sign is that of the sensor
+  drivers::TwoPoints points;  ///< two points on the line, at the mean electrical value of each position
+  double slope = 0;  ///< mm or kPa per V or mA; negative if the signal falls when the reference rises
   std::vector<double> residuals;  ///< reference minus line, per visit [mm or kPa]
   std::optional<double>
       repeat_spread;  ///< largest difference of two visits to one position; nullopt: one visit each
   double noise = 0;   ///< standard deviation of one reading, converted by the slope [mm or kPa]
-  /// Error of the line between its two positions: twice the standard uncertainty of a point, from noise,
-  /// drift and repeatability. The error of the gauge itself is unknown and not included.
+  /// Uncertainty of the line between its two positions: twice the standard uncertainty of a point, from
+  /// noise, drift and repeatability. The error of the gauge itself is unknown and not included.
   double error = 0;
 };
 
@@ -53,7 +54,7 @@ struct DeadZone {
   double end = 0;            ///< the largest command without a response
   double gain = 0;           ///< slope beyond the dead zone
   double scatter = 0;        ///< standard deviation of the response about the fit
-  bool significant = false;  ///< the bend explains the response significantly better than a straight line
+  bool significant = false;  ///< the fit with a bend is significantly better than a straight line
 };
 /// Fits a horizontal and a rising segment to a ramp by least squares. Returns nullopt if the response does
 /// not rise.

@@ -29,7 +29,7 @@ using daemon::RealTimeStep;
 
 constexpr double us_per_ns = 1e-3;
 constexpr double probe_s = 1;
-/// Bytes of one row of run.csv with its line break, for the rig files in config/rigs.
+/// Size of one row of run.csv with its line break, for the rig files in config/rigs [bytes].
 constexpr double bytes_per_row = 125;
 constexpr double s_per_hour = 3600;
 constexpr double h_per_day = 24;
@@ -91,7 +91,7 @@ void judge_timer(const rig::RigFile& rig, const daemon::Histogram& wake_up, Find
   if (resolution.tv_sec > 0 || resolution.tv_nsec > 1000) {
     findings.fail("timer", text, "this kernel has no high-resolution timers (CONFIG_HIGH_RES_TIMERS)");
   } else if (static_cast<double>(wake_up.quantile_ns(0.95)) * us_per_ns > period_us / 2) {
-    // One late wake-up per second is tolerable. One late wake-up in 20 is a fault of the set-up.
+    // One late wake-up per second is tolerable. If one wake-up in 20 is late, the set-up is faulty.
     findings.fail(
         "timer", text,
         "cycles will be missed: grant SCHED_FIFO, lower rate_hz, or reduce the load of the processor");

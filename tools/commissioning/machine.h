@@ -1,5 +1,5 @@
 #pragma once
-// Checks that the computer can run the loop on time and store recordings.
+// Checks that the computer can run the control loop on time and store recordings.
 
 #include "tools/commissioning/finding.h"
 
@@ -9,8 +9,8 @@ struct RigFile;
 
 namespace softgrip::tools::doctor {
 
-/// Checks the kernel, the rights for scheduling and locked memory, and the timer. Requests these rights for
-/// this process and user, as the daemon would. Takes about 1 s.
+/// Checks the kernel, the permissions for real-time scheduling and locked memory, and the timer. It requests
+/// these permissions for this process and user, as the daemon would. Takes about 1 s.
 void examine_machine(const rig::RigFile& rig, Findings& findings);
 /// Checks that the clock is plausible and synchronised.
 void examine_clock(Findings& findings);

@@ -13,14 +13,14 @@
 namespace softgrip::tools::doctor {
 namespace {
 
-/// A finger has moved if its displacement is at least this multiple of the noise of a reading ...
+/// A finger counts as moved if its displacement is at least this multiple of the noise of a reading ...
 constexpr double noises = 6;
-/// ... and at least this share of the model's displacement.
+/// ... and at least this share of the displacement of the model.
 constexpr double share_of_model = 0.2;
-/// Allowed deviation of a monitor from the command, as a share of the step: linearity of ordinary valves and
-/// boards.
+/// Largest tolerated deviation of a pressure monitor from the command, as a share of the step. Ordinary
+/// valves and boards have linearity errors of this size.
 constexpr double allowed_share_of_step = 0.1;
-/// Smallest allowed deviation: valves cannot control the lowest pressures accurately.
+/// Smallest value of this tolerance [kPa], because valves cannot control the lowest pressures accurately.
 constexpr double pressure_floor_kpa = 1;
 
 /// Simulates the model in parallel with the finger, from rest.
@@ -35,7 +35,7 @@ class Beside {
     origin_mm_ = model_.reading_mm(0);
   }
 
-  /// Takes the result of one exchange. The reading was taken before the command was written.
+  /// Processes the result of one exchange. The reading was taken before the command was written.
   void take(const model::Reading& reading, double command_kpa) {
     pass_time(reading.sampled_at);
     const double moved_mm = model_.reading_mm(0) - origin_mm_;
@@ -60,7 +60,7 @@ class Beside {
   }
 
  private:
-  /// Advances the model by the measured time: on a busy computer a cycle can take longer.
+  /// Advances the model by the measured time, because a cycle can take longer on a busy computer.
   void pass_time(Nanoseconds now) {
     if (first_ == 0) first_ = now;
     const auto due = std::llround(seconds(now - first_) / tick_s_);
@@ -138,7 +138,8 @@ bool has_moved(const Sample& rest, const Sample& seen, double model_mm) {
 
 namespace {
 
-/// Returns false if the pressure does not follow the command. Then no finding that depends on it is judged.
+/// Checks that the pressure follows the command. Returns false if it does not. The caller then skips all
+/// checks that depend on the pressure.
 bool judge_valve(const control::ChannelSettings& of, const Sample& monitor, double command_kpa,
                  Findings& findings) {
   const double step_kpa = std::abs(command_kpa - control::resting_kpa(of.limits));

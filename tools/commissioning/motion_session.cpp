@@ -68,7 +68,7 @@ Nanoseconds period_of(const rig::RigFile& rig, const drivers::Board& board) {
   return std::max(nanoseconds(1 / rig.settings.rate_hz), nanoseconds(board.budget().exchange_s));
 }
 
-/// Keeps the pause between connection attempts constant, because a person waits for the result.
+/// Returns settings with a constant pause between connection attempts, because a person waits for the result.
 rig::ReconnectSettings steady(rig::ReconnectSettings reconnect) {
   reconnect.longest_pause = reconnect.first_pause;
   return reconnect;
@@ -128,7 +128,7 @@ MotionSession::Expected<void> MotionSession::connect() {
       MotionFailure{FailureKind::bus, board_.describe() + ": " + complaint(), line_->failed.status});
 }
 
-/// Publishes the commands as the loop does, and runs the bus for one step at the next scheduled time.
+/// Publishes the commands as the control loop does, and runs the bus for one step at the next scheduled time.
 void MotionSession::exchange(bool may_rise, bool last) noexcept {
   clock_.sleep_until(schedule_.due());
   daemon::Commands& commands = line_->shared.commands.write_slot();
@@ -144,7 +144,8 @@ void MotionSession::exchange(bool may_rise, bool last) noexcept {
   take_report(schedule_.advance(clock_.now()));
 }
 
-/// Cycles missed because an exchange took too long count as cycles without data, as in daemon/loop/loop.cpp.
+/// Evaluates the report of the bus. Cycles that were missed because an exchange took too long count as cycles
+/// without data, as in daemon/loop/loop.cpp.
 void MotionSession::take_report(std::uint64_t skipped_cycles) noexcept {
   line_->shared.bus.fetch();
   line_->take_events();
@@ -156,8 +157,8 @@ void MotionSession::take_report(std::uint64_t skipped_cycles) noexcept {
   }
 }
 
-/// Returns the failure text. Only the bus knows about gaps; the board has the latest detail of all other
-/// failures.
+/// Returns the text of the latest failure. The bus describes a gap in communication. The board describes all
+/// other failures.
 std::string MotionSession::complaint() const {
   const bool gap = line_->failed.status == drivers::BusStatus::watchdog_tripped;
   const std::string text = gap ? line_->failed.detail.data() : board_.detail();
@@ -269,8 +270,8 @@ MotionSession::Expected<void> MotionSession::ramp(std::size_t channel, double to
   }
   moved_ = true;
   while (commands_[channel] != targets_[channel] || silent_cycles_ > 0) {
-    // Without a confirmation, write the same commands again, so that the pressure does not jump after a
-    // reconnection.
+    // If the last write was not confirmed, write the same commands again, so that the pressure does not jump
+    // after a reconnection.
     if (silent_cycles_ == 0) follow_targets(speed_kpa_per_s);
     if (auto done = step(true, watch); !done) return done;
     if (auto failure = beyond()) return end(std::move(*failure));
@@ -293,7 +294,8 @@ bool MotionSession::leave() noexcept {
     fastest = std::max({fastest, channel.limits.slew_down_kpa_per_s, channel.limits.slew_up_kpa_per_s});
   }
   Nanoseconds give_up = 0;
-  // Go to rest in any case: a board that reconnects late receives the final rest pressures.
+  // Ramp to rest even if the board does not respond, so that a board that reconnects late receives the final
+  // rest pressures.
   while (!line_->shared.safe_state_confirmed.load(std::memory_order_relaxed)) {
     follow_targets(fastest);
     const bool rested = commands_ == targets_;

@@ -23,7 +23,7 @@ struct RigFile;
 
 namespace softgrip::tools {
 
-/// Returns true after the user has requested the end of the command.
+/// Returns true once the user has requested to stop the command.
 using StopRequest = std::function<bool()>;
 
 /// Mean and standard deviation of the readings during an interval.
@@ -64,24 +64,24 @@ struct Sight {
   bool pressure = false;  ///< the pressure monitor
 };
 
-/// Drives a board with the daemon's own bus (daemon/loop/bus.h) instead of the control loop. The daemon's
-/// rule for gaps applies: after a gap as long as the board's watchdog time, the board has vented, and the bus
-/// writes the rest pressures.
+/// Drives a board with the daemon's own bus (daemon/loop/bus.h) instead of the control loop. As in the
+/// daemon, a gap in communication that is as long as the board's watchdog time means that the board has
+/// vented. The bus then writes the rest pressures.
 ///
-/// - Outputs move away from rest only in ramp(), from the last confirmed values and within the slew limits. A
-///   gap does not make the next step larger.
+/// - Outputs move away from rest only in ramp(). It starts from the last confirmed values and stays within
+/// the slew limits. A gap does not make the next step larger.
 /// - The session ends if a gap reaches the watchdog time.
 /// - The session ends if the board reports a trip, rejects a write or was written by another client.
 /// - The session ends if the board does not respond for `bus_down_cycles`.
-/// - After its end, the session moves nothing. Every later call returns the same failure. Only leave() still
-///   writes, and it writes no value further from rest than the present outputs.
+/// - After its end, the session moves nothing, and every later call returns the same failure. Only leave()
+/// still writes, and only values that are not further from rest than the present outputs.
 /// - The session writes the rest pressures from the first exchange on. After destruction all channels are at
 ///   rest, or leave() returned false.
 class MotionSession {
  public:
   template <class T>
   using Expected = tl::expected<T, MotionFailure>;
-  /// Called after every successful exchange with the written commands and the readings.
+  /// Called after every successful exchange with the commands that were written and the readings.
   using Watch = std::function<void(const std::vector<double>& commands_kpa,
                                    const std::vector<model::Reading>& readings)>;
 
@@ -95,13 +95,13 @@ class MotionSession {
   ~MotionSession();
 
   [[nodiscard]] Expected<void> connect();
-  /// From now on, no channel moves away from rest before these sensors have given a valid reading. The
-  /// session ends after `invalid_reading_cycles` consecutive invalid readings.
+  /// Prevents motion away from rest until these sensors have given a valid reading. Afterwards, the session
+  /// ends after `invalid_reading_cycles` consecutive invalid readings.
   void require(Sight sight);
   /// Holds the commands for `duration_s` and returns the readings of every channel.
   [[nodiscard]] Expected<std::vector<ChannelSample>> sample(double duration_s, const Watch& watch = {});
-  /// Ramps one channel to a command, limited by `speed_kpa_per_s` and the slew limits. The session also ends
-  /// if a finger leaves its displacement limits.
+  /// Ramps one channel to a command at `speed_kpa_per_s`, within the slew limits. The session also ends if a
+  /// finger leaves its displacement limits.
   [[nodiscard]] Expected<void> ramp(std::size_t channel, double to_kpa, double speed_kpa_per_s,
                                     const Watch& watch = {});
   /// Holds all commands and exchanges data with the board until `done` returns true, for example while a
@@ -113,11 +113,11 @@ class MotionSession {
 
   [[nodiscard]] double command_kpa(std::size_t channel) const { return commands_[channel]; }
   [[nodiscard]] Nanoseconds period() const noexcept { return schedule_.period(); }
-  /// Durations of the successful exchanges so far.
+  /// Returns the durations of the successful exchanges so far.
   [[nodiscard]] const daemon::Histogram& exchange_times() const noexcept;
 
  private:
-  struct Line;  // the bus, and the state that the session shares with it as the loop does
+  struct Line;  // the bus, and the state that the session shares with it as the control loop does
 
   [[nodiscard]] Expected<void> step(bool may_rise, const Watch& watch);
   void exchange(bool may_rise, bool last) noexcept;

@@ -13,17 +13,18 @@
 namespace softgrip::tools::calibrate {
 namespace {
 
-/// Smallest distance of the two positions, as a share of the span that the limits allow. Closer points
-/// extrapolate badly.
+/// Smallest distance of the two positions, as a share of the span that the limits allow. The line through
+/// closer points has a large error outside them.
 constexpr double least_share_of_span = 0.1;
 constexpr double least_share_of_signal = 0.02;
-/// Largest number of repetitions of a question to a script. It may continue with the next answer or have none
-/// left.
+/// Largest number of times that a question is put to a script. After an invalid answer, the script may
+/// continue with the next answer or have none left.
 constexpr int questions_at_most = 5;
-/// A signal is saturated within this distance of an end of its valid electrical range, as a share of that
-/// range.
+/// A signal counts as saturated if it is closer than this to an end of its valid electrical range, as a share
+/// of that range.
 constexpr double share_of_end = 0.002;
-/// Speed of a motion as a share of the pressure range per second: slow enough that the line pressure follows.
+/// Speed of a motion [1/s], as a share of the pressure range. It is slow enough for the line pressure to
+/// follow.
 constexpr double share_per_s = 0.2;
 /// End of the ramp for the dead zone, as a share of the pressure range.
 constexpr double ramp_share = 0.3;
@@ -97,7 +98,8 @@ Expected<void> move_to(const rig::RigFile& rig, MotionSession& session, Operator
   return {};
 }
 
-/// The two halves of an average. Their difference is the drift.
+/// The readings of the first and of the second half of an averaging interval. The difference of their means
+/// is the drift.
 struct Halves {
   ChannelSample first;
   ChannelSample second;
@@ -111,8 +113,8 @@ Expected<Halves> average(MotionSession& session, const Settings& settings) {
   return Halves{(*first)[settings.channel], (*second)[settings.channel]};
 }
 
-/// Converts the two halves of one input to a visit in electrical units, by inverting the scaling of the
-/// board.
+/// Combines the two halves to a visit. Converts the readings back to electrical units by inverting the
+/// scaling of the board.
 Visit visit_of(const Sample& first, const Sample& second, const drivers::TwoPoints& scaling, bool upper) {
   Visit visit;
   visit.upper = upper;
@@ -215,7 +217,7 @@ Expected<ValveVisit> visit_valve(const rig::RigFile& rig, MotionSession& session
   visit.valve.reference = by_monitor ? (first.mean + second.mean) / 2 : reference;
   visit.valve.count = 1;
   if (by_monitor) {
-    // Converts the noise of the reference to units of the output.
+    // Convert the noise of the pressure monitor to electrical units of the valve.
     const double per_unit = std::abs(wiring.valve.scaling.x_at(1) - wiring.valve.scaling.x_at(0));
     visit.valve.noise = std::hypot(first.deviation, second.deviation) / std::sqrt(2.0) * per_unit;
     visit.valve.drift = std::abs(second.mean - first.mean) * per_unit;
@@ -332,7 +334,7 @@ Expected<DeadZoneResult> search_dead_zone(const rig::RigFile& rig, MotionSession
   const control::ChannelSettings& channel = rig.settings.channels[settings.channel];
   const double rest_kpa = control::resting_kpa(channel.limits);
   const double span_kpa = control::far_end_kpa(channel.limits) - rest_kpa;
-  const double side = std::copysign(1.0, span_kpa);  // -1: the ramp evacuates
+  const double side = std::copysign(1.0, span_kpa);  // -1: the ramp lowers the pressure below rest
   session.require({settings.channel, channel.displacement_used, channel.pressure_measured});
   if (const auto moved = move_to(rig, session, person, settings, rest_kpa); !moved)
     return tl::unexpected(moved.error());

@@ -24,9 +24,9 @@ using calibrate::suffix_of;
 using drivers::ElectricalUnit;
 
 constexpr std::array<double, 8> usual_rates_hz{200, 100, 50, 40, 20, 10, 5, 2};
-constexpr double bus_lag = 0.25;  // LoopSettings::bus_offset_fraction
+constexpr double bus_lag = 0.25;  // equals LoopSettings::bus_offset_fraction
 constexpr double simulated_watchdog_s = 0.5;
-/// Allowed excess of a valid signal beyond its two end points, as a share of their distance.
+/// Allowed range of a valid signal beyond each of its two end points, as a share of their distance.
 constexpr double beyond_ends = 0.01;
 
 ElectricalRange usual_range(ElectricalUnit unit) noexcept {
@@ -206,7 +206,8 @@ std::string pressure_fault_text(const RigDraft& draft, double rate_hz) {
       std::max(3.0, std::round(0.1 * rate_hz)), two(0.05 * range_kpa));
 }
 
-/// Returns the number of cycles without an exchange after which the board's watchdog vents.
+/// Returns bus_down_cycles: the number of cycles without an exchange after which the daemon reports a bus
+/// fault. It is chosen so that the daemon does so before the board's watchdog trips, if possible.
 int bus_patience(const RigDraft& draft, double rate_hz) {
   const double watchdog = watchdog_s(draft);
   if (watchdog <= 0) return 5;

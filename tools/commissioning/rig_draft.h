@@ -35,22 +35,24 @@ struct RigDraft {
   std::vector<std::string> fingers{"left", "right"};
   std::string model_path;
   model::Model model;
-  drivers::TwoPoints valve{0, 0, 10, 100};   ///< x: at the terminal, y: kPa
-  drivers::TwoPoints sensor{0, -5, 10, 45};  ///< x: at the terminal, y: mm
+  drivers::TwoPoints valve{0, 0, 10, 100};   ///< x: electrical value at the terminal, y: kPa
+  drivers::TwoPoints sensor{0, -5, 10, 45};  ///< x: electrical value at the terminal, y: mm
   double pressure_max_kpa = 60;
-  bool monitor = true;  ///< each finger has a pressure monitor, with the valve's points
+  bool monitor = true;  ///< each finger has a pressure monitor, with the same line as the valve
   bool accepts_no_watchdog = false;
   std::string sequences_path;
   bool service = false;  ///< use the folders of the system service
 };
 
-/// Returns the module whose outputs (inputs) are used, or null if the board has none or is simulated.
+/// Returns the module whose outputs (or inputs) are used, or null if no module has any or the board is
+/// simulated.
 [[nodiscard]] const DraftModule* output_module(const RigDraft& draft) noexcept;
 [[nodiscard]] const DraftModule* input_module(const RigDraft& draft) noexcept;
-/// Returns the largest number of fingers for which the terminals suffice, with or without monitors.
+/// Returns the largest number of fingers for which the board has enough terminals, with or without pressure
+/// monitors.
 [[nodiscard]] std::size_t most_fingers(const RigDraft& draft, bool monitor) noexcept;
-/// The usual signal of a valve or sensor at a terminal: 0 to 10 V or 4 to 20 mA. For a terminal in
-/// kilopascals, the range that the terminal can deliver.
+/// Range of the signal of a valve or sensor at a terminal. It is the usual range, 0 to 10 V or 4 to 20 mA.
+/// For a terminal in kilopascals, it is the range that the terminal can deliver.
 struct ElectricalRange {
   double lowest = 0;
   double highest = 10;
@@ -59,7 +61,7 @@ struct ElectricalRange {
 [[nodiscard]] ElectricalRange input_range(const RigDraft& draft);
 [[nodiscard]] drivers::ElectricalUnit output_unit(const RigDraft& draft) noexcept;
 [[nodiscard]] drivers::ElectricalUnit input_unit(const RigDraft& draft) noexcept;
-/// Returns true if every module vents without communication. A simulated board does.
+/// Returns true if every module vents when communication stops. This is true for a simulated board.
 [[nodiscard]] bool has_watchdog(const RigDraft& draft) noexcept;
 
 /// Returns the text of a commented rig file for `path` that the rig-file reader accepts, or the problems that

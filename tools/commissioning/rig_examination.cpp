@@ -27,7 +27,8 @@ std::string advice_for_silence(const rig::RigFile& rig, drivers::BusStatus statu
   return std::string(bus_advice(drivers::name_of(status)));
 }
 
-/// Returns true if reading the sensors could drop a part: the examination writes the rest pressures.
+/// Returns true if the examination could drop a part. Even an examination that only reads sensors writes the
+/// rest pressures.
 bool may_hold_a_part(const rig::RigFile& rig) {
   const auto& safety = rig.settings.safety;
   const bool holds =
@@ -176,14 +177,15 @@ NotJudged known_of(const rig::RigFile& rig, std::span<const Crossing> crossings,
   return known;
 }
 
-/// Returns the sensor that shows a motion of this channel: the displacement sensor, otherwise the pressure
-/// monitor.
+/// Returns the sensor that shows a motion of this channel: the displacement sensor, or the pressure monitor
+/// if the channel has no displacement sensor.
 Sight sight_of(const rig::RigFile& rig, std::size_t channel) {
   const bool displacement = rig.settings.channels[channel].displacement_used;
   return {channel, displacement, !displacement && rig.wiring[channel].pressure.has_value()};
 }
 
-/// Returns the finding that forbids a motion of the channel because its sensor has no valid reading, or "".
+/// Returns the name of the finding that forbids a motion of the channel because its sensor has no valid
+/// reading, or "".
 std::string blind_at(const rig::RigFile& rig, const ChannelSample& rest, std::size_t channel) {
   const Sight sight = sight_of(rig, channel);
   const std::string& name = rig.settings.channels[channel].name;
@@ -192,7 +194,8 @@ std::string blind_at(const rig::RigFile& rig, const ChannelSample& rest, std::si
   return {};
 }
 
-/// Moves each finger alone and watches all sensors. All responses are needed to find swapped wires.
+/// Moves one finger after the other and reads all sensors during each motion. All responses are needed to
+/// find swapped wires.
 void move_all(const rig::RigFile& rig, MotionSession& session, const std::vector<ChannelSample>& rest,
               const MoveSettings& settings, Findings& findings) {
   std::vector<Motion> motions(rest.size());

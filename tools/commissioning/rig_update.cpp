@@ -73,7 +73,7 @@ const drivers::TwoPoints* points_of(const drivers::ChannelWiring& wiring, const 
   return wiring.pressure ? &wiring.pressure->scaling : nullptr;
 }
 
-/// Returns true if the file contains the new points and the rest of the wiring is unchanged.
+/// Returns true if the changed file `now` contains the new points and all other points of `before`.
 bool says(const rig::RigFile& now, const rig::RigFile& before, const std::vector<Target>& targets,
           std::size_t channel) {
   if (now.wiring.size() != before.wiring.size()) return false;

@@ -17,9 +17,9 @@ namespace softgrip::tools::calibrate {
                                                                  const rig::RigFile& rig,
                                                                  const Results& results);
 
-/// Replaces the rig file that `rig` was read from by `text`, and keeps the old file beside it. Returns the
-/// path of the old file. If the file has changed since it was read, or if a step fails, the rig file stays
-/// unchanged.
+/// Replaces the text of the rig file from which `rig` was read by `text`, and keeps a copy of the old file in
+/// the same folder. Returns the path of this copy. If the file has changed since it was read, or if a step
+/// fails, the rig file stays unchanged.
 [[nodiscard]] tl::expected<std::string, std::string> write_rig(const rig::RigFile& rig,
                                                                const std::string& text);
 

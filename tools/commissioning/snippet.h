@@ -13,8 +13,8 @@ namespace softgrip::tools::calibrate {
 struct Motion {
   double low_kpa = 0;
   double high_kpa = 0;
-  double wait_s = 0;           ///< wait at each position, until the middle of the average
-  double speed_kpa_per_s = 1;  ///< speed of the ramps, each from the rest pressure
+  double wait_s = 0;           ///< time from the end of the ramp to the middle of the averaging interval
+  double speed_kpa_per_s = 1;  ///< speed of the ramps, each of which begins at the rest pressure
 };
 
 struct Results {
@@ -23,7 +23,7 @@ struct Results {
   std::optional<Line> sensor;
   std::optional<ValveResult> valve;
   std::optional<DeadZoneResult> dead_zone;
-  std::optional<Motion> motion;  ///< for a calibration of the sensor; nullopt: moved by hand
+  std::optional<Motion> motion;  ///< motion that calibrated the sensor; nullopt: the target was moved by hand
 };
 
 /// Returns YAML with the maps `sensor`, `valve` and `pressure_monitor` of the channel for the rig file, and
