@@ -1,6 +1,6 @@
 #pragma once
-// The C99 source text of the parts of an exported model. It computes the same as model/, without templates
-// and for a fixed tick.
+// The C99 source text of the parts of an exported model. The C code computes the same as the classes in
+// model/, but for one fixed sampling interval and without templates.
 
 #include <string_view>
 
@@ -24,7 +24,7 @@ extern const std::string_view kelvin_voigt;
 extern const std::string_view pressure_dependent_creep;
 /// model/characteristic_map.h and model/blocks/characteristic.h
 extern const std::string_view characteristic;
-/// The pressure that moves the body to a displacement one tick from now.
+/// Computes the pressure at which the blocks behind the valve reach a given displacement one tick from now.
 extern const std::string_view inverse;
 
 }  // namespace softgrip::tools::c_text

@@ -65,13 +65,14 @@ static double phi_one(double w) {
 }
 )";
 
-/// The C source of a block. `#` stands for the number of the block.
+/// The C source of a block. `#` is replaced by the index of the block.
 struct CBlock {
   std::string_view text;
   std::string_view state;  ///< declaration
   std::string_view reset;  ///< an expression: the output at rest
-  std::string_view step;   ///< valve: a statement that calls the next block; else: the output segment
-  std::string_view lead;   ///< valve: the time constant that the inverse compensates; empty: none
+  std::string_view step;   ///< for a valve block, a statement that calls the next block; otherwise an
+                           ///< expression: the output segment
+  std::string_view lead;   ///< for a valve block, the time constant that the inverse compensates; empty: none
 };
 
 template <template <class> class Block>
@@ -192,7 +193,8 @@ class Generator {
     }
   }
 
-  /// Two pieces per tick, and more if a lag before the delay divides them.
+  /// Returns the size of the delay buffer [segments], a power of two. A tick needs two segments, and more if
+  /// a lag before the delay divides them.
   [[nodiscard]] std::size_t delay_pieces() const {
     std::size_t needed = 16;
     for (const std::size_t i : valve_) {
@@ -204,7 +206,7 @@ class Generator {
     return pieces;
   }
 
-  /// Adds the blocks behind the valve: the outputs of elements are added, and characteristic maps follow.
+  /// Adds the blocks behind the valve: the sum of the elements' outputs, followed by the characteristic maps.
   void add_body() {
     text_ += "\n/* Behind the valve. */\ntypedef struct {\n";
     for (const auto* list : {&elements_, &maps_}) {
@@ -288,7 +290,7 @@ class Generator {
         "highest_kpa);\n  double led = pressure_kpa;\n  body_step(&s->body, straight(TICK_S, "
         "s->pressure_kpa, "
         "pressure_kpa));\n  s->pressure_kpa = pressure_kpa;\n";
-    // From the actuator to the command: the required output of each lag and its rate.
+    // Go from the actuator back to the command. For each lag, compute the required output and its rate.
     for (std::size_t k = valve_.size(); k-- > 0;) {
       const CBlock& lag = block(valve_[k]);
       if (lag.lead.empty()) continue;

@@ -15,11 +15,11 @@ struct CSource {
   std::string no_inverse;  ///< reason why there is no inverse; empty: there is one
 };
 
-/// Returns the file for a tick of `tick_s`. It allocates no memory, has no globals and needs only <math.h>.
-/// Its step computes the same as Chain::step (within 1e-9 mm). Its inverse computes the same as the
-/// full_model feedforward: the pressure for a displacement one tick from now, with the lags of the valve
-/// compensated. The caller must compensate the delay of the valve by passing the reference in advance. The
-/// error names the blocks without a C version.
+/// Returns the C file for a fixed sampling interval of `tick_s`. The code allocates no memory, has no globals
+/// and needs only <math.h>. NAME_step() computes the same as Chain::step (within 1e-9 mm).
+/// NAME_inverse_step() computes the same as the full_model feedforward: the pressure for a displacement one
+/// tick from now, with the lags of the valve compensated. The caller must compensate the delay of the valve
+/// by passing the reference earlier by this delay. The error names the blocks without a C version.
 /// @param pressure_max_kpa  highest pressure at which the inverse must exist
 [[nodiscard]] tl::expected<CSource, std::string> c_source(const model::Model& model, double tick_s,
                                                           double pressure_max_kpa,

@@ -10,7 +10,7 @@
 
 namespace softgrip::tools {
 
-/// The bytes of a .mat file, and the names of the omitted signals, which are texts.
+/// The bytes of a .mat file, and the names of the signals that were omitted because they are texts.
 struct MatBytes {
   std::string bytes;
   std::vector<std::string> left_out;

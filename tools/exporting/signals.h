@@ -28,8 +28,8 @@ struct SignalGroup {
 /// the reason and returns the exit code.
 [[nodiscard]] tl::expected<std::vector<SignalGroup>, ExitCode> read_signals(const std::string& path);
 
-/// Merges all groups on one time axis: every time of any group, and a column per signal and finger, named
-/// "left_displacement_mm". Missing samples are NaN or an empty text.
+/// Merges all groups on one time axis that contains every time of any group. The result has one column per
+/// signal and finger, named "left_displacement_mm". Missing samples are NaN or an empty text.
 [[nodiscard]] SignalGroup wide(const std::vector<SignalGroup>& groups);
 
 /// Returns the CSV text of a group: time_s and its signals. Missing values are empty cells.
