@@ -10,8 +10,8 @@
 
 namespace softgrip::tools {
 
-/// Writes figure-N-NAME.svg, .pdf and .csv for each figure, with the number N of the page. Writes nothing if
-/// `folder` is empty. The error is a sentence.
+/// Writes figure-N-NAME.svg, .pdf and .csv for each figure. N is the number of the figure on the page of the
+/// report. Writes nothing if `folder` is empty. The error is a sentence.
 [[nodiscard]] tl::expected<void, std::string> write_figures(const std::string& folder,
                                                             const std::vector<sysid::Figure>& figures);
 

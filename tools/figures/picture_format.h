@@ -20,8 +20,9 @@ enum class PictureFormat { svg, pdf, png, html };
 /// Returns "svg, pdf, png or html" for messages.
 [[nodiscard]] std::string_view picture_formats();
 
-/// Returns the bytes of a file: SVG and HTML with both colour schemes, PDF with one page of the figure's
-/// size, or PNG at twice the number of pixels. The error is a sentence.
+/// Returns the bytes of a file in the given format: SVG or HTML with a light and a dark colour scheme, PDF
+/// with one page of the size of the figure, or PNG with twice as many pixels in each direction. The error is
+/// a sentence.
 [[nodiscard]] tl::expected<std::string, std::string> bytes_of(const sysid::Figure& figure,
                                                               PictureFormat format);
 

@@ -78,8 +78,8 @@ Bytes pdf_of(std::string_view svg) {
   const double height = points_per_pixel * picture->height;
   {
     const Held<cairo_surface_t> surface(cairo_pdf_surface_create_for_stream(append, &bytes, width, height));
-    // Version 1.4 has no compressed objects, so that every cairo writes the same. Newer ones write 1.7 by
-    // default.
+    // Version 1.4 has no compressed objects, so all versions of cairo write equal files. Newer versions of
+    // cairo would write PDF 1.7 by default.
     cairo_pdf_surface_restrict_to_version(surface.get(), CAIRO_PDF_VERSION_1_4);
     if (const auto drawn = draw(*picture, surface.get(), width, height); !drawn)
       return tl::unexpected(drawn.error());

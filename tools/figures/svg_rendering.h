@@ -8,11 +8,11 @@
 
 namespace softgrip::tools {
 
-/// Returns a PDF with one page of the picture's size, at 0.75 points per pixel. Text stays text. The error is
-/// a sentence.
+/// Returns a PDF with one page of the size of the picture, at 0.75 points per pixel. Texts are stored as
+/// text, not as outlines. The error is a sentence.
 [[nodiscard]] tl::expected<std::string, std::string> pdf_of(std::string_view svg);
 
-/// Returns a PNG at twice the number of pixels, on white.
+/// Returns a PNG on a white background, with twice as many pixels in each direction as the picture.
 [[nodiscard]] tl::expected<std::string, std::string> png_of(std::string_view svg);
 
 }  // namespace softgrip::tools
