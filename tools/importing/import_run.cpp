@@ -46,7 +46,7 @@ struct Job {
   std::vector<std::string> plausibility;
 };
 
-/// Takes a file that is a log already, with its additional columns. Returns false for any other file.
+/// Accepts a file that is already a log, with its additional columns. Returns false for any other file.
 bool take_as_it_is(Job& job) {
   namespace fs = std::filesystem;
   if (sysid::column_index(job.table, "pressure_command_kpa") == job.table.columns.size()) return false;
@@ -76,7 +76,8 @@ bool says_columns(const sysid::Mapping& mapping) {
          std::isfinite(mapping.to_s);
 }
 
-/// Returns the words of --missing that are not numbers. convert() compares the numbers by value.
+/// Returns the words of --missing that are not numbers. The numbers are omitted because convert() compares
+/// them by value.
 std::vector<std::string> missing_words(const sysid::Mapping& mapping) {
   std::vector<std::string> words;
   for (const std::string& word : mapping.missing) {
@@ -294,7 +295,7 @@ ExitCode run_import(const ImportOptions& options) {
     jobs[i].out = (*targets)[i];
     (void)prepare(jobs[i], *mapping, problems, unreadable_file);
   }
-  // The user is asked to confirm only after all files have been converted without a problem.
+  // Convert all files first, so that the user is asked to confirm only if there was no problem.
   for (Job& job : jobs) {
     if (problems.empty() && !finish(job, problems)) (void)show_guesses(jobs);
   }

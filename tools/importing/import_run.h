@@ -34,17 +34,17 @@ struct ImportOptions {
   bool json = false;
 };
 
-/// Reads all files before it writes any; if there is a problem, nothing is written. If a mapping was
-/// proposed, it is shown with the equivalent options. Without --yes, the user must confirm it on a terminal;
-/// without a terminal, the exit code is 2.
+/// Imports the files. It reads all files before it writes any. If there is a problem, nothing is written. If
+/// column roles were guessed, the mapping is shown with the equivalent options. Without --yes, the user must
+/// confirm the mapping on a terminal. If there is no terminal, the exit code is 2.
 ExitCode run_import(const ImportOptions& options);
 
-/// Returns the output paths of the logs of `files`: `out` itself for one file if `out` is not a folder,
-/// otherwise one file for each log in that folder. The error is a sentence.
+/// Returns the output paths of the logs of `files`. For one file, this is `out` itself, unless `out` is a
+/// folder. Otherwise it is one path per log in the folder `out`. The error is a sentence.
 [[nodiscard]] tl::expected<std::vector<std::string>, std::string> import_targets(
     const std::vector<std::string>& files, const std::string& out);
 
-/// Returns the mapping `begun` after the options were applied. The error is a sentence.
+/// Returns the mapping `begun` with the settings of the options applied. The error is a sentence.
 [[nodiscard]] tl::expected<sysid::Mapping, std::string> mapping_of(const ImportOptions& options,
                                                                    sysid::Mapping begun);
 
