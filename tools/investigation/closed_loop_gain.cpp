@@ -28,14 +28,14 @@ using control::FeedforwardKind;
 using Json = nlohmann::ordered_json;
 
 constexpr double rate_hz = 100;
-/// Number of simulated rigs for the search of the gains, and number of other rigs for the evaluation.
+/// Number of simulated rigs for the search of the gains, and number of further rigs for the evaluation.
 constexpr std::uint64_t searched_rigs = 2;
 constexpr std::uint64_t judged_rigs = 5;
 constexpr double largest_sensitivity = 2;
 constexpr double mean_mm = 13;
 constexpr double amplitude_mm = 7;
-/// The published reference reaches 20 mm. A finger with a span of at least 22 mm reaches it with a reserve
-/// for creep.
+/// Smallest span at which the reference is not scaled down [mm]. The published reference reaches 20 mm. A
+/// finger with a span of 22 mm reaches it with a reserve for creep.
 constexpr double span_needed_mm = 22;
 constexpr control::GainSearch gain_search{.iterations = 25, .coarseness = 2};
 
@@ -61,8 +61,9 @@ class Rigs {
   [[nodiscard]] double mean() const { return mean_mm_; }
   [[nodiscard]] double amplitude() const { return amplitude_mm_; }
 
-  /// Uses the inverse of the whole model if it exists. Otherwise uses a plan with the model or the inverse of
-  /// its invertible part; the one with the smaller error counts. The error is infinite if neither exists.
+  /// Returns the result with a feedforward from this model: the inverse of the whole model if it exists.
+  /// Otherwise the better of two is used: a plan with the model, or the inverse of its invertible part. The
+  /// error is infinite if neither exists.
   [[nodiscard]] ClosedLoopScheme with_model(const model::Model& believed) const {
     ClosedLoopScheme whole = measured(believed, FeedforwardKind::full_model);
     if (whole.refused.empty()) return whole;

@@ -1,6 +1,7 @@
 #pragma once
-// Computes the benefit of an extended model in closed loop. A simulated rig tracks the same reference with
-// the refitted and with the extended model in the feedforward. The gains of both come from the same search.
+// Computes the benefit of an extended model in closed loop. Simulated rigs track the same reference, once
+// with the refitted and once with the extended model in the feedforward. The PID gains of both are tuned by
+// the same search.
 
 #include <cstdint>
 #include <optional>
@@ -20,26 +21,28 @@ namespace softgrip::tools {
 /// Input of the comparison.
 struct ClosedLoopQuestion {
   model::Model recalibrated;
-  model::Model extended;  ///< also the simulated rig, with other parameters within `rig_scatter`
+  model::Model extended;  ///< this model, with its parameters changed by up to `rig_scatter`, is also the
+                          ///< simulated rig
   double noise_mm = 0.03;
-  double span_mm = 0;  ///< span of the logs: the reference is scaled down if 13 ± 7 mm is too large for it
+  double span_mm = 0;  ///< span of the logs; the reference of 13 ± 7 mm is scaled down if the span is too
+                       ///< small for it; 0: unknown
   double pressure_max_kpa = 60;
   double frequency_hz = 0.2;
-  double rig_scatter = 0.02;  ///< relative error of the rig's parameters, because no model is exact
+  double rig_scatter = 0.02;  ///< largest relative deviation of a parameter of the simulated rig
   std::uint64_t seed = 1;
 };
 
 /// The result of one controller on the simulated rigs.
 struct ClosedLoopScheme {
-  double rmse_mm = 0;  ///< median over the rigs
+  double rmse_mm = 0;  ///< median of the RMSE over the simulated rigs
   control::PidSettings pid;
-  /// full_model if the model has a causal inverse. Otherwise planned, or full_model of the invertible part;
-  /// the one with the smaller error counts. If neither is better than the PID alone, none: the numbers are
-  /// then those of the PID.
+  /// full_model if the model has a causal inverse. Otherwise the better of two: planned, or full_model of the
+  /// invertible part. If neither has a smaller error than the PID alone, the value is none, and all numbers
+  /// are those of the PID alone.
   control::FeedforwardKind feedforward = control::FeedforwardKind::none;
-  std::string refused;  ///< reason if the feedforward is not full_model of the whole model
+  std::string refused;  ///< reason why the feedforward is not full_model of the whole model; empty: it is
   std::optional<control::InvertiblePart> part;  ///< the part that is inverted, if it is not the whole model
-  control::TrackingTrace trace;                 ///< on the rig with the median error
+  control::TrackingTrace trace;                 ///< trace on the rig with the median error
 };
 
 struct ClosedLoopGain {
@@ -55,7 +58,7 @@ struct ClosedLoopGain {
   double wall_s = 0;
 
   [[nodiscard]] std::string reference() const;           ///< "13 ± 7 mm at 0.2 Hz"
-  [[nodiscard]] std::vector<std::string> notes() const;  ///< remarks on the numbers
+  [[nodiscard]] std::vector<std::string> notes() const;  ///< remarks on the conditions of the comparison
 };
 
 [[nodiscard]] ClosedLoopGain measure_closed_loop(const ClosedLoopQuestion& question);

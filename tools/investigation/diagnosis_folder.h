@@ -13,10 +13,10 @@
 
 namespace softgrip::tools {
 
-/// The consequences of a diagnosis.
+/// The next experiment and the closed-loop comparison that follow from a diagnosis.
 struct Consequences {
   sysid::NextExperiment experiment;
-  std::optional<ClosedLoopGain> closed_loop;  ///< empty: not requested, or there is no extension
+  std::optional<ClosedLoopGain> closed_loop;  ///< nullopt: not requested, or the diagnosis found no extension
 };
 
 struct ConsequenceOptions {

@@ -14,9 +14,9 @@ namespace softgrip::tools {
 /// total travel.
 [[nodiscard]] std::optional<std::string> broken_promise(const sysid::Waveform& asked, const sysid::Log& log);
 
-/// Returns a sentence if the finger was blocked. Within the pressures to which the model was fitted, it then
-/// moves as predicted in the lower part of its stroke, and far less in the upper part.
-/// @param predicted  the log, predicted by a model without contact
+/// Returns a sentence if an object blocked the finger. The check uses pressures up to `known_kpa`. A blocked
+/// finger moves as predicted in the lower part of its stroke, and far less than predicted in the upper part.
+/// @param predicted  the prediction for the log by a model without contact
 /// @param known_kpa  the largest pressure to which the model was fitted
 [[nodiscard]] std::optional<std::string> touched(const sysid::Validation& predicted, const sysid::Log& log,
                                                  double known_kpa);

@@ -23,8 +23,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Share of the displacement range that the finger may reach according to the gain of the logs: at pressures
-/// that the logs contain, and at higher pressures, where creep and softening add displacement.
+/// Largest share of the displacement range that the finger may use, predicted from the gain of the logs. The
+/// first value applies at pressures that the logs contain. The second applies at higher pressures, where
+/// creep and softening may add displacement.
 constexpr double known_range_share = 0.95;
 constexpr double predicted_range_share = 0.85;
 
@@ -55,7 +56,7 @@ tl::expected<sysid::Log, NotPlayed> log_of(const std::string& path, const std::s
   return std::move(campaign.logs.front());
 }
 
-/// Calls `command IN OUT` and waits for its end.
+/// Calls `command IN OUT` and waits until it has ended.
 tl::expected<void, NotPlayed> call(const std::string& command, const std::string& in,
                                    const std::string& out) {
   std::fflush(nullptr);

@@ -1,6 +1,6 @@
 #pragma once
-// The rigs on which an investigation plays its experiments: the rig of a rig file through the daemon's own
-// code, or a command of the user.
+// The rigs on which an investigation plays its experiments. This is either the rig of a rig file, through the
+// daemon's own code, or a command that the user provides.
 
 #include <cstdint>
 #include <functional>
@@ -25,12 +25,12 @@ struct ExperimentRig {
   daemon::DaemonRunner run = daemon::run_daemon;
 
   [[nodiscard]] const std::string& channel_name() const { return rig.settings.channels[channel].name; }
-  /// Returns the rig for another run: a simulated rig then draws other noise.
+  /// Returns the rig for another run. If it is simulated, its noise has another seed.
   [[nodiscard]] ExperimentRig at(std::uint64_t occasion) const;
   /// Returns the limits of the rig for the menu of experiments.
-  /// @param gain_mm_per_kpa  gain of the logs, which limits the displacement; 0: unknown.
-  /// @param known_kpa  the largest pressure of the logs. A smaller share of the displacement range is used
-  /// above it.
+  /// @param gain_mm_per_kpa  gain of the finger in the logs; it limits the displacement; 0: unknown.
+  /// @param known_kpa  the largest pressure of the logs. At higher pressures, a smaller share of the
+  /// displacement range is used.
   [[nodiscard]] sysid::RigLimits limits(double gain_mm_per_kpa, double known_kpa) const;
 };
 
@@ -51,21 +51,23 @@ struct ExperimentRig {
 /// Called before any motion with a sentence that describes it. The motion is allowed only if it returns true.
 using Consent = std::function<bool(const std::string& what)>;
 
-/// Plays in the foreground as `softgrip run` does. A signal vents the rig and stops the investigation.
+/// Returns a player that runs the experiments in the foreground as `softgrip run` does. A signal vents the
+/// rig and stops the investigation.
 [[nodiscard]] Player rig_player(ExperimentRig rig, Consent consent);
 
-/// Plays by calling `COMMAND COMMAND_CSV LOG_OUT`. The input has the columns time_s and pressure_command_kpa
-/// at every `interval_s`, and the output is a log.
+/// Returns a player that calls `COMMAND COMMAND_CSV LOG_OUT`. The file COMMAND_CSV has the columns time_s and
+/// pressure_command_kpa with one row per `interval_s`. The command writes a log to LOG_OUT.
 [[nodiscard]] Player command_player(std::string command, double interval_s, Consent consent);
 
-/// Checks the sensor of a simulated rig: known lengths pass through the sensor of the true model, with the
-/// rig's noise and quantisation. Lengths outside the range of the sensor are omitted.
+/// Returns a function that checks the sensor of a simulated rig. Known lengths pass through the sensor blocks
+/// of the simulated model, with the rig's noise and quantisation. Lengths outside the range of the sensor are
+/// omitted.
 [[nodiscard]] GaugeTaker simulated_gauge(ExperimentRig rig);
 
-/// Checks a sensor by calling `COMMAND POSITIONS_CSV GAUGE_OUT`.
+/// Returns a function that checks a sensor by calling `COMMAND POSITIONS_CSV GAUGE_OUT`.
 [[nodiscard]] GaugeTaker command_gauge(std::string command, Consent consent);
 
-/// Writes the readings to `folder`/gauge.csv and reads the file like any other gauge file.
+/// Writes the readings to `folder`/gauge.csv and reads this file in the same way as any other gauge file.
 [[nodiscard]] tl::expected<sysid::GaugeFile, NotPlayed> gauge_file_of(
     const std::vector<sysid::GaugeReading>& readings, const std::string& folder);
 

@@ -17,7 +17,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 using sysid::Verdict;
 
-/// Limit of the number of steps, larger than any menu.
+/// Largest number of steps. It exceeds the number of experiments in any menu.
 constexpr std::size_t most_steps = 20;
 
 InvestigationStep step_of(const sysid::Diagnosis& diagnosis, const std::string& folder) {
@@ -99,8 +99,8 @@ class Investigator {
     return end(why.stopped ? InvestigationEnd::stopped : InvestigationEnd::failed, why.why);
   }
 
-  /// Distinguishes the two reasons for having no experiment: the budget is too small, or no experiment
-  /// separates the causes.
+  /// Sets the reason for the end if no experiment was proposed: either the budget is too small, or no
+  /// experiment separates the causes.
   bool end_without_experiment(const sysid::NextExperiment& none) {
     sysid::ExperimentOptions unbounded = plan_;
     unbounded.most_minutes = 1e9;
@@ -151,7 +151,8 @@ class Investigator {
     return touched(*result_.steps.back().answer, log, sysid::campaign_size(result_.last.records).largest_kpa);
   }
 
-  /// Checks the sensor with a gauge if no waveform separates the alternatives but they differ in the sensor.
+  /// Checks the sensor against a gauge. This is done if no waveform separates the alternatives but a gauge
+  /// does, because they differ in the sensor.
   bool check_sensor(const sysid::ProposedGaugeCheck& check, const std::string& folder) {
     if (check.minutes > result_.budget_minutes - result_.spent_minutes) {
       return end(InvestigationEnd::budget_spent,

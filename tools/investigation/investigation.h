@@ -21,10 +21,10 @@ namespace softgrip::tools {
 
 /// The reason why an experiment produced no log.
 struct NotPlayed {
-  bool stopped = false;  ///< by the user: no consent, or Ctrl-C
+  bool stopped = false;  ///< stopped by the user, who refused consent or pressed Ctrl-C
   std::string why;       ///< a sentence
   /// not_acceptable: the rig had a fault during the experiment, and its outputs are safe. io: the board
-  /// cannot be reached or is in use.
+  /// cannot be reached, or another program uses it.
   ExitCode code = ExitCode::failed;
 };
 
@@ -51,12 +51,12 @@ struct InvestigationOptions {
 };
 
 enum class InvestigationEnd {
-  settled,       ///< one cause per effect remains, or the model needs none
-  unexplained,   ///< an error remains that no cause explains, so no waveform helps
+  settled,       ///< one cause per effect remains, or the model needs no cause
+  unexplained,   ///< an error remains that no cause in the library explains, so no experiment helps
   nothing_left,  ///< no experiment separates the alternatives
-  budget_spent,  ///< an experiment would, but it exceeds the remaining budget
+  budget_spent,  ///< an experiment separates the alternatives, but it exceeds the remaining budget
   contact,       ///< the finger touched an object during an experiment
-  not_as_asked,  ///< the rig did not play the requested experiment
+  not_as_asked,  ///< the rig did not play the requested experiment (its command differs)
   stopped,       ///< stopped by the user
   failed,        ///< an experiment could not be played, or its log could not be read
 };
@@ -74,10 +74,10 @@ struct InvestigationStep {
   double extended_rmse_mm = 0;      ///< held-out RMSE of the extended model
   std::vector<std::string> causes;
   std::vector<std::vector<std::string>> alternatives;
-  std::string experiment;  ///< the waveform that was played, or gauge_check; empty: none
+  std::string experiment;  ///< name of the waveform that was played, or gauge_check; empty: none
   double predicted_separation_sigma = 0;
   double minutes = 0;
-  std::string log;  ///< path of its log
+  std::string log;  ///< path of the log or of the gauge file of this step
   /// The response of the rig, compared with the prediction of this step's extended model. Nullopt if the step
   /// played no waveform.
   std::optional<sysid::Validation> answer;
@@ -90,7 +90,7 @@ struct Investigation {
   std::vector<InvestigationStep> steps;
   double budget_minutes = 0;
   double spent_minutes = 0;
-  std::vector<sysid::Log> logs;           ///< the given logs and the added ones
+  std::vector<sysid::Log> logs;           ///< the given logs, followed by the logs of the experiments
   std::optional<sysid::GaugeFile> gauge;  ///< given or measured
   sysid::Diagnosis last;
 };

@@ -8,7 +8,7 @@
 namespace softgrip::tools {
 
 /// Returns the HTML page.
-/// @param rig          the rig of the experiments
+/// @param rig          path of the rig file, or the command that plays the experiments
 /// @param closed_loop  sentences about the closed loop; empty: it was not simulated
 [[nodiscard]] std::string investigation_html(const Investigation& investigation, const std::string& rig,
                                              const std::string& closed_loop);

@@ -19,8 +19,8 @@ struct RigTracking {
   int cycles = 0;
 };
 
-/// Tracks the reference of `gain` with both of its controllers on one channel of the rig. Recordings go into
-/// `folder`.
+/// Tracks the reference of `gain` on one channel of the rig, once with the controller of the refitted and
+/// once with that of the extended model. Recordings are written to `folder`.
 [[nodiscard]] tl::expected<RigTracking, NotPlayed> track_on_rig(
     const ExperimentRig& rig, const model::Model& recalibrated, const model::Model& extended,
     const ClosedLoopGain& gain, const std::string& folder, const Consent& consent);

@@ -1,4 +1,4 @@
-// A gauge for simulated rigs: the sensor of the true model without its finger.
+// Simulates a gauge check: the sensor of the simulated model without its finger.
 
 #include <cmath>
 #include <optional>
@@ -17,7 +17,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr Nanoseconds interval = 10'000'000;
-/// Most of the time of a reading is used for moving the target. The last part of it is averaged [s].
+/// Duration of the average at the end of a reading [s]. The time before it is needed to move the target.
 constexpr double averaged_s = 2;
 /// Largest length that a simulated output can represent [mm].
 constexpr double longest_mm = 10'000;
