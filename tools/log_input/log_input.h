@@ -26,9 +26,9 @@ struct LogInput {
   std::string drive = "command";
   std::string begin = "auto";
   bool held = false;
-  /// The reader adds a first sample to a log that begins when its command is set
-  /// (sysid/logs/command_before.h). True: it does not do so if the pressure is measured, because a separate
-  /// model stage begins at that pressure.
+  /// True: if the pressure is measured, the reader adds no first sample to a log that begins when its command
+  /// is set (sysid/logs/command_before.h), because a separate model of the pressure begins at the measured
+  /// value.
   bool begins_at_measured_pressure = false;
 
   [[nodiscard]] sysid::RecordOptions record_options() const;
@@ -48,7 +48,7 @@ struct RequiredUnit {
 [[nodiscard]] RequiredUnit unit_of_rigs();
 
 /// Reads all logs. If one is refused, prints all problems and returns the exit code. Without a required unit,
-/// all logs must have the unit of the first.
+/// all logs must have the unit of the first log.
 [[nodiscard]] tl::expected<std::vector<sysid::Log>, ExitCode> read_logs(
     const std::vector<std::string>& paths, const LogInput& input,
     const std::optional<RequiredUnit>& required = {});
@@ -57,8 +57,8 @@ struct RequiredUnit {
 /// ExitCode::input_refused.
 ExitCode refuse_logs(const document::Problems& problems);
 
-/// Reads a gauge file. If it is refused, prints all problems and returns the exit code. A file in another
-/// unit than required is refused.
+/// Reads a gauge file. If it is refused, prints all problems and returns the exit code. A file whose unit
+/// differs from the required unit is refused.
 [[nodiscard]] tl::expected<sysid::GaugeFile, ExitCode> read_gauge(const std::string& path,
                                                                   const RequiredUnit& required);
 
