@@ -14,12 +14,13 @@ enum class Outcome : std::uint16_t {
   executing,
   accepted,
   refused,  ///< not executed; `reason` gives the cause
-  unknown,  ///< the daemon stopped or fell silent before its response; the command is not sent again
+  unknown,  ///< the daemon stopped or fell silent before it responded; the command is not sent again
 };
 
 enum class Reason : std::uint16_t {
   none,
-  first_after_start,  ///< the first counter after the gateway's start: an older gateway may have executed it
+  /// First counter after the gateway's start; an earlier gateway process may have executed its command.
+  first_after_start,
   no_daemon,
   no_such_command,
   no_such_recipe,
@@ -28,8 +29,9 @@ enum class Reason : std::uint16_t {
   sequence_refused,
   not_allowed,
   no_answer,
-  not_next,       ///< the counter does not follow the newest one, or this connection did not write that one
-  refusal = 100,  ///< plus the daemon's number: 102 is R02
+  /// The counter does not follow the newest one, or this connection has not written the newest one.
+  not_next,
+  refusal = 100,  ///< a refusal of the daemon: 100 plus its number, for example 102 for R02
 };
 
 /// The state of the daemon in the registers. 0 means no daemon.

@@ -1,5 +1,5 @@
 #pragma once
-// The connection of the gateway to softgripd, with reconnection.
+// Connects the gateway to softgripd, and reconnects after a loss of the connection.
 
 #include <optional>
 #include <string>
@@ -17,7 +17,7 @@ class DaemonLine {
 
   /// Connects if there is no connection, and passes the daemon's lines to the gateway. Does not wait.
   void receive(Nanoseconds now);
-  /// Sends the lines of the gateway.
+  /// Sends the lines of the gateway to the daemon.
   void send();
   /// Returns the descriptor for poll(), or -1 without a connection.
   [[nodiscard]] int descriptor() const noexcept { return client_ ? client_->descriptor() : -1; }

@@ -17,8 +17,8 @@ constexpr double watch_rate_hz = 25;
 /// A daemon that sends nothing for this time counts as disconnected.
 constexpr Nanoseconds longest_silence = ns_per_s;
 constexpr Nanoseconds beat_period = ns_per_s / 10;
-/// Limit of the commands without a response of the daemon. They fit into its socket, so that sending never
-/// blocks.
+/// Largest number of commands to which the daemon has not responded. This number fits into the buffer of its
+/// socket, so that sending never blocks.
 constexpr std::size_t most_unanswered = 32;
 
 CommandCode command_of(Reaction reaction) {
@@ -35,8 +35,8 @@ CommandCode command_of(Reaction reaction) {
   return CommandCode::none;
 }
 
-/// Returns true if the response to a reaction is final. The request is repeated if the daemon is busy or
-/// starting.
+/// Returns true if the response to a reaction is final. It is not final if the daemon is busy or starting;
+/// the reaction is then sent again.
 bool is_final(const Json& line) {
   if (line.value("ok", false)) return true;
   const Json error = line.value("error", Json::object());
@@ -73,7 +73,8 @@ modbus::Reply Gateway::serve(Masters::Id id, const modbus::Request& request, Nan
     }
     if (writes(request.pdu, map.at(Name::command_counter))) take_counter(master, now);
   }
-  // The client sends its next request after this response, so it is not older than the silence.
+  // The client sends its next request after it has received this response, so the next request is not older
+  // than the silence.
   master.fenced = false;
   modbus::Reply reply;
   reply.pieces.push_back(
@@ -100,7 +101,7 @@ void Gateway::execute(const Handshake::Entry& entry, Nanoseconds now) {
   if (!request) return refuse(request.error());
   const bool starts = entry.command.is(CommandCode::start);
   if (starts && (watch_.silent(now) || watch_.owes())) return refuse(Reason::master_silent);
-  // A silent daemon may only be delayed, so stop and vent are still sent to it.
+  // A daemon that sends nothing may only be delayed, so stop and vent are still sent to it.
   const bool hears = hears_daemon(now) || (connected_ && entry.command.halts());
   if (!hears || asked_.size() >= most_unanswered) return refuse(Reason::no_daemon);
   asked_[send(std::move(*request))] = entry.counter;
@@ -116,7 +117,7 @@ void Gateway::notice_silence(Nanoseconds now) {
   if (watch_.look(now)) reaction_confirms_ = false;
 }
 
-/// Repeats the reaction to a silence until a daemon has given a final response.
+/// Sends the reaction to a silent client again until a daemon has given a final response.
 void Gateway::react(Nanoseconds now) {
   notice_silence(now);
   if (settings_.when_silent == Reaction::nothing) watch_.confirm();

@@ -1,5 +1,5 @@
 #pragma once
-// Counters that ensure that a command is executed at most once.
+// Evaluates the command counters, which ensure that a command is executed at most once.
 
 #include <cstdint>
 #include <optional>
@@ -8,7 +8,7 @@
 
 namespace softgrip::plc {
 
-/// A command in the registers.
+/// A command as the registers contain it.
 struct Command {
   std::uint16_t code = 0;  ///< a CommandCode, or an unknown number
   std::uint16_t recipe = 0;
@@ -22,23 +22,24 @@ struct Command {
   friend auto operator<=>(const Command&, const Command&) = default;
 };
 
-/// The counter that one connection has reached.
+/// The latest counter of one connection.
 struct Cursor {
-  /// The newest counter when this connection wrote it. Nullopt: the connection has not written a counter.
+  /// The counter that was the newest one when this connection wrote it. Nullopt: the connection has not
+  /// written a counter.
   std::optional<std::uint16_t> at;
-  /// The last counter of this connection was refused.
+  /// True if the last counter that this connection wrote was refused.
   bool refused = false;
 
   friend auto operator<=>(const Cursor&, const Cursor&) = default;
 };
 
-/// Executes a command only if its counter follows the newest one (0 follows 65535), and only for a connection
-/// that has written the newest counter. Therefore a late command from a second connection, or from a client
-/// that missed another client's command, is refused. The newest counter is that of the last command that was
-/// executed, is in progress or waits. Writing it again has no effect.
+/// Executes a command only if its counter is the newest counter plus 1 (0 follows 65535) and its connection
+/// has written the newest counter before. Therefore a late command of a second connection is refused. So is a
+/// command of a client that has missed the command of another client. The newest counter is that of the last
+/// command that was executed, is in progress or waits. Writing it again has no effect.
 ///
-/// The first counter after the gateway's start is only stored, because a previous gateway may have executed
-/// it.
+/// The first counter after the start of the gateway is only stored, because an earlier gateway process may
+/// have executed its command.
 class Handshake {
  public:
   struct Entry {
@@ -53,22 +54,24 @@ class Handshake {
   [[nodiscard]] bool write(Cursor& cursor, const Entry& entry) noexcept;
   /// Returns the waiting command if it must be executed now.
   [[nodiscard]] std::optional<Entry> take_waiting() noexcept;
-  /// Marks the waiting command as refused, because a stop without a counter followed it.
+  /// Marks the waiting command as refused with this reason.
   void refuse_waiting(Reason reason) noexcept;
   /// Records the end of a command. If a later command has replaced it, the end is not reported.
   void finish(std::uint16_t counter, Outcome outcome, Reason reason = Reason::none) noexcept;
-  /// The connection to the daemon was lost: the outcome of the command in progress is unknown.
+  /// Call it when the connection to the daemon is lost: the outcome of the command in progress is then
+  /// unknown.
   void lose() noexcept;
 
-  /// Returns the distance of a counter from the newest one, from -32768 to 32767, or 0 before the first
+  /// Returns the difference between a counter and the newest one, from -32768 to 32767, or 0 before the first
   /// counter.
   [[nodiscard]] int ahead(std::uint16_t counter) const noexcept;
-  /// The counter of the last command that has ended.
+  /// Returns the counter of the last command that has ended.
   [[nodiscard]] std::uint16_t done_counter() const noexcept { return done_ ? done_->counter : 0; }
   [[nodiscard]] Outcome outcome() const noexcept { return executing_ ? Outcome::executing : outcome_; }
   [[nodiscard]] Reason reason() const noexcept { return reason_; }
   [[nodiscard]] bool waits() const noexcept { return waiting_.has_value(); }
-  /// The last command that has ended, the command in progress, and the waiting command.
+  /// These functions return the last command that has ended, the command in progress, and the waiting
+  /// command.
   [[nodiscard]] const std::optional<Entry>& done() const noexcept { return done_; }
   [[nodiscard]] const std::optional<Entry>& executing() const noexcept { return executing_; }
   [[nodiscard]] const std::optional<Entry>& waiting() const noexcept { return waiting_; }

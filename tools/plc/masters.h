@@ -1,5 +1,5 @@
 #pragma once
-// The connections of the clients (Modbus masters) and the data of each. No sockets.
+// Stores the connections of the clients (Modbus masters) and the data of each connection. Uses no sockets.
 
 #include <array>
 #include <cstddef>
@@ -23,14 +23,15 @@ using Written = std::array<std::uint16_t, static_cast<std::size_t>(Name::master_
 [[nodiscard]] Command command_in(const Written& written) noexcept;
 
 struct Master {
-  std::string address;       ///< numeric
-  Nanoseconds asked_at = 0;  ///< time of the last request, or of the connection
-  bool asked = false;        ///< has sent a complete request
-  bool half = false;         ///< has sent a part of a request
-  /// The next request may be older than a silence, so it cannot start a sequence.
+  std::string address;       ///< numeric IP address
+  Nanoseconds asked_at = 0;  ///< time of the last request; before the first request, time of the connection
+  bool asked = false;        ///< true: the client has sent a complete request
+  bool half = false;         ///< true: the client has sent a part of a request
+  /// True if the client may have sent its next request before it was found silent. This request cannot start
+  /// a sequence.
   bool fenced = false;
-  /// Registers of this connection only, so that the writes of other connections never become part of its
-  /// command.
+  /// The values that this connection has written. They are separate for each connection, so that values of
+  /// another connection never become part of its command.
   Written written{0, 0, 0, no_value, no_value, no_value, 0};
   std::optional<std::uint16_t> heartbeat;  ///< the last heartbeat of this connection
   Cursor cursor;
@@ -43,29 +44,31 @@ class Masters {
   explicit Masters(std::size_t most) : most_(most) {}
 
   /// Adds a connection from a numeric address. If all places are taken, the oldest idle connection of the
-  /// same address is removed, so that lost connections do not block their client. An address without a place
-  /// gets a place of the address with the most. Returns nullopt if there is no place.
+  /// same address is removed, so that lost connections do not block their client. If the address has no
+  /// connection, one is removed from the address with the most connections. Returns nullopt if no connection
+  /// can be removed.
   [[nodiscard]] std::optional<Id> admit(const std::string& address, Nanoseconds now);
-  /// Returns null if the connection has no place. Then close the connection.
+  /// Returns null if the connection has no place any more. Then close the connection.
   [[nodiscard]] Master* find(Id id) noexcept;
   [[nodiscard]] bool has(Id id) const noexcept { return masters_.contains(id); }
   void leave(Id id) noexcept { masters_.erase(id); }
 
-  /// Call it after a write of one connection. Removes the other connections with a partial request, because
-  /// that request is older.
+  /// Removes all other connections that have sent a part of a request. Call it after a write of the
+  /// connection `except`: the partial requests are older than this write.
   void drop_halves(Id except);
-  /// Call it after a silence. The next request of each connection may be older than the reaction to the
-  /// silence, so it cannot start a sequence.
+  /// Prevents the next request of each connection from starting a sequence. Call it when the client was
+  /// silent, because this request may be older than the reaction to the silence.
   void fence() noexcept;
-  /// Removes every connection without a request for the time `longest`.
+  /// Removes every connection that has sent no request for the time `longest`.
   void drop_silent(Nanoseconds now, Nanoseconds longest);
-  /// Stores the counter of this connection for later connections of the same address.
+  /// Stores the counter of this connection. Later connections of the same address begin with it.
   void remember_counter(const Master& master) { past_[master.address].at = master.cursor.at; }
-  /// Call it after a refused command. Another connection of this address may hold the same command or an
-  /// older start. These connections execute nothing until they have written the newest counter.
+  /// Prevents the connections of this address from executing commands until they have written the newest
+  /// counter. Call it after a refused command, because another connection of the address may hold the same
+  /// command or an older start.
   void lose_step(const std::string& address);
-  /// Stores a heartbeat. Returns true if it differs from the last one of the same connection, or, for a new
-  /// connection, from the last one of the same address.
+  /// Stores a heartbeat. Returns true if it differs from the last heartbeat of this connection. For a new
+  /// connection, it is compared with the last heartbeat of the same address.
   [[nodiscard]] bool take_heartbeat(Master& master, std::uint16_t value);
 
   /// Data of an address after its connections have ended. The file limits the number of addresses.

@@ -18,7 +18,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// In the order of StateCode and of the codes of results.
+/// Names of the states in the daemon's JSON, in the order of StateCode.
 constexpr std::array<std::string_view, 7> states{"",        "starting", "idle",   "resynchronising",
                                                  "running", "stopping", "faulted"};
 constexpr std::array<std::string_view, 6> results{"-",         "HOLDING",  "NO PART",

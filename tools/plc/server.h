@@ -26,7 +26,8 @@ class Server {
     Masters::Id master;
     modbus::Connection connection;
   };
-  /// Closes a connection after the limit of descriptors was lowered. Returns false if there is none.
+  /// Closes a connection if the process may have fewer descriptors than it uses. Returns false if there is no
+  /// connection.
   [[nodiscard]] bool give_up_line();
   void accept(Nanoseconds now);
   /// Serves a connection. Returns false if it has ended or must be closed.
@@ -41,7 +42,8 @@ class Server {
   std::list<Line> lines_;
 };
 
-/// Returns the numeric address of the peer, an IPv4 address in IPv6 as IPv4; empty if it is not known.
+/// Returns the numeric address of the peer of a socket. An IPv4 address that is mapped to IPv6 is returned as
+/// IPv4. The result is empty if the address is not known.
 [[nodiscard]] std::string address_of(int socket);
 
 }  // namespace softgrip::plc
