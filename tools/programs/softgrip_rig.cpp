@@ -96,14 +96,15 @@ Descriptor take_signals() {
   sigemptyset(&set);
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGUSR1}) sigaddset(&set, signal);
   sigprocmask(SIG_BLOCK, &set, nullptr);
-  // The failing write detects a client that has disconnected.
+  // Ignore SIGPIPE: the failing write already shows that a client has disconnected.
   std::signal(SIGPIPE, SIG_IGN);
   return Descriptor{signalfd(-1, &set, SFD_CLOEXEC)};
 }
 
-/// A board responds in time even on a busy computer, so request real-time scheduling. Without the permission,
-/// the process stays an ordinary one. The thread is bound to one processor: on a busy computer an unbound
-/// real-time thread waited up to 49 ms (Linux 6.18, share of the fair server), a bound one at most 1.4 ms.
+/// Requests real-time scheduling, because a board responds in time even if the computer is busy. Without the
+/// permission, the process keeps its ordinary scheduling. The thread is bound to one processor. On a busy
+/// computer, an unbound real-time thread waited up to 49 ms (Linux 6.18, share of the fair server), a bound
+/// one at most 1.4 ms.
 void ask_for_real_time() {
   constexpr int below_the_daemon = 40;
   sched_param parameters{};

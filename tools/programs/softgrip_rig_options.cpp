@@ -18,7 +18,7 @@
 namespace softgrip::tools {
 namespace {
 
-// Distinguishes the noise seeds of the channels. Any odd number is suitable.
+// Difference of the noise seeds of two neighbouring channels. Any odd number is suitable.
 constexpr std::uint64_t seed_step = 0x9e3779b97f4a7c15;
 
 /// Returns the path of a board file that is given as a path or as a name in config/boards.
@@ -89,7 +89,7 @@ void add_faults(const Options& options, simulation::EmulatorSettings& settings,
 
 constexpr std::uint16_t usual_port = 1502;
 
-/// Reads boards, units and wiring from a rig file, as softgripd does.
+/// Reads boards, unit ids and wiring from a rig file, as softgripd does.
 tl::expected<Setup, ExitCode> setup_of_rig(const std::string& path) {
   if (const auto code = unreadable(path)) return tl::unexpected{*code};
   document::Problems problems;
@@ -134,7 +134,7 @@ tl::expected<Setup, ExitCode> setup_of_boards(const Options& options) {
   return setup;
 }
 
-/// Sets the addresses or the line of the modules. Options take precedence over the rig file.
+/// Sets the addresses or the serial line of the modules. Options take precedence over the rig file.
 std::optional<ExitCode> place(const Options& options, Setup& setup) {
   if (!options.rtu.empty() || (setup.line && !options.port)) {
     drivers::SerialLine& line = setup.line ? *setup.line : setup.line.emplace();
@@ -144,7 +144,7 @@ std::optional<ExitCode> place(const Options& options, Setup& setup) {
       return fail(ExitCode::usage, "--format takes 8N1, 8E1, 8O1, 8N2 or 8E2, not '" + *options.format + "'");
     }
     line.turnaround_s = options.turnaround_s.value_or(line.turnaround_s);
-    // All modules share one line, even if the rig file has several hosts.
+    // All modules share one serial line, even if the rig file names several hosts.
     for (simulation::EmulatedModule& module : setup.emulator.modules) module.link = 0;
     setup.emulator.wire = modbus::Wire::rtu;
     return std::nullopt;
@@ -156,7 +156,7 @@ std::optional<ExitCode> place(const Options& options, Setup& setup) {
   if (setup.addresses.empty()) setup.addresses.push_back({.host = options.bind, .port = usual_port});
   for (std::size_t i = 0; i < setup.addresses.size(); ++i) {
     drivers::TcpAddress& address = setup.addresses[i];
-    // Several hosts of a rig become several addresses of this computer if possible.
+    // If the rig file names several hosts, each gets an address of this computer if possible.
     if (setup.addresses.size() == 1 || !modbus::is_loopback(address.host)) address.host = options.bind;
     if (options.port) address.port = static_cast<std::uint16_t>(*options.port == 0 ? 0 : *options.port + i);
   }

@@ -1,5 +1,5 @@
 #pragma once
-// The options of softgrip-rig, and the emulator that they define.
+// The options of softgrip-rig, and the emulator settings that result from them.
 
 #include <cstdint>
 #include <optional>
@@ -15,17 +15,17 @@
 namespace softgrip::tools {
 
 struct Options {
-  std::vector<std::string> models;               ///< one for all channels, or one per channel
+  std::vector<std::string> models;               ///< model files: one for all channels, or one per channel
   std::vector<std::string> boards{"adam-6024"};  ///< one per module: a file, or a name in config/boards
   std::string rig;                               ///< rig file with the wiring; empty: default wiring
-  std::size_t channels = 2;                      ///< without a rig file
+  std::size_t channels = 2;                      ///< number of channels if there is no rig file
   std::optional<std::uint8_t> unit;              ///< unit id of the first module; the others follow in order
   std::string bind = "127.0.0.1";
   bool allow_network = false;
-  std::optional<std::uint16_t> port;  ///< default: the rig file's, or 1502
+  std::optional<std::uint16_t> port;  ///< default: the port of the rig file, or 1502
   std::string rtu;                    ///< serial device instead of the network
-  bool rtu_over_tcp = false;          ///< RTU frames on the network
-  std::optional<std::uint32_t> baud;  ///< default: the rig file's; without one, 9600 8N1
+  bool rtu_over_tcp = false;          ///< sends RTU frames over TCP
+  std::optional<std::uint32_t> baud;  ///< default: the value of the rig file; without a rig file, 9600 8N1
   std::optional<std::string> format;
   std::optional<double> turnaround_s;
   std::string object;
@@ -40,11 +40,11 @@ struct Options {
   std::string control;  ///< path of a Unix socket; "-": the standard input
 };
 
-/// The emulator and its addresses or line.
+/// The settings of the emulator, and the addresses or the serial line on which it responds.
 struct Setup {
   simulation::EmulatorSettings emulator;
   std::vector<drivers::TcpAddress> addresses;  ///< one listening address per link
-  std::optional<drivers::SerialLine> line;     ///< instead of the network
+  std::optional<drivers::SerialLine> line;     ///< if set, used instead of the network
 };
 
 /// Creates the setup. On failure, prints all problems and returns the exit code.

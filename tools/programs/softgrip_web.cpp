@@ -49,7 +49,7 @@ void add_options(CLI::App& program, Options& options) {
   program.footer("Ready once 'listening on http://ADDRESS:PORT/' is printed.");
 }
 
-/// Overrides settings of the file by the command line.
+/// Replaces settings of the file by those of the command line.
 void put_in_place(const Options& options, Settings& settings) {
   if (!options.socket.empty()) settings.look_socket = settings.operate_socket = options.socket;
   if (options.port) settings.port = *options.port;
