@@ -23,11 +23,13 @@ struct RecordedEvent {
 struct Recording {
   std::string name;              ///< name of the folder or file
   std::string sequence;          ///< empty if unknown
-  std::string software_version;  ///< software that recorded it; empty if unknown
+  std::string software_version;  ///< version of the software that recorded it; empty if unknown
   std::string started_at;        ///< UTC, empty if unknown or in virtual time
-  std::string recipe;            ///< equal for two runs of the same sequence, text and parameters
-  bool unfinished = false;       ///< the recording continues, or its daemon was killed
-  std::vector<Log> channels;     ///< as read with LogOptions::need_readings = false
+  /// Equal for two recordings if sequence, text of the sequence and parameters are equal.
+  std::string recipe;
+  /// The recording is not complete: it is still being written, or its daemon was killed.
+  bool unfinished = false;
+  std::vector<Log> channels;  ///< as read with LogOptions::need_readings = false
   std::vector<RecordedEvent> events;
 };
 
@@ -36,10 +38,10 @@ struct Recording {
 [[nodiscard]] tl::expected<Recording, std::string> read_recording(const std::string& path,
                                                                   document::Problems& problems);
 
-/// Returns a column outside the log contract as numbers. A cell that is not a number is NaN. Empty: no such
-/// column.
+/// Returns the numbers of a column that does not belong to the log format. A cell that is not a number is
+/// NaN. The result is empty if there is no such column.
 [[nodiscard]] std::vector<double> numbers_of(const Log& log, const std::string& column);
-/// Returns a column outside the log contract as texts.
+/// Returns the texts of a column that does not belong to the log format.
 [[nodiscard]] std::vector<std::string> texts_of(const Log& log, const std::string& column);
 
 }  // namespace softgrip::sysid

@@ -102,7 +102,8 @@ Chart error_chart(const sysid::Log& log, const std::vector<double>& errors) {
   return error;
 }
 
-/// Adds a text column as steps between named levels, in order of first appearance.
+/// Adds a column of texts as a step curve between named levels. The levels are in the order of the texts'
+/// first appearance.
 void add_words(Chart& chart, const sysid::Log& log, const std::string& column) {
   const std::vector<std::string> words = sysid::texts_of(log, column);
   if (words.empty()) return;
@@ -141,7 +142,7 @@ std::string called(const sysid::Recording& recording) {
   return recording.sequence.empty() ? recording.name : recording.sequence + ", " + recording.name;
 }
 
-/// Returns the title of a chart without the numbers of the run.
+/// Returns the title of a chart without the statistics that follow the comma.
 std::string subject_of(const Chart& chart) {
   return chart.title.substr(0, chart.title.find(','));
 }

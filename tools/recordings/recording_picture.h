@@ -10,8 +10,8 @@ namespace softgrip::tools {
 
 [[nodiscard]] sysid::Figure figure_of(const sysid::Recording& recording);
 
-/// The arrangement of two recordings: in separate columns, or drawn over each other by channel. Both keep
-/// their own times.
+/// The arrangement of two recordings: in separate columns, or drawn over each other for each channel. Each
+/// recording keeps its own time axis.
 enum class Pairing { beside, over };
 [[nodiscard]] sysid::Figure figure_of(const sysid::Recording& first, const sysid::Recording& second,
                                       Pairing pairing);

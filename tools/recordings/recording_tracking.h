@@ -1,9 +1,9 @@
 #pragma once
 // Computes the tracking error of a recorded channel.
 //
-// During a grip, the reference is beyond the object: after the contact, the reference minus the displacement
-// depends on the size of the object, not on the quality of the control. Therefore only free motion is
-// evaluated.
+// During a grip, the reference lies beyond the surface of the object. After the contact, the reference minus
+// the displacement therefore depends on the size of the object, not on the quality of the control. Hence only
+// free motion is evaluated.
 
 #include <cstddef>
 #include <string>
@@ -13,7 +13,7 @@
 
 namespace softgrip::tools {
 
-/// Statistics over the samples that have a reference and a reading.
+/// Statistics of the tracking error over the samples that have a reference and a reading.
 struct Tracking {
   bool grips_known =
       false;  ///< the log has columns `step` and `result`; otherwise every sample counts as free
@@ -25,16 +25,17 @@ struct Tracking {
 };
 [[nodiscard]] Tracking tracking_of(const sysid::Log& log);
 
-/// Returns reference minus displacement per sample, NaN if one of them is missing. Empty: the log has no
-/// reference.
+/// Returns reference minus displacement per sample. A sample without a reference or a reading is NaN. The
+/// result is empty if the log has no reference.
 [[nodiscard]] std::vector<double> errors_of(const sysid::Log& log);
 
-/// Returns 1 for each sample of a step that detected or holds an object, else 0. The whole step counts,
-/// because a log does not state the time of the contact. All values are 0 without the columns `step` and
-/// `result`.
+/// Returns 1 for each sample of a step in which an object was detected or held, else 0. All samples of the
+/// step count, because a log does not state the time of the contact. All values are 0 if the log has no
+/// columns `step` and `result`.
 [[nodiscard]] std::vector<char> gripping_of(const sysid::Log& log);
 
-/// Returns "free motion: RMSE 0.04 mm, largest 0.14 mm; gripping: up to 4.4 mm short of the reference".
+/// Formats the statistics: "free motion: RMSE 0.04 mm, largest 0.14 mm; gripping: up to 4.4 mm short of the
+/// reference".
 [[nodiscard]] std::string to_text(const Tracking& tracking);
 
 }  // namespace softgrip::tools
