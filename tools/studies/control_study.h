@@ -1,6 +1,6 @@
 #pragma once
-// Compares the tracking error of the twin for several control schemes, as in the paper, with model mismatch,
-// noise and stability margins.
+// Compares the tracking errors of several control schemes on the simulated finger bench_twin, as in the
+// paper, but with model errors, noise and stability margins.
 
 #include <cstdint>
 #include <functional>
@@ -16,8 +16,8 @@ namespace softgrip::tools {
 
 struct ControlStudyOptions {
   std::uint64_t seed = 1;
-  int draws = 100;       ///< simulated fingers per figure
-  int search_draws = 3;  ///< other simulated fingers, for the search of the gains
+  int draws = 100;       ///< simulated fingers per scheme, frequency and mismatch
+  int search_draws = 3;  ///< further simulated fingers, used for the search of the gains
   std::vector<double> frequencies_hz{0.05, 0.1, 0.2, 0.5};
   std::vector<double> mismatches{0.05, 0.10};
   double most_sensitivity = 2;
@@ -38,21 +38,21 @@ struct Spread {
   double high = 0;  ///< 95 % quantile
 };
 
-/// The result of one scheme at one frequency and one mismatch.
+/// The result of one scheme at one frequency and one model mismatch.
 struct ControlFigure {
   double frequency_hz = 0;
   double mismatch = 0;
-  double amplitude_mm = 0;  ///< amplitude that the twin can track at this frequency
+  double amplitude_mm = 0;  ///< amplitude that bench_twin can track at this frequency
   control::PidSettings pid;
-  double sensitivity = 0;  ///< worst Ms over the simulated fingers of the tuner
+  double sensitivity = 0;  ///< largest maximum sensitivity Ms over the simulated fingers of the tuner
   std::string limited_by;
   Spread rmse_mm;
-  Spread most_mm;                ///< largest error
+  Spread most_mm;                ///< largest absolute error of each draw
   double percent_of_stroke = 0;  ///< median RMSE relative to the stroke (twice the amplitude)
   double pressure_mean_kpa = 0;
   double pressure_most_kpa = 0;
   double out_of_reach_share = 0;
-  std::vector<double> draws_mm;  ///< RMSE of each draw
+  std::vector<double> draws_mm;  ///< RMSE of each draw [mm]
 };
 
 /// One control scheme.
@@ -62,20 +62,21 @@ struct ControlScheme {
   control::FeedforwardKind kind = control::FeedforwardKind::none;
   model::Model finger;    ///< the simulated finger before its parameters are drawn
   model::Model believed;  ///< model of the controller
-  std::string refusal;    ///< reason why there are no figures; empty: there are figures
+  std::string refusal;    ///< reason why this scheme has no results; empty: it has results
   std::vector<ControlFigure> figures;
 };
 
 struct ControlStudy {
   ControlStudyOptions options;
-  model::Model identified;  ///< the published structure, identified from logs of the twin
+  model::Model identified;  ///< the published structure, identified from logs of bench_twin
   double identified_rmse_mm = 0;
-  model::Model extended;  ///< with blocks of the valve
+  /// The structure with additional blocks for the valve, identified from the same logs.
+  model::Model extended;
   double extended_rmse_mm = 0;
   std::vector<ControlScheme> schemes;
   double wall_s = 0;
 
-  /// Returns the figures of a scheme at a frequency and a mismatch, or nullptr if there are none.
+  /// Returns the result of a scheme at a frequency and a mismatch, or nullptr if there is none.
   [[nodiscard]] const ControlFigure* find(const std::string& id, double frequency_hz, double mismatch) const;
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// Fits an invertible model to the response in a log.
+// Fits an invertible model to the response that a log contains.
 
 #include <cstddef>
 #include <cstdint>
@@ -18,10 +18,10 @@ struct MatchOptions {
 };
 
 /// Fits a Bouc-Wen element in parallel with Kelvin-Voigt branches, behind a lag and a delay, by least squares
-/// with beta <= most_ratio (alpha + 1/k0). The bound concerns a combination of parameters, so it is an
-/// additional residual: the excess over the bound with a weight that keeps the remaining excess below 1e-6 of
-/// the gain. `start` must contain exactly these blocks. k0 keeps its value, because the data determine only
-/// alpha + 1/k0.
+/// with the constraint beta <= most_ratio (alpha + 1/k0). The constraint concerns several parameters, so it
+/// is implemented as an additional residual: the amount by which the bound is exceeded, with a weight that
+/// keeps this amount below 1e-6 of the gain. `start` must contain exactly these blocks. k0 keeps its value,
+/// because the data determine only the sum alpha + 1/k0.
 [[nodiscard]] model::Model invertible_match(const std::vector<sysid::Log>& logs, const model::Model& start,
                                             const MatchOptions& options);
 

@@ -10,19 +10,19 @@
 
 namespace softgrip::tools {
 
-/// The error for one finger and one signal.
+/// The identification error for one finger and one signal.
 struct PaperFigure {
   double rmse_mm = 0;
   double rmse_percent_of_span = 0;
 };
 
-/// One of the four figures of the paper, and the figures of two simulated fingers. Both were identified with
-/// the published structure on tp1 alone.
+/// One of the four RMSE values of the paper, and the corresponding values of two simulated fingers. For both,
+/// the published structure was identified on tp1 alone.
 struct PaperRow {
   model::SignalName signal = model::SignalName::tp1;
-  double paper_mm = 0;    ///< as printed in the paper
-  PaperFigure published;  ///< the finger follows the published model, so that only the noise remains
-  PaperFigure twin;       ///< the finger is bench_twin: the structure lacks its lag and its dead time
+  double paper_mm = 0;    ///< RMSE that the paper states
+  PaperFigure published;  ///< the finger follows the published model, so only the noise remains as an error
+  PaperFigure twin;       ///< the finger is bench_twin, whose lag and delay the published structure lacks
 };
 
 struct PaperTableOptions {
@@ -36,7 +36,7 @@ struct PaperTableOptions {
 /// Returns four rows: tp1, tp2, sp1 and sp2. Returns an empty list if an identification fails.
 [[nodiscard]] std::vector<PaperRow> paper_table(const PaperTableOptions& options);
 
-/// Returns sentences that explain the differences from the figures of the paper.
+/// Returns sentences that explain why the values differ from those of the paper.
 [[nodiscard]] const std::vector<std::string>& paper_table_remarks();
 
 }  // namespace softgrip::tools

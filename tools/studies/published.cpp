@@ -31,9 +31,10 @@ struct Hidden {
 constexpr std::array<Hidden, 5> hidden{
     {{0, 0, 0.57}, {0.05, 0.02, 0.78}, {0.10, 0.05, 1.28}, {0.15, 0.05, 1.69}, {0.25, 0.10, 9.5}}};
 constexpr std::array<double, 4> etas_per_bar{0.5, 1, 2, 4};
-/// beta/alpha of the elements for which an inverse is computed, from an invertible one to the published one.
+/// Ratios beta/alpha of the elements whose inverse is computed. The first is invertible, the last is that of
+/// the paper.
 constexpr std::array<double, 8> ratios{0.5, 0.8, 0.95, 1.0, 1.05, 1.25, 1.75, 17.207 / 7.079};
-/// The pressure that every inverse must reproduce: a sine from 0 to 60 kPa and back.
+/// The pressure that every inverse must recover from the response: a sine from 0 to 60 kPa and back.
 constexpr double inverse_hz = 0.1;
 constexpr double inverse_s = 20;
 
@@ -46,7 +47,7 @@ std::string refusal_of(const model::Model& model, control::FeedforwardKind kind,
   return accepted ? std::string() : accepted.error().with_advice();
 }
 
-/// Returns the number of the faster branch of a two-branch element: 1 or 2.
+/// Returns the index of the faster branch of an element with two branches: 1 or 2.
 int faster_branch(const model::Model& model) {
   const double tau1 =
       value_of(model, "kelvin_voigt.c1_kpa_s_per_mm") / value_of(model, "kelvin_voigt.k1_kpa_per_mm");
@@ -148,8 +149,8 @@ model::Model element(double ratio) {
   return model::with_values(published, values);
 }
 
-/// Computes p(k) = (y(k) + h(k-1))/alpha, the "multiplicative" form. `growth` is the growth of an error per
-/// sample.
+/// Computes the explicit inverse p(k) = (y(k) + h(k-1))/alpha, the "multiplicative" form. `growth` is the
+/// factor by which an error grows per sample.
 std::vector<double> explicit_inverse(const model::Model& element, const std::vector<double>& wanted_mm,
                                      double tick_s, double& growth) {
   const double alpha = model::flat_values(element)[0];
@@ -163,7 +164,7 @@ std::vector<double> explicit_inverse(const model::Model& element, const std::vec
     chain.step(tick_s, p);
     pressures.push_back(p);
   }
-  // Growth of a small error within one sample, with the reference held.
+  // Factor by which a small error grows within one sample, while the reference is constant.
   chain.reset(0);
   constexpr double hair_kpa = 1e-6;
   chain.step(tick_s, hair_kpa);
@@ -212,7 +213,8 @@ InverseTrial try_inverse(double ratio, const std::vector<double>& true_kpa, doub
   return trial;
 }
 
-/// Computes the response of the published element to its first loading.
+/// Computes how the response of the published element falls and recovers when it is loaded for the first
+/// time.
 void first_loading(PublishedStudy& study) {
   model::Chain<double> chain(element(ratios.back()));
   chain.reset(0);

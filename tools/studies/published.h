@@ -1,11 +1,11 @@
 #pragma once
-// The consequences of the published numbers of Zhang et al. 2025 for a finger.
+// Studies what the published parameters of Zhang et al. 2025 imply for a finger.
 //
-// 1. An ordinary actuator behind an unmodelled valve is identified with the published structure. The result
-// is the deviation of beta/(alpha + 1/k0) from its true value.
-// 2. The published response is matched by an ordinary, invertible actuator behind lag and delay.
-// 3. Inverses of the Bouc-Wen element: the explicit and the implicit form.
-// 4. The four RMSE figures of the paper, compared with those of simulated fingers.
+// 1. An ordinary actuator behind a valve is identified with the published structure, which lacks the valve.
+// The result is the deviation of beta/(alpha + 1/k0) from its true value.
+// 2. An ordinary, invertible actuator behind lag and delay is fitted to the published response.
+// 3. The explicit and the implicit inverse of the Bouc-Wen element are compared.
+// 4. The four RMSE values of the paper are compared with those of simulated fingers.
 
 #include <cstdint>
 #include <functional>
@@ -25,50 +25,50 @@ struct PublishedOptions {
   double rate_hz = 100;    ///< sampling rate of all logs
   double noise_mm = 0.05;
   std::size_t starts = 12;     ///< start points of every identification and every match
-  std::size_t most_cases = 9;  ///< rows of each table; fewer for a quick run
+  std::size_t most_cases = 9;  ///< largest number of rows of each table; fewer rows make a quick run
   unsigned threads = 0;        ///< 0: one per core
   std::function<void(const std::string&)> progress;
 };
 
-/// Row of the first table: a hidden valve and the fit of the published structure.
+/// Row of the first table: one valve that is not modelled, and the fit of the published structure.
 struct HiddenLatency {
   double lag_s = 0;
   double delay_s = 0;
-  double planned_ratio = 0;  ///< the expected value of `ratio`
+  double planned_ratio = 0;  ///< value of `ratio` that was expected when the study was planned
   double ratio = 0;          ///< fitted beta/(alpha + 1/k0)
   double true_ratio = 0;
-  double other_ratio = 0;  ///< `ratio` for the other choice of triangles
+  double other_ratio = 0;  ///< `ratio` for the other kind of triangles
   double rmse_mm = 0;
   double span_mm = 0;
-  double tau2_s = 0;  ///< time constant of the fitted faster branch
+  double tau2_s = 0;  ///< time constant of the faster of the two fitted branches
   double k2_kpa_per_mm = 0;
   double c2_kpa_s_per_mm = 0;
-  bool refused = false;  ///< the controller would refuse the inverse of the fitted model
+  bool refused = false;  ///< the controller would refuse to invert the fitted model
   model::Model fitted;
 };
 
 /// Row of the second table: a match of the published response.
 struct PublishedMatch {
-  double eta_per_bar = 0;  ///< assumed for the published model
+  double eta_per_bar = 0;  ///< value of eta that is assumed for the published model
   double rmse_mm = 0;
-  double other_rmse_mm = 0;  ///< on a signal that was not fitted
+  double other_rmse_mm = 0;  ///< RMSE on a signal to which the match was not fitted
   double span_mm = 0;
   double lag_s = 0;
   double delay_s = 0;
-  double ratio = 0;  ///< beta/(alpha + 1/k0) of the match
+  double ratio = 0;  ///< beta/(alpha + 1/k0) of the matching model
   model::Model model;
 };
 
 /// Row of the third table: an inverse of one Bouc-Wen element, applied to the element's own response.
 struct InverseTrial {
   double ratio = 0;               ///< beta/alpha
-  double growth = 0;              ///< growth of a small error of the explicit form, per sample
+  double growth = 0;              ///< factor by which a small error of the explicit form grows per sample
   double explicit_error_kpa = 0;  ///< largest error of the explicit form, without pressure limits
   double implicit_error_kpa = 0;  ///< largest error of the implicit form within 0 to 60 kPa
   double implicit_jump_kpa = 0;   ///< largest change per sample of the implicit form
   double true_jump_kpa = 0;       ///< largest change per sample of the true pressure
   double unreached_share = 0;     ///< share of the samples without a solution of the implicit form
-  bool refused = false;           ///< refused by the check before a controller starts
+  bool refused = false;           ///< the check before the start of a controller would refuse this element
   std::vector<double> explicit_kpa;
   std::vector<double> implicit_kpa;
 };
@@ -82,16 +82,16 @@ struct PublishedStudy {
   std::vector<double> inverse_time_s;
   std::vector<double> inverse_true_kpa;
   double twin_rmse_mm = 0;     ///< bench_twin compared with the published response for eta = 2 /bar
-  double published_ratio = 0;  ///< beta/(alpha + 1/k0)
+  double published_ratio = 0;  ///< beta/(alpha + 1/k0) of the published model
   double falls_until_kpa =
       0;  ///< on first loading, the response of the published element falls up to this pressure
   double falls_by_mm = 0;          ///< depth of this fall
   double back_at_kpa = 0;          ///< pressure at which the response is back at 0; NaN: not below 60 kPa
   std::string bouc_wen_refusal;    ///< the controller's reason to refuse the published element
   std::string full_model_refusal;  ///< the controller's reason to refuse the whole published model
-  sysid::Log match_log;            ///< published response of the first match
+  sysid::Log match_log;            ///< published response of the first row of matches
   std::vector<double> match_mm;    ///< response of the matching model
-  sysid::Log latency_log;          ///< log of the longest latency, which was fitted
+  sysid::Log latency_log;          ///< log of the row with the longest latency, to which the model was fitted
   std::vector<double> latency_mm;  ///< response of the fitted model
   double wall_s = 0;
 };

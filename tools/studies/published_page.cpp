@@ -57,7 +57,7 @@ Chart ratio_chart(const PublishedStudy& study) {
   return chart;
 }
 
-/// Returns the fitted log and the residual, one below the other.
+/// Returns charts of the fitted log and of the residual, one below the other.
 sysid::ChartRows fit_charts(const sysid::Log& log, const std::vector<double>& answer_mm,
                             const std::string& given, const std::string& answering) {
   Chart overlay;

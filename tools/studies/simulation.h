@@ -14,17 +14,18 @@ namespace softgrip::tools {
 [[nodiscard]] sysid::Log sampled_signal(model::SignalName signal, double rate_hz);
 
 struct SimulationSettings {
-  double noise_mm = 0;  ///< standard deviation of white noise, in addition to the model's own sensor blocks
+  /// Standard deviation of white noise that is added to the noise of the model's own sensor blocks.
+  double noise_mm = 0;
   std::uint64_t seed = 1;  ///< seed of all noise
   /// If true, the command of a sample is held until the next sample, as a board holds its output. A reading
   /// then does not depend on the command of its own sample.
   bool held = false;
 };
 
-/// Fills the readings of a log with the response of the model, in its unit. Unless `held`, the command is
-/// piecewise linear between samples. Before the first sample, the command rose once to its first value and
-/// was held. supply_kpa and temperature_c of the log are inputs of the model if they exist. Equal inputs and
-/// settings give identical results.
+/// Fills the readings of a log with the response of the model, in the output unit of the model. Unless `held`
+/// is set, the command is piecewise linear between samples. The simulation starts with a single rise to the
+/// first command, which was then held. If the log contains supply_kpa or temperature_c, they are inputs of
+/// the model. Equal inputs and settings give identical results.
 void simulate(const model::Model& model, const SimulationSettings& settings, sysid::Log& log);
 
 }  // namespace softgrip::tools
