@@ -1,5 +1,5 @@
 #pragma once
-// Compares two results of the same call, number by number.
+// Compares the results of two runs of the same command, number by number.
 
 #include <string>
 #include <vector>
@@ -18,9 +18,9 @@ struct Difference {
   std::string recomputed;
 };
 
-/// The number of compared values, and the differences.
+/// The number of compared values, and the list of the differences.
 struct Comparison {
-  double tolerance = 0;  ///< relative; numbers within it count as equal
+  double tolerance = 0;  ///< relative tolerance; numbers that differ by less count as equal
   std::size_t numbers = 0;
   std::vector<Difference> differences;
 
@@ -32,8 +32,8 @@ struct Comparison {
 void compare_json(const std::string& file, const nlohmann::ordered_json& reported,
                   const nlohmann::ordered_json& recomputed, Comparison& comparison);
 
-/// Compares all cells and reports the line with the largest difference of each column. Different columns or
-/// numbers of lines count as one difference.
+/// Compares all cells and reports, for each column, the line with the largest difference. Different columns
+/// or different numbers of lines count as one difference.
 void compare_csv(const std::string& file, const std::string& reported, const std::string& recomputed,
                  Comparison& comparison);
 

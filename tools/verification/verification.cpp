@@ -29,7 +29,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::size_t largest_file = std::size_t{512} * 1024 * 1024;
 
-/// A command that can be repeated, and its result file.
+/// A command that can be repeated, and the name of its result file.
 struct Kind {
   const char* command;
   const char* json;
@@ -129,7 +129,8 @@ class Verifier {
     return true;
   }
 
-  /// Returns the hash of a file in the report. `option` is the option of the call that takes the file.
+  /// Returns the hash of a file as the report states it. `option` is the option of the command line that
+  /// takes the file.
   [[nodiscard]] std::string hash_of(const std::string& option, const std::string& path) const {
     for (const Json* logs : {&member(json_, "logs"), &member(member(json_, "validation"), "logs")}) {
       for (const Json& log : *logs) {
@@ -143,7 +144,7 @@ class Verifier {
     return {};
   }
 
-  /// Replaces the path of every file of the call by its present path.
+  /// Replaces the path of every input file in the command line by its present path.
   bool find_inputs() {
     static const std::set<std::string> takes_files{"--data", "--validate", "--start", "--model", "--gauge"};
     std::string option;

@@ -9,17 +9,17 @@
 namespace softgrip::tools {
 
 struct Verification {
-  /// Sentences about inputs that prevent the comparison: a missing or changed log, or a folder without the
-  /// call. If there is one, nothing was compared.
+  /// Sentences about inputs that prevent the comparison: a missing or changed log, or a folder whose report
+  /// does not state the command line. If the list is not empty, nothing was compared.
   std::vector<std::string> missing;
-  std::string reported_by;  ///< software and version
+  std::string reported_by;  ///< software and version that wrote the report
   std::string recomputed_by;
   Comparison comparison;
 };
 
 /// Repeats the command that wrote `folder` in a temporary folder, and compares JSON, series and model. Logs
-/// and models are searched at their original paths, in `folder` and next to it. Each must have the hash in
-/// the report.
+/// and models are searched at their original paths, in `folder`, and in the folder that contains `folder`.
+/// The hash of each file must agree with the report.
 /// @param program    path of softgrip.
 /// @param tolerance  relative tolerance.
 [[nodiscard]] Verification verify_report(const std::string& folder, const std::string& program,
