@@ -44,7 +44,8 @@ void DiskTask::answer_file(std::shared_ptr<const RegularFile> file) {
   done_ = true;
 }
 
-/// The thread shares the ownership, because a blocked disk call can outlive the archive.
+/// State that the archive shares with its thread. Both own it, because a blocked disk call can outlive the
+/// archive.
 struct Archive::Shared {
   using DiskTasks = std::deque<std::shared_ptr<DiskTask>>;
 

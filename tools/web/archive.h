@@ -30,19 +30,20 @@ struct DiskRequest {
   std::shared_ptr<const RegularFile> from = nullptr;
 };
 
-/// A request and its answer. The thread skips a task that its owner has dropped.
+/// A request to the disk and its answer. The disk thread skips a task if no other object refers to it any
+/// more.
 class DiskTask {
  public:
   explicit DiskTask(DiskRequest disk_request);
   [[nodiscard]] const DiskRequest& request() const noexcept { return request_; }
-  /// Returns true if the answer is complete. It does not change any more.
+  /// Returns true if the answer is complete. A complete answer does not change any more.
   [[nodiscard]] bool done() const noexcept { return done_; }
-  /// For a health request: the result, or null if there is none.
+  /// For a health request: returns the result, or null if there is none.
   [[nodiscard]] const nlohmann::ordered_json& health() const noexcept { return *health_; }
-  /// For a listing: `{"recordings": [...]}`. For a piece: the bytes, or "" at the end of the file or after a
-  /// read error.
+  /// For a listing: returns `{"recordings": [...]}`. For a piece: returns the bytes, or "" at the end of the
+  /// file or after a read error.
   [[nodiscard]] const std::string& text() const noexcept { return *text_; }
-  /// For a file request: the open file, or null if no such file may be shown.
+  /// For a file request: returns the open file, or null if the file does not exist or may not be shown.
   [[nodiscard]] const std::shared_ptr<const RegularFile>& file() const noexcept { return file_; }
 
   // Called by the disk thread.
@@ -62,12 +63,12 @@ class DiskTask {
 
 class Archive {
  public:
-  /// Bytes of one download that are kept in memory.
+  /// Largest number of bytes of one download that are kept in memory.
   static constexpr std::size_t piece = std::size_t{16} << 10U;
-  /// Smallest time between the beginnings of two lists. The pause is at least as long as the last list took,
-  /// so that lists use at most half of the thread's time.
+  /// Shortest time between the starts of two lists. The pause after a list is at least as long as the list
+  /// took, so that lists use at most half of the thread's time.
   static constexpr std::chrono::milliseconds listing_pause{200};
-  /// The longest time that the destructor waits for a disk that does not respond.
+  /// Longest time that the destructor waits for a disk that does not respond.
   static constexpr std::chrono::milliseconds farewell{1000};
 
   /// An empty `folder` means that there are no recordings.
@@ -81,7 +82,7 @@ class Archive {
   /// Adds a request without waiting. One list serves all list requests that arrive before it begins. All
   /// other requests have priority over lists.
   [[nodiscard]] std::shared_ptr<const DiskTask> ask(DiskRequest disk_request);
-  /// For poll(): readable when a task is done.
+  /// Returns the descriptor for poll(). It is readable when a task is done.
   [[nodiscard]] int descriptor() const noexcept;
   /// Resets the descriptor. Call it when the descriptor is readable.
   void hear() const noexcept;

@@ -13,7 +13,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// A start may need one second for planning, and additional time for the disk.
+/// Longest wait for the response to a command. A start may need one second for planning, and additional time
+/// for the disk.
 constexpr Nanoseconds longest_wait = 8 * ns_per_s;
 /// Time between two attempts to stop a start that was given up.
 constexpr Nanoseconds pause_between_stops = ns_per_s / 4;
@@ -81,7 +82,8 @@ tl::expected<std::uint64_t, Json> Commander::send(Json request, Nanoseconds now)
   return number;
 }
 
-/// Connects if there is no connection. Returns the error response that replaces the daemon's if this fails.
+/// Connects if there is no connection. If this fails, returns the error response that the browser gets
+/// instead of the daemon's response.
 std::optional<Json> Commander::connect() {
   if (daemon_) return std::nullopt;
   if (socket_.empty()) return failure("not_allowed", "this page is read-only");
@@ -155,7 +157,8 @@ void Commander::take(Json line) {
   });
   if (stopped == given_up_.end()) return;
   stopped->stop = 0;
-  // An older daemon that does not know the id has refused the start as well.
+  // A daemon of an older version does not know `start_id`. It has refused the start as well, so there is
+  // nothing to stop.
   const bool is_older = line.value("error", Json::object()).value("code", "") == "bad_request";
   if (is_older || tools::confirms_stop(line)) given_up_.erase(stopped);
 }
@@ -176,7 +179,8 @@ void Commander::stop(GivenUp& start) {
   start.stop = send_numbered(tools::stop_of(start.start_id));
 }
 
-/// Stops the starts that were given up without a connection or whose stop the daemon did not confirm.
+/// Stops the starts that were given up while there was no connection, and those whose stop the daemon did not
+/// confirm.
 void Commander::stop_again(Nanoseconds now) {
   const auto is_due = [](const GivenUp& start) { return start.stop == 0; };
   if (std::none_of(given_up_.begin(), given_up_.end(), is_due)) return;

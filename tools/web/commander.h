@@ -19,47 +19,49 @@ namespace softgrip::web {
 /// Only a start has a sequence and parameters. The error is a sentence.
 [[nodiscard]] tl::expected<nlohmann::ordered_json, std::string> command_in(std::string_view body);
 
-/// Gives every start its own id. A start without a receiver for its outcome must not move the gripper. It is
-/// stopped by its id until a daemon confirms that it does not run, also over a later connection. This applies
-/// to a start that had no response in time, lost its connection or its browser, or was answered while the
-/// control loop was silent.
+/// Sends commands and gives every start its own id. If the outcome of a start can no longer be delivered, the
+/// start must not move the gripper. It is then stopped by its id until a daemon confirms that it does not
+/// run, even over a later connection. This applies if the response to the start is late, if the connection to
+/// the daemon or to the browser is lost, or if the daemon responds that its control loop was silent.
 class Commander {
  public:
-  /// Largest number of commands that wait for their responses. As many stops and vents may wait in addition.
-  /// addition.
+  /// Largest number of commands that wait for their responses. As many stop and vent commands may
+  /// wait in addition.
   static constexpr std::size_t most_waiting = 32;
 
   /// `socket` is the path of the daemon's operating socket and must outlive this object.
   explicit Commander(const std::string& socket) : socket_(socket) {}
 
-  /// Sends the request and returns the number of its response. The error is the response that the daemon
-  /// would give.
+  /// Sends the request and returns a number with which take_answer() finds its response. The error is a
+  /// response in the format of the daemon.
   [[nodiscard]] tl::expected<std::uint64_t, nlohmann::ordered_json> send(nlohmann::ordered_json request,
                                                                          Nanoseconds now);
   /// Returns the daemon's complete response once, or nullopt while it is pending. If the daemon cannot be
   /// reached, the response says so.
   [[nodiscard]] std::optional<nlohmann::ordered_json> take_answer(std::uint64_t number, Nanoseconds now);
-  /// Returns true for a start that was not refused and whose outcome take_answer() has not returned.
+  /// Returns true for a start that the daemon has not refused and whose outcome take_answer() has not
+  /// returned.
   [[nodiscard]] bool is_open_start(std::uint64_t number) const;
-  /// The receiver of this response has gone.
+  /// Call it when the client that waits for this response has disconnected.
   void forget(std::uint64_t number);
-  /// Processes the connection. Call it when the descriptor is readable, and several times per second.
+  /// Reads the responses of the daemon and repeats stops. Call it when the descriptor is readable, and
+  /// several times per second.
   void look_after(Nanoseconds now);
-  /// Gives up all commands, because the program ends.
+  /// Gives up all waiting commands. Call it before the program ends.
   void leave();
-  /// -1 if there is no connection.
+  /// Returns the descriptor of the connection, or -1.
   [[nodiscard]] int descriptor() const noexcept { return daemon_ ? daemon_->descriptor() : -1; }
 
  private:
   struct Waiting {
     Nanoseconds give_up = 0;
-    std::string start_id;  ///< of a start that may run
+    std::string start_id;  ///< id of a start that may run; empty: none
     std::optional<nlohmann::ordered_json> answer;
   };
-  /// A start whose outcome has no receiver.
+  /// A start whose outcome can no longer be delivered.
   struct GivenUp {
     std::string start_id;
-    std::uint64_t stop = 0;  ///< number of its stop request; 0: none is pending
+    std::uint64_t stop = 0;  ///< number of the stop request that has no response yet; 0: none
   };
   [[nodiscard]] std::optional<nlohmann::ordered_json> connect();
   std::uint64_t send_numbered(nlohmann::ordered_json request);

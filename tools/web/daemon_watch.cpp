@@ -13,7 +13,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr double watch_rate_hz = 5;
 constexpr Nanoseconds retry_pause = ns_per_s / 4;
-/// A daemon without a message for this time counts as disconnected.
+/// A daemon that sends nothing for this time counts as disconnected.
 constexpr Nanoseconds longest_silence = 3 * ns_per_s / 2;
 constexpr Nanoseconds statistics_period = 2 * ns_per_s;
 constexpr Nanoseconds sequences_period = 10 * ns_per_s;

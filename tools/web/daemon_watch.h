@@ -1,5 +1,6 @@
 #pragma once
-// The single connection that provides all displayed data of the daemon, for any number of browsers.
+// Maintains the connection that provides the displayed data of the daemon. One connection serves any number
+// of browsers.
 
 #include <optional>
 
@@ -17,7 +18,7 @@ class DaemonWatch {
   /// Reads the daemon's lines, sends requests that are due, and reconnects. Call it when the descriptor is
   /// readable, and several times per second.
   void look_after(Nanoseconds now);
-  /// The descriptor of the connection, or -1.
+  /// Returns the descriptor of the connection, or -1.
   [[nodiscard]] int descriptor() const noexcept { return daemon_ ? daemon_->descriptor() : -1; }
 
  private:

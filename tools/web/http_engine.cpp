@@ -7,7 +7,8 @@ namespace softgrip::web {
 
 namespace {
 
-/// A connection whose client has sent its whole request and receives the response later.
+/// Stream of a request and a response in memory, as cpp-httplib needs it. It behaves like a connection whose
+/// client has sent its whole request and has not received the response yet.
 class MemoryStream final : public httplib::Stream {
  public:
   explicit MemoryStream(std::string_view request) : unread_(request) {}
@@ -35,7 +36,8 @@ class MemoryStream final : public httplib::Stream {
   std::string written_;
 };
 
-/// Range requests are not supported: overlapping ranges would turn a small file into a large response.
+/// Removes the ranges from a request. Range requests are not supported, because overlapping ranges would turn
+/// a small file into a large response.
 void forget_ranges(httplib::Request& request) {
   request.ranges.clear();
 }

@@ -10,7 +10,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Limit of the news that were not collected. Beyond it, new messages are dropped.
+/// Largest size of the messages that wait for take_news(). Further messages are dropped.
 constexpr std::size_t longest_news = std::size_t{1} << 20U;
 
 Json list_of(const std::deque<Json>& items) {
@@ -28,7 +28,7 @@ std::string message_of(std::string_view kind, const Json& data) {
 }
 
 void LiveState::take_status(Json status) {
-  // A restarted daemon begins its time at zero.
+  // The time of a restarted daemon begins at zero again.
   if (number(status, "time_s") < number(status_, "time_s")) trend_.clear();
   status_ = std::move(status);
   note_trend();

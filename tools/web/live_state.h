@@ -1,5 +1,6 @@
 #pragma once
-// The latest data of the daemon. All responses to browsers and collectors come from here. No sockets.
+// Stores the latest data of the daemon. All responses to browsers and collectors are made from it. Uses no
+// sockets.
 
 #include <cstdint>
 #include <deque>
@@ -22,21 +23,22 @@ class LiveState {
   void take_event(nlohmann::ordered_json event);
   void take_statistics(nlohmann::ordered_json statistics);
   void take_sequences(nlohmann::ordered_json sequences);
-  /// Stores the last result of `softgrip health`. The daemon does not know it.
+  /// Stores the last result of `softgrip health`, which does not come from the daemon.
   void take_health(nlohmann::ordered_json health) { health_ = std::move(health); }
-  /// Call it when the connection to the daemon is lost: only its past events remain known.
+  /// Call it when the connection to the daemon is lost. The status, the statistics and the trend are then
+  /// unknown, and the past events are kept.
   void lose();
 
-  /// The last status, or null if the daemon does not respond.
+  /// Returns the last status, or null if the daemon does not respond.
   [[nodiscard]] const nlohmann::ordered_json& status() const noexcept { return status_; }
   [[nodiscard]] const nlohmann::ordered_json& statistics() const noexcept { return statistics_; }
   [[nodiscard]] const nlohmann::ordered_json& sequences() const noexcept { return sequences_; }
-  /// The last health result, or null if there is none.
+  /// Returns the last health result, or null if there is none.
   [[nodiscard]] const nlohmann::ordered_json& health() const noexcept { return health_; }
 
   /// Returns the complete state as the first message of a stream of server-sent events.
   [[nodiscard]] std::string greeting() const;
-  /// Returns the changes since the last call as further messages, or "" if nothing has changed.
+  /// Returns one message per change since the last call, or "" if nothing has changed.
   [[nodiscard]] std::string take_news();
 
  private:
@@ -47,7 +49,9 @@ class LiveState {
   nlohmann::ordered_json sequences_;
   nlohmann::ordered_json health_;
   std::deque<nlohmann::ordered_json> events_;
-  std::deque<nlohmann::ordered_json> trend_;  // [time_s, [command, pressure, displacement, reference], ...]
+  // One sample per status: [time_s, [command, pressure, displacement, reference], ...]. There is one inner
+  // list per finger.
+  std::deque<nlohmann::ordered_json> trend_;
   std::string news_;
 };
 

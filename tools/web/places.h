@@ -1,5 +1,5 @@
 #pragma once
-// Chooses the connection to close when places or memory run out. No sockets.
+// Chooses the connection that must be closed when no place or no memory is left. Uses no sockets.
 
 #include <cstddef>
 #include <optional>
@@ -23,33 +23,36 @@ struct Guest {
   std::size_t unsent = 0;    ///< bytes that are not sent yet
 };
 
-/// A connection without progress for this time may lose its place to another.
+/// A connection whose response has made no progress for this time may be closed in favour of another.
 inline constexpr Nanoseconds long_pause = ns_per_s / 2;
 
-/// Limit of the unsent bytes of all connections together. With the requests and the system's buffers of 512
-/// connections, it stays below the memory limit of the unit (server.cpp).
+/// Limit of the unsent bytes of all connections together. The sum of this limit, of the requests and of the
+/// system's buffers for 512 connections is below the memory limit of the systemd unit (server.cpp).
 inline constexpr std::size_t most_unsent = std::size_t{16} << 20U;
 
-/// Returns the number of connections for which the process has enough descriptors: one per connection, and
-/// one for a file to send. The result is at least 4 and at most `wanted`.
-/// @param descriptors  the descriptors that the process may have.
+/// Returns the number of connections for which the process has enough descriptors. Each connection needs one
+/// for itself and one for a file that is sent. The result is at least 4 and at most `wanted`.
+/// @param descriptors  the number of descriptors that the process may have.
 [[nodiscard]] std::size_t places_for(std::size_t wanted, std::size_t descriptors) noexcept;
-/// Returns the number of places that lingering connections may take. The others remain for requests that are
-/// answered at once, such as stop and vent.
+/// Returns the number of places that lingering connections may take. The other places remain for requests
+/// that are answered at once, such as stop and vent.
 [[nodiscard]] constexpr std::size_t lingering_places(std::size_t places) noexcept {
   return places * 3 / 4;
 }
 
 using Victim = std::optional<std::size_t>;  ///< index of a guest
 
-/// Called if all places are taken and a client connects. Returns the connection with the lowest role, then
-/// the oldest, whose request is still incomplete after its time limit.
+/// Chooses the connection to close when all places are taken and a client connects. Considers connections
+/// whose request is still incomplete after `long_pause`. Returns the one with the lowest role, and among
+/// equal roles the oldest.
 [[nodiscard]] Victim gives_way_to_newcomer(const std::vector<Guest>& guests, Nanoseconds now);
-/// Called if all lingering places are taken and a client with `role` needs one. Returns a stalled connection
-/// with the same or a lower role, or any connection with a lower role. Nullopt: refuse the client.
+/// Chooses the connection to close when all lingering places are taken and a client with `role` needs one.
+/// Returns a connection with the same or a lower role whose response makes no progress, or any connection
+/// with a lower role. Nullopt: refuse the client.
 [[nodiscard]] Victim gives_way_to_lingering(const std::vector<Guest>& guests, Role role, Nanoseconds now);
-/// Called if too many bytes are unsent and a client with `role` needs memory. Returns the connection with the
-/// lowest role that has made no progress for the longest time. Nullopt: refuse the client.
+/// Chooses the connection to close when too many bytes are unsent and a client with `role` needs memory.
+/// Returns the connection with the lowest role that has made no progress for the longest time. Nullopt:
+/// refuse the client.
 [[nodiscard]] Victim gives_way_for_bytes(const std::vector<Guest>& guests, Role role);
 
 [[nodiscard]] std::size_t unsent_of(const std::vector<Guest>& guests);

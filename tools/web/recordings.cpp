@@ -40,7 +40,7 @@ bool is_shown(std::string_view name) {
   return is_plain_name(name) && !content_type_of(name).empty();
 }
 
-/// Keeps only the first `most` names in the chosen order.
+/// Keeps the first `most` names in the chosen order and drops the others.
 void keep_first(std::vector<std::string>& names, bool last_first, std::size_t most) {
   const auto before = [last_first](const std::string& one, const std::string& other) {
     return last_first ? one > other : one < other;
@@ -86,7 +86,8 @@ Json Recordings::list(Nanoseconds wall_now, const std::function<void()>& between
     files_.clear();
     return list;
   }
-  // The names of recordings begin with their time.
+  // The names of recordings begin with the time of their start, so the order of the names is the order of
+  // time.
   bring_up_to_date(newest_, top, ".", {is_plain_name, true, most_considered});
   std::map<std::string, Names> files;
   for (const std::string& name : newest_.names) {

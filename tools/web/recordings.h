@@ -18,8 +18,8 @@
 
 namespace softgrip::web {
 
-/// Returns true if `name` can be the name of a recording or of a file in one: at most 128 letters, digits,
-/// ".", "-" and "_", and the first character is not a dot.
+/// Returns true if `name` is a permitted name of a recording or of a file in a recording: at most 128
+/// letters, digits, ".", "-" and "_", and the first character is not a dot.
 [[nodiscard]] bool is_plain_name(std::string_view name);
 
 /// Returns the content type of a file that may be shown, for example "image/svg+xml", or "" for any other
@@ -30,9 +30,9 @@ namespace softgrip::web {
 class Recordings {
  public:
   static constexpr std::size_t most_listed = 200;
-  /// Largest number of folders that a list reads, newest first. The list is shorter than `most_listed` if too
-  /// few of them contain a file that may be shown. This bounds the memory and the time of a list for any
-  /// number of folders.
+  /// Largest number of folders that are read for a list, newest first. The list is shorter than `most_listed`
+  /// if too few of these folders contain a file that may be shown. This limit bounds the memory and the time
+  /// for a list, even if there are more folders.
   static constexpr std::size_t most_considered = 2000;
   static constexpr std::size_t largest_file = std::size_t{16} << 20U;
 
@@ -40,15 +40,15 @@ class Recordings {
   explicit Recordings(std::string folder) : folder_(std::move(folder)) {}
 
   [[nodiscard]] const std::string& folder() const noexcept { return folder_; }
-  /// Returns the newest recordings first: `name`, `files` that can be shown. Reads only the folders that have
-  /// changed since the last call.
-  /// @param wall_now  wall_time_now(): a folder that has just changed is read again by the next call, because
-  ///                  its time stamp may not show a second change.
+  /// Returns the list of recordings, newest first. Each has a `name` and the `files` that may be shown. Only
+  /// the folders that have changed since the last call are read.
+  /// @param wall_now  the result of wall_time_now(). A folder that changed just before this time is read
+  /// again by the next call, because its time stamp may not show a second change.
   /// @param between   is called between the folders; may be empty.
   [[nodiscard]] nlohmann::ordered_json list(Nanoseconds wall_now, const std::function<void()>& between = {});
   /// Opens a file. Returns nullopt if it does not exist or may not be shown. Follows no links.
   [[nodiscard]] std::optional<RegularFile> open(std::string_view recording, std::string_view file) const;
-  /// Number of folders that were read from the disk since the start.
+  /// Returns the number of folders that were read from the disk since the start.
   [[nodiscard]] std::size_t folders_read() const noexcept { return folders_read_; }
 
  private:
@@ -61,10 +61,10 @@ class Recordings {
   };
   struct Names {
     Stamp stamp;
-    bool settled = false;  // any later change would alter the stamp
+    bool settled = false;  // true: the time stamp would show any later change
     std::vector<std::string> names;
   };
-  /// Selects the names of a folder that are kept, and their order.
+  /// Selects the names in a folder that are stored, and their order.
   struct Choice {
     bool (*is_wanted)(std::string_view name) = nullptr;
     bool last_first = false;

@@ -1,5 +1,5 @@
 #pragma once
-// Finds the end of an HTTP request and checks that the server supports it. No sockets.
+// Finds the end of an HTTP request and checks that the server supports the request. Uses no sockets.
 
 #include <cstddef>
 #include <string_view>
@@ -15,12 +15,12 @@ struct Frame {
   enum class State : unsigned char { incomplete, complete, refused };
   State state = State::incomplete;
   std::size_t size = 0;  ///< size of the complete request with its body
-  int status = 0;        ///< status of a refusal
+  int status = 0;        ///< HTTP status of the refusal; 0: not refused
 };
 
-/// Checks the bytes that a client has sent so far. It is stricter than the library that parses them later:
-/// lines end with CR LF, and control characters, folded lines, a second Content-Length, chunked bodies and
-/// Expect headers are refused.
+/// Checks the bytes that a client has sent so far. The check is stricter than the library that parses the
+/// request later. Lines must end with CR LF. Control characters, folded lines, a second Content-Length,
+/// chunked bodies and Expect headers are refused.
 [[nodiscard]] Frame frame_of(std::string_view bytes);
 
 }  // namespace softgrip::web

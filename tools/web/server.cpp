@@ -21,12 +21,14 @@ constexpr Nanoseconds check_period = ns_per_s;
 /// Largest number of connections accepted in one cycle, so that existing clients are not delayed.
 constexpr int most_accepted = 32;
 constexpr int no_place = 503;
-/// After this time, a collector gets the metrics with the health result that was read last.
+/// If the health result is not read within this time, a collector gets the metrics with the previous health
+/// result.
 constexpr Nanoseconds patience_for_health = ns_per_s;
 constexpr Nanoseconds patience_for_disk = 8 * ns_per_s;
 
-/// Size of the send buffer of a socket. By default, the system would keep megabytes for a client that does
-/// not read. The system doubles the number, and the unit's memory limit includes these buffers.
+/// Size of the send buffer of a socket. Without this setting, the system would buffer megabytes for a client
+/// that does not read. The system doubles this number. The memory limit of the systemd unit includes these
+/// buffers.
 constexpr int kept_by_system = 65536;
 constexpr std::size_t most_connections = 512;  // upper limit in the configuration file
 constexpr std::size_t own_memory = std::size_t{20} << 20U;
@@ -99,8 +101,9 @@ void Server::serve_until_signal() {
   }
 }
 
-/// Reduces the number of places if the process may have fewer descriptors than poll() would watch. Returns
-/// false if this was not the cause of the failure.
+/// Reduces the number of places and closes connections. Call it if poll() fails because the process may have
+/// fewer descriptors than it would watch. Returns false if no connection was closed, so that the failure has
+/// another cause.
 bool Server::give_up_places() {
   const std::size_t before = visitors_.size();
   places_ = places_for(settings_.max_connections, descriptor_limit());
@@ -123,7 +126,7 @@ void Server::count() {
 void Server::accept(Nanoseconds now) {
   for (int i = 0; i < most_accepted; ++i) {
     Descriptor socket = entrance_.accept(now);
-    // The next client needs a free descriptor, so close another connection if necessary.
+    // The next client needs a free descriptor, so close another connection if too few are left.
     if (entrance_.short_of_descriptors()) static_cast<void>(make_place(now));
     if (!socket) return;
     ::setsockopt(socket.get(), SOL_SOCKET, SO_SNDBUF, &kept_by_system, sizeof kept_by_system);
@@ -145,11 +148,11 @@ void Server::look_after(Visitor& visitor, short events, Nanoseconds now) {
     visitor.leaves = !client.receive();
     if (!visitor.leaves && client.phase() == Phase::asking) {
       serve(visitor, now);
-      // An incomplete request cannot be completed after its sender has closed the sending side.
+      // If the client has closed its sending side, its incomplete request cannot be completed.
       if (client.phase() == Phase::asking && client.said_all()) visitor.leaves = true;
     }
   }
-  // A client that has closed its side does not receive the outcome, so give the start up.
+  // A client that has closed its side does not receive the outcome of its start, so the start is given up.
   if (client.said_all() && commander_.is_open_start(visitor.command)) visitor.leaves = true;
   if (client.phase() == Phase::waiting && !visitor.leaves) take_reply(visitor, now);
   if (client.phase() == Phase::loading && !visitor.leaves) take_piece(visitor);
@@ -192,7 +195,7 @@ void Server::answer(Visitor& visitor, Outcome outcome, Nanoseconds now) {
   client.answer(std::move(outcome.bytes), next, now);
   visitor.leaves = !client.send_on(now);
   if (visitor.leaves || client.unsent() == 0) return;
-  // The socket did not accept all bytes: the rest needs a lingering place.
+  // The socket did not accept all bytes, so the connection needs a lingering place for the rest.
   visitor.leaves = !make_lingering_place(visitor, now) || !make_room(&visitor, visitor.role);
   if (visitor.leaves) client.drop_unsent();
 }
@@ -224,12 +227,12 @@ void Server::take_piece(Visitor& visitor) {
   const auto piece = std::exchange(download.piece, nullptr);
   const auto bytes = std::string_view(piece->text()).substr(0, download.file->size - download.read);
   download.read += bytes.size();
-  // If the file has become shorter, the announced length cannot be sent.
+  // If the file has become shorter, the announced number of bytes cannot be sent.
   visitor.leaves = bytes.empty() || !visitor.client.add(bytes);
   if (download.read == download.file->size) visitor.client.finish();
 }
 
-/// Requests the next piece after the previous one was sent and only while memory is available. A download
+/// Requests the next piece when the previous one was sent and memory is available. Otherwise the download
 /// waits, so that no other client must be disconnected for it.
 void Server::ask_for_piece(Visitor& visitor) {
   Download& download = visitor.download;
@@ -295,7 +298,8 @@ Server::Crowd Server::crowd_beside(const Visitor* visitor) {
   return crowd;
 }
 
-/// Frees the bytes now: many responses may be created before the leaving visitors are removed.
+/// Marks the visitor as leaving. Frees its bytes now, because many responses may be created before the
+/// leaving visitors are removed.
 void Server::turn_away(Visitor& visitor) {
   visitor.leaves = true;
   visitor.client.drop_unsent();

@@ -32,7 +32,7 @@ class Server {
   struct Download {
     std::shared_ptr<const RegularFile> file;
     std::size_t read = 0;                   // bytes read so far
-    std::shared_ptr<const DiskTask> piece;  // the next piece, while it is read
+    std::shared_ptr<const DiskTask> piece;  // the next piece, which is being read from the disk; null: none
   };
   struct Visitor {
     Client client;

@@ -22,11 +22,13 @@ using httplib::Response;
 
 constexpr const char* json_type = "application/json";
 constexpr const char* disk_is_silent = "the disk with the recordings does not respond";
-/// Allows only the page's own files. Forbids frames and forms that submit to other sites.
+/// Content-Security-Policy of the page: only the page's own files may be loaded. Other sites cannot embed the
+/// page in a frame, and forms cannot be submitted.
 constexpr const char* page_policy =
     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self'; connect-src 'self'; "
     "base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
-/// A recording may contain files of other people, so they may run no script and load nothing.
+/// Content-Security-Policy of recordings. They may contain files from other people, so they may run no script
+/// and load nothing from other sites.
 constexpr const char* recording_policy =
     "default-src 'none'; style-src 'unsafe-inline'; img-src 'self' data:; sandbox; frame-ancestors 'none'";
 
@@ -44,7 +46,8 @@ void put_error(Response& response, int status, std::string_view message) {
   put_json(response, {{"error", message}}, status);
 }
 
-/// The library stores headers in a multimap, so a second value would be added to the first.
+/// Replaces a header. The library stores headers in a multimap, so without the removal the response would
+/// have two values.
 void replace_header(Response& response, const char* name, const char* value) {
   response.headers.erase(name);
   response.set_header(name, value);
@@ -199,7 +202,8 @@ void Site::add_data() {
   engine_.Get("/api/stream", [this](const Request&, Response& response) { greet(response); });
 }
 
-/// The library writes only the head, without a length. The owner of the connection writes all messages.
+/// Begins a stream of messages. The library writes only the head, without a length. The owner of the
+/// connection writes the messages.
 void Site::greet(Response& response) {
   if (!need(Role::look, response)) return;
   outcome_.follower = Follower{credentials_, role_};
@@ -243,7 +247,8 @@ void Site::list(Response& response) {
   }
 }
 
-/// The library writes only the head. The file follows in pieces and is never completely in memory.
+/// Begins the response with a file. The library writes only the head. The file follows in pieces and is never
+/// completely in memory.
 void Site::show(const Request& request, Response& response) {
   if (!need(Role::look, response)) return;
   const std::string name = request.matches[2];

@@ -1,5 +1,5 @@
 #pragma once
-// Maps requests to responses. No sockets of browsers.
+// Maps HTTP requests to responses. Does not use the sockets of the browsers.
 
 #include <cstdint>
 #include <map>
@@ -19,13 +19,13 @@
 
 namespace softgrip::web {
 
-/// Counters of the program itself.
+/// Counters of softgrip-web itself.
 struct OwnCounts {
   std::size_t connections = 0;
-  std::size_t followers = 0;             ///< open pages among them
+  std::size_t followers = 0;             ///< number of these connections that are open pages
   std::size_t unsent = 0;                ///< bytes that are not sent yet
   std::uint64_t turned_away = 0;         ///< connections that were closed or refused for lack of a place
-  std::map<int, std::uint64_t> answers;  ///< responses by status
+  std::map<int, std::uint64_t> answers;  ///< number of responses, by HTTP status
 };
 
 /// The reader of a stream of messages.
@@ -36,12 +36,13 @@ struct Follower {
 
 /// The result of serving a request.
 struct Outcome {
-  std::string bytes;  ///< for the client
+  std::string bytes;  ///< bytes to send to the client
   int status = 0;
   Role role = Role::none;  ///< role of the client
-  /// Set if the bytes begin a stream of messages. It continues while its reader keeps the initial role.
+  /// Set if the bytes begin a stream of messages. The stream continues as long as its reader keeps the role
+  /// that it had at the beginning.
   std::optional<Follower> follower;
-  /// Set if this file follows the bytes.
+  /// Set if the content of this file must be sent after the bytes.
   std::shared_ptr<const RegularFile> file;
   /// Set if this command must be sent to the daemon first. Then serve() is called again with its response.
   std::optional<nlohmann::ordered_json> command;
@@ -52,7 +53,7 @@ struct Outcome {
 /// The response to the command or the disk request of an earlier outcome.
 struct Reply {
   const nlohmann::ordered_json* daemon = nullptr;
-  const DiskTask* disk = nullptr;  ///< not done: the wait was given up
+  const DiskTask* disk = nullptr;  ///< if it is not done, the wait for the disk has been given up
 };
 
 class Site {
@@ -62,9 +63,9 @@ class Site {
   Site(const Settings& settings, Gate& gate, const LiveState& state, const OwnCounts& counts,
        std::string chart_js);
 
-  /// `request` must be complete according to frame_of().
+  /// Returns the outcome of a request. `request` must be complete according to frame_of().
   [[nodiscard]] Outcome serve(std::string_view request, Nanoseconds now, const Reply& reply = {});
-  /// Returns the response to a request that frame_of() refused, or to a client without a place.
+  /// Returns the response to a request that frame_of() refused, or to a client for which no place is left.
   [[nodiscard]] static std::string refusal(int status);
 
  private:
@@ -73,7 +74,8 @@ class Site {
   void add_data();
   void add_recordings();
   void add_commands();
-  /// Runs before every handler. Returns true if it has already written the response.
+  /// Checks the sender of a request before its handler is called. Returns true if the request is refused; the
+  /// response is then already written.
   bool turn_away(const httplib::Request& request, httplib::Response& response);
   /// Returns true if the sender has the role. Otherwise it writes the refusal.
   bool need(Role role, httplib::Response& response) const;
@@ -89,7 +91,7 @@ class Site {
   const OwnCounts& counts_;
   std::string chart_js_;
   HttpEngine engine_;
-  // The time of the request that is served.
+  // Time of the request that is being served.
   Nanoseconds now_ = 0;
   Reply reply_;
   Credentials credentials_;
@@ -97,7 +99,7 @@ class Site {
   Outcome outcome_;
 };
 
-/// "none", "look", "operate"
+/// Returns "none", "look" or "operate".
 [[nodiscard]] std::string_view name_of(Role role) noexcept;
 
 }  // namespace softgrip::web

@@ -15,7 +15,7 @@ namespace softgrip::web {
 
 inline constexpr std::string_view session_cookie = "softgrip";
 
-/// The parts of a request that decide about its admission.
+/// The parts of a request that decide whether it is admitted.
 struct Credentials {
   std::string host;
   std::string origin;      ///< empty if the client sent none
@@ -35,9 +35,9 @@ class Gate {
   /// `settings` must outlive the gate.
   Gate(const Settings& settings, Tokens tokens);
 
-  /// Returns the role of the sender, or a refusal if the request comes from another page. A request that
-  /// changes something (`changes`) must come from the page itself or carry a token in its Authorization
-  /// header. No other page can make a browser send that header.
+  /// Returns the role of the sender, or a refusal if the request comes from the page of another site. A
+  /// request that changes something (`changes`) must come from the page of this server or carry a token in
+  /// its Authorization header. No other page can make a browser send this header.
   [[nodiscard]] tl::expected<Role, Refusal> admit(const Credentials& credentials, bool changes,
                                                   Nanoseconds now);
   /// Opens a session for a token and returns its id. Refuses a token that the token file does not list.

@@ -1,5 +1,5 @@
 #pragma once
-// Checks that a request comes from the page itself and not from another page in the browser.
+// Checks that a request comes from the page of this server and not from another page in the browser.
 
 #include <string>
 #include <string_view>
@@ -8,11 +8,12 @@
 namespace softgrip::web {
 
 /// Returns true if a Host header names this computer: a numeric address, `localhost` or one of `names`, each
-/// with or without a port. An unknown name can belong to an attacker who lets it point to this computer. The
-/// browser would then treat the attacker's page and this page as one origin (DNS rebinding).
+/// with or without a port. Other names are refused, because an attacker could own such a name and let it
+/// point to this computer. The browser would then treat the attacker's page and this page as one origin (DNS
+/// rebinding).
 [[nodiscard]] bool is_own_host(std::string_view host, const std::vector<std::string>& names);
 
-/// Returns true if an Origin header belongs to a page that was loaded from this Host.
+/// Returns true if an Origin header belongs to a page that was loaded from the server with this Host header.
 [[nodiscard]] bool is_own_origin(std::string_view origin, std::string_view host);
 
 /// Returns the value of a cookie in a Cookie header, or "" if the header has no cookie of that name.

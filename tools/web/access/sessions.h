@@ -12,18 +12,19 @@
 
 namespace softgrip::web {
 
-/// A session ends if it was idle for too long, if it is too old, or if its browser closes it. It also ends if
-/// its own token opens more than `most_per_token` later sessions. The bearer of another token cannot end it.
-/// Sessions are kept in memory only.
+/// Stores the sessions in memory only. A session ends if it was idle for too long, if it is too old, or if
+/// its browser closes it. It also ends if more than `most_per_token` newer sessions are opened with the same
+/// token. A client with another token cannot end it.
 class Sessions {
  public:
-  /// A token is shared by the browsers of one team. The file's size bounds the number of tokens.
+  /// Largest number of sessions per token, because the browsers of one team share a token. The number of
+  /// tokens is limited by the size of their file.
   static constexpr std::size_t most_per_token = 32;
 
   Sessions(Nanoseconds longest_idle, Nanoseconds longest) : longest_idle_(longest_idle), longest_(longest) {}
 
-  /// Returns the id of a new session: 256 random bits as text. If the token has too many sessions, the one
-  /// that was idle for the longest time ends.
+  /// Opens a session and returns its id: 256 random bits as text. If the token has too many sessions, the
+  /// session that was idle for the longest time ends.
   [[nodiscard]] std::string open(Grant grant, Nanoseconds now);
   /// Returns the role of the session, or none if the session does not exist. The call counts as activity.
   [[nodiscard]] Role role_of(std::string_view id, Nanoseconds now);

@@ -12,7 +12,8 @@
 
 namespace softgrip::web {
 
-/// Compares two texts. The duration does not depend on the position of the first difference.
+/// Returns true if two texts are equal. The duration of the comparison does not depend on the position of the
+/// first difference.
 [[nodiscard]] bool equal_in_constant_time(std::string_view one, std::string_view other) noexcept;
 
 /// The role of a token, and its position in the file.
@@ -34,7 +35,7 @@ class Tokens {
 
   /// Returns the role and the number of a token.
   [[nodiscard]] Grant grant_of(std::string_view token) const noexcept;
-  /// The role of grant_of().
+  /// Returns the role of a token.
   [[nodiscard]] Role role_of(std::string_view token) const noexcept { return grant_of(token).role; }
   [[nodiscard]] bool empty() const noexcept { return tokens_.empty(); }
 

@@ -14,7 +14,7 @@ using enum MetricText::Type;
 constexpr double kpa_per_pa = 1e-3;
 constexpr double mm_per_m = 1e3;
 
-/// A number of the status and its conversion to base units.
+/// A quantity of the status and its conversion to base units.
 struct Quantity {
   const char* name;
   const char* key;
@@ -41,7 +41,8 @@ void tell_each(const Json& channels, MetricText& metrics, const auto& value_of) 
     metrics.sample({{"channel", text(channel, "name")}}, value_of(channel));
 }
 
-/// Returns the commanded pressure as a share of the range from rest to the limit on that side.
+/// Returns the commanded pressure as a share of the range from the rest pressure to the limit on the same
+/// side of rest.
 double pressure_use(const Json& channel) {
   const Json& limits = member(channel, "limits");
   const double rest_kpa = number(limits, "rest_kpa");

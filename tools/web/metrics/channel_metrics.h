@@ -7,7 +7,7 @@
 
 namespace softgrip::web {
 
-/// `channels` is the list in a status of the socket API.
+/// Writes the metrics of each finger. `channels` is the list in a status of the socket API.
 void tell_channels(const nlohmann::ordered_json& channels, MetricText& metrics);
 
 }  // namespace softgrip::web

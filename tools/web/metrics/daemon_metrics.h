@@ -8,8 +8,9 @@
 
 namespace softgrip::web {
 
-/// `status` is a status of the socket API, or null if the daemon does not respond. Then only `softgrip_up` is
-/// written, as 0. `statistics` are those of the socket API, or null if they are not known yet.
+/// Writes the metrics of the daemon. `status` is a status of the socket API, or null if the daemon does not
+/// respond. If it is null, only `softgrip_up` is written, with the value 0. `statistics` are those of the
+/// socket API, or null if they are not known yet.
 void tell_daemon(const nlohmann::ordered_json& status, const nlohmann::ordered_json& statistics,
                  MetricText& metrics);
 

@@ -7,8 +7,9 @@
 
 namespace softgrip::web {
 
-/// `events` belongs to the statistics of the socket API, `channels` to its status. Each result of each finger
-/// has a sample from the start, because Prometheus sees no increase when a sample first appears.
+/// Writes the numbers of events. `events` is a member of the statistics of the socket API, `channels` a
+/// member of its status. Each result of each finger has a sample from the start, because Prometheus cannot
+/// compute an increase from the first sample of a series.
 void tell_events(const nlohmann::ordered_json& events, const nlohmann::ordered_json& channels,
                  MetricText& metrics);
 

@@ -7,7 +7,8 @@
 
 namespace softgrip::web {
 
-/// `health` is the content of health.json. If it is null, no metric is written.
+/// Writes the metrics of a health result. `health` is the content of health.json. If it is null, no metric is
+/// written.
 void tell_health(const nlohmann::ordered_json& health, MetricText& metrics);
 
 }  // namespace softgrip::web
