@@ -8,7 +8,7 @@ namespace {
 struct Reason {
   std::string_view word;
   std::string_view text;
-  bool lost;  ///< false: left out at the user's request, or without content
+  bool lost;  ///< false: the user requested to leave the row out, or the row has no content
 };
 constexpr std::array<Reason, left_out_count> reasons{{
     {"other_channel", "of another channel", false},

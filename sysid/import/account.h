@@ -1,5 +1,6 @@
 #pragma once
-// Row counts of an imported file: each row is in the log, or is counted with the reason why it is not.
+// Row counts of an imported file: each row is either used in the log or counted with the reason for which it
+// is left out.
 
 #include <array>
 #include <cstddef>
@@ -9,7 +10,7 @@
 
 namespace softgrip::sysid {
 
-/// Why a row is not in the log.
+/// The reason why a row is not in the log.
 enum class LeftOut : std::uint8_t {
   other_channel,
   outside_stretch,
@@ -26,16 +27,16 @@ inline constexpr std::size_t left_out_count = 9;
 /// Returns the identifier of a reason in JSON.
 [[nodiscard]] std::string_view word_of(LeftOut reason);
 
-/// If a larger share of the rows is lost, the import warns.
+/// Share of lost rows above which the import warns.
 inline constexpr double warned_share = 0.05;
-/// If a larger share of the rows is lost, the import refuses the file.
+/// Share of lost rows above which the import refuses the file.
 inline constexpr double refused_share = 0.8;
 
-/// A file with two time columns has two entries in each row; each entry counts as a row.
+/// Numbers of rows. If a file has two time columns, each row counts twice, once per time.
 struct RowAccount {
-  std::size_t rows = 0;    ///< rows of the file
-  std::size_t used = 0;    ///< samples of the log
-  std::size_t joined = 0;  ///< rows that complete the sample of another row at the same time
+  std::size_t rows = 0;    ///< all rows of the file
+  std::size_t used = 0;    ///< rows that became samples of the log
+  std::size_t joined = 0;  ///< rows whose values were added to the sample of another row at the same time
   std::array<std::size_t, left_out_count> left_out{};
 
   void leave_out(LeftOut reason, std::size_t count = 1) {
@@ -43,9 +44,9 @@ struct RowAccount {
   }
   /// Returns true if each row is used, joined or left out.
   [[nodiscard]] bool balanced() const;
-  /// Returns the number of rows that were left out although the user did not request it.
+  /// Returns the number of rows that were left out for a reason that the user did not request.
   [[nodiscard]] std::size_t lost() const;
-  /// Returns lost() divided by the number of rows that the user requested.
+  /// Returns lost() divided by the number of rows that the user did not exclude.
   [[nodiscard]] double lost_share() const;
   /// Returns, for example, "1500 rows: 600 used, 900 left out (900 at the time of the row before)".
   [[nodiscard]] std::string sentence() const;

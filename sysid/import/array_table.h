@@ -1,5 +1,5 @@
 #pragma once
-// Collector of the arrays in a binary file. It makes a table of them.
+// Collects the arrays of a binary file and makes a table of them.
 
 #include <cstddef>
 #include <optional>
@@ -12,10 +12,10 @@
 
 namespace softgrip::sysid {
 
-/// The message about an array that does not fit within most_values.
+/// Error message about an array with which the file would exceed most_values.
 inline constexpr const char* too_large = "with this array, the file has more than 134217728 values";
 
-/// Collects the arrays of a file and keeps those that are as long as most others.
+/// Collects the arrays of a file. The table contains the arrays that have the most frequent length.
 class ArrayCollector {
  public:
   explicit ArrayCollector(std::string file) : file_(std::move(file)) {}
@@ -26,14 +26,14 @@ class ArrayCollector {
   void add(const std::string& name, const std::string& unit, std::size_t rows, std::size_t columns,
            const std::vector<double>& values);
   void note(std::string what) { notes_.push_back(std::move(what)); }
-  /// Notes that `name` is skipped. `what` states the reason.
+  /// Adds a note that the array `name` is skipped. `what` states the reason.
   void pass_over(const std::string& name, const std::string& what);
   /// Returns true if an array of this size still fits within most_values. Call it before the values are read.
   [[nodiscard]] bool has_room(std::size_t rows, std::size_t columns) const {
     return columns == 0 || rows <= (most_values - values_) / columns;
   }
 
-  /// Returns the table, or nullopt and a problem if fewer than two arrays are equally long.
+  /// Returns the table. Returns nullopt and adds a problem if no two arrays have the same length.
   [[nodiscard]] std::optional<ForeignTable> table(const std::string& format,
                                                   document::Problems& problems) const;
 

@@ -7,8 +7,8 @@
 
 namespace softgrip::sysid {
 
-/// Reads little-endian values one after the other. After a read beyond the end, each value is 0 or empty, and
-/// good() remains false.
+/// Reads little-endian values one after the other. After an attempt to read beyond the end, each value is 0
+/// or empty, and good() returns false.
 class ByteScanner {
  public:
   explicit ByteScanner(std::string_view bytes) : bytes_(bytes) {}
@@ -20,13 +20,13 @@ class ByteScanner {
     if (at != nullptr) std::memcpy(&value, at, sizeof(T));
     return value;
   }
-  /// Reads a text that follows its 32-bit length.
+  /// Reads a text that is preceded by its length as a 32-bit number.
   std::string_view text() {
     const auto size = value<std::uint32_t>();
     const char* const at = skip(size);
     return at == nullptr ? std::string_view{} : std::string_view(at, size);
   }
-  /// Skips `size` bytes and returns a pointer to the first of them, or nullptr if fewer are left.
+  /// Skips `size` bytes and returns a pointer to the first of them. Returns nullptr if fewer bytes are left.
   const char* skip(std::uint64_t size) {
     good_ = good_ && size <= bytes_.size();
     if (!good_) return nullptr;

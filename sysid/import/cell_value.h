@@ -26,9 +26,9 @@ struct CellValue {
   bool with_point = false;      ///< the number has a decimal point
 };
 
-/// Interprets a cell. A comma before digits is a decimal comma unless the cell also contains a point: 1.234,5
-/// is not a number. Missing values are an empty cell, NaN, NA, null, inf and similar words, and the words in
-/// `missing` (lower-case; numbers are compared by value).
+/// Interprets a cell. A comma before digits is a decimal comma. A cell with a comma and a point is not a
+/// number: 1.234,5. Missing values are an empty cell, NaN, NA, null, inf and similar words, and the words in
+/// `missing` (in lower case; numbers are compared by value).
 [[nodiscard]] CellValue cell_value(std::string_view cell, const std::vector<std::string>& missing);
 
 /// Returns the value of a text that consists of decimal digits only; nullopt for another text.

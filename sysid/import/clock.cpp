@@ -12,14 +12,16 @@ namespace softgrip::sysid {
 namespace {
 
 constexpr double day_s = 86400;
-/// A step across an overflow that exceeds this number of usual steps may hide lost rows.
+/// If the step across an overflow exceeds this number of usual steps, rows may be missing, so the overflow is
+/// not accepted.
 constexpr double longest_step = 3;
-/// Clocks with different origins show one time if they drift apart by less than this share of the usual step.
+/// Two clocks with different origins count as one if their difference varies by at most this share of the
+/// usual step.
 constexpr double wandering_share = 0.5;
-/// Clocks with one origin show one time if they differ by less than this share of the usual step.
+/// Two clocks with the same origin count as one if they differ by at most this share of the usual step.
 constexpr double equal_share = 0.05;
 constexpr double rising_share = 0.9;
-/// Two columns can be one clock if at most this share of the rows has only one of the two times.
+/// Two columns can be the same clock only if at most this share of the rows has a time in one of them alone.
 constexpr double apart_share = 0.01;
 
 std::vector<double> steps_of(const std::vector<double>& clock) {
@@ -53,7 +55,8 @@ Extent finite_extent(const std::vector<double>& values) {
   return extent;
 }
 
-/// Returns true if a counter that wraps after `period` explains every backward step.
+/// Returns true if an overflow after `period` explains every backward step. `step` is the usual step of the
+/// clock.
 bool explains(const std::vector<double>& clock, double period, double step) {
   const Extent extent = finite_extent(clock);
   const bool counts_from_0 = extent.lowest >= 0 && extent.highest <= period;
@@ -85,7 +88,7 @@ std::string time_unit(const ForeignTable& table, const Mapping& mapping, std::si
   return own.empty() ? epoch_unit(column) : own;
 }
 
-/// Returns the tokens of a name except words for time and units of time.
+/// Returns the tokens of a name without the words for time and the units of time.
 std::vector<std::string> telling_tokens(const std::string& name) {
   std::vector<std::string> tokens = tokens_of(name);
   const auto silent = [](const std::string& token) {
@@ -95,7 +98,8 @@ std::vector<std::string> telling_tokens(const std::string& name) {
   return tokens;
 }
 
-/// Returns true if the name of a time column contains a word of the role or of the column's name.
+/// Returns true if the name of a time column contains a word of the role or a word of `column_name`, the name
+/// of a value column.
 bool names_its_role(const std::string& time_name, Role role, const std::string& column_name) {
   const std::vector<std::string> theirs = tokens_of(column_name);
   const std::vector<std::string> tokens = telling_tokens(time_name);

@@ -190,7 +190,8 @@ class Converter {
     return unit;
   }
 
-  /// "12:34" is ambiguous: the unit of the column decides between hh:mm and mm:ss.
+  /// Determines the meaning of times with two fields. "12:34" is ambiguous, so the unit of the column decides
+  /// between hh:mm and mm:ss.
   bool find_clock(const TableColumn& column, const ColumnMapping& mapped, Source& source) {
     if (column.short_clocks == 0) return true;
     const std::string unit = lower_case(unit_text(table_, mapped, Quantity::time));
@@ -232,7 +233,8 @@ class Converter {
     return by_times ? samples_by_times(rows) : samples_of_rows(rows);
   }
 
-  /// Removes the rows in which no used column has a value: messages of other topics.
+  /// Removes the rows in which no used column has a value. In a recording, these are the messages of other
+  /// topics.
   void leave_out_unused(std::vector<std::size_t>& rows) {
     const auto unused = [&](std::size_t row) {
       return std::none_of(roles.begin(), roles.end(), [&](const RoleSpec& spec) {
@@ -266,6 +268,7 @@ class Converter {
     return samples;
   }
 
+  /// Corrects the overflows of a clock and adds a note.
   /// @param rows  rows of the table, one for each time.
   void continue_clock(std::vector<double>& time, double unit_s, const std::vector<std::size_t>& rows) {
     const auto overflow = continue_overflows(time, unit_s);
@@ -279,15 +282,15 @@ class Converter {
                              ": the clock is corrected");
   }
 
-  /// A row at the time of one of several time columns.
+  /// The time of one of several time columns in one row.
   struct Entry {
     double time_s = 0;
     std::size_t clock = 0;
     std::size_t row = 0;
   };
 
-  /// Returns one sample for each row and time column, with the values of that time's columns only. The
-  /// samples are in the order of time.
+  /// Returns one sample for each row and time column. The sample contains only the values that belong to this
+  /// time column. The samples are in the order of time.
   ForeignSamples samples_by_times(const std::vector<std::size_t>& rows) {
     const std::vector<std::size_t>& clocks = sources_[static_cast<std::size_t>(Role::time)].columns;
     const auto of_roles = times_of_roles(table_, mapping_, clocks);
@@ -300,7 +303,7 @@ class Converter {
     ForeignSamples samples;
     if (!good) return samples;
     remarks_.account.rows += (clocks.size() - 1) * table_.rows();
-    // A skipped line counts once for each time column. The first count is already in the account.
+    // A skipped line counts once per time column. The account already contains the first count.
     remarks_.account.leave_out(LeftOut::bad_line, (clocks.size() - 1) * (table_.rows() - rows.size()));
     leave_out_empty(*of_roles, entries);
     std::stable_sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
@@ -350,7 +353,8 @@ class Converter {
     return !apart;
   }
 
-  /// Removes entries without a time and without values: the shorter time column ends in empty cells.
+  /// Removes entries without a time and without values. They occur because a shorter time column ends with
+  /// empty cells.
   void leave_out_empty(const std::array<std::size_t, role_count>& of_roles, std::vector<Entry>& entries) {
     const auto empty = [&](const Entry& entry) {
       if (std::isfinite(entry.time_s)) return false;
@@ -367,7 +371,8 @@ class Converter {
     entries.erase(kept, entries.end());
   }
 
-  /// Checks that each row is accounted for and that the share of lost rows is within its bounds.
+  /// Checks that each row is either used or counted as left out, and that the share of lost rows is within
+  /// its bounds.
   void check_account(std::size_t samples) {
     RowAccount& account = remarks_.account;
     account.used = samples;
@@ -410,7 +415,7 @@ class Converter {
     }
   }
 
-  /// Refuses a table whose rows belong to several fingers, if a column of numbers names the finger.
+  /// Refuses a table whose rows belong to several fingers if a column of numbers identifies the finger.
   void refuse_rows_of_fingers() {
     for (std::size_t i = 0; i < table_.columns.size() && !table_.is_text; ++i) {
       const TableColumn& column = table_.columns[i];
@@ -451,7 +456,7 @@ class Converter {
     remarks_.warnings.push_back(option + " has no effect: " + why);
   }
 
-  /// Warns of options that have no effect.
+  /// Adds warnings about options that have no effect.
   void name_idle_options() {
     for (const RoleSpec& spec : roles) {
       const ColumnMapping& mapped = mapping_[spec.role];

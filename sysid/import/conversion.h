@@ -15,18 +15,20 @@ namespace softgrip::sysid {
 
 struct ImportedLog {
   Log log;
-  std::vector<std::string> notes;     ///< samples that were left out, and the origin of the times
-  std::vector<std::string> warnings;  ///< lost samples, and options without effect
+  /// Notes about samples that were left out, and about the origin of the times.
+  std::vector<std::string> notes;
+  std::vector<std::string> warnings;  ///< warnings about lost samples and about options without effect
   RowAccount account;
 };
 
-/// Returns a word of `missing` as a number, or nullopt if it is not a number.
+/// Returns the number in a word of `missing`, or nullopt if the word is not a number.
 [[nodiscard]] std::optional<double> missing_number(const std::string& word);
 
-/// Returns the log, by the rules of samples.h. Each row of the table is in the log, or is counted in
-/// `account` with the reason. A share of lost rows above refused_share is a problem; a share above
-/// warned_share is a warning. Columns and options without effect are reported. A log that parse_log() would
-/// refuse is a problem. All problems are added to `problems`; they name the options of `softgrip import`.
+/// Converts the table to a log by the rules of samples.h. Each row of the table is either in the log or
+/// counted in `account` with a reason. A share of lost rows above refused_share is a problem, and a share
+/// above warned_share is a warning. Columns and options without effect are reported. It is a problem if
+/// parse_log() would refuse the log. All problems are added to `problems`, and their texts name the options
+/// of `softgrip import`.
 [[nodiscard]] std::optional<ImportedLog> convert(const ForeignTable& table, const Mapping& mapping,
                                                  document::Problems& problems);
 

@@ -34,14 +34,14 @@ bool fits_a_displacement(const TableColumn& column) {
   return fitness_for(column, Role::displacement) > 0;
 }
 
-/// Returns the words in which the names of two or more columns of a kind differ; the rest of the names is
+/// Returns the words that distinguish the names of two or more columns of a kind. The rest of these names is
 /// equal.
 template <class OfKind>
 std::set<std::string> words_apart(const ForeignTable& table, OfKind of_kind) {
   std::map<std::string, std::set<std::string>> by_pattern;
   for (const TableColumn& column : table.columns) {
     if (!of_kind(column)) continue;
-    // The unit is removed first, because 'A' may be a finger or an ampere.
+    // Remove the unit first, because 'A' may be a finger or the unit ampere.
     const std::vector<std::string> tokens = tokens_of(split_unit(column.name).name);
     for (std::size_t k = 0; k < tokens.size(); ++k) {
       if (is_role_word(tokens[k])) continue;

@@ -1,5 +1,5 @@
 #pragma once
-// Recognition of several fingers in the columns of one table.
+// Recognises that the columns of one table belong to several fingers.
 
 #include <cstddef>
 #include <string>
@@ -13,11 +13,12 @@ namespace softgrip::sysid {
 /// Splits a name into lower-case words and numbers: "P1_left (kPa)" gives p, 1, left, kpa.
 [[nodiscard]] std::vector<std::string> tokens_of(std::string_view name);
 
-/// The largest number of fingers of a rig. A column with more different cells contains readings.
+/// Largest number of fingers of a rig. If a column has more than this number of different cells, the cells
+/// are readings, not names of fingers.
 inline constexpr std::size_t most_fingers = 16;
 
-/// Returns true if the cells of a column with this name state the finger of each row: "channel", "Finger ID",
-/// "run.actuator".
+/// Returns true if the name shows that the cells of a column name the finger of each row: "channel", "Finger
+/// ID", "run.actuator".
 [[nodiscard]] bool names_channel(std::string_view name);
 
 /// Returns the fingers that the names of the columns distinguish ("left_tip_mm", "right_tip_mm"), in the

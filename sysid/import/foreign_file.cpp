@@ -70,7 +70,8 @@ std::optional<ForeignTable> read_text(const std::string& path, std::string_view 
                        : parse_text_table(path, bytes, options, problems);
 }
 
-/// `opened` is a path to the file from which `bytes` were read, even if `path` has been replaced since.
+/// Reads the file in the format that its bytes show. `opened` is a path to the file from which `bytes` were
+/// read, even if `path` has been replaced since.
 std::optional<ForeignTable> read_bytes(const std::string& path, const std::string& opened,
                                        std::string_view bytes, const TableOptions& options,
                                        document::Problems& problems) {
@@ -117,7 +118,7 @@ tl::expected<std::string, std::string> gunzipped(std::string_view bytes, std::si
     stream.avail_out = static_cast<uInt>(chunk.size());
     state = inflate(&stream, Z_NO_FLUSH);
     text.append(chunk, 0, chunk.size() - stream.avail_out);
-    // Several gzip members one after the other are one text.
+    // A gzip file can contain several members. Their texts are joined.
     if (state == Z_STREAM_END && stream.avail_in > 0) state = inflateReset(&stream);
   }
   inflateEnd(&stream);

@@ -53,7 +53,7 @@ std::string text_of(hid_t attribute, hid_t type) {
   return text.substr(0, text.find('\0'));
 }
 
-/// Returns a text attribute; empty if the object has none of this name.
+/// Returns the text of an attribute. Returns "" if the object has no text attribute of this name.
 std::string attribute_text(hid_t object, const char* name) {
   if (H5Aexists(object, name) <= 0) return {};
   const Handle attribute(H5Aopen(object, name, H5P_DEFAULT), H5Aclose);
@@ -71,7 +71,8 @@ std::string unit_of(hid_t dataset) {
   return {};
 }
 
-/// Returns true for the MATLAB classes that contain numbers. MATLAB stores other classes as numbers too.
+/// Returns true for the MATLAB classes that contain numbers. MATLAB also stores other classes, such as texts,
+/// as numbers.
 bool is_matlab_number(const std::string& kind) {
   return kind.empty() || kind == "double" || kind == "single" || kind == "logical" ||
          kind.find("int") != std::string::npos;
@@ -114,7 +115,8 @@ void collect_members(hid_t dataset, hid_t type, const std::string& name, std::si
   }
 }
 
-/// Returns the number of bytes that libhdf5 decompresses to read one value; 0 for a dataset without chunks.
+/// Returns the number of bytes that libhdf5 decompresses to read one value. Returns 0 for a dataset without
+/// chunks.
 std::size_t chunk_bytes(hid_t dataset, hid_t type) {
   const Handle creation(H5Dget_create_plist(dataset), H5Pclose);
   std::array<hsize_t, 2> chunk{1, 1};
@@ -155,7 +157,7 @@ void collect_dataset(hid_t dataset, const std::string& name, ArrayCollector& arr
   }
 }
 
-/// Returns a sentence if the values of a dataset are outside of it, otherwise an empty text.
+/// Returns a sentence if the values of a dataset are stored in another file, otherwise an empty text.
 std::string foreign_storage(hid_t dataset) {
   const Handle creation(H5Dget_create_plist(dataset), H5Pclose);
   if (H5Pget_external_count(creation.get()) > 0) return "its values are in another file (external storage)";
@@ -164,12 +166,12 @@ std::string foreign_storage(hid_t dataset) {
   return {};
 }
 
-/// State of the walk through all groups of a file.
+/// State of the iteration over all groups of a file.
 struct Walk {
   ArrayCollector& arrays;
   char separator = '/';
   hid_t access = H5P_DEFAULT;  ///< access properties of links
-  std::string refused{};       ///< why the file is not read
+  std::string refused{};       ///< reason why the file is refused
   int objects = 0;
 };
 
@@ -184,7 +186,7 @@ herr_t visit(hid_t group, const char* name, const H5L_info_t* info, void* data) 
   Walk& walk = where.walk;
   if (name[0] == '#') return 0;  // internal objects of MATLAB
   const std::string path = where.prefix + name;
-  // Groups can link to each other in a cycle, so the number of objects is bounded.
+  // Limit the number of objects, because groups can link to each other in a cycle.
   if (++walk.objects > most_objects) {
     walk.refused = "it has more than " + std::to_string(most_objects) + " objects";
   } else if (info->type != H5L_TYPE_HARD && info->type != H5L_TYPE_SOFT) {
@@ -210,7 +212,8 @@ herr_t visit(hid_t group, const char* name, const H5L_info_t* info, void* data) 
   return walk.refused.empty() ? 0 : 1;
 }
 
-/// Refuses an external link. Soft links are followed, but not through an external link into another file.
+/// Refuses an external link, so that libhdf5 does not open another file. Soft links within the file are
+/// followed.
 herr_t refuse_external_link(const char* /*parent_file*/, const char* /*parent_group*/, const char* /*file*/,
                             const char* /*object*/, unsigned* /*flags*/, hid_t /*access*/, void* /*data*/) {
   return -1;
@@ -220,7 +223,8 @@ herr_t refuse_external_link(const char* /*parent_file*/, const char* /*parent_gr
 
 std::optional<ForeignTable> read_hdf5_table(const std::string& path, const std::string& opened, bool matlab,
                                             document::Problems& problems) {
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // libhdf5 must not print; the problem below reports the error
+  // libhdf5 must not print errors, because the problem below reports them
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   const Handle file(H5Fopen(opened.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
   if (!file) {
     problems.add(

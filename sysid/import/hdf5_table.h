@@ -9,12 +9,12 @@
 
 namespace softgrip::sysid {
 
-/// Reads datasets of numbers in one or two dimensions, named by their path ("run1/pressure"), and members of
-/// compounds ("table.pressure"). An attribute `units` or `unit` is the unit. All other objects are skipped,
-/// and a note names them. In a MATLAB file (`matlab`) names are "run.pressure", and texts, cells and objects
-/// are skipped. A file that refers to other files is refused, because external links, external storage and
-/// virtual datasets could copy any file that this user can read into the log. `path` names the file in
-/// messages; libhdf5 opens `opened`.
+/// Reads datasets of numbers with one or two dimensions, named by their path ("run1/pressure"), and members
+/// of compounds ("table.pressure"). An attribute `units` or `unit` states the unit. All other objects are
+/// skipped, and a note names them. In a MATLAB file (`matlab`), names are written as "run.pressure", and
+/// texts, cells and objects are skipped. A file that refers to other files is refused, because external
+/// links, external storage and virtual datasets could copy any file that this user can read into the log.
+/// `path` names the file in messages; libhdf5 opens `opened`.
 [[nodiscard]] std::optional<ForeignTable> read_hdf5_table(const std::string& path, const std::string& opened,
                                                           bool matlab, document::Problems& problems);
 

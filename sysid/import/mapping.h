@@ -39,7 +39,8 @@ inline constexpr std::array<RoleSpec, role_count> roles{{
   return roles[static_cast<std::size_t>(role)];
 }
 
-/// Source of the values of a role: (value - zero), converted from `unit`, or multiplied by `scale`.
+/// Source of the values of a role. The value in the log is (value - zero), converted from `unit` or
+/// multiplied by `scale`.
 struct ColumnMapping {
   std::vector<std::string>
       columns;       ///< names, or numbers from 1; several columns are averaged, but each of several time
@@ -56,13 +57,13 @@ struct ColumnMapping {
 
 struct Mapping {
   std::array<ColumnMapping, role_count> columns;
-  std::optional<double> rate_hz;  ///< samples per second in a file without times
+  std::optional<double> rate_hz;  ///< samples per second if the file has no times
   char separator = 0;             ///< 0: detected automatically
   std::vector<std::string> missing;
   std::string channel;
   std::string sheet;            ///< name of the sheet in a workbook
   bool skip_bad_lines = false;  ///< lines that cannot be read are left out and counted
-  double from_s = 0;            ///< first time used, relative to the first sample
+  double from_s = 0;            ///< first time that is used, relative to the first sample [s]
   double to_s = std::numeric_limits<double>::infinity();
 
   [[nodiscard]] ColumnMapping& operator[](Role role) { return columns[static_cast<std::size_t>(role)]; }

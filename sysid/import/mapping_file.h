@@ -9,7 +9,7 @@
 
 namespace softgrip::sysid {
 
-/// The imported file, stated in the mapping for the record.
+/// The imported file, which the mapping file states for documentation.
 struct ImportSource {
   std::string file;
   std::string sha256;

@@ -37,7 +37,7 @@ class ElementSource {
     if (compressed_) inflateEnd(&stream_);
   }
 
-  /// Returns false at the end of the element, or if the budget is used up.
+  /// Reads bytes to `to`. Returns false at the end of the element, or if `budget_` bytes have been read.
   bool read(char* to, std::size_t count) {
     if (count > budget_) count = budget_ = 0;
     budget_ -= count;
@@ -104,12 +104,13 @@ class Counter {
     ElementSource source(bytes, compressed, bytes_left_);
     Tag tag;
     if (!read_tag(source, big_endian_, tag) || tag.type != type_matrix) return bytes_left_ > 0;
-    // The flags are the first part of an array; their lowest byte is the class of the array.
+    // The flags are the first part of an array. The lowest byte of the flags is the class of the array.
     std::array<char, tag_bytes> flags{};
     if (!source.skip(tag_bytes) || !source.read(flags.data(), flags.size())) return bytes_left_ > 0;
     const std::uint32_t kind = word(flags.data(), big_endian_) & 0xffU;
     if (kind >= first_numeric_class && kind <= last_numeric_class) return true;
-    // Nested parts follow the tag of their parent without an end mark, so a flat walk visits all of them.
+    // The tags of nested parts follow the tag of their parent, and there is no end mark. So one loop over the
+    // tags visits all parts.
     while (read_tag(source, big_endian_, tag)) {
       if (parts_left_-- == 0) return false;
       constexpr std::size_t alignment = 8;

@@ -6,10 +6,10 @@
 
 namespace softgrip::sysid {
 
-/// Returns true if the cells, structures and objects of a .mat file of version 5 together have at most
-/// `most_parts` data elements, and at most `most_bytes` bytes after decompression. Some compressed kilobytes
-/// can hold millions of empty cells. Arrays of numbers at the top level are not counted. In a broken file,
-/// the readable part is counted.
+/// Returns true if a .mat file of version 5 is within two bounds: its cells, structures and objects together
+/// have at most `most_parts` data elements, and it has at most `most_bytes` bytes after decompression. A
+/// bound is needed because some compressed kilobytes can hold millions of empty cells. Arrays of numbers at
+/// the top level are not counted. In a damaged file, the readable part is counted.
 [[nodiscard]] bool mat_elements_within(std::string_view file, std::size_t most_parts, std::size_t most_bytes);
 
 }  // namespace softgrip::sysid

@@ -81,7 +81,7 @@ const char* what_it_is(const matvar_t& variable) {
 
 constexpr std::size_t longest_text = 200;
 
-/// Rows and columns of a two-dimensional array; 0 and 0 for other arrays.
+/// Numbers of rows and columns of a two-dimensional array. Both are 0 for other arrays.
 struct Shape {
   std::size_t rows = 0;
   std::size_t columns = 0;
@@ -152,7 +152,7 @@ class MatCollector {
     }
   }
 
-  /// Adds a structure that contains values and their name, in the form of dSPACE (Name, Data, Unit) or
+  /// Adds a structure that contains a name and values, in the form of dSPACE (Name, Data, Unit) or of
   /// Simulink (label, values). Returns false for any other structure.
   bool named_signal(matvar_t& variable, const std::string& here, std::size_t index, int depth) {
     constexpr std::array<std::pair<const char*, const char*>, 2> kinds{
@@ -177,7 +177,8 @@ class MatCollector {
 
 std::optional<ForeignTable> read_mat_table(const std::string& path, const std::string& opened,
                                            document::Problems& problems) {
-  // libmatio must not print; the problem below reports the error. The message is const on Debian 13 only.
+  // libmatio must not print errors, because the problem below reports them. Only on Debian 13, the message is
+  // const.
   Mat_LogInitFunc("softgrip", [](int /*level*/, auto* /*message*/) {});
   const MatFile file{Mat_Open(opened.c_str(), MAT_ACC_RDONLY), Mat_Close};
   if (!file) {

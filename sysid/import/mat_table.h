@@ -10,10 +10,10 @@
 namespace softgrip::sysid {
 
 /// Reads variables of real numbers, fields of structures as "name.field", elements of arrays of structures as
-/// "name(2).field", and cells as "name{2}". A structure with Name and Data (dSPACE) or label and values
-/// (Simulink) becomes a column of that name. Objects (timetable, timeseries, table, duration) and complex
-/// numbers are skipped, and a note names them: only MATLAB can read such objects. `path` names the file in
-/// messages; libmatio opens `opened`.
+/// "name(2).field", and cells as "name{2}". A structure with Name and Data (dSPACE) or with label and values
+/// (Simulink) becomes a column of that name. Objects (timetable, timeseries, table, duration) are skipped
+/// because only MATLAB can read them. Complex numbers are skipped too. A note names all skipped variables.
+/// `path` names the file in messages; libmatio opens `opened`.
 [[nodiscard]] std::optional<ForeignTable> read_mat_table(const std::string& path, const std::string& opened,
                                                          document::Problems& problems);
 

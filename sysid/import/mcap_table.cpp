@@ -29,7 +29,8 @@ constexpr std::size_t largest_message = std::size_t{1} << 20U;
 constexpr std::size_t deepest_object = 8;
 constexpr double missing_value = std::numeric_limits<double>::quiet_NaN();
 
-/// Two topics have one clock if their offsets from the times of the recording differ by at most this [s].
+/// Largest difference of the offsets of two topics that still have one clock [s]. The offset is the time in
+/// the messages minus the time of the recording.
 constexpr double clock_tolerance_s = 1;
 
 /// A topic with its messages. Element i of a column belongs to message i of the topic.
@@ -48,7 +49,7 @@ struct McapTopic {
   [[nodiscard]] bool is_finger() const {
     return offers(Role::displacement) && (offers(Role::command) || offers(Role::pressure));
   }
-  /// Returns the column of a key if it has a time in each message, otherwise nullptr.
+  /// Returns the column of a key if each message has a finite time in it, otherwise nullptr.
   [[nodiscard]] const TableColumn* time(const std::string& key) const {
     const auto found = std::find_if(columns.begin(), columns.end(),
                                     [&](const TableColumn& column) { return column.name == key; });
@@ -116,8 +117,8 @@ class McapReader {
     refused_ = true;
   }
 
-  /// Searches for a topic with the name of the channel. If there is none, the channel may be a finger that
-  /// the names of several topics contain.
+  /// Searches for a topic with the name of the channel. If there is none, the channel may be a finger whose
+  /// name is a part of the names of several topics.
   void find_topic(std::string_view bytes) {
     if (options_.channel.empty()) return;
     looks_for_topics_ = true;
@@ -143,7 +144,7 @@ class McapReader {
     }
   }
 
-  /// Counts a record that is cut off. The complete records in an incomplete chunk are read.
+  /// Counts a record whose end is missing. If it is a chunk, its complete records are read.
   void cut_off(McapOpcode kind, std::string_view bytes, std::string_view content, bool in_chunk) {
     if (kind == McapOpcode::chunk && !in_chunk) return chunk(content, false);
     if (looks_for_topics_) return;
@@ -275,7 +276,7 @@ class McapReader {
     return missing_value;
   }
 
-  /// Joins topics that each describe a finger: columns with the same key become one column.
+  /// Merges topics that each describe a finger. Columns with the same key become one column.
   void join_fingers() {
     for (McapTopic& topic : read_) {
       for (TableColumn& column : topic.columns) place(topic, std::move(column), rows_);
@@ -322,7 +323,7 @@ class McapReader {
     return key == "data" || key == "value" ? name : name + "." + key;
   }
 
-  /// Returns true if no topic alone describes a finger, but all of them together do.
+  /// Returns true if no topic alone describes a finger, but all topics together describe one.
   [[nodiscard]] bool has_topics_of_signals() const {
     if (has_channel_ || read_.size() < 2 ||
         std::any_of(read_.begin(), read_.end(), [](const McapTopic& topic) { return topic.is_finger(); }))
@@ -375,8 +376,8 @@ class McapReader {
     table_.has_rows_of_signals = true;
   }
 
-  /// Refuses the file if the times of the topics, compared with the times of the recording, are not of one
-  /// clock.
+  /// Refuses the file if the times of the topics are not of one clock. The times are compared with those of
+  /// the recording.
   void check_clocks(const TableColumn& time) {
     const std::string name = time.unit.empty() ? split_unit(time.name, Quantity::time).unit : time.unit;
     const auto unit = unit_named(name.empty() ? epoch_unit(time) : name, Quantity::time);
@@ -399,7 +400,8 @@ class McapReader {
            "write the times of one clock, or no times: then log_time is used");
   }
 
-  /// Sorts the rows by time unless the times of a topic step back. order_in_time() handles a backward step.
+  /// Sorts the rows by time. If the times of a topic decrease, the rows are not sorted, so that
+  /// order_in_time() reports the backward step.
   void sort_rows(std::vector<double>& time) {
     for (const McapTopic& topic : read_) {
       for (std::size_t i = 1; i < topic.rows.size(); ++i) {
@@ -426,8 +428,10 @@ class McapReader {
   document::Problems& problems_;
   ForeignTable table_;
   std::map<std::uint16_t, Topic> topics_;
-  std::vector<McapTopic> read_;                                             ///< topics of the rows
-  std::map<std::string, std::pair<std::string, std::size_t>> passed_over_;  ///< encoding, messages
+  /// Topics whose messages are rows of the table.
+  std::vector<McapTopic> read_;
+  /// Per skipped topic: encoding and number of messages.
+  std::map<std::string, std::pair<std::string, std::size_t>> passed_over_;
   std::set<std::string> arrays_;
   std::vector<std::uint64_t> log_times_;
   std::size_t rows_ = 0;

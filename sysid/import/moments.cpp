@@ -14,7 +14,7 @@ class Scanner {
  public:
   explicit Scanner(std::string_view text) : left_(text) {}
 
-  /// Reads `fewest` to `most` digits as a number. Returns false if there are fewer.
+  /// Reads `fewest` to `most` digits as a number. Returns false if there are fewer digits.
   bool digits(std::size_t fewest, std::size_t most, std::int64_t& value) {
     std::size_t count = 0;
     value = 0;
@@ -61,8 +61,8 @@ class Scanner {
   char last_ = 0;
 };
 
-/// Converts the hours of a 12 h clock if "PM", "a.m." or a similar word follows. Otherwise returns the hours
-/// unchanged.
+/// Converts the hours of a 12-hour clock if "PM", "a.m." or a similar word follows. Otherwise returns the
+/// hours unchanged.
 std::optional<std::int64_t> with_half_of_day(Scanner& scan, std::int64_t hours) {
   Scanner ahead = scan;
   ahead.marks(" ");
@@ -112,7 +112,7 @@ std::optional<Moment> two_fields(std::string_view text) {
   return Moment{(60 * minutes + seconds) * ns_per_s + fraction, false, true, has_fraction || minutes > 23};
 }
 
-/// Reads the offset from UTC: "Z", "+02:00", "-0500". No text means UTC.
+/// Reads the offset from UTC: "Z", "+02:00", "-0500". A missing offset means UTC.
 std::optional<Nanoseconds> zone(Scanner& scan) {
   if (scan.done() || scan.mark("Z")) return 0;
   if (!scan.mark("+-")) return std::nullopt;

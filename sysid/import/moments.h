@@ -1,5 +1,5 @@
 #pragma once
-// Parser of dates and times of day in the formats of people and data loggers.
+// Parser of dates and times of day in the formats that people and data loggers write.
 
 #include <optional>
 #include <string_view>
@@ -12,8 +12,8 @@ namespace softgrip::sysid {
 struct Moment {
   Nanoseconds time = 0;         ///< since 1970 in UTC, or since midnight
   bool dated = false;           ///< false: a time of day alone
-  bool short_clock = false;     ///< two fields ("12:34"), read as minutes and seconds
-  bool surely_minutes = false;  ///< the two fields cannot be hours and minutes
+  bool short_clock = false;     ///< the text has two fields ("12:34"), read as minutes and seconds
+  bool surely_minutes = false;  ///< the text has two fields that cannot be hours and minutes
 };
 
 /// Parses a date with a time of day, or a time of day. Accepted are ISO 8601 (2024-05-31T12:00:00.25+02:00,

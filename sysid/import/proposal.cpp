@@ -19,7 +19,8 @@ namespace {
 /// Words that identify a role, in lower case. They include German words, as some data loggers write them.
 struct Words {
   Role role;
-  std::initializer_list<std::string_view> surely;  ///< one of them is a part of the name
+  /// A name that contains one of these words as a part has the role.
+  std::initializer_list<std::string_view> surely;
 };
 const std::array<Words, role_count>& words() {
   static const std::array<Words, role_count> list{{
@@ -72,7 +73,7 @@ bool names_role(std::string_view name, Role role) {
 
 namespace {
 
-/// Returns the unit of a column, for any quantity.
+/// Returns the unit of a column, regardless of its quantity.
 std::string open_unit(const TableColumn& column) {
   return column.unit.empty() ? split_unit(column.name).unit : column.unit;
 }
@@ -98,7 +99,7 @@ int fitness_for(const TableColumn& column, Role role) {
   const bool elsewhere = !of_quantity && !anywhere.empty() && !is_raw_unit(anywhere) && carried;
   if (elsewhere) return 0;
   if (time && column.moments > 0) return 4;
-  // Neither a commanded pressure nor the supply pressure is the measured pressure.
+  // A column of commanded pressure or of supply pressure must not get the role of the measured pressure.
   const bool pressure = spec.role == Role::pressure;
   if (pressure && (names_role(bare, Role::command) || names_role(bare, Role::supply))) return 0;
   if (spec.role == Role::command && names_role(bare, Role::displacement) && !of_quantity) return 0;
@@ -135,8 +136,8 @@ std::string epoch_unit(const TableColumn& column) {
 
 namespace {
 
-/// The fingers in the columns, and the selected finger. `meant` is empty if all columns belong to one finger,
-/// or if no finger was selected.
+/// The fingers to which the columns belong, and the selected finger. `meant` is empty if there is only one
+/// finger or if no finger was selected.
 struct FingerChoice {
   std::vector<std::string> fingers;
   std::string meant;
@@ -151,7 +152,7 @@ std::string quoted(const std::vector<std::string>& names) {
   return with_commas(names, [](const std::string& name) { return "'" + document::shown(name) + "'"; });
 }
 
-/// Returns the fingers of the columns in the mapping.
+/// Returns the fingers to which the columns in the mapping belong.
 std::vector<std::string> given_fingers(const ForeignTable& table, const Mapping& mapping,
                                        const std::vector<std::string>& fingers) {
   std::vector<std::string> given;
@@ -216,7 +217,8 @@ FingerChoice choose_finger(const ForeignTable& table, const Mapping& given, Prop
   return choice;
 }
 
-/// If time columns differ, assigns each to its own columns, or adds a question.
+/// If the table has time columns with different times, assigns each to its own value columns, or adds a
+/// question.
 void choose_times(const ForeignTable& table, const FingerChoice& choice, Proposal& proposal) {
   ColumnMapping& time = proposal.mapping[Role::time];
   if (!time.given() || time.columns.size() > 1) return;
@@ -232,7 +234,8 @@ void choose_times(const ForeignTable& table, const FingerChoice& choice, Proposa
   std::vector<std::string> words;
   for (const std::size_t index : times) words.push_back(word_of(table, index));
   const auto of_roles = times_of_roles(table, proposal.mapping, times);
-  // The chosen column has the name of a time. The order of the columns alone must not drop it.
+  // The chosen column has the name of a time, so it must not be dropped because of the order of the columns
+  // alone.
   if (!of_roles || std::find(of_roles->begin(), of_roles->end(), chosen) == of_roles->end()) {
     proposal.questions.push_back(
         {"the times of the columns " + quoted(words) + " differ",
@@ -292,7 +295,8 @@ void choose(const ForeignTable& table, const RoleSpec& spec, const FingerChoice&
   proposal.guessed.push_back(spec.role);
 }
 
-/// Returns a text about the first time column with a cell in an unknown format; empty if there is none.
+/// Returns a text about the first time column that has a cell in an unknown format. Returns "" if there is
+/// none.
 std::string unread_time(const ForeignTable& table) {
   for (const TableColumn& column : table.columns) {
     if (!column.bad.empty() && names_role(column.name, Role::time))
@@ -343,7 +347,8 @@ Proposal propose(const ForeignTable& table, const Mapping& given, bool optional_
   Proposal proposal{given, {}, {}, {}, {}};
   const FingerChoice choice = choose_finger(table, given, proposal);
   const auto open = [&](Role role) { return !proposal.mapping[role].given(); };
-  // The command is assigned before the measured pressure, because each pressure column can be the latter.
+  // Assign the command before the measured pressure. Otherwise any pressure column could be taken as the
+  // measured pressure.
   for (const Role role :
        {Role::time, Role::displacement, Role::supply, Role::command, Role::pressure, Role::temperature}) {
     const bool needed = (role == Role::time && !given.rate_hz) || role == Role::displacement ||

@@ -41,8 +41,8 @@ void keep_range(ForeignSamples& samples, std::size_t first, std::size_t last) {
   keep(samples, kept);
 }
 
-/// Returns the resolution of times up to `largest_s` as a power of 10 [s], at least 1e-9 s. A double that
-/// counts seconds since 1970 has steps of 0.24 us, and smaller digits of a difference are rounding errors.
+/// Returns the resolution of times up to `largest_s` as a power of 10 [s], at least 1e-9 s. For seconds since
+/// 1970, neighbouring doubles differ by 0.24 us, so smaller digits of a time difference are rounding errors.
 double resolution_s(double largest_s) {
   const double step = std::nextafter(largest_s, 2 * largest_s + 1) - largest_s;
   return std::max(finest_s, std::pow(10.0, std::ceil(std::log10(step) - 1e-9)));
@@ -75,7 +75,8 @@ double usual_interval_s(const std::vector<double>& time_s) {
   return median_of(std::span<double>(steps));
 }
 
-/// Returns true if no role has a value in both samples, which are at the same time.
+/// Returns true if no role has a value in both samples, so that they can be merged. Both samples are at the
+/// same time.
 bool complete_each_other(const ForeignSamples& samples, std::size_t a, std::size_t b) {
   return std::all_of(roles.begin(), roles.end(), [&](const RoleSpec& spec) {
     const std::vector<double>& values = samples[spec.role];
@@ -90,7 +91,7 @@ void join(ForeignSamples& samples, std::size_t into, std::size_t from) {
   }
 }
 
-/// Returns a sentence about repeated times: number, step of the time stamps, and remedy.
+/// Returns a sentence about repeated times: their number, the step of the time stamps, and the remedy.
 std::string about_repeats(const std::vector<double>& time_s, std::size_t repeated) {
   std::vector<double> steps;
   std::vector<std::size_t> changes;

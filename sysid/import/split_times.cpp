@@ -50,7 +50,7 @@ bool whole_below(const TableColumn& column, double end) {
   return any && column.bad_count == 0 && column.moments == 0;
 }
 
-/// Returns the column with the nanoseconds that belong to the column `seconds`.
+/// Returns the index of the column with the nanoseconds that belong to the column `seconds`.
 std::optional<std::size_t> rest_of_seconds(const std::vector<TableColumn>& columns, std::size_t seconds) {
   constexpr double latest_s = 1e11;
   const LastWord name = last_word(columns[seconds].name);

@@ -1,5 +1,6 @@
 #pragma once
-// Times in two columns, as in a header of ROS: whole seconds, and the nanoseconds after them.
+// Combines times that are split into two columns, as in a header of ROS: whole seconds, and the remaining
+// nanoseconds.
 
 #include <string>
 #include <vector>
@@ -8,10 +9,10 @@
 
 namespace softgrip::sysid {
 
-/// Adds the nanoseconds to the seconds if the names of two columns differ only in their last word:
-/// "stamp.sec" and "stamp.nanosec", "secs" and "nsecs". Nanoseconds must be whole numbers from 0 to below
-/// 1e9, and seconds must be whole numbers. The column of the nanoseconds is marked. Each pair is named in
-/// `notes`.
+/// Adds the nanoseconds of one column to the seconds of another if the names of the columns differ only in
+/// their last word: "stamp.sec" and "stamp.nanosec", "secs" and "nsecs". Both columns must contain whole
+/// numbers, and nanoseconds must be from 0 to below 1e9. The column of the nanoseconds is marked as used.
+/// `notes` names each pair.
 void combine_split_times(std::vector<TableColumn>& columns, std::vector<std::string>& notes);
 
 }  // namespace softgrip::sysid

@@ -1,5 +1,5 @@
 #pragma once
-// An external file as columns of numbers, for all formats. A mapping assigns a meaning to the columns.
+// Columns of numbers from an external file of any format. A mapping assigns a role to the columns.
 
 #include <cstddef>
 #include <string>
@@ -12,8 +12,8 @@
 
 namespace softgrip::sysid {
 
-/// Bounds of an imported file, so that a small file cannot exhaust the memory. Other commands read logs of at
-/// most 512 MiB.
+/// Bounds of an imported file, so that a small compressed file cannot exhaust the memory. Other commands read
+/// logs of at most 512 MiB.
 inline constexpr std::size_t most_text_bytes = std::size_t{512} << 20U;  ///< after decompression
 inline constexpr std::size_t longest_line = std::size_t{1} << 20U;       ///< [bytes]; each byte can be a cell
 inline constexpr std::size_t most_rows = std::size_t{1} << 24U;          ///< 4.6 h at 1 kHz
@@ -32,20 +32,22 @@ struct TableColumn {
   std::string name;            ///< as written in the file; empty if the file does not name its columns
   std::string unit;            ///< from a row of units or an attribute, as written; empty: none
   std::vector<double> values;  ///< by row; NaN: missing value
-  /// Number of values that were dates or times of day; such a value is the time after the first of them [s].
+  /// Number of values in the file that were dates or times of day. Each was converted to the time since the
+  /// first of them [s].
   std::size_t moments = 0;
-  Nanoseconds first_moment = 0;  ///< the first date or time of day, on the scale of moments.h
+  Nanoseconds first_moment = 0;  ///< the first date or time of day, in the time scale of moments.h
   std::size_t short_clocks = 0;  ///< number of times with two fields ("12:34"), read as minutes and seconds
-  bool is_part_of_time = false;  ///< nanoseconds that another column contains (split_times.h)
-  bool surely_minutes = false;   ///< one of the short clocks cannot be hours and minutes
-  std::vector<BadCell> bad;      ///< the first few bad cells
+  /// Contains the nanoseconds that were added to another column (split_times.h).
+  bool is_part_of_time = false;
+  bool surely_minutes = false;  ///< one of the short clocks cannot be hours and minutes
+  std::vector<BadCell> bad;     ///< the first few bad cells
   std::size_t bad_count = 0;
-  std::vector<std::size_t> bad_rows;  ///< all rows with a bad cell, if bad lines are to be skipped
+  std::vector<std::size_t> bad_rows;  ///< all rows with a bad cell; filled if bad lines are to be skipped
 };
 
-/// All columns are equally long.
+/// The columns of a file. All columns have the same number of values.
 struct ForeignTable {
-  std::string file;    ///< as the user named it
+  std::string file;    ///< name of the file as the user gave it
   std::string format;  ///< in words: "CSV, ';' between columns, decimal comma"
   std::string sha256;  ///< hash of the file's bytes
   std::vector<TableColumn> columns;
@@ -54,10 +56,11 @@ struct ForeignTable {
       channels;                    ///< texts of the column of the fingers, in the order of their first rows
   std::string channel_column;      ///< name of the column of the fingers; empty: none, or topics are fingers
   std::vector<std::string> notes;  ///< skipped contents
-  RowAccount account;              ///< all rows of a text; for a binary file only the rows left out
+  /// All rows of a text; for a binary file, only the rows that were left out.
+  RowAccount account;
   bool is_text = false;
-  bool has_rows_of_signals = false;        ///< each row has the signal of one topic
-  bool has_separators = false;             ///< characters between the columns
+  bool has_rows_of_signals = false;        ///< each row contains the signal of one topic
+  bool has_separators = false;             ///< the columns are separated by characters
   std::string sheet;                       ///< the sheet of a workbook that was read
   std::vector<std::size_t> missing_cells;  ///< number of cells for each word of TableOptions::missing
 
@@ -66,7 +69,7 @@ struct ForeignTable {
   }
 };
 
-/// Options for the interpretation of a file, where the file itself is not conclusive.
+/// Options that decide how a file is interpreted where its content is not conclusive.
 struct TableOptions {
   char separator = 0;  ///< 0: detected automatically
   std::vector<std::string>

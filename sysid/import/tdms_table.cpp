@@ -20,11 +20,12 @@ static_assert(std::endian::native == std::endian::little, "the values are copied
 
 constexpr std::size_t lead_in_bytes = 28;
 constexpr std::size_t most_channels = 10'000;
-/// Bound on the steps for all segments together, because a segment of 28 bytes can repeat a list of channels.
+/// Largest number of steps for all segments together. It is needed because a segment of 28 bytes can repeat a
+/// long list of channels.
 constexpr std::size_t most_steps = 100'000'000;
 constexpr std::size_t longest_label = 1000;
 constexpr const char* has_daqmx = "has raw values of DAQmx, which need its scales";
-/// The length that is stored for a segment that was not finished.
+/// Value of the length field of a segment that was not finished.
 constexpr std::uint64_t no_length = ~std::uint64_t{0};
 
 // Flags of a segment.
@@ -53,7 +54,7 @@ enum class TdmsType : std::uint32_t {
   time = 0x44
 };
 
-/// Returns the size of a value [bytes]; 0 for a text or an unknown type.
+/// Returns the size of one value of this type [bytes]. Returns 0 for a text or an unknown type.
 std::size_t size_of(TdmsType type) {
   switch (type) {
     case TdmsType::i8:
@@ -87,7 +88,7 @@ T copied(const char* at) {
   return value;
 }
 
-/// A time stamp since 1904. It has two parts, because one double would lose digits.
+/// A time stamp, counted from 1904. It is stored in two parts, because one double would lose digits.
 struct Stamp {
   std::int64_t seconds = 0;
   double fraction = 0;
@@ -96,7 +97,7 @@ Stamp stamp_at(const char* at) {
   return {copied<std::int64_t>(at + 8), std::ldexp(static_cast<double>(copied<std::uint64_t>(at)), -64)};
 }
 double between(const Stamp& from, const Stamp& to) {
-  // A broken file can have any seconds. Their difference as doubles does not overflow.
+  // A damaged file can contain any number of seconds. Subtracting them as doubles cannot overflow.
   return (static_cast<double>(to.seconds) - static_cast<double>(from.seconds)) +
          (to.fraction - from.fraction);
 }
@@ -135,15 +136,15 @@ struct TdmsChannel {
   std::string unit;
   TdmsType type = TdmsType::f64;
   bool has_index = false;   ///< a segment has stated how the values are stored
-  std::uint64_t count = 0;  ///< values in a chunk
+  std::uint64_t count = 0;  ///< number of values in a chunk
   std::uint64_t bytes = 0;  ///< size of the values in a chunk
   std::vector<double> values;
   std::optional<Stamp> first;  ///< first value of a channel of time stamps
-  double increment_s = 0;      ///< 0: not a waveform
+  double increment_s = 0;      ///< sampling interval of a waveform; 0: not a waveform
   double start_offset_s = 0;
   std::optional<Stamp> start;
   bool needs_scale = false;
-  std::size_t cut_off = 0;  ///< values in the incomplete end of the file
+  std::size_t cut_off = 0;  ///< number of values in the incomplete chunk at the end of the file
 };
 
 /// Converts a path: "/'group'/'channel'" gives "group/channel".
@@ -179,7 +180,7 @@ class TdmsReader {
     return refused.empty();
   }
 
-  /// Returns the number of rows that have a value in the incomplete end of the file.
+  /// Returns the number of rows that have a value in the incomplete chunk at the end of the file.
   [[nodiscard]] std::size_t cut_off_rows(const ForeignTable& table) const {
     std::size_t rows = 0;
     for (const TdmsChannel& channel : channels_) {
@@ -200,7 +201,7 @@ class TdmsReader {
     const auto next = lead.value<std::uint64_t>();
     const auto raw = lead.value<std::uint64_t>();
     const std::string_view rest = bytes_.substr(at + lead_in_bytes);
-    // After an interrupted recording, the length is absent or exceeds the remaining bytes.
+    // If the recording was interrupted, the length is missing, or it exceeds the number of remaining bytes.
     const std::uint64_t size = std::min<std::uint64_t>(next, rest.size());
     if (!signed_so) refuse(at, "does not begin with TDSm");
     if ((flags & is_big_endian) != 0) refuse(at, "is big-endian");
@@ -225,7 +226,7 @@ class TdmsReader {
     if (refused.empty()) refused = "the segment at byte " + std::to_string(at) + " " + why;
   }
   static std::string quoted(std::string_view name) { return "'" + document::shown(name, 40) + "'"; }
-  /// Records why valid metadata is not read. Returns false.
+  /// Stores the reason why valid metadata is not supported. Returns false.
   bool unread(const std::string& why) {
     if (unread_.empty()) unread_ = why;
     return false;
@@ -235,7 +236,7 @@ class TdmsReader {
                   ", which is not supported");
   }
 
-  /// Leaves out a segment that is cut off. The number of its rows is unknown.
+  /// Reports a segment whose end is missing and leaves it out. The number of its rows is unknown.
   void leave_out_segment(std::size_t at, const std::string& where) {
     arrays_.note("the segment at byte " + std::to_string(at) + " is cut off " + where + ": its " +
                  std::to_string(bytes_.size() - at) + " bytes are left out");
@@ -375,7 +376,8 @@ class TdmsReader {
     }
   }
 
-  /// Leaves out an incomplete chunk. With it, the first channels would have more values than the others.
+  /// Leaves out an incomplete chunk. If it were read, the first channels would have more values than the
+  /// others.
   void leave_out_blocks(std::string_view piece) {
     cut_off_bytes_ += piece.size();
     for (const std::size_t i : listed_) {
@@ -443,9 +445,10 @@ class TdmsReader {
   std::vector<std::size_t> listed_;  ///< the channels with values in this segment
   std::size_t steps_ = 0;
   std::size_t values_ = 0;
-  std::uint64_t missing_bytes_ = 0;  ///< announced bytes beyond the end of the file
+  /// Number of bytes that the last segment states but that are not in the file.
+  std::uint64_t missing_bytes_ = 0;
   std::size_t cut_off_bytes_ = 0;
-  std::string unread_;  ///< why valid metadata is refused
+  std::string unread_;  ///< reason why valid metadata is refused
 };
 
 }  // namespace

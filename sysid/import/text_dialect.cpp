@@ -11,9 +11,10 @@ namespace softgrip::sysid {
 namespace {
 
 constexpr std::array separators{',', ';', '\t', '|', ' '};
-/// Number of lines in the middle and at the end from which the separator is determined.
+/// Number of lines from which the separator is determined: this number in the middle of the text and this
+/// number at the end.
 constexpr std::size_t looked_at = 40;
-/// Maximum number of lines of content above the first row of numbers.
+/// Largest number of lines of content above the first row of numbers.
 constexpr std::size_t longest_preamble = 1000;
 
 struct Row {
@@ -34,12 +35,13 @@ Row row_of(std::string_view line, char separator, const TableOptions& options, s
   return row;
 }
 
-/// Returns true for a row of the table: `width` cells, at least one number, and more than half are values.
+/// Returns true if a line is a row of the table: it has `width` cells, at least one of them is a number, and
+/// more than half are values.
 bool is_data(const Row& row, std::size_t width) {
   return row.cells == width && row.numbers > 0 && 2 * row.values > row.cells;
 }
 
-/// Number of values in the rows with the best width, and that width.
+/// The row width with the most values for a separator, and the number of values in the rows of this width.
 struct Fit {
   std::size_t values = 0;
   std::size_t width = 0;
@@ -78,8 +80,8 @@ std::vector<std::string> texts_of(const std::vector<Cell>& cells) {
   return texts;
 }
 
-/// Returns true if the texts are units, in brackets or not. "-" and an empty text mean no unit, but at least
-/// one text must be a unit.
+/// Returns true if the texts are units, with or without brackets. "-" and an empty text mean that a column
+/// has no unit, but at least one text must be a unit.
 bool are_units(const std::vector<std::string>& texts) {
   bool any = false;
   for (const std::string& text : texts) {
@@ -140,7 +142,7 @@ class Heading {
   }
 
  private:
-  /// Returns true if no row has a value after its last separator.
+  /// Returns true if all rows end with an empty cell.
   [[nodiscard]] bool rows_end_empty() const {
     std::vector<Cell> cells;
     for (std::size_t i = dialect_.first_row; i < lines_.content.size(); ++i) {
@@ -150,8 +152,8 @@ class Heading {
     return true;
   }
 
-  /// Splits the line of names. If blanks separate the columns and a name contains a blank, two blanks
-  /// separate the names.
+  /// Splits the line of names. If the columns are separated by blanks and a name contains a blank, the names
+  /// must be separated by two blanks.
   std::vector<std::string> split_names(const TextLine& line) const {
     std::vector<Cell> cells;
     split_line(line.text, dialect_.separator, cells);

@@ -31,12 +31,13 @@ bool split_line(std::string_view line, char separator, std::vector<Cell>& cells)
 
 struct Dialect {
   char separator = ',';
-  std::size_t first_row = 0;       ///< index of the first row of numbers in the lines of content
+  std::size_t first_row = 0;       ///< index of the first row of numbers in TextLines::content
   std::vector<std::string> names;  ///< by column; empty if the text has no names
   std::vector<std::string> units;  ///< by column, from a row below the names; empty: there is none
-  int names_line = 0;              ///< 0: there are no names
+  int names_line = 0;              ///< number of the line with the names; 0: there are no names
   std::size_t width = 0;           ///< number of columns
-  bool extra_cell = false;         ///< each row has an additional empty cell after the named columns
+  /// Each row has one more cell than there are names, and this last cell is empty.
+  bool extra_cell = false;
 };
 
 /// Detects the format from the rows of numbers. Returns nullopt and adds a problem if there are no such rows,

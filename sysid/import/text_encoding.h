@@ -17,8 +17,9 @@ namespace softgrip::sysid {
 [[nodiscard]] tl::expected<std::string, std::string> utf8_of(std::string_view bytes);
 
 struct ForeignText {
-  std::string text;                ///< see utf8_of()
-  std::vector<std::string> notes;  ///< NUL bytes at the end, as after a power failure of a data logger
+  std::string text;  ///< see utf8_of()
+  /// Notes about removed NUL bytes at the end, which a data logger leaves after a power failure.
+  std::vector<std::string> notes;
 };
 
 /// Returns the text of an external file with at most most_text_bytes bytes and most_rows lines of at most

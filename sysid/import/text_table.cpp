@@ -63,7 +63,7 @@ class RowReader {
                            (skipped_.size() > bad_lines_named ? ", ..." : ""));
   }
 
-  /// Refuses a file with decimal points and decimal commas: one of them must separate thousands.
+  /// Refuses a file with both decimal points and decimal commas, because one of them must separate thousands.
   void check_decimals() {
     if (comma_.number == 0 || point_.number == 0) return;
     const TextLine& later = comma_.number > point_.number ? comma_ : point_;
@@ -75,8 +75,8 @@ class RowReader {
   [[nodiscard]] bool decimal_comma() const { return comma_.number != 0; }
 
  private:
-  /// Removes the empty cell after a separator at the end of a row, if the line of names has no such
-  /// separator.
+  /// Removes the empty cell that follows a separator at the end of a row, if the line of names does not end
+  /// with a separator.
   void drop_extra_cell() {
     const bool extra = dialect_.extra_cell && cells_.size() == dialect_.width + 1;
     if (extra && trimmed(cells_.back().text).empty()) cells_.pop_back();
@@ -103,7 +103,7 @@ class RowReader {
     const std::string channel = cell_text(cells_[channel_].text);
     if (std::find(table_.channels.begin(), table_.channels.end(), channel) == table_.channels.end())
       table_.channels.push_back(channel);
-    // A column with more different cells than a rig has fingers contains readings.
+    // If a column has more different cells than a rig has fingers, the cells are readings.
     if (table_.channels.size() > most_fingers && !is_log_channel_ && options_.channel.empty()) {
       channel_ = dialect_.width;
       table_.channels.clear();
@@ -142,9 +142,9 @@ class RowReader {
     column.values.push_back(nothing);
   }
 
-  /// Times relative to the first timestamp of a column. They are computed in whole nanoseconds, because a
-  /// double of seconds since 1970 would lose digits. A time of day that decreases by more than half a day has
-  /// passed midnight. Minutes and seconds that decrease by more than half an hour have passed a full hour.
+  /// Computes times relative to the first timestamp of a column, in whole nanoseconds, because a double of
+  /// seconds since 1970 would lose digits. If a time of day decreases by more than half a day, midnight has
+  /// passed. If minutes and seconds decrease by more than half an hour, a full hour has passed.
   struct Clock {
     Nanoseconds first = 0;
     Nanoseconds last = 0;
@@ -167,7 +167,7 @@ class RowReader {
   std::vector<Clock> moments_;
   std::vector<Cell> cells_;
   std::size_t channel_ = dialect_.width;
-  bool is_log_channel_ = false;  ///< the channel column has the name that it has in a log
+  bool is_log_channel_ = false;  ///< the channel column has the same name as in a log
   TextLine comma_;
   TextLine point_;
   std::vector<int> skipped_;

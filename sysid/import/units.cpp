@@ -10,7 +10,8 @@ namespace {
 constexpr double psi_kpa = 6.894757293168361;
 constexpr double absolute_zero_c = -273.15;
 
-/// The first unit of each quantity is the unit of a log. Names are lower-case.
+/// The units that an import knows. The first unit of each quantity is the unit of a log. Names are in lower
+/// case.
 constexpr std::array units{
     Unit{"s", Quantity::time},
     Unit{"ms", Quantity::time, 1e-3},
@@ -73,7 +74,7 @@ constexpr std::array spellings{
 };
 constexpr std::array<std::string_view, 14> raw_units{
     "v", "mv", "volt", "volts", "ma", "a", "counts", "count", "lsb", "adc", "raw", "%", "percent", "digits"};
-/// Units that can also be words or indices after a blank or an underscore.
+/// Units that can also be a word or an index if they follow a blank or an underscore.
 constexpr std::array<std::string_view, 10> doubtful{"in", "min", "a", "c",   "d",
                                                     "f",  "h",   "k", "raw", "count"};
 
@@ -82,7 +83,8 @@ void replace_all(std::string& text, std::string_view from, std::string_view to) 
     text.replace(at, from.size(), to);
 }
 
-/// Returns a unit as written in the table of units. mPa, the only case-sensitive unit, becomes "millipascal".
+/// Returns a unit in the spelling of the table of units. mPa, the only case-sensitive unit, becomes
+/// "millipascal".
 std::string normalised(std::string_view text) {
   std::string unit(trimmed(text));
   if (unit == "mPa") return "millipascal";

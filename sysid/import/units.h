@@ -1,6 +1,6 @@
 #pragma once
 // Units in external files, and their conversion to the units of a log: s, kPa, mm or deg, degrees Celsius. A
-// bending angle is a displacement, too.
+// bending angle counts as a displacement.
 
 #include <cstdint>
 #include <optional>
@@ -19,7 +19,7 @@ struct Unit {
   Quantity quantity = Quantity::time;
   double factor = 1;
   double offset = 0;
-  /// The unit of a log that contains such a displacement.
+  /// Output unit of a log whose displacement is in this unit.
   model::OutputUnit output = model::OutputUnit::mm;
 };
 
@@ -28,8 +28,8 @@ struct Unit {
 [[nodiscard]] std::optional<Unit> unit_named(std::string_view text, Quantity quantity);
 /// Returns the unit of any quantity that a text names; nullopt if two quantities have a unit of this name.
 [[nodiscard]] std::optional<Unit> unit_named(std::string_view text);
-/// Returns true for the units of converters (V, mA, counts, %). Values in them need a scale to become kPa or
-/// mm.
+/// Returns true for units of electrical or digital values (V, mA, counts, %). Such values need a scale to
+/// become kPa or mm.
 [[nodiscard]] bool is_raw_unit(std::string_view text);
 /// Returns the names of the units of a quantity for messages: "s, ms, us, ...".
 [[nodiscard]] std::string unit_names(Quantity quantity);
@@ -43,9 +43,10 @@ struct NameAndUnit {
   std::string unit;  ///< as written; empty: none
 };
 
-/// Splits the name of a column. Any text in brackets is the unit. After another mark, such as '/' or '_',
-/// only a known unit is accepted: a unit of `quantity`, or of any quantity if none is given. Without a
-/// quantity, units that are also words or letters need a slash or a comma (p_in is not in inches).
+/// Splits the name of a column into name and unit. A text in brackets is always the unit. After another mark,
+/// such as '/' or '_', only a known unit of `quantity` is accepted, or of any quantity if none is given. If
+/// no quantity is given, a unit that is also a word or a letter needs a slash or a comma before it (p_in is
+/// not in inches).
 [[nodiscard]] NameAndUnit split_unit(std::string_view column, std::optional<Quantity> quantity = {});
 
 /// Converts ASCII letters to lower case.

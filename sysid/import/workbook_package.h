@@ -12,8 +12,8 @@ struct zip;
 
 namespace softgrip::sysid {
 
-/// Reads parts of an archive in memory. `bytes` must outlive it. All parts together have at most
-/// `most_text_bytes` (table.h), regardless of the sizes that the archive states.
+/// Reads the parts of an archive in memory. `bytes` must outlive the object. All parts together may have at
+/// most `most_text_bytes` (table.h) after decompression, regardless of the sizes that the archive states.
 class WorkbookPackage {
  public:
   /// Opens the archive. The error is a sentence.

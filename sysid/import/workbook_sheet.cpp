@@ -31,12 +31,12 @@ struct SheetCell {
   std::size_t column = 0;  ///< counted from 0
   Content content = Content::none;
   std::string text;      ///< text, number as written in the file, or word of an error
-  double serial = 0;     ///< date [days]
-  bool formula = false;  ///< the value is the stored value of a formula
+  double serial = 0;     ///< value of a date [days]
+  bool formula = false;  ///< the cell contains a formula, and the value is its stored result
   bool is_bool = false;
 };
 
-/// A number of cells, and the names of the first few.
+/// A number of cells and the names of the first few of them.
 struct NamedCells {
   std::size_t count = 0;
   std::string names;
@@ -75,8 +75,8 @@ std::optional<Place> place_of(std::string_view reference) {
   return Place{*row, place.column - 1};
 }
 
-/// Returns a date in ISO 8601, or a time of day. `serial` counts days since `from`. Excel resolves about 0.6
-/// us, so finer digits are rounding errors.
+/// Returns a date in ISO 8601, or a time of day if `with_day` is false. `serial` counts days since `from`.
+/// Excel stores times with a resolution of about 0.6 us, so finer digits are rounding errors.
 std::string iso_date(double serial, std::chrono::sys_days from, bool with_day) {
   constexpr std::int64_t ticks_a_second = 1'000'000;
   constexpr std::int64_t ticks_a_day = 86400 * ticks_a_second;
@@ -100,7 +100,8 @@ std::string iso_date(double serial, std::chrono::sys_days from, bool with_day) {
   return text.data();
 }
 
-/// Returns a cell of CSV. A cell that begins like a comment is quoted, so that its line is not a comment.
+/// Returns a text as a cell of CSV. A text that begins like a comment is quoted, so that its line is not
+/// taken for a comment.
 std::string csv_cell(std::string text) {
   for (char& c : text) c = c == '\n' || c == '\r' || c == '\t' ? ' ' : c;
   const bool like_comment = !text.empty() && (text[0] == '#' || text[0] == '%' || text[0] == '/');
@@ -233,7 +234,7 @@ class SheetReader {
     if (!index || *index >= texts_.strings.size())
       return refuse_cell(cell, "shared string '" + document::shown(cell.text) + "' is none of the " +
                                    std::to_string(texts_.strings.size()) + " of the workbook");
-    // Many cells can refer to one long text.
+    // Count the size for each cell, because many cells can refer to one long text.
     shared_bytes_ += texts_.strings[*index].size();
     if (shared_bytes_ > most_text_bytes)
       return refuse_cell(cell,
@@ -252,7 +253,8 @@ class SheetReader {
     cell.content = Content::number;
   }
 
-  /// Updates the first and last row and column of the sheet. All cells are surveyed before one is written.
+  /// Updates the first and last row and column of the sheet. Call it for all cells before the first cell is
+  /// written.
   void survey(const SheetCell& cell) {
     if (result_.first_row == 0) {
       result_.first_row = cell.row;
@@ -276,13 +278,13 @@ class SheetReader {
     booleans_ += cell.is_bool ? 1 : 0;
   }
 
-  /// Updates the latest date of a column. Dates in titles above the table are ignored.
+  /// Updates the latest date of a column. Dates above the table are ignored.
   void survey_date(const SheetCell& cell) {
     if (cell.content == Content::date && cell.row >= full_row_)
       longest_[cell.column] = std::max(longest_[cell.column], cell.serial);
   }
 
-  /// Returns the first row that has at least 75 % of the columns, as rows of names and numbers have.
+  /// Returns the first row that has cells in at least 75 % of the columns, as a row of names or numbers has.
   [[nodiscard]] std::size_t first_full_row() const {
     const std::size_t width = last_column_ - first_column_ + 1;
     const auto full = std::find_if(filled_.begin(), filled_.end(),
@@ -299,7 +301,8 @@ class SheetReader {
     constexpr sys_days of_1904{year{1904} / 1 / 1};
     constexpr double a_year = 366;
     const double longest = cell.row < full_row_ ? cell.serial : longest_[cell.column];
-    // A column of values below one year contains durations, which do not depend on the calendar.
+    // If all values of a column are below one year, they are durations, which do not depend on the origin of
+    // the calendar.
     return iso_date(cell.serial, texts_.from_1904 || longest < a_year ? of_1904 : of_1900, longest >= 1);
   }
 
@@ -379,11 +382,11 @@ class SheetReader {
   std::size_t first_column_ = 0;
   std::size_t last_column_ = 0;
   std::vector<std::pair<std::size_t, std::size_t>>
-      filled_;                             ///< rows with content, and their numbers of cells
-  std::size_t full_row_ = 0;               ///< the first one below the titles
+      filled_;                             ///< rows with content: row number and number of cells
+  std::size_t full_row_ = 0;               ///< first row below the titles
   std::size_t shared_bytes_ = 0;           ///< total size of shared strings in the cells
-  std::map<std::size_t, double> longest_;  ///< the latest date of a column below the titles
-  std::size_t numbers_ = 0;                ///< in this row
+  std::map<std::size_t, double> longest_;  ///< by column: latest date below the titles
+  std::size_t numbers_ = 0;                ///< number of numbers in the present row
   std::size_t dates_ = 0;
   std::size_t formulas_ = 0;
   std::size_t booleans_ = 0;

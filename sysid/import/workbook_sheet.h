@@ -16,7 +16,7 @@ namespace softgrip::sysid {
 /// Texts and formats to which the cells of all sheets refer.
 struct WorkbookTexts {
   std::vector<std::string> strings;  ///< shared strings
-  std::vector<bool> date_styles;     ///< by style; true: its numbers are dates or times of day
+  std::vector<bool> date_styles;     ///< by style; true: numbers in this style are dates or times of day
   bool from_1904 = false;            ///< dates count from 1904
 };
 
@@ -29,7 +29,7 @@ struct SheetText {
   std::vector<std::string> notes;
 };
 
-/// The reason why a sheet is not read.
+/// The reason why a sheet cannot be read.
 struct SheetProblem {
   document::Location at;  ///< row and column, both from 1
   std::string message;
@@ -42,10 +42,11 @@ struct SheetProblem {
 /// Returns the name of a cell, such as "B7". Rows are counted from 1 and columns from 0.
 [[nodiscard]] std::string cell_name(std::size_t row, std::size_t column);
 
-/// Returns the cells as lines of CSV. Rows above the first row that has 75 % of the columns contain only
-/// their own cells. From that row on, each row with a cell has all columns. Booleans are 1 and 0. Dates are
-/// ISO 8601; a column of times within one day has times of day, regardless of the rows above. A formula gives
-/// its stored value. Errors and formulas without a stored value give empty cells, and a note names them.
+/// Returns the cells as lines of CSV. The first row that has at least 75 % of the columns begins the table.
+/// Rows above it contain only their own cells. From this row on, each row that is not empty has all columns.
+/// Booleans are written as 1 and 0, and dates as ISO 8601. A column whose values are all within one day is
+/// written as times of day, regardless of the rows above the table. A formula gives its stored value. Errors
+/// and formulas without a stored value give empty cells, and a note names these cells.
 [[nodiscard]] tl::expected<SheetText, SheetProblem> sheet_text(const pugi::xml_document& sheet,
                                                                const WorkbookTexts& texts);
 

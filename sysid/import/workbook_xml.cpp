@@ -10,7 +10,7 @@ constexpr std::size_t most_tree_bytes = std::size_t{1} << 30U;
 constexpr std::size_t node_bytes = 64;
 constexpr std::size_t attribute_bytes = 40;
 
-/// Returns an upper bound of the memory of the tree [bytes]. The first text in an element needs no node.
+/// Returns an upper bound of the memory of the XML tree [bytes]. The first text in an element needs no node.
 std::size_t tree_bytes(std::string_view text) {
   std::size_t bytes = 0;
   bool opens = false;

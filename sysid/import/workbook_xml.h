@@ -22,7 +22,8 @@ namespace softgrip::sysid {
 /// Returns true for "1" and "true", the two forms of a true value in XML.
 [[nodiscard]] bool is_true(std::string_view word);
 
-/// Returns the text of a shared or an inline string: its `t` elements, also those in runs.
+/// Returns the text of a shared or an inline string: the text of all its `t` elements, including those in
+/// formatted runs.
 [[nodiscard]] std::string string_in(const pugi::xml_node& node);
 
 }  // namespace softgrip::sysid

@@ -69,7 +69,7 @@ class WorkbookReader {
     return file_ + ", sheet " + quoted_name(sheet.name);
   }
 
-  /// Loads the XML of a part; `text_` owns its characters. Returns false if the part was refused.
+  /// Loads the XML of a part. `text_` stores its characters. Returns false if the part was refused.
   bool load(const std::string& part, const std::string& file) {
     auto text = package_.read(part);
     if (!text) {
