@@ -12,13 +12,14 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Threshold as a share of the range of the commands. Errors of a regulator and a pressure sensor are
-/// smaller.
+/// Smallest difference between the first command and the initial pressure, as a share of the range of the
+/// commands. Errors of a regulator and of a pressure sensor are smaller.
 constexpr double far = 0.1;
-/// Share of the difference to the command. The response of a regulator covers more within each hold.
+/// Share of this difference that the measured pressure must cover while the first command is held. The
+/// response of a regulator covers more.
 constexpr double on_its_way = 0.5;
 
-/// Returns the number of samples at the beginning with a constant command.
+/// Returns the number of samples at the beginning of the log during which the command is constant.
 std::size_t stands_for(const Log& log, double range_kpa) {
   const std::vector<double>& command = log.pressure_command_kpa;
   std::size_t count = 1;
@@ -26,9 +27,11 @@ std::size_t stands_for(const Log& log, double range_kpa) {
   return count;
 }
 
-/// Threshold as a share of the displacement's range. Creep at constant pressure is smaller.
+/// Smallest motion during the first command, as a share of the displacement's range. Creep at constant
+/// pressure is smaller.
 constexpr double step_share = 0.2;
-/// Number of readings at either end of the first command. Their median is robust against an outlier.
+/// Number of readings at the beginning and at the end of the first command that are compared. Their median is
+/// robust against an outlier.
 constexpr std::size_t at_an_end = 5;
 constexpr std::size_t fewest_standing = 4 * at_an_end;
 
@@ -41,7 +44,8 @@ double median_mm(const Log& log, std::size_t first, std::size_t last) {
   return readings.empty() ? std::numeric_limits<double>::quiet_NaN() : median_of(std::span(readings));
 }
 
-/// Returns the command that is nearest to a pressure. A pressure outside their range is returned unchanged.
+/// Returns the command that is nearest to a pressure. If the pressure is outside the range of the commands,
+/// it is returned unchanged.
 double command_near(double pressure_kpa, const std::vector<double>& commands, double least_kpa,
                     double most_kpa) {
   if (pressure_kpa < least_kpa || pressure_kpa > most_kpa) return pressure_kpa;

@@ -1,5 +1,5 @@
 #pragma once
-// CSV as text: lines, and cells with their positions. The readers interpret the cells.
+// Splits CSV into lines and into cells with their positions. The callers interpret the cells.
 
 #include <string>
 #include <string_view>
@@ -23,7 +23,8 @@ bool split(std::string_view line, std::vector<Cell>& cells, char separator = ','
 /// Removes blanks at both ends, and then a pair of double quotes.
 [[nodiscard]] std::string_view unquoted(std::string_view text);
 
-/// Returns the content of a cell without quotes. Inside quotes, two quotes represent one (RFC 4180).
+/// Returns the content of a cell without its quotes. Inside quotes, two successive quotes represent one quote
+/// (RFC 4180).
 [[nodiscard]] std::string cell_text(std::string_view cell);
 /// Returns a cell with the given content, in quotes if necessary.
 [[nodiscard]] std::string as_cell(std::string_view text);

@@ -8,11 +8,12 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Readings within this share of a held-out block on either side are not fitted either.
+/// Width of the gap on either side of a held-out block, as a share of the block. Readings in the gap are not
+/// fitted.
 constexpr double gap_share = 0.1;
 constexpr std::size_t fewest_blocks = 8;
-/// With fewer blocks, one half of them does not determine a model, so quarters are held out instead of
-/// halves.
+/// Smallest number of blocks for two folds. If there are fewer blocks, half of them does not determine a
+/// model, so quarters are held out instead of halves.
 constexpr std::size_t enough_to_halve = 16;
 constexpr std::size_t fifths = 5;
 constexpr double blocks_of_fifths = 10;

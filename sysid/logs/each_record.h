@@ -9,7 +9,7 @@
 
 namespace softgrip::sysid {
 
-/// A record with fewer samples is simulated in less time than a thread needs to start.
+/// Number of samples below which the simulation of a record takes less time than the start of a thread.
 inline constexpr std::size_t samples_worth_a_thread = 1000;
 
 /// Returns true if the records have at least `least_samples` samples on average.
@@ -20,8 +20,8 @@ inline constexpr std::size_t samples_worth_a_thread = 1000;
   return samples >= least_samples * records.size();
 }
 
-/// Calls work(i) for `count` simulations of records in any order, on idle threads if the records are long
-/// enough.
+/// Calls work(i) for i from 0 to `count` - 1 in any order. Each call simulates records. If the records are
+/// long enough, the calls run on idle threads.
 template <class Work>
 void for_each_walk(const std::vector<Record>& records, std::size_t count, Work&& work,
                    std::size_t least_samples = samples_worth_a_thread) {
@@ -32,15 +32,16 @@ void for_each_walk(const std::vector<Record>& records, std::size_t count, Work&&
   }
 }
 
-/// Calls work(k) for each record in any order, on idle threads if the records are long enough. work(k) must
-/// write its result to element k of a container that exists already.
+/// Calls work(k) for the index k of each record, in any order. If the records are long enough, the calls run
+/// on idle threads. work(k) must write its result to element k of a container that exists already.
 template <class Work>
 void for_each_record(const std::vector<Record>& records, Work&& work,
                      std::size_t least_samples = samples_worth_a_thread) {
   for_each_walk(records, records.size(), work, least_samples);
 }
 
-/// Returns the row of each record's first reading, if the readings of all records are consecutive rows.
+/// Returns the index of each record's first reading in a list that contains the readings of all records one
+/// after the other.
 [[nodiscard]] inline std::vector<std::size_t> first_rows_of(const std::vector<Record>& records) {
   std::vector<std::size_t> rows;
   std::size_t row = 0;

@@ -13,7 +13,7 @@ constexpr double unloaded_share = 0.2;
 constexpr double no_pressure_share = 0.02;
 constexpr double long_enough_s = 3;
 constexpr double same_amplitude_share = 0.05;
-/// Commands that differ by less are equal, because files have at most six decimals.
+/// Commands that differ by less than this count as equal, because files have at most six decimals.
 constexpr double same_command_kpa = 1e-6;
 
 std::vector<double> sizes_of(const Log& log) {
@@ -30,7 +30,7 @@ double largest_size_kpa(const std::vector<Log>& logs) {
   return largest;
 }
 
-/// Returns the magnitudes of a command at its turning points.
+/// Returns the magnitudes of the command at its turning points.
 std::vector<double> turns_of(const std::vector<double>& sizes, double least_kpa) {
   std::vector<double> turns;
   if (sizes.empty()) return turns;

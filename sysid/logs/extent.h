@@ -8,9 +8,9 @@
 
 namespace softgrip::sysid {
 
-/// If the largest value is below these limits, the unit of a column is probably not kPa, mm or deg. A soft
-/// finger moves by about 10 mm at 20 to 60 kPa and bends by more than 3 deg; a bend in rad is always less
-/// than 3.
+/// Limits for the largest value of a column. If the largest value is smaller, the unit is probably not kPa,
+/// mm or deg. A soft finger moves by about 10 mm at 20 to 60 kPa and bends by more than 3 deg. A bending
+/// angle in rad is always below 3.
 inline constexpr double small_pressure_kpa = 2;
 [[nodiscard]] constexpr double small_reading(model::OutputUnit unit) {
   return unit == model::OutputUnit::deg ? 3 : 0.1;

@@ -10,9 +10,10 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Smaller reversals, in units of the noise, are ignored. Smoothed noise does not reach this value.
+/// Reversals that are smaller than this multiple of the noise are removed. The noise that remains after the
+/// smoothing does not reach this value.
 constexpr double least_turn = 5;
-/// Noise below this share of a column's range does not affect the response of a model.
+/// Noise below this share of a column's range has no relevant effect on the response of a model.
 constexpr double negligible_share = 1e-4;
 
 /// Returns the largest minus the smallest finite value; negative if there are none.
@@ -26,21 +27,23 @@ double range_of(std::span<const double> values) {
   return high - low;
 }
 
-/// Degrees of freedom of the distribution of the slope's drift. The slope is mostly constant and sometimes
-/// jumps. With a normal distribution, the jump of one fast vent would make the whole smoothed log follow its
-/// noise.
+/// Degrees of freedom of the t distribution of the slope's increments. The slope is mostly constant and
+/// sometimes jumps. With a normal distribution, a single fast vent would increase the drift rate so much that
+/// the smoothed signal would follow the noise in the whole log.
 constexpr double heavy_tail = 1;
-/// Number of iterations for the shares of the drift.
+/// Number of iterations in which the shares of the drift rate are estimated.
 constexpr int rounds = 12;
 
-/// Predicted level and slope before a measurement, their covariance, and the innovation.
+/// Level and slope as predicted before a measurement, their covariance, and the innovation of the
+/// measurement.
 struct Estimate {
   double level = 0, slope = 0;
   double ll = 0, ls = 0, ss = 0;
   double innovation = 0, variance = 0;  ///< variance 0: no measurement
 };
 
-/// A signal whose slope is a Wiener process. Its rate in a step is `drift_rate` times the share of the step.
+/// A signal whose slope is a Wiener process. The variance rate in a step is `drift_rate` times the share of
+/// this step.
 struct Path {
   std::span<const double> time_s, values;
   double noise = 0;
@@ -83,12 +86,12 @@ double filter(const Path& path, double drift_rate, std::vector<Estimate>* before
   return cost;
 }
 
-/// Returns the drift rate of the slope, per second, with the maximum likelihood: golden-section search over
-/// its logarithm.
+/// Returns the drift rate of the slope with the maximum likelihood. It is found by a golden-section search
+/// over its logarithm.
 double likeliest_drift_rate(const Path& path) {
   const auto& time_s = path.time_s;
   const double dt = (time_s.back() - time_s.front()) / static_cast<double>(time_s.size() - 1);
-  // At this rate, the drift in a sample is as large as the noise.
+  // With this drift rate, the drift within one sampling interval is as large as the noise.
   const double unit = path.noise * path.noise / (dt * dt * dt);
   double low = std::log(unit) - 20, high = std::log(unit) + 12;
   const double golden = (std::sqrt(5.0) - 1) / 2;
@@ -113,8 +116,8 @@ double likeliest_drift_rate(const Path& path) {
   return std::exp((low + high) / 2);
 }
 
-/// The smoothed signal, and for each step the drift of the slope: the mean of w' Q^-1 w, with Q for a drift
-/// rate of 1.
+/// The smoothed signal, and an estimate of the slope's drift in each step: the mean of w' Q^-1 w, where w is
+/// the disturbance of the step and Q its covariance for a drift rate of 1.
 struct Smooth {
   std::vector<double> level, drift;
 };
@@ -155,7 +158,8 @@ Smooth disturbances(const Path& path, double drift_rate) {
 double white_noise_of(std::span<const double> time_s, std::span<const double> values) {
   std::vector<double> deviations;
   for (std::size_t i = 2; i < values.size(); ++i) {
-    // Deviation from the straight line between both neighbours, scaled to the noise of one value.
+    // Deviation of a value from the straight line between its neighbours, scaled so that its standard
+    // deviation is that of one value.
     const double share = (time_s[i - 1] - time_s[i - 2]) / (time_s[i] - time_s[i - 2]);
     const double off = values[i - 1] - (1 - share) * values[i - 2] - share * values[i];
     if (std::isfinite(off))

@@ -1,14 +1,14 @@
 #pragma once
-// Logs: recorded runs as CSV. The reader is strict, and its messages contain hints. Several logs that are
-// given together are one campaign.
+// Logs: recorded runs as CSV. The reader is strict, and its messages contain hints. The logs that are given
+// together to one command are a campaign.
 //
 //   time_s,pressure_command_kpa,displacement_mm[,pressure_kpa][,temperature_c][,supply_kpa][,channel][,...]
 //
 // Instead of displacement_mm there may be a bending angle: angle_deg or angle_rad. It is stored in
 // displacement_mm in deg, and output_unit is deg. The first line is the header. The separator is a comma, the
 // decimal mark is a point, and the times increase from 0. Other columns are kept as text. An empty cell of
-// the readings or of pressure_kpa is a missing reading: the sample is simulated but not compared. Sampling
-// may be irregular; the reader does not resample.
+// the readings or of pressure_kpa is a missing reading: the sample is simulated, but not compared with a
+// reading. The sampling may be irregular; the reader does not resample.
 
 #include <cstddef>
 #include <optional>
@@ -21,7 +21,7 @@
 
 namespace softgrip::sysid {
 
-/// A column that is not part of the log contract. It is kept but not used.
+/// A column that does not belong to the log format. It is stored as text and not used.
 struct OtherColumn {
   std::string name;
   std::vector<std::string> cells;
@@ -31,7 +31,7 @@ struct OtherColumn {
 
 /// A note about a log that is not a reason to refuse it.
 struct LogNote {
-  int line = 0;  ///< first line of the CSV that it concerns; 0: the whole log
+  int line = 0;  ///< first line of the CSV to which the note applies; 0: the whole log
   std::string text;
 };
 
@@ -41,7 +41,7 @@ struct Sampling {
   double shortest_interval_s = 0;
   double longest_interval_s = 0;
   double jitter_s = 0;   ///< mean absolute deviation of the intervals from their median
-  bool regular = false;  ///< all intervals within one per mille of the median
+  bool regular = false;  ///< no interval differs from the median by more than one per mille
 
   /// Returns the median interval [s], or 0 if the intervals are not regular.
   [[nodiscard]] double sample_time_s() const { return regular ? median_interval_s : 0; }
@@ -49,8 +49,9 @@ struct Sampling {
 
 /// One channel's recorded run. All columns have as many values as time_s; the optional ones may be empty.
 struct Log {
-  std::string path;     ///< as the user named it
-  std::string name;     ///< short, for legends: the file's name without folder and ending, plus the channel
+  std::string path;  ///< path as the user gave it
+  /// Name for legends: the file's name without folder and extension, followed by the channel.
+  std::string name;
   std::string channel;  ///< "" if there is no channel column
   std::string sha256;   ///< hash of the file's bytes, lower-case hexadecimal; "" for a log created in memory
   std::vector<double> time_s;
@@ -66,20 +67,21 @@ struct Log {
   [[nodiscard]] std::size_t size() const noexcept { return time_s.size(); }
 };
 
-/// Conditions for the logs that a reader accepts.
+/// Conditions that a reader requires of logs.
 struct LogOptions {
-  std::string channel;  ///< the channel to read, if a log has several; otherwise ""
+  std::string channel;  ///< the channel to read if a log has several channels; otherwise ""
   std::size_t bytes = std::size_t{512} * 1024 * 1024;
-  /// Refuse logs that cannot identify a model: a constant command, a dead sensor.
+  /// Refuse logs that cannot identify a model because the command or the reading is constant.
   bool require_motion = true;
-  /// False: only the command is used. Then two samples at any interval suffice, and displacement_mm may be
+  /// If false, only the command is used. Two samples at any interval then suffice, and displacement_mm may be
   /// absent.
   bool need_readings = true;
-  /// Refuse readings in another unit. `output_unit_of` names the origin of the required unit ("the model
-  /// given.yaml"). Without a required unit, all logs of a campaign must have the unit of the first.
+  /// Refuse readings in another unit than this. `output_unit_of` names the origin of the required unit ("the
+  /// model given.yaml"). Without a required unit, all logs of a campaign must have the unit of the first log.
   std::optional<model::OutputUnit> output_unit;
   std::string output_unit_of;
-  /// Refuse a log if a larger share of its readings is clipped (1: never). A smaller share adds a note.
+  /// Refuse a log if more than this share of its readings is clipped (1: never refuse). If the share is
+  /// smaller, a note is added.
   double clipped_share_refused = 0.2;
 };
 
@@ -98,8 +100,8 @@ struct Campaign {
 [[nodiscard]] std::optional<Log> parse_log(const std::string& file, std::string_view text,
                                            document::Problems& problems, const LogOptions& options = {});
 
-/// Returns the channels in the text of a log, in the order of their first rows; none without a channel
-/// column.
+/// Returns the channels in the text of a log, in the order of their first rows. The list is empty if the log
+/// has no channel column.
 [[nodiscard]] std::vector<std::string> channels_of(std::string_view text);
 
 /// Returns the CSV text of a log. Numbers have the fewest digits that represent the same double, so
@@ -115,7 +117,7 @@ struct Campaign {
 /// Returns the largest minus the smallest reading [mm]; 0 without readings.
 [[nodiscard]] double span_mm(const Log& log);
 
-/// Returns the samples [first, last) of a log as a log whose times begin at 0.
+/// Returns the samples with the indices [first, last) as a log whose times begin at 0.
 [[nodiscard]] Log slice(const Log& log, std::size_t first, std::size_t last);
 
 }  // namespace softgrip::sysid

@@ -1,5 +1,5 @@
 #pragma once
-// Checks of time, excitation, sensor and units, for a log whose cells are all readable.
+// Checks time, excitation, sensor and units of a log whose cells were all read without errors.
 
 #include <string>
 #include <string_view>
@@ -10,17 +10,18 @@
 
 namespace softgrip::sysid {
 
-/// The positions of the samples of a log in its text.
+/// The positions of a log's samples in its text.
 struct LogSource {
   std::string file;
   std::vector<int> line;                    ///< line number of each sample
   std::vector<std::string_view> line_text;  ///< line of each sample, without line break
-  int time_column = 1;                      ///< byte column of the header cell, for messages
+  /// Column of the time in the header line, counted in bytes, for messages.
+  int time_column = 1;
   int command_column = 1;
   int displacement_column = 1;
 };
 
-/// Adds a problem for each reason to refuse the log, and adds notes about other findings to the log.
+/// Adds a problem for each reason to refuse the log. Other findings are added to the log as notes.
 void check_log(Log& log, const LogSource& source, const LogOptions& options, document::Problems& problems);
 
 }  // namespace softgrip::sysid

@@ -1,5 +1,5 @@
 #pragma once
-// The columns of the log contract: names, units, and members of Log for their values.
+// The columns of the log format: names, units, and the members of Log that store their values.
 
 #include <array>
 #include <cstddef>
@@ -11,7 +11,7 @@
 
 namespace softgrip::sysid {
 
-/// A column of the contract.
+/// A column of the log format.
 struct KnownColumn {
   std::string_view name;
   std::string_view quantity;  ///< the name without its unit
@@ -39,8 +39,8 @@ struct ReadingColumn {
   model::OutputUnit unit;
   double factor;  ///< conversion factor from the column to the unit
 };
-/// A log must have one of these columns. If it has several, the first is used and the others are kept as
-/// text.
+/// The columns of which a log must have at least one. If a log has several of them, the first is used and the
+/// others are stored as text.
 inline constexpr std::array<ReadingColumn, 3> reading_columns{{
     {known_columns[column_displacement].name, model::OutputUnit::mm, 1},
     {"angle_deg", model::OutputUnit::deg, 1},
@@ -50,8 +50,8 @@ inline constexpr std::array<ReadingColumn, 3> reading_columns{{
 /// Returns the name of a column in a log: "angle_deg" for the readings of a log in deg.
 [[nodiscard]] std::string_view column_name(const KnownColumn& known, const Log& log);
 
-/// Returns the conversion of a unit to that of the contract as a text: ", divide by 1000"; empty: unknown
-/// unit.
+/// Returns the conversion from a unit to the unit of the log format as a text: ", divide by 1000". Returns ""
+/// for an unknown unit.
 [[nodiscard]] std::string conversion(std::string_view unit);
 
 }  // namespace softgrip::sysid

@@ -9,7 +9,7 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Reports the known column that an unknown name was probably meant to be.
+/// Reports an unknown column name that is similar to a known one, and suggests the known one.
 void report_near_miss(const Cell& cell, std::string_view name, std::string_view line, LogReporter& report) {
   for (const KnownColumn& known : known_columns) {
     const std::string_view unit = known.name.substr(known.quantity.size() + 1);
@@ -60,7 +60,7 @@ std::optional<ReadingColumn> reading_column(const std::vector<Cell>& cells) {
   return std::nullopt;
 }
 
-/// Returns the hint for a log without readings: a column with a similar name.
+/// Returns the hint for a log without readings: it suggests a column with a similar name.
 std::string hint_of_missing(std::string_view column, const std::vector<std::string>& names) {
   const auto angle = std::find_if(names.begin(), names.end(),
                                   [](const std::string& name) { return name.starts_with("angle"); });

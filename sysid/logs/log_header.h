@@ -18,10 +18,10 @@ struct LogHeader {
   std::array<int, known_columns.size()> index{};  ///< -1: absent
   std::array<int, known_columns.size()> column{};
   int channel = -1;
-  ReadingColumn reading = reading_columns.front();  ///< the column with the readings
+  ReadingColumn reading = reading_columns.front();  ///< the column that contains the readings
 };
 
-/// Reads the header. Reports its errors; after an error, the header must not be used.
+/// Reads the header and reports its errors. If there was an error, the result must not be used.
 [[nodiscard]] LogHeader read_header(std::string_view line, const LogOptions& options, LogReporter& report);
 
 }  // namespace softgrip::sysid

@@ -18,7 +18,7 @@ namespace {
 
 constexpr double no_reading = std::numeric_limits<double>::quiet_NaN();
 
-/// Reads a number of a row. Reports a cell that is not a number.
+/// Reads a number from a cell. Reports a cell that does not contain a number.
 double read_cell(const KnownColumn& known, std::string_view name, const Cell& cell, int line_number,
                  std::string_view line, LogReporter& report) {
   const std::string_view text = unquoted(cell.text);
@@ -129,7 +129,8 @@ std::string listed(const std::vector<std::string>& words) {
   return with_commas(words, [](const std::string& word) { return "'" + word + "'"; });
 }
 
-/// Reports if a log has several channels and none is selected, or if the selected channel does not exist.
+/// Reports an error if a log has several channels and none is selected, or if the selected channel does not
+/// exist.
 void check_channel(const RowReader& rows, const LogHeader& header, const LogOptions& options,
                    std::string_view header_line, LogReporter& report, Log& log) {
   const document::Location at{1, 1};

@@ -1,5 +1,5 @@
 #pragma once
-// Collector of the problems of a log. It reports a file with a million bad rows in a few lines.
+// Collects the problems of a log, so that a file with a million bad rows is reported in a few lines.
 
 #include <map>
 #include <string>
@@ -17,7 +17,7 @@ class LogReporter {
 
   void add(const std::string& kind, document::Location at, std::string_view line, std::string message,
            std::string hint = {});
-  /// Adds one problem for each kind, with the number of problems that are not shown.
+  /// Adds, for each kind of problem, one problem that states how many are not shown.
   void finish();
   [[nodiscard]] bool any() const { return !counts_.empty(); }
 

@@ -14,9 +14,9 @@
 namespace softgrip::sysid {
 namespace {
 
-// Values above these limits, or below those of extent.h, probably have a wrong unit.
+// Limits for plausible values. Values above them, or below those of extent.h, probably have a wrong unit.
 constexpr double large_pressure_kpa = 1000;
-/// The largest pressure of a soft finger in MPa is below this.
+/// Upper limit of the largest pressure of a soft finger, expressed in MPa.
 constexpr double small_as_mpa = 0.2;
 /// If the largest pressure is below this value and the gain exceeds one of the following limits, the pressure
 /// is probably in psi.
@@ -27,9 +27,9 @@ constexpr double small_as_mbar = 20e3;
 constexpr double large_displacement_mm = 500;
 constexpr double slow_sampling_s = 1;
 constexpr double atmosphere_kpa = 101.325;
-/// A correlation with a larger magnitude is significant.
+/// Magnitude of a correlation above which it is significant.
 constexpr double clear_correlation = 0.5;
-/// Drift of the sensor cannot explain a loop whose relative area is below this.
+/// Relative area of a loop below which drift of the sensor cannot explain the loop.
 constexpr double clear_loop_backwards = -0.02;
 
 PairSums sums_of(const std::vector<double>& x, const std::vector<double>& y) {
@@ -38,8 +38,8 @@ PairSums sums_of(const std::vector<double>& x, const std::vector<double>& y) {
   return sums;
 }
 
-/// Returns the lag [samples] with the best correlation between the increments of `later` and `earlier`;
-/// negative: `later` precedes `earlier`. Returns 0 if no correlation is significant.
+/// Returns the lag [samples] at which the increments of `later` correlate best with those of `earlier`. A
+/// negative lag means that `later` precedes `earlier`. Returns 0 if no correlation is significant.
 int best_lag(const std::vector<double>& earlier, const std::vector<double>& later) {
   constexpr int farthest = 20;
   const auto increments = [](const std::vector<double>& values) {
@@ -89,8 +89,9 @@ const std::vector<double>& drive_of(const Log& log) {
   return log.pressure_kpa.empty() ? log.pressure_command_kpa : log.pressure_kpa;
 }
 
-/// Returns the mean area of the loops of readings over pressure, as a share of their bounding rectangle. It
-/// is above 0 if the readings follow the pressure, as in each dissipative or lagging system.
+/// Returns the mean area of the loops in a plot of readings over pressure, as a share of the bounding
+/// rectangle of each loop. It is positive if the readings lag behind the pressure, as in every dissipative
+/// system.
 double loop_share(const std::vector<double>& pressure, const std::vector<double>& reading) {
   const auto p = extent_of(pressure), y = extent_of(reading);
   if (!p || !y || p->width() <= 0 || y->width() <= 0) return 0;
@@ -139,7 +140,8 @@ void check_free_motion(const Log& log, std::vector<std::string>& warnings) {
                      "tested with them; record a run without contact");
 }
 
-/// Returns a text with the column, its largest value, and the options that state the probable unit.
+/// Returns a text with the name of the column, its largest value, and the option that states the probable
+/// unit.
 std::string state_unit(const PressureColumn& column, const ColumnExtent& p, const char* unit) {
   const double largest = -p.lowest > p.highest ? p.lowest : p.highest;
   return " The largest value of `" + column.name + "` is " + significant(largest, 3) +

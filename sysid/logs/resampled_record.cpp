@@ -8,12 +8,12 @@
 namespace softgrip::sysid {
 namespace {
 
-/// A command jumps if it deviates from the straight line between two samples by this share of the largest
-/// command.
+/// A command jumps between two samples if it deviates from the straight line between them by more than this
+/// share of the largest command.
 constexpr double least_jump = 0.01;
 
-/// Returns the mean command around sample `at`, with triangular weights over the removed samples on either
-/// side.
+/// Returns the weighted mean of the command around sample `at`. The weights are triangular over the removed
+/// samples on either side.
 double hat_mean_kpa(const std::vector<double>& drive_kpa, std::size_t at, std::size_t stride) {
   const double width = static_cast<double>(stride);
   double sum_kpa = drive_kpa[at];
@@ -22,7 +22,7 @@ double hat_mean_kpa(const std::vector<double>& drive_kpa, std::size_t at, std::s
   return sum_kpa / width;
 }
 
-/// Returns true if the command jumps between sample `at` and the next one that is kept.
+/// Returns true if the command jumps between sample `at` and the next kept sample.
 bool jumps_after(const Record& record, std::size_t at, std::size_t stride) {
   const double from_kpa = record.drive_kpa[at], to_kpa = record.drive_kpa[at + stride];
   for (std::size_t j = 1; j < stride; ++j) {
@@ -33,8 +33,8 @@ bool jumps_after(const Record& record, std::size_t at, std::size_t stride) {
   return false;
 }
 
-/// Replaces the command by its local mean where it is held or jumps. Without this, a jump between two kept
-/// samples would be early or late by up to one interval. Corners without a jump are unchanged.
+/// Replaces a command that is held or jumps by its local mean. Otherwise a jump between two kept samples
+/// would be early or late by up to one interval. Corners without a jump are unchanged.
 void keep_mean_of_jumps(const Record& record, std::size_t stride, Record& thin) {
   if (record.held) {
     for (std::size_t to = 0; to + 1 < thin.size(); ++to) {
@@ -56,8 +56,8 @@ std::size_t stride_for(const Record& record, double interval_s) {
   return static_cast<std::size_t>(std::max(1.0, std::floor(interval_s / record.mean_interval_s())));
 }
 
-/// Returns the mean of a reading and `reach` readings on either side; NaN if fewer than half of them are
-/// present.
+/// Returns the mean of a reading and of `reach` readings on either side. Returns NaN if at most half of these
+/// neighbours is present.
 double mean_around(const std::vector<double>& readings, std::size_t at, std::size_t reach) {
   double sum = 0;
   std::size_t count = 0;
@@ -87,7 +87,7 @@ std::vector<std::size_t> nearest_to_centres(const Record& record, double interva
   return kept;
 }
 
-/// Returns the series with `parts` steps for each of its steps. `between` gives the values in between.
+/// Divides each step of a series into `parts` steps. `between` computes the additional values.
 template <class Between>
 std::vector<double> finer(const std::vector<double>& series, std::size_t parts, Between&& between) {
   std::vector<double> out;
@@ -106,8 +106,8 @@ std::vector<double> finer(const std::vector<double>& series, std::size_t parts, 
 
 Record thinned_record(const Record& record, std::span<const std::size_t> kept) {
   Record thin = record;
-  // A held command has the value at the beginning of a step, so the first original step determines the
-  // thinned one.
+  // Thinning keeps the first value of each group of samples. A held command has its value at the beginning of
+  // a step, so the first original step determines the command of the thinned step.
   for (auto* column :
        {&thin.time_s, &thin.drive_kpa, &thin.reading_mm, &thin.temperature_c, &thin.supply_kpa}) {
     if (column->empty()) continue;

@@ -1,14 +1,14 @@
 #pragma once
-// Detection of numbers that a sensor writes instead of a reading.
+// Detects numbers that a sensor writes instead of a reading.
 
 #include <span>
 #include <vector>
 
 namespace softgrip::sysid {
 
-/// Returns the values that are codes and not readings, ascending. A code is far outside the range of all
-/// other values, and it is a typical code (999, -9999 and similar numbers) or occurs at least three times.
-/// Values that are not finite are ignored.
+/// Returns the values that are error codes instead of readings, in ascending order. A code is far outside the
+/// range of all other values. It is also a typical code (999, -9999 and similar numbers), or it occurs at
+/// least three times. Values that are not finite are ignored.
 [[nodiscard]] std::vector<double> sensor_codes(std::span<const double> values);
 
 }  // namespace softgrip::sysid

@@ -19,7 +19,8 @@ constexpr std::array pressures{UnitFactor{6.894757, "psi and kPa"}, UnitFactor{1
                                UnitFactor{10, "mbar and kPa"},      UnitFactor{1000, "Pa and kPa"},
                                UnitFactor{14.50377, "psi and bar"}, UnitFactor{101.325, "atm and kPa"}};
 
-// A finger is nearly proportional, so a pressure value that is too small makes the readings seem too large.
+// Factors of probable mistakes. The motion of a finger is nearly proportional to the pressure, so if a
+// pressure value is too small, the readings seem too large.
 constexpr std::array mistakes{
     UnitFactor{6.894757, "psi in a pressure column taken for kPa"},
     UnitFactor{100, "bar in a pressure column taken for kPa"},
@@ -62,8 +63,8 @@ std::string pressure_units_apart(double factor) {
 }
 
 std::string mistaken_unit(double factor, model::OutputUnit unit) {
-  // The tolerance is large, because a finger is not exactly proportional, and the model may be of another
-  // finger.
+  // Large tolerance, because the motion of a finger is not exactly proportional to the pressure, and the
+  // model may have been fitted to another finger.
   constexpr double close = 0.25;
   const UnitFactor* nearest = nullptr;
   const std::span<const UnitFactor> known = unit == model::OutputUnit::deg
