@@ -1,5 +1,5 @@
 #pragma once
-// Axis labels with units in words, for a figure that is read without the text of its report.
+// Writes the units of axis labels in words, for a figure that is read without the text of its report.
 
 #include <string>
 #include <string_view>

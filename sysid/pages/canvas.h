@@ -1,5 +1,6 @@
 #pragma once
-// Lines, boxes and texts as SVG elements in the colours of the palette. Charts and drawings consist of them.
+// Draws lines, boxes and texts as SVG elements in the colours of the palette. Charts and drawings are made of
+// these elements.
 
 #include <string>
 #include <string_view>
@@ -9,7 +10,7 @@
 
 namespace softgrip::sysid {
 
-/// The part of a text that is at its point.
+/// The part of a text that is placed at the given point.
 enum class Anchor { start, middle, end };
 
 /// Returns the approximate width of a text [px], for margins and legends. The actual font is unknown.
@@ -26,9 +27,9 @@ class Canvas {
                   std::string_view more = {});
   void words(Pixel at, Anchor anchor, std::string_view text, Colour colour = Colour::text,
              std::string_view more = {});
-  /// Draws a text that remains readable on a curve.
+  /// Draws a text that remains readable if it lies on a curve.
   void words_on_curve(Pixel at, Anchor anchor, std::string_view text);
-  /// Appends markup that another file of this folder has produced.
+  /// Appends markup that another file of this folder has produced. It is not escaped.
   void raw(std::string_view markup) { markup_ += markup; }
 
   [[nodiscard]] const std::string& markup() const noexcept { return markup_; }

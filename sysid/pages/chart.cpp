@@ -75,7 +75,8 @@ class Painter {
     const Scale x(chart_.x, x_range_.lowest, x_range_.highest, left_, right_, margin);
     const Scale y(chart_.y, y_range_.lowest, y_range_.highest, lower_, upper_, true);
     grid(x, y);
-    // A nested <svg> clips curves at the axes. A clip path would need a name that is unique in the document.
+    // A nested <svg> clips the curves at the axes. A clip path would also do this, but it needs an id that is
+    // unique in the document.
     const std::string box = fixed(left_, 1) + ' ' + fixed(upper_, 1) + ' ' + fixed(right_ - left_, 1) + ' ' +
                             fixed(lower_ - upper_, 1);
     canvas_.raw("<svg x=\"" + fixed(left_, 1) + "\" y=\"" + fixed(upper_, 1) + "\" width=\"" +
@@ -95,7 +96,7 @@ class Painter {
     upper_ = top_ + 10 + line_px * head_lines();
     lower_ = top_ + chart_.height - (chart_.x.label.empty() ? 22 : 40);
   }
-  /// Returns the number of lines for title and legend. They share a line if both fit.
+  /// Returns the number of lines for the title and the legend. Both are on one line if they fit.
   [[nodiscard]] int head_lines() const {
     const double legend = legend_width();
     if (chart_.title.empty()) return legend > 0 ? 1 : 0;
@@ -158,8 +159,9 @@ class Painter {
     }
   }
 
-  /// Draws dots as strokes: round dots of length 0, or square dots for the colours `error` and `other`. A
-  /// square dot has a small length, because PDF renderers do not draw a square end without a direction.
+  /// Draws points as strokes with a round end and length 0. For the colours `error` and `other`, the ends are
+  /// square, and the strokes have a small length, because PDF renderers do not draw a square end of a stroke
+  /// without a direction.
   void points(const std::vector<Pixel>& curve, Colour colour, double radius) {
     const bool square = colour == Colour::error || colour == Colour::other;
     const auto dots = distinct_dots(curve);
@@ -215,7 +217,7 @@ class Painter {
         canvas_.words_on_curve({right_ - 4, y.px(mark.at) - 4}, Anchor::end, mark.label);
     } else {
       canvas_.line({x.px(mark.at), upper_}, {x.px(mark.at), lower_}, Colour::text, dashes);
-      // The label is next to its line, on the side with enough space.
+      // Place the label on the side of its line that has enough space.
       const bool fits = x.px(mark.at) + 4 + text_width(mark.label) <= right_;
       const double at = fits ? x.px(mark.at) + 4 : x.px(mark.at) - 4;
       if (!mark.label.empty())

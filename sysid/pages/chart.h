@@ -1,10 +1,10 @@
 #pragma once
 // Charts as SVG: lines, points, bands, bars. They contain no script and use the fonts of the reader's system.
 //
-// A chart is a plain value; markup_of() draws it as part of a figure (figure.h). Units of axes are written in
+// A chart is a plain value. markup_of() draws it as part of a figure (figure.h). Units of axes are written in
 // words. Long series are thinned to the resolution of the picture. If x increases, the lowest and the highest
-// value of each pixel column are kept, so a single outlier among a million samples remains visible. Other
-// curves (loops) lose points that coincide with drawn ones.
+// value of each pixel column are kept, so that a single outlier among a million samples remains visible. In
+// other curves (loops), points that coincide with points already drawn are removed.
 
 #include <optional>
 #include <string>
@@ -22,9 +22,9 @@ struct Series {
   enum class Style {
     line,
     points,
-    band,   ///< filled between y and y_upper
-    bars,   ///< bars from 0 to y with the largest possible width
-    steps,  ///< a line that keeps its value until the next x
+    band,   ///< area between y and y_upper
+    bars,   ///< bars from 0 to y, as wide as possible
+    steps,  ///< a line that is horizontal until the next x
   };
   std::string label;  ///< text in the legend; "": not in the legend
   std::vector<double> x;
@@ -63,12 +63,13 @@ struct Chart {
   int height = 280;  ///< [px]
 };
 
-/// Returns a chart whose x axis has names instead of numbers.
+/// Returns a chart whose x axis has names instead of numbers as tick labels.
 [[nodiscard]] Chart chart_over(std::vector<std::string> names);
-/// Returns points over the names of such a chart, one value for each name; NaN: no point.
+/// Returns points for such a chart, one value per name. NaN: no point.
 [[nodiscard]] Series points_over_names(std::string label, Colour colour, std::vector<double> values);
 
-/// Rows of charts, one below the other. A row has one chart of full width, or several charts side by side.
+/// Rows of charts, one below the other. A row contains one chart of full width, or several charts side by
+/// side.
 using ChartRows = std::vector<std::vector<Chart>>;
 
 /// The size of a picture [px].
@@ -76,10 +77,11 @@ struct Extent {
   int width = 0;
   int height = 0;
 };
-/// Returns the width of the widest row and the sum of the heights.
+/// Returns the size of a picture with these rows: the width of the widest row and the sum of the heights.
 [[nodiscard]] Extent extent_of(const ChartRows& rows);
 
-/// Returns the charts as SVG elements within extent_of(). The y axes of the charts in a column are aligned.
+/// Returns the charts as SVG elements that fit into extent_of(). The y axes of charts in one column are
+/// aligned.
 [[nodiscard]] std::string markup_of(const ChartRows& rows);
 
 /// Returns rows with one chart each.

@@ -26,8 +26,8 @@ bool x_increases(const std::vector<Pixel>& curve) {
   return true;
 }
 
-/// Maximum numbers of strokes and dots. A reader cannot distinguish more of them from the area that they
-/// cover.
+/// Largest numbers of strokes and dots. If there are more, a reader cannot distinguish them from the area
+/// that they cover.
 constexpr std::size_t most_strokes = 9000;
 constexpr std::size_t most_dots = 6000;
 
@@ -67,7 +67,7 @@ std::vector<Pixel> thinned_by_column(const std::vector<Pixel>& curve) {
   return kept;
 }
 
-/// Removes points that are closer than `least_px` to the last kept point, and repeated strokes.
+/// Removes points that are closer than `least_px` to the last kept point. Also removes repeated strokes.
 std::vector<Pixel> thinned_by_stroke(const std::vector<Pixel>& curve, double least_px) {
   constexpr double grid = 1.0 / 3.0;
   std::vector<Pixel> kept;
@@ -108,7 +108,8 @@ std::vector<Pixel> thinned_by_stroke(const std::vector<Pixel>& curve, double lea
   return kept;
 }
 
-/// Returns the area that a cloud covers: in each column, vertical strokes over points closer than `gap`.
+/// Returns the area that the points cover. In each pixel column, points closer than `gap` are joined by a
+/// vertical stroke.
 std::vector<Pixel> covered(const std::vector<Pixel>& curve, double gap) {
   constexpr double dot = 0.7;  // length of the stroke for a single point
   std::vector<Pixel> cloud;

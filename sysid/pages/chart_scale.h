@@ -8,7 +8,7 @@
 
 namespace softgrip::sysid {
 
-/// The position of a tick, as a value of the axis, and its text.
+/// The position of a tick, as a value of the axis, and the text of the tick.
 struct Tick {
   double at;
   std::string text;
@@ -17,14 +17,15 @@ struct Tick {
 /// One axis, mapped onto pixels.
 class Scale {
  public:
-  /// @param lowest,highest  range of the data, used if the axis has no limits.
-  /// @param from_px,to_px  positions of the lower and the upper end.
+  /// @param lowest,highest  range of the data; used if the axis has no limits of its own.
+  /// @param from_px,to_px  pixel positions of the lower and the upper end of the axis.
   Scale(const Axis& axis, double lowest, double highest, double from_px, double to_px, bool with_margin);
 
   [[nodiscard]] double px(double value) const;
   [[nodiscard]] double lower() const { return lower_; }
   [[nodiscard]] double upper() const { return upper_; }
-  /// Returns about `most` ticks or fewer, at 1, 2 or 5 times a power of ten (logarithmic: at powers of ten).
+  /// Returns at most about `most` ticks at 1, 2 or 5 times a power of ten, or at powers of ten on a
+  /// logarithmic axis.
   [[nodiscard]] std::vector<Tick> ticks(int most) const;
 
  private:

@@ -40,7 +40,7 @@ std::vector<Column> columns_of(const ChartRows& rows) {
   const std::vector<double>* last_x = nullptr;
   for (const auto& row : rows) {
     for (const Chart& chart : row) {
-      // In stacked charts, only the lowest chart has the label of the x axis.
+      // In charts that are stacked, only the lowest chart has a label at the x axis.
       const std::string& x_label = chart.x.label.empty() ? rows.back().front().x.label : chart.x.label;
       for (const Series& s : chart.series) {
         if (last_x == nullptr || *last_x != s.x) columns.push_back({x_label, &s.x, &chart.x.categories});

@@ -10,10 +10,11 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Bytes of the page that must remain after a figure, and after its copy as a file.
+/// Numbers of bytes of a page that must remain free after a figure is added, and after the copy of a figure
+/// for saving is added.
 constexpr std::size_t kept_for_text = 150'000;
 constexpr std::size_t kept_for_figures = 450'000;
-/// Minimum number of sections for a table of contents.
+/// Smallest number of sections for which a page has a table of contents.
 constexpr std::size_t many_sections = 3;
 
 constexpr std::string_view style = R"(
@@ -84,7 +85,8 @@ std::string_view class_of(Tone tone) {
 }  // namespace
 
 std::string text_of(const Table& table) {
-  const auto width_of = [](std::string_view text) {  // number of UTF-8 characters, without continuation bytes
+  // Counts UTF-8 characters: all bytes except continuation bytes.
+  const auto width_of = [](std::string_view text) {
     return static_cast<std::size_t>(
         std::count_if(text.begin(), text.end(), [](char c) { return (c & '\xc0') != '\x80'; }));
   };

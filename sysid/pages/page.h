@@ -1,9 +1,9 @@
 #pragma once
 // The self-contained HTML page of a report: the verdict first, then the provenance, then the sections.
 //
-// The page has no JavaScript and no references to other files. It can be printed, and on a screen it has the
-// reader's colour scheme. Every text is escaped here; only pictures from this folder are inserted as markup.
-// Figures are numbered in their order.
+// The page has no JavaScript and no references to other files. It can be printed, and on a screen it uses the
+// reader's colour scheme. Every text is escaped here. Only pictures that this folder has produced are
+// inserted as markup. Figures are numbered in the order of the page.
 
 #include <cstddef>
 #include <string>
@@ -15,10 +15,11 @@
 
 namespace softgrip::sysid {
 
-/// The colour of a verdict.
+/// The meaning of a verdict, which determines its colour.
 enum class Tone { good, doubtful, bad };
 
-/// A table. Columns with `numeric` are right-aligned; columns without an entry are text.
+/// A table. `numeric` states for each column if it is right-aligned; columns without an entry are
+/// left-aligned text.
 struct Table {
   std::string caption;
   std::vector<std::string> header;
@@ -35,8 +36,8 @@ using Terms = std::vector<std::pair<std::string, std::string>>;
 /// A report, built from top to bottom.
 class Page {
  public:
-  /// Maximum size of a page [bytes], for logs of any length. A figure that would exceed it is replaced by a
-  /// sentence.
+  /// Largest size of a page [bytes], regardless of the length of the logs. A figure with which the page would
+  /// exceed it is replaced by a sentence.
   static constexpr std::size_t most_bytes = 1'500'000;
 
   /// @param title  title of the document. @param verdict  one sentence for a technician.
@@ -45,7 +46,7 @@ class Page {
   /// Adds entries below the verdict: versions, files, hashes.
   void provenance(Terms entries);
   void section(std::string_view title);
-  /// Begins a section on a new sheet of paper, for readers who verify the result.
+  /// Begins a section on a new sheet of paper, for readers who want to verify the result.
   void appendix(std::string_view title);
   void subsection(std::string_view title);
   void paragraph(std::string_view text);

@@ -1,8 +1,9 @@
 #pragma once
-// The colours of pages and pictures by role, for light and dark screens. Paper is always light.
+// The colours of pages and pictures, selected by role, for light and dark screens. Printed pages always use
+// the light colours.
 //
-// An element has its light colour as an attribute, which all SVG programs support. It also has a class, for
-// which the style sheet of a page defines the colour in the reader's scheme.
+// The light colour of an element is stored as an attribute, which all SVG programs support. The element also
+// has a class, for which the style sheet of a page defines the colour in the reader's colour scheme.
 
 #include <optional>
 #include <string>
@@ -10,8 +11,8 @@
 
 namespace softgrip::sysid {
 
-/// A colour by its role, so that one quantity has the same colour in all pictures of a report. The colours of
-/// curves are those of Okabe and Ito, which are distinct for all kinds of colour vision.
+/// A colour, named by its role, so that a quantity has the same colour in all pictures of a report. The
+/// colours of curves are those of Okabe and Ito, which people with any kind of colour vision can distinguish.
 enum class Colour {
   measured,
   model,
@@ -31,12 +32,13 @@ enum class Colour {
 /// Returns the colour code of the light scheme, such as "#0072b2".
 [[nodiscard]] std::string_view light_code(Colour colour);
 
-/// Returns attributes of an SVG element, beginning with a blank. An element inherits attributes that are not
-/// given.
+/// Returns attributes of an SVG element, with a leading blank. The element inherits the attributes that are
+/// not given.
 [[nodiscard]] std::string stroked(Colour stroke);
 [[nodiscard]] std::string filled(Colour fill, std::optional<Colour> stroke = std::nullopt);
 
-/// Returns CSS with both schemes as variables of `selector`, and the classes that use them.
+/// Returns CSS that defines the colours of both schemes as variables of `selector`, and the classes that use
+/// these variables.
 [[nodiscard]] std::string scheme_css(std::string_view selector);
 
 }  // namespace softgrip::sysid
