@@ -24,15 +24,15 @@ std::string source_of(const std::vector<Log>& logs, double rmse_mm, const model:
          "), starting from " + start.name;
 }
 
-/// Returns the error of a fit and the plausibility warnings of its logs, because a wrong unit can cause the
-/// error.
+/// Returns the error message of a fit, followed by the plausibility warnings about its logs, because a wrong
+/// unit can be the cause of the error.
 std::string refusal_of(const std::string& error, const std::vector<Log>& logs) {
   std::string text = error;
   for (const std::string& implausible : plausibility_warnings_among(logs)) text += "; " + implausible;
   return text;
 }
 
-/// Returns the warnings about the data and the predictions.
+/// Returns the warnings about the logs and about the predictions for them.
 std::vector<std::string> warnings_of_data(const Identification& result, const std::vector<Log>& logs,
                                           std::vector<std::string> wrong_readings) {
   std::vector<std::string> warnings = std::move(wrong_readings);
