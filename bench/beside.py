@@ -1,11 +1,12 @@
 #!/usr/bin/python3
-"""The demo's identification in Octave and in Python with SciPy, beside softgrip, on one page.
+"""Repeats the identification of the demo in Octave and in Python with SciPy, and compares it with softgrip on one page.
 
     bench/beside.py [--build build/release] [--page docs/results/beside-octave-and-scipy.md] [--runs 3]
 
 Needs Debian's octave, octave-optim, liboctave-dev, python3-scipy and python3-pandas (scripts/packages.sh tests readers benchmarks).
-Octave's and SciPy's programs stand in bench/beside; the simulator that both drive is compiled C. Every number of the page
-is measured by this run. Exit codes: 0 the page is written, 1 a program failed or what was exported was not read back.
+The programs for Octave and SciPy are in bench/beside; both use the same simulator, which is compiled C. Every number of the
+page is measured by this run. Exit codes: 0: the page is written; 1: a program failed, or a reader did not get the exported
+values.
 """
 import argparse
 import csv
@@ -30,8 +31,8 @@ SIMULATOR, MEX = ROOT / "bench/sysid_peer_simulator.c", ROOT / "bench/sysid_peer
 
 
 def said(words, folder):
-    """The standard output of a program, and the processor time that it took on all cores, because other programs run
-    at the same time."""
+    """Runs a program. Returns its standard output and the processor time that it took on all cores. Elapsed time is
+    not used, because other programs may run at the same time."""
     began = resource.getrusage(resource.RUSAGE_CHILDREN)
     done = subprocess.run([str(word) for word in words], cwd=folder, capture_output=True, text=True)
     if done.returncode != 0:
@@ -41,13 +42,13 @@ def said(words, folder):
 
 
 def repeated(runs, words, folder):
-    """The output of the first run and the median processor time of `runs`."""
+    """Runs a program `runs` times. Returns the output of the first run and the median of the processor times."""
     outputs = [said(words, folder) for _ in range(runs)]
     return outputs[0][0], statistics.median(seconds for _, seconds in outputs)
 
 
 def lines_of(*files):
-    """The lines that are neither empty nor a comment."""
+    """Returns the number of lines that are neither empty nor a comment."""
     comment = ("#", "%", "/*", "*", "//", '"""')
     return sum(bool(line.strip()) and not line.strip().startswith(comment)
                for file in files for line in file.read_text().splitlines())
@@ -99,7 +100,7 @@ class Study:
         self.extended = json.loads((self.folder / "extended/validate.json").read_text())["rmse_mm"]
 
     def exports(self):
-        """The largest difference between the exported values and those that each reader gets [mm]."""
+        """Computes, for each reader, the largest difference between its values and the exported ones [mm]."""
         import pandas
         import scipy.io
         said([self.softgrip, "export", "tp1.csv", "--out", "out.mat"], self.folder)

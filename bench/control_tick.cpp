@@ -1,5 +1,6 @@
-// CPU time of one channel per tick: the whole controller and its parts. The budget is 1 us of CPU for a tick
-// of two fingers with all functions, so about 350 ns per channel here.
+// Measures the CPU time of one channel per tick, for the whole controller and for its parts. A tick of two
+// fingers with all functions may take 1 us of CPU time, so the channel controllers measured here may take
+// about 350 ns each.
 
 #include <benchmark/benchmark.h>
 
@@ -44,8 +45,8 @@ control::ChannelSettings settings_for(control::FeedforwardKind kind) {
   return settings;
 }
 
-/// A run of a finger that equals its model, recorded once, so that the benchmark measures the controller
-/// alone.
+/// A recorded run of a finger that equals its model. The finger is not simulated during the benchmark, so
+/// only the controller is measured.
 struct Tape {
   explicit Tape(const control::ChannelSettings& settings) {
     reference.start(0, 0);
@@ -105,8 +106,8 @@ void channel(benchmark::State& state) {
 }
 BENCHMARK(channel)->ArgName("feedforward")->Arg(0)->Arg(1)->Arg(2);
 
-// A channel whose valve model is a dead band and a regulator instead of a lag, as identified from the command
-// alone.
+// Measures a channel whose valve model consists of a dead band and a regulator instead of a lag. Such a model
+// results if the valve is identified from the command alone.
 void channel_behind_a_regulator(benchmark::State& state) {
   control::ChannelSettings settings = settings_for(control::FeedforwardKind::full_model);
   model::Model& model = settings.model;
@@ -122,7 +123,7 @@ void channel_behind_a_regulator(benchmark::State& state) {
 }
 BENCHMARK(channel_behind_a_regulator);
 
-// Times each tick of two fingers separately, for the percentiles.
+// Measures the time of each tick of two fingers separately, to determine percentiles.
 void two_channels_percentiles(benchmark::State& state) {
   const auto settings = settings_for(control::FeedforwardKind::full_model);
   Tape tape(settings);

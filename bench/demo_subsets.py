@@ -1,10 +1,11 @@
 #!/usr/bin/python3
-"""Diagnoses all seven subsets of the three logs that scripts/demo.sh makes, and writes what came of them as a page.
+"""Diagnoses all seven subsets of the three logs that scripts/demo.sh makes, and writes the results as a page.
 
     bench/demo_subsets.py --build BUILD [--page FILE] [--check] [SUBSET ...]
 
-SUBSET: names of logs joined by +, such as tp1+sp2; default: all seven. --check fails where an interval does not hold the
-twin's number, where something else is named, or where more logs name less than fewer did.
+SUBSET: names of logs joined by +, such as tp1+sp2; default: all seven. --check fails in three cases: an interval does not
+cover the true value of the simulated finger, a wrong cause is named, or a cause is named with some logs but not with these
+logs and further ones.
 """
 import argparse
 import itertools
@@ -23,7 +24,7 @@ NUMBER_OF = {"transport_delay": "delay_s", "valve_lag": "time_constant_s"}
 
 
 def demo_logs():
-    """(signals, options of `softgrip simulate`) of the demo."""
+    """Returns the names of the demo's signals, and its options of `softgrip simulate`."""
     text = (ROOT / "scripts/demo.sh").read_text()
     signals = re.search(r"for signal in ([a-z0-9 ]+); do", text)[1].split()
     options = re.search(r"--noise-mm [0-9.]+ --seed \d+ --rate-hz \d+", text)[0].split()
@@ -31,7 +32,7 @@ def demo_logs():
 
 
 def truth():
-    """The true delay and lag of the twin."""
+    """Returns the delay and the lag of the simulated finger [s], by cause."""
     text = (ROOT / "config/models/bench_twin.yaml").read_text()
     return {cause: float(re.search(rf"{cause}:\s+{number}: ([0-9.]+)", text)[1]) for cause, number in NUMBER_OF.items()}
 
@@ -43,7 +44,7 @@ def diagnose(softgrip, logs, out):
 
 
 def found(diagnosis):
-    """cause -> (value, low, high, inclusion) of the named causes; None for a cause without a number here."""
+    """Returns (value, low, high, inclusion) for each named cause; None for a cause that NUMBER_OF does not contain."""
     rows = {}
     for cause in diagnosis["causes"]:
         number = cause["parameters"].get(NUMBER_OF.get(cause["id"]))
@@ -52,7 +53,7 @@ def found(diagnosis):
 
 
 def complaints(results, real):
-    """A sentence for each mistake in the answers."""
+    """Returns a sentence for each error in the diagnoses."""
     wrong = []
     for subset, rows in results.items():
         for cause, row in rows.items():

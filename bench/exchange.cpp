@@ -1,5 +1,6 @@
-// Duration of an exchange over loopback, compared with libmodbus' client and the same requests to the same
-// server. The two clients alternate block by block within the same seconds, and are compared by percentile.
+// Measures the duration of an exchange over loopback. libmodbus sends the same requests to the same server
+// for comparison. Blocks of exchanges of the two clients alternate within the same seconds, and the
+// percentiles of both are compared.
 //
 //   build/release/bench/exchange_bench [exchanges, default 20000]
 
@@ -28,7 +29,7 @@ using drivers::ModbusBoard;
 
 constexpr std::size_t block = 100;
 
-/// libmodbus' server in a thread; each server handles one session at a time.
+/// A server of libmodbus in a thread. Each server handles one session at a time.
 class Server {
  public:
   Server() : context_(::modbus_new_tcp("127.0.0.1", 0)), mapping_(::modbus_mapping_new(64, 64, 512, 64)) {
@@ -71,8 +72,8 @@ class Server {
   std::thread thread_;
 };
 
-/// Map of the values that both clients exchange: two outputs from register 256 and two inputs from register
-/// 0, integers.
+/// Returns the board map that both clients use: two integer outputs from register 256 and two integer inputs
+/// from register 0.
 drivers::BoardMap map_with(bool fc23) {
   drivers::BoardMap map;
   map.name = "bench";

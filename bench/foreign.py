@@ -1,14 +1,16 @@
 #!/usr/bin/python3
-"""Judges softgrip on data of other laboratories.
+"""Tests softgrip with data of other laboratories.
 
     bench/foreign.py --out DIR [--data DIR ...] [--only JUDGE ...] [--cases PATTERN ...] [--softgrip PROGRAM]
                      [--threads 1] [--at-most-s 3600] [--reference FILE] [--page [PAGE]]
 
-Judges: repeats (nothing changed between the runs), changes (labelled by the laboratory), stiction (loops with labelled
-valves), identification (next to a linear output-error model and a Bouc-Wen fit by SciPy). Each folder below --data is a data set; bench/foreign/sets/FOLDER.yaml, or foreign.yaml in the folder, describes it
-(docs/how-to/measure.md).
-DIR/results.json gets the cases and their summary. Calls are kept in DIR: a repeated run only does what has changed. A case
-that fails costs only itself. Exit codes: 0 all cases were judged, 1 some failed, 2 usage, 4 no such data or program.
+A judge evaluates one kind of case: repeats (runs between which nothing changed), changes (changes that the laboratory
+labelled), stiction (control loops with labelled valves), identification (compared with a linear output-error model and with
+a Bouc-Wen fit by SciPy). Each folder below --data is a data set. bench/foreign/sets/FOLDER.yaml, or foreign.yaml in the
+folder, describes it (docs/how-to/measure.md).
+The cases and their summary are written to DIR/results.json. The results of all calls are stored in DIR, so that a repeated
+run makes only the calls whose inputs have changed. If a case fails, the others are still judged. Exit codes: 0: all cases
+were judged; 1: some failed; 2: usage; 4: no such data or program.
 """
 import argparse
 import fnmatch
@@ -35,7 +37,7 @@ PAGE, REFERENCE = ROOT / "docs/results/foreign-data.md", HERE / "reference.json"
 
 
 class Judge:
-    """The cases of a data set, the judgement of one case, its text for the screen, and the summary of all."""
+    """Four functions: the cases of a data set, the result of one case, its text for the screen, the summary of all."""
 
     def __init__(self, cases, judge, said, summary):
         self.cases, self.judge, self.said, self.summary = cases, judge, said, summary
@@ -71,7 +73,7 @@ def parsed(words):
 
 
 def chosen(options, sets):
-    """(judge, data set, item) of each case, in the order of judges."""
+    """Yields (judge, data set, item) for each selected case, in the order of the judges."""
     for name in JUDGES:
         for data_set in sets if name in options.only else ():
             for item in JUDGES[name].cases(data_set):
@@ -102,7 +104,7 @@ def summaries(cases):
 
 
 class Results:
-    """results.json, written after each case."""
+    """Collects the cases and writes results.json after each of them."""
 
     def __init__(self, options, runner, sets):
         self.path = options.out / "results.json"
@@ -122,7 +124,7 @@ class Results:
 
 
 def refused(options):
-    """(exit code, sentence) if nothing can be run."""
+    """Returns (exit code, sentence) if a folder of data or the program is missing, otherwise None."""
     for folder in options.data:
         if not folder.is_dir():
             return 4, f"there is no folder {folder}"

@@ -1,11 +1,12 @@
-// Duration of a whole tick of the loop's thread: it takes readings, controls two fingers with full_model and
-// PID, checks limits, runs the supervisor, publishes commands and snapshot, and passes rows to the recorder.
-// Only Loop::tick is timed; board and recorder run between the ticks. Each series of ticks runs twice. The
-// first run measures the CPU time of the thread, which excludes interruptions but needs a system call. The
-// second run uses the monotonic clock, which is fast to read but includes interruptions.
+// Measures the duration of a whole tick of the control loop's thread. The tick takes readings, controls two
+// fingers with full_model and PID, checks limits, runs the supervisor, publishes commands and snapshot, and
+// passes rows to the recorder. Only Loop::tick is timed; board and recorder run between the ticks. Each
+// series of ticks runs twice. The first run measures the CPU time of the thread, which excludes interruptions
+// but needs a system call. The second run uses the monotonic clock, which is fast to read but includes
+// interruptions.
 //
-// Then the program measures how much faster than real time the whole daemon runs in virtual time: board,
-// loop, bus, recorder and disk.
+// Then the program measures how much faster than real time the whole daemon (board, control loop, bus,
+// recorder and disk) runs in virtual time.
 //
 //   loop_tick [TICKS]
 
@@ -40,7 +41,7 @@ Value or_exit(std::optional<Value> value, const document::Problems& problems) {
   return std::move(*value);
 }
 
-/// Returns the example rig with another rate.
+/// Returns the example rig with the given control rate.
 rig::RigFile rig_at(double rate_hz) {
   document::Problems problems;
   document::Document document = document::parse_file(SOFTGRIP_SOURCE_DIR "/config/rig.yaml", problems);
@@ -64,7 +65,7 @@ struct Times {
   }
 };
 
-/// Measures the duration of two successive readings of the clock.
+/// Measures the time between two successive readings of the clock.
 Times time_nothing(clockid_t clock) {
   Times times;
   for (int i = 0; i < 100'000; ++i) {
@@ -85,7 +86,8 @@ std::shared_ptr<const daemon::LoadedSequence> track_sine(const control::RigSetti
   return *sequence;
 }
 
-/// Times the ticks of a sequence that follows a sine; the sequence is repeated.
+/// Measures the ticks of a sequence that follows a sine. The sequence is repeated until `ticks` ticks were
+/// measured.
 Times time_ticks(double rate_hz, clockid_t clock, std::uint64_t ticks) {
   daemon::DaemonOptions options;
   options.virtual_time = true;
@@ -120,8 +122,8 @@ void print(double rate_hz, const char* name, clockid_t clock, std::uint64_t tick
               rate_hz, name, times.at(0.5), times.at(0.99), times.at(0.999), times.at(1), nothing.at(0.5));
 }
 
-/// Prints the simulated seconds per second of the clock with a recording of everything: the median of several
-/// runs.
+/// Prints how many seconds are simulated per second of elapsed time while everything is recorded: the median
+/// of several runs.
 void print_speed(double rate_hz) {
   constexpr int runs = 7;
   std::vector<double> by_clock;

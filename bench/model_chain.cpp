@@ -1,4 +1,5 @@
-// CPU time of one sample of a model chain: a step and a trial of an inverse, with and without derivatives.
+// Measures the CPU time of one sample of a model: a step, and a trial step as an inverse needs it, with and
+// without the derivative.
 
 #include <benchmark/benchmark.h>
 

@@ -1,6 +1,6 @@
 #pragma once
-// A finger with play operators and the usual number of parameters of an identified model, for comparison with
-// the Bouc-Wen chain.
+// A model of a finger with play operators, with as many parameters as an identified model usually has. It is
+// compared with the Bouc-Wen model.
 
 #include <cmath>
 #include <utility>
@@ -15,9 +15,9 @@
 
 namespace softgrip::bench {
 
-/// 12 play operators up to 57 kPa, 7 creep branches and a nonlinear characteristic, with the dead time of
-/// bench_twin and a lag that fills faster than it vents. The values are examples, not measurements; the
-/// finger reaches 20 mm below 60 kPa.
+/// Returns a model with 12 play operators up to 57 kPa, 7 creep branches and a nonlinear characteristic. It
+/// has the dead time of bench_twin and a lag that fills faster than it vents. The values are examples, not
+/// measurements. The finger reaches 20 mm below 60 kPa.
 inline model::Model play_model() {
   constexpr int plays = 12, branches = 7;
   std::vector<double> hysteresis{0, 0, 0, 0, 0, 0.15}, creep{1e9};

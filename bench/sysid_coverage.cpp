@@ -1,15 +1,17 @@
-// Coverage of the 95 % intervals: scattered true models, simulated logs, white and correlated noise.
+// Measures how often the 95 % intervals of identified parameters cover the true values. The logs are
+// simulated with randomly changed models and with white or correlated noise.
 //
 //   bench_sysid_coverage [LOGS [RATE_HZ [FIRST_SEED]]]
 //
 // Each fit uses one log of the signal tp1. Each true parameter deviates from the start value by 5 % (standard
 // deviation).
 //
-// The RMSE of a fit is below the added noise, because the fit follows a part of the noise. The expected ratio
-// is known: with H = J (J'J)^-1 J' and the correlation matrix R of the noise, the expected sum of squares is
-// s^2 (n - tr(H R)). For white noise tr(H R) is the number of parameters. Correlated noise resembles the slow
-// responses of the model, and the fit absorbs much more of it. So the program prints two ratios: to the added
-// noise, and to the expected residual of a correct fit.
+// The RMSE of a fit is below the added noise, because the fit follows a part of the noise. The ratio that is
+// expected of a correct fit is known: with H = J (J'J)^-1 J' and the correlation matrix R of the noise, the
+// expected sum of squares is s^2 (n - tr(H R)). For white noise, tr(H R) is the number of parameters.
+// Correlated noise resembles the slow responses of the model, so the fit absorbs much more of it. Therefore
+// the program prints two ratios: the RMSE divided by the added noise, and the RMSE divided by the residual
+// that is expected of a correct fit.
 
 #include <algorithm>
 #include <cmath>
@@ -46,8 +48,8 @@ struct Count {
   [[nodiscard]] double percent() const { return trials > 0 ? 100.0 * inside / trials : 0; }
 };
 
-/// Result of one fit: the combinations whose intervals cover the true value, and the RMSE divided by the
-/// added noise.
+/// Result of one fit: for each combination of parameters, true if the interval covers the true value; and the
+/// RMSE divided by the added noise.
 struct Trial {
   std::map<std::string, bool> inside;
   double rmse_over_noise = 0;
@@ -56,7 +58,8 @@ struct Trial {
   bool failed = true;
 };
 
-/// Returns sqrt(1 - tr(H R) / n) at `truth` for noise with this lag-1 correlation.
+/// Returns sqrt(1 - tr(H R) / n) at the model `truth`, for noise whose lag-1 autocorrelation is
+/// `correlation`.
 double expected_ratio(const model::Model& truth, const Identification& fit, double correlation) {
   std::vector<std::size_t> free;
   for (std::size_t i = 0; i < fit.parameters.size(); ++i) {
@@ -111,7 +114,8 @@ Trial fit_one(const std::string& name, double correlation, double rate_hz, std::
   return trial;
 }
 
-/// Prints the median, the 5 % and 95 % quantiles, and the share of trials within 2 % of 1.
+/// Prints the median, the 5 % and 95 % quantiles, and the share of values that differ from 1 by less than 2
+/// %.
 void print(const char* what, std::vector<double> values) {
   if (values.empty()) return;
   std::sort(values.begin(), values.end());

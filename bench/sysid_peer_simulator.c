@@ -1,5 +1,5 @@
-/* The base chain (Bouc-Wen with exponent 1 plus Kelvin-Voigt branches) as a compiled simulator for the
- * optimisers of other programs. Like softgrip's, it is exact in pressure and in time for a command that is linear
+/* Simulator of the default structure (Bouc-Wen with exponent 1 plus Kelvin-Voigt branches) for the optimisers of
+ * other programs. Like softgrip's simulator, it is exact in pressure and in time if the command is linear
  * between samples. Plain C, so that ctypes and an Octave mex file can call it. */
 #include <math.h>
 #include <stddef.h>
@@ -9,7 +9,7 @@ static double phi1(double z) {
   return fabs(z) < 1e-5 ? 1 - z * (0.5 - z / 6) : -expm1(-z) / z;
 }
 
-/* One monotone step of h over dp; closed form between sign changes of h. */
+/* Advances h over a monotone change dp of the pressure, in closed form between the sign changes of h. */
 static double bouc_wen(double h, double dp, double beta, double gamma, double eta) {
   for (int part = 0; part < 2 && dp != 0; ++part) {
     const double direction = dp > 0 ? 1 : -1;

@@ -1,4 +1,4 @@
-% Runs Octave's lsqcurvefit on the logs and start points of sysid_starts, with a compiled simulator.
+% Fits the logs of sysid_starts from its start points with Octave's lsqcurvefit and a compiled simulator.
 function sysid_peers(folder, count)
   warning('off', 'all');
   pkg load optim

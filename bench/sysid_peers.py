@@ -1,4 +1,4 @@
-"""Runs scipy's least_squares on the logs and start points of sysid_starts, with a compiled simulator."""
+"""Fits the logs of sysid_starts from its start points with SciPy's least_squares and a compiled simulator."""
 import ctypes
 import sys
 import time
@@ -29,7 +29,8 @@ def simulate(x, t, p):
 
 
 def natural(z):
-    """Stiffnesses and dampings as logarithms, as softgrip fits them; the other parameters unchanged."""
+    """Converts the logarithms of stiffnesses and dampings, which are fitted as in softgrip, to the parameters themselves.
+    The other parameters are unchanged."""
     return np.concatenate([z[:4], np.exp(z[4:])])
 
 

@@ -5,7 +5,7 @@
 #   bench/sysid_peers.sh [BUILD_FOLDER [STARTS [PEER_STARTS [SAMPLES]]]]
 #
 # Needs the packages python3-scipy, octave, octave-optim, liboctave-dev (scripts/packages.txt, section bench).
-# The other programs take minutes for twenty starts; with PEER_STARTS they only run the first of these starts.
+# The other programs take minutes for twenty starts. They use only the first PEER_STARTS starts if this number is given.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 build=${1:-$here/../build/release}

@@ -1,5 +1,5 @@
-// The softgrip side of bench/sysid_peers.sh: creates three logs and start points, fits them and prints the
-// times.
+// The part of bench/sysid_peers.sh that runs softgrip: creates three logs and the start points, fits the logs
+// from each start point and prints the times.
 //
 //   sysid_starts FOLDER [STARTS [SAMPLES]]
 //
@@ -26,7 +26,8 @@ namespace {
 using namespace softgrip;
 using namespace softgrip::sysid;
 
-/// Returns start points with random factors of up to e on every parameter except k0 and the exponent.
+/// Returns start points. Every parameter except k0 and the exponent is multiplied by a random factor between
+/// 1/e and e.
 std::vector<model::Model> start_points(std::size_t count) {
   std::mt19937_64 random(2025);
   std::uniform_real_distribution<double> logarithm(-1, 1);
@@ -44,7 +45,7 @@ std::vector<model::Model> start_points(std::size_t count) {
   return starts;
 }
 
-/// Duration of a fit: wall-clock time, and CPU time, which other programs disturb less.
+/// Duration of a fit: elapsed time, and CPU time, on which other programs have less effect.
 struct Seconds {
   double wall;
   double processor;

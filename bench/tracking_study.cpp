@@ -1,6 +1,7 @@
-// Tracking accuracy on the bench twin: sines of 13 ± 7 mm at 0.05, 0.1 and 0.2 Hz, 200 Hz loop, sensor noise
-// 0.03 mm, and a controller model with errors of ±5 %. One search method finds the controller gains of
-// all schemes. Prints a table.
+// Measures the tracking accuracy on the simulated finger bench_twin and prints a table. The references are
+// sines of 13 ± 7 mm at 0.05, 0.1 and 0.2 Hz, the control rate is 200 Hz, and the sensor noise is 0.03 mm.
+// The parameters of the controller's model deviate by up to ±5 %. The gains of all schemes are found by the
+// same search method.
 //
 //   tracking_study [--draws N] [--search-draws N] [--seed S] [--latency-ms L] [--quantised]
 //   [--max-sensitivity M]
@@ -28,7 +29,7 @@ using control::PidSettings;
 
 struct Options {
   int draws = 40;        ///< draws for the results in the table
-  int search_draws = 6;  ///< other draws, for the search of the controller gains
+  int search_draws = 6;  ///< further draws, for the search of the controller gains
   std::uint64_t seed = 1;
   double latency_ms = 0;
   bool quantised = false;  ///< readings with 16 bits over 100 mm, commands with 12 bits over 100 kPa
@@ -38,7 +39,7 @@ struct Options {
 struct Scheme {
   std::string name;
   FeedforwardKind kind = FeedforwardKind::none;
-  model::Model believed;  ///< model of the controller without errors
+  model::Model believed;  ///< model of the controller before its parameters are changed
   double pressure_max_kpa = 60;
 };
 
@@ -56,8 +57,8 @@ model::Model model_named(const std::string& name) {
   return *model;
 }
 
-/// Returns a published element with an inverse: beta, which causes the inverse response, is reduced to 0.9 of
-/// alpha.
+/// Returns the published element with beta reduced to 0.9 of alpha. It can then be inverted, because beta
+/// causes the inverse response.
 model::Model regularised(const model::Model& published) {
   auto values = model::flat_values(published);
   values[model::find_path(published, "bouc_wen.beta_mm_per_kpa").value()] =
@@ -81,7 +82,8 @@ control::TrackingRun run_of(const Scheme& scheme, const Options& options, const 
   return run;
 }
 
-/// Returns models within the scatter for which the feedforward exists, and counts the others in `refused`.
+/// Returns models whose parameters deviate by up to `scatter` and whose feedforward exists. The number of
+/// other draws is returned in `refused`.
 std::vector<model::Model> draws_of(const Scheme& scheme, int count, std::uint64_t seed, int& refused) {
   std::vector<model::Model> models;
   refused = 0;
@@ -97,8 +99,8 @@ std::vector<model::Model> draws_of(const Scheme& scheme, int count, std::uint64_
   return models;
 }
 
-/// Root mean square of the RMSE over the draws, from one short run each; large if the loop lacks stability
-/// margin.
+/// Cost of a set of gains: root mean square of the RMSE over the draws, each from one short run. The cost is
+/// large if the stability margin of the loop is too small.
 class Cost {
  public:
   Cost(const Scheme& scheme, const Options& options, const model::Model& finger, double frequency_hz)

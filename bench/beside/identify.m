@@ -1,4 +1,4 @@
-% The identification of the demo with lsqcurvefit: identify(FOLDER, FIT, PREDICT...), 20 starts; simulate.mex in FOLDER.
+% Identifies the demo's finger with lsqcurvefit: identify(FOLDER, FIT, PREDICT...), 20 starts; needs simulate.mex in FOLDER.
 function identify(folder, varargin)
   warning("off", "all");
   pkg load optim

@@ -1,4 +1,4 @@
-"""The identification of the demo with SciPy: identify.py FIT.csv PREDICT.csv... (20 starts; simulator.so beside it)."""
+"""Identifies the demo's finger with SciPy: identify.py FIT.csv PREDICT.csv... (20 starts; needs simulator.so beside it)."""
 import ctypes
 import json
 import pathlib

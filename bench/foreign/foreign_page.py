@@ -1,4 +1,4 @@
-"""Writes the page of bench/foreign.py: required and reached values, then the cases of each judge."""
+"""Writes the results page of bench/foreign.py: required and reached values, followed by the cases of each judge."""
 import math
 import pathlib
 import sys
@@ -15,7 +15,7 @@ def table(head, rows):
 
 
 def number(value, digits=3):
-    """The number with significant digits; `-` for None."""
+    """Formats a number with significant digits; `-` for None."""
     if value is None or not math.isfinite(value):
         return "-"
     return f"{value:.{digits}g}"
@@ -26,7 +26,7 @@ def of(count, total):
 
 
 def names_of(case):
-    """The named causes with their alternatives and sizes."""
+    """Formats the named causes with their alternatives and sizes."""
     parts = []
     for name, rivals, size in zip(case["named"], case["alternatives"], case["sizes"]):
         text = " or ".join([name, *rivals])
@@ -37,7 +37,7 @@ def names_of(case):
 
 
 def requirements(values):
-    """(sentence, required, reached) of each judge that ran."""
+    """Returns rows (sentence, required value, reached value) for each judge that ran."""
     summary = values.get("summary", {})
     rows = []
     for group, part in summary.get("repeats", {}).items():
@@ -186,7 +186,7 @@ def failures_section(values):
 
 
 def meaning(values):
-    """The counts that show whether an answer on such data can be trusted."""
+    """Returns sentences with the counts that show how reliable the answers on such data are."""
     summary, parts = values.get("summary", {}), []
     if "runs" in summary.get("repeats", {}):
         part = summary["repeats"]["runs"]

@@ -1,4 +1,4 @@
-"""Logs as arrays, and the rule by which models of other programs predict a part that was not fitted."""
+"""Reads logs as arrays. Defines how a model of another program predicts a part of a log that was not fitted."""
 import numpy as np
 
 # The first 5 % of a log, at least 2 s, may be used to estimate its offset and initial state.
@@ -6,7 +6,8 @@ START_SHARE, START_S = 0.05, 2.0
 
 
 def read(path):
-    """(time [s], drive [kPa], reading [mm]); the measured pressure drives where the log has one."""
+    """Returns time [s], drive [kPa] and reading [mm]. The drive is the measured pressure if the log has one, otherwise
+    the command."""
     data = np.genfromtxt(path, delimiter=",", names=True)
     drive = data["pressure_kpa"] if "pressure_kpa" in data.dtype.names else data["pressure_command_kpa"]
     known = np.isfinite(drive)
@@ -15,7 +16,7 @@ def read(path):
 
 
 def first_share(time, share):
-    """The samples of the first `share` of a log, as a mask."""
+    """Returns a mask that selects the first `share` of the samples of a log."""
     return np.arange(len(time)) < int(share * len(time))
 
 
@@ -24,11 +25,11 @@ def rmse(error):
 
 
 def beginning(time):
-    """The samples from which the offset and the initial state of a log may be estimated, as a mask."""
+    """Returns a mask that selects the samples from which the offset and the initial state of a log may be estimated."""
     return time - time[0] <= max(START_SHARE * (time[-1] - time[0]), START_S)
 
 
 def rmse_with_own_offset(time, simulated, reading):
-    """RMSE on a log that was not fitted, after subtracting the mean error of its beginning."""
+    """Returns the RMSE on a log that was not fitted. The mean error at the beginning of the log is subtracted first."""
     error = simulated - reading
     return rmse(error - np.nanmean(error[beginning(time)]))

@@ -5,10 +5,10 @@ if a loop oscillates because its valve sticks, the cross-correlation of controll
 shift of 90 degrees). If a disturbance or a tight controller causes the oscillation, it is even (180 degrees). The zero
 crossings to the left and to the right of lag 0 measure the symmetry: for a sinusoid, the ratio
 |left - right| / (left + right) is the distance of the phase shift from 180 degrees, divided by 90 degrees.
-The ratio decides above 2/3 (60 degrees, sticks) and below 1/3 (30 degrees, free). The test holds for self-regulating
-processes. The limits are derived here from the sinusoid, without the text of the publication at hand. A second ratio, of
-the values of the correlation, was left out because it finds only 2 of the 7 sticking loops of the set `stiction`: the
-decision was taken with the labels in sight.
+The valve sticks if the ratio is above 2/3 (60 degrees) and is free if it is below 1/3 (30 degrees); otherwise the test is
+undecided. It applies to self-regulating processes. The limits are derived here from the sinusoid, because the text of the
+publication was not available. A second ratio, which uses the values of the correlation, was left out because it finds only 2
+of the 7 sticking loops of the data set `stiction`. The labels of the loops were known when this decision was made.
 """
 import numpy as np
 
@@ -16,7 +16,7 @@ STICKS_ABOVE, FREE_BELOW = 2 / 3, 1 / 3
 
 
 def cross_correlation(u, y):
-    """The correlation of 2 equally long series without their means, at lags -(n-1) to n-1."""
+    """Returns the cross-correlation of 2 series of length n after their means were removed, at lags -(n-1) to n-1."""
     u, y = (np.asarray(values, float) - np.mean(values) for values in (u, y))
     scale = np.sqrt(np.sum(u * u) * np.sum(y * y))
     if scale == 0:
@@ -25,7 +25,7 @@ def cross_correlation(u, y):
 
 
 def first_crossing(values):
-    """The place of the first change of sign (in samples, between two of them); None if there is none."""
+    """Returns the position of the first change of sign [samples], interpolated between samples; None if there is none."""
     changes = np.flatnonzero(values[:-1] * values[1:] <= 0)
     if not len(changes):
         return None
@@ -35,7 +35,8 @@ def first_crossing(values):
 
 
 def phase_ratio(u, y):
-    """1 for an odd correlation, 0 for an even one; None if it does not cross zero on both sides of lag 0."""
+    """Returns the phase ratio of a cross-correlation: 1 if it is odd, 0 if it is even. Returns None if it does not cross
+    zero on both sides of lag 0."""
     correlation, middle = cross_correlation(u, y), len(u) - 1
     right, left = first_crossing(correlation[middle:]), first_crossing(correlation[middle::-1])
     if right is None or left is None or right + left == 0:
@@ -44,7 +45,7 @@ def phase_ratio(u, y):
 
 
 def verdict(u, y):
-    """(`sticks`, `free` or `undecided`, phase ratio)"""
+    """Returns the decision (`sticks`, `free` or `undecided`) and the phase ratio."""
     ratio = phase_ratio(u, y)
     if ratio is None or FREE_BELOW <= ratio <= STICKS_ABOVE:
         return "undecided", ratio

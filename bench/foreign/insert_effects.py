@@ -4,12 +4,12 @@
     bench/foreign/insert_effects.py --out DIR [--data DIR] [--pulses]
     bench/foreign.py --data DIR --only changes --out RESULTS --page PAGE
 
-The runs are those that a laboratory recorded without a change in between (`repeats` of the table of a set). In the later
-run an effect is inserted into the readings; the baseline runs stay as they were recorded. So the finger, the valve, the
-noise and the differences between runs are real, and only the effect is known. With 1 set of DIR for each set of --data.
---pulses takes the pulses of one recording instead of runs: 1 healthy pulse, then the next one with an effect.
-Sizes are shares of the stroke (highest minus lowest reading), noise that an operation removes is added again (0.1 % of the
-stroke, seed 1).
+The runs are those that a laboratory recorded without a change between them (`repeats` in the table of a data set). An effect
+is inserted into the readings of the later run; the baseline runs remain as recorded. So the finger, the valve, the noise and
+the differences between runs are real, and only the effect is artificial. DIR contains 1 new data set for each data set of
+--data. With --pulses, the pulses of one recording are used instead of runs: 1 healthy pulse, and the next one with an effect.
+Sizes of effects are shares of the stroke (highest minus lowest reading). If an operation removes noise, white noise is added
+again (0.1 % of the stroke, seed 1).
 """
 import argparse
 import pathlib
@@ -51,7 +51,8 @@ def with_play(readings, width):
     return np.array(out)
 
 
-# name: (label, causes that name it correctly, new readings from time, readings, lowest reading and stroke)
+# name: (label, causes that are correct answers, function of time, readings, lowest reading and stroke that returns the new
+# readings)
 EFFECTS = {
     "contact": ("an object in the way at 60 % of the stroke, 4 times as stiff", ["contact"],
                 lambda t, y, low, s: np.where(y > low + 0.6 * s, low + 0.6 * s + 0.25 * (y - low - 0.6 * s), y)),
@@ -75,14 +76,14 @@ EFFECTS = {
 
 
 def filled(values):
-    """Missing readings between their neighbours: an effect acts on every sample."""
+    """Interpolates missing readings between their neighbours, because an effect acts on every sample."""
     values = np.array(values, dtype=float)
     known = np.isfinite(values)
     return np.interp(np.arange(len(values)), np.flatnonzero(known), values[known])
 
 
 def inserted(log, effect):
-    """The columns of a log with an effect."""
+    """Returns the columns of a log with an effect inserted."""
     readings = filled(log.columns["displacement"])
     low, stroke = readings.min(), np.ptp(readings)
     columns = {**log.columns, "displacement": EFFECTS[effect][2](log.time_s, readings, low, stroke)}
@@ -92,7 +93,7 @@ def inserted(log, effect):
 
 
 def write_set(data_set, pairs, folder):
-    """The logs and the table of 1 set; `pairs` are those of its `repeats` that are used."""
+    """Writes the logs and the table of 1 new data set. `pairs` are the used ones of the `repeats` of `data_set`."""
     folder.mkdir(parents=True, exist_ok=True)
     entries, changes = {}, []
 
@@ -121,7 +122,7 @@ def write_set(data_set, pairs, folder):
 
 
 def chosen(pairs, pulses=False):
-    """For each later run the pair with most baseline runs."""
+    """Returns, for each later run, the pair with the largest number of baseline runs."""
     most = {}
     for pair in pairs:
         if (pair.group != "runs") == pulses and len(pair.baseline) > len(getattr(most.get(pair.later), "baseline", [])):

@@ -1,8 +1,8 @@
 """Judges 1 and 2: repeated runs between which nothing changed, and changes that the laboratory labelled.
 
-Each pair goes through `softgrip diagnose --healthy BASELINE --data LATER` with the model that `softgrip identify` finds on
-the baseline. The same identified model measures the change without a diagnosis: its error on the later run, compared with
-the run-to-run spread of healthy runs that were left out of the fit.
+Each pair is diagnosed by `softgrip diagnose --healthy BASELINE --data LATER` with the model that `softgrip identify` fits to
+the baseline. The change is also measured without a diagnosis: the error of this model on the later run is compared with the
+errors on healthy runs that were left out of the fit.
 """
 import math
 import statistics
@@ -17,7 +17,8 @@ PROBABILITY = 0.95
 
 
 def healthy_bound(errors):
-    """One-sided prediction bound for 1 more healthy run: with PROBABILITY its error is smaller (Student's t)."""
+    """Returns a one-sided prediction bound: the error of 1 further healthy run is below it with PROBABILITY (Student's
+    t)."""
     n = len(errors)
     if n < 2:
         return None
@@ -26,7 +27,8 @@ def healthy_bound(errors):
 
 
 def plain_model(runner, data_set, healthy, later):
-    """(folder of the model, errors of the plain identified model [mm] on the fitted, the left-out and the later runs)"""
+    """Identifies the healthy runs. Returns the folder of the model, and its errors [mm] on the fitted, the left-out and
+    the later runs."""
     folder, outcome = runner.identify(data_set, healthy, [later])
     answer = result_of(outcome)
     errors = {"fitted_mm": rms(list(answer["rmse_mm"].values())), "later_mm": answer["validation"]["rmse_mm"][later.key],
@@ -43,7 +45,7 @@ def plain_model(runner, data_set, healthy, later):
 
 
 def judged_label(pair, names, exceeds):
-    """How an answer to a labelled change is judged: the keys of a case of the judge `changes`."""
+    """Judges the answer to a labelled change. Returns the additional keys of a case of the judge `changes`."""
     alternatives = {rival for rivals in names["alternatives"] for rival in rivals}
     named = bool(set(pair.causes) & set(names["named"]))
     listed = named or bool(set(pair.causes) & alternatives)
@@ -52,7 +54,7 @@ def judged_label(pair, names, exceeds):
 
 
 def judge_pair(runner, data_set, pair, judge):
-    """The case of one pair, without its times."""
+    """Diagnoses one pair and returns its case, without the times."""
     if pair.problems:
         raise Failed("\n".join(pair.problems))
     healthy = [runner.log(data_set, name) for name in pair.baseline]
@@ -70,7 +72,7 @@ def judge_pair(runner, data_set, pair, judge):
 
 
 def said(case):
-    """A case in a few words."""
+    """Returns a short description of a case."""
     text = "changed" if case["changed"] else "unchanged"
     if case["named"]:
         text += ": " + ", ".join(case["named"])

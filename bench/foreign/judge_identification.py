@@ -1,8 +1,8 @@
 """Judge 4: identification compared with a linear output-error model and with a Bouc-Wen fit by SciPy.
 
-Each method fits the first part of a log and predicts the rest from the start of the log, or fits a whole log and predicts
-another one. Where a log has a measured pressure, it is identified twice: driven by the command alone (the measured pressure
-is withheld), and driven by the measured pressure.
+Each method either fits the first part of a log and predicts the rest, with a simulation from the start of the log, or it fits
+a whole log and predicts another log. If a log has a command and a measured pressure, it is identified twice: once with the
+command alone as the input (the measured pressure is removed), and once with the measured pressure as the input.
 """
 import json
 import pathlib
@@ -34,7 +34,7 @@ def softgrip(runner, data_set, log, test, split, drive, words):
 
 
 def library(runner):
-    """The compiled simulator of the SciPy fit."""
+    """Compiles the simulator of the SciPy fit if necessary. Returns its path."""
     path = runner.out / "simulator.so"
     if not path.exists() or path.stat().st_mtime < SIMULATOR.stat().st_mtime:
         output_of(["cc", "-O2", "-shared", "-fPIC", "-o", path, SIMULATOR, "-lm"], runner.at_most_s)
@@ -42,7 +42,7 @@ def library(runner):
 
 
 def peer(runner, data_set, log, test, script, words):
-    """The outcome of a program that shares no code with softgrip."""
+    """Runs a program that shares no code with softgrip. Returns its result."""
     files = [log.path, *([test.path] if test else [])]
     sources = [script, HELD_OUT, SIMULATOR]
     name = f"{script.stem} {log.name} {test.name if test else ''} {log.path.parent.name}"
@@ -53,7 +53,7 @@ def peer(runner, data_set, log, test, script, words):
 
 
 def methods_of(runner, data_set, fit, drive):
-    """{method: function that returns its result}"""
+    """Returns the log, and a function for each method that returns the result of the method."""
     log = runner.log(data_set, fit.log, drive)
     test = runner.log(data_set, fit.test, drive) if fit.test else None
     split = data_set.logs[fit.log].split
@@ -88,13 +88,13 @@ def judge_fit(runner, data_set, fit):
 
 
 def held_out_percent(row, method):
-    """The error in percent of the span; None if the method failed."""
+    """Returns the held-out error of a method in percent of the span; None if the method failed."""
     result = row["methods"].get(method)
     return None if result is None else 100 * result["held_out_mm"] / row["span_mm"]
 
 
 def linear_is_better(row, method):
-    """True if the linear model predicts more than 10 % better than `method`."""
+    """Returns True if the held-out error of `method` exceeds that of the linear model by more than 10 %."""
     own, linear = held_out_percent(row, method), held_out_percent(row, "output_error")
     return own is not None and linear is not None and own > WORSE * linear
 

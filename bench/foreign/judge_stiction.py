@@ -1,7 +1,7 @@
 """Judge 3: control loops whose valves engineers labelled as sticking or not.
 
-Each loop is identified and diagnosed as a user does it: `softgrip identify`, then `softgrip diagnose` with that model.
-Horch's phase test (horch.py) judges the same signals.
+Each loop is identified and diagnosed as a user would do: first `softgrip identify`, then `softgrip diagnose` with the
+identified model. Horch's phase test (horch.py) is applied to the same signals for comparison.
 """
 import csv
 
@@ -13,7 +13,7 @@ STICTION, DRIFT = {"valve_deadband"}, "sensor_drift"
 
 
 def signals(path):
-    """(command, reading) of the samples that have both."""
+    """Returns command and reading of the samples that have both."""
     with path.open(newline="") as file:
         rows = [(row["pressure_command_kpa"], row["displacement_mm"]) for row in csv.DictReader(file)]
     known = [(float(u), float(y)) for u, y in rows if u and y]
@@ -21,7 +21,7 @@ def signals(path):
 
 
 def judged_names(names):
-    """How an answer is judged: the keys of a case."""
+    """Judges the answer for one loop. Returns the additional keys of its case."""
     alternatives = {rival for rivals in names["alternatives"] for rival in rivals}
     named, drift = bool(STICTION & set(names["named"])), DRIFT in names["named"]
     return {"stiction_named": named, "stiction_listed": named or bool(STICTION & (alternatives | set(names["partial"]))),

@@ -1,4 +1,4 @@
-"""A measured log by its entry in the table, turned into a log of the contract (docs/how-to/identify.md)."""
+"""Converts a measured log to the log format of softgrip (docs/how-to/identify.md), as its entry in the table describes."""
 import csv
 import dataclasses
 import datetime
@@ -11,25 +11,25 @@ from units import QUANTITIES, TIME_POINT, ZEROS, unit_in, units_of
 MISSING = {"", "nan", "na", "n/a", "#n/a", "null", "none", "-", "--", "inf", "-inf", "+inf"}
 COMMENTS = ("#", "%", "//")
 SEPARATORS = (",", ";", "\t", "|", " ")
-FAR_ENOUGH = 200  # The header is searched for in so many lines.
+FAR_ENOUGH = 200  # number of lines in which the header is searched
 MOST_SAID = 5
 MOST_MISSING = 0.2  # the share of samples without a displacement that `softgrip identify` accepts
-# A hole, as in `softgrip identify`: an interval longer than this and than so many usual intervals, in which the command
-# changed.
+# A hole, as in `softgrip identify`: an interval that is longer than HOLE_S and longer than HOLE_INTERVALS usual intervals, and
+# over which the command changes by more than the share HOLE_CHANGE of its range.
 HOLE_S, HOLE_INTERVALS, HOLE_CHANGE = 0.5, 20, 0.02
 OUTPUT = {"command": "pressure_command_kpa", "displacement": "displacement_mm", "pressure": "pressure_kpa",
           "temperature": "temperature_c", "supply": "supply_kpa"}
 
 
 class Spoiled(Exception):
-    """The log cannot be used. The message has the file, the line and what is expected."""
+    """The log cannot be used. The message states the file, the line and the expected content."""
 
 
 @dataclasses.dataclass
 class Log:
     time_s: list
     columns: dict  # by quantity; NaN: no reading
-    lines: list  # of the file, by sample
+    lines: list  # number of the line in the file, by sample
     notes: list
 
     def text(self):
@@ -85,7 +85,8 @@ class Reader:
     # The places of the columns
 
     def find_header(self):
-        """(separator, names, line of the names or 0): the first line that contains every column that has a name."""
+        """Finds the first line that contains the names of all columns that the table gives by name. Returns the separator,
+        the names, and the number of this line. If the table gives no names, the list is empty and the number is 0."""
         asked = [name for column in self.entry.columns.values() for name in column.names]
         names = [str(name) for name in asked if isinstance(name, str)]
         separators = [self.entry.separator] if self.entry.separator else SEPARATORS
@@ -128,7 +129,7 @@ class Reader:
     # Numbers
 
     def number(self, text):
-        """The value of a cell; NaN: no reading; None: no number."""
+        """Returns the value of a cell. NaN: the reading is missing. None: the cell is not a number."""
         text = text.strip().strip('"').strip()
         if text.lower() in MISSING or text.lower() in self.entry.missing:
             return math.nan
@@ -153,7 +154,7 @@ class Reader:
         return value is not None and not math.isnan(value)
 
     def moment(self, text, line):
-        """The seconds of a date with time of day."""
+        """Converts a date with time of day to seconds since 1970. Reports any other text and returns NaN."""
         try:
             return datetime.datetime.fromisoformat(text.strip().strip('"').replace("Z", "+00:00")).timestamp()
         except ValueError:
@@ -161,7 +162,7 @@ class Reader:
             return math.nan
 
     def rows(self):
-        """(line, cells) of the samples, from the first row of numbers after the header."""
+        """Yields line number and cells of each sample, from the first row of numbers after the header."""
         first = next((i for i, (number, _) in enumerate(self.lines) if number > self.header_line), len(self.lines))
         asked = [self.places[name] for key, column in self.entry.columns.items() for name in column.names
                  if not (key == "time" and column.unit.lower() == TIME_POINT)]
@@ -197,7 +198,7 @@ class Reader:
     # Units
 
     def factor(self, column, quantity):
-        """The contract units per unit of the column, and its zero in the column's unit."""
+        """Returns the factor from the unit of the column to that of the log format, and the zero in the column's unit."""
         written = {unit_in(name, column.quantity) for name in column.names} - {""}
         unit = column.unit.lower() or (written.pop() if len(written) == 1 else "")
         if column.unit and written and not {unit} >= written and unit in QUANTITIES[column.quantity]:
@@ -271,7 +272,7 @@ class Reader:
         return longest_piece(cut(log, first, len(drive)))
 
     def carried(self, values):
-        """A missing command has the value of the previous one."""
+        """Replaces a missing command by the previous command."""
         filled, gaps = list(values), 0
         for i in range(1, len(filled)):
             if math.isnan(filled[i]) and not math.isnan(filled[i - 1]):
@@ -281,8 +282,8 @@ class Reader:
         return filled
 
     def with_readings(self, keep, readings):
-        """For a sensor that is slower than the log: if many samples have no reading, only those that have one are
-        kept."""
+        """Removes the samples without a reading if they are more than MOST_MISSING of all samples, as with a sensor that
+        is slower than the log."""
         read = [i for i in keep if not math.isnan(readings[i])]
         if not read or len(read) >= (1 - MOST_MISSING) * len(keep):
             return keep
@@ -290,7 +291,8 @@ class Reader:
         return read
 
     def usable(self, lines, times):
-        """The samples within the requested time range, each later than the previous one."""
+        """Returns the indices of the samples within the requested time range. The time of each is later than that of the
+        previous one."""
         keep, repeated = [], 0
         for i, t in enumerate(times):
             if not self.entry.from_s <= t <= self.entry.to_s:
@@ -313,7 +315,7 @@ def cut(log, begin, end):
 
 
 def longest_piece(log):
-    """The longest piece between holes in which the command changed without samples."""
+    """Returns the longest segment of a log between holes."""
     steps = [b - a for a, b in zip(log.time_s, log.time_s[1:])]
     if not steps:
         return log
@@ -333,7 +335,7 @@ def longest_piece(log):
 
 
 def read_log(entry, data):
-    """The log in the format of the contract; raises Spoiled if it cannot be used."""
+    """Reads a log and converts it to the log format. Raises Spoiled if the log cannot be used."""
     if entry.problems:
         raise Spoiled("\n".join(entry.problems))
     return Reader(entry, data).read()

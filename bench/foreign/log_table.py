@@ -1,6 +1,6 @@
-"""Reads and checks the table that describes measured logs; every message has the line of the mistake.
+"""Reads and checks the table that describes measured logs. Every message states the line of the mistake.
 
-A mistake in the description of one log is kept in `problems` of that log, and only its row is lost. `Unusable` is
+A mistake in the description of one log is stored in `problems` of this log, and the other logs remain usable. `Unusable` is
 raised if the table as a whole cannot be read. docs/how-to/measure.md lists the keys.
 """
 import dataclasses
@@ -21,11 +21,11 @@ COLUMNS = ("time", "command", "pressure", "displacement", "temperature", "supply
 
 
 class Unusable(Exception):
-    """The table as a whole cannot be used. The message has the place and what is expected."""
+    """The table as a whole cannot be used. The message states the position and the expected content."""
 
 
 class Map(dict):
-    """A mapping that knows the lines of its keys."""
+    """A mapping that stores the line of each key."""
 
     def __init__(self, line):
         super().__init__()
@@ -34,14 +34,14 @@ class Map(dict):
 
 @dataclasses.dataclass
 class Column:
-    """The place of a quantity and its conversion to the unit of the contract; several columns are averaged."""
+    """The columns of a quantity, and the conversion to its unit in the log format. Several columns are averaged."""
     quantity: str
     names: list = dataclasses.field(default_factory=list)  # a name, or a number that counts from 1
     unit: str = ""
-    scale: float = math.nan  # contract units per unit of the column
+    scale: float = math.nan  # units of the log format per unit of the column
     zero: object = None  # subtracted before scaling: a number, or "first"
     span_mm: float = math.nan  # the readings are scaled to this span
-    rate_hz: float = math.nan  # only for the time: there is no column
+    rate_hz: float = math.nan  # sampling rate if the file has no column for the time
 
 
 @dataclasses.dataclass
@@ -67,7 +67,7 @@ class Table:
 
 
 def plain(loader, node):
-    """A node as plain values; mappings keep their lines."""
+    """Converts a YAML node to plain values. Mappings become Map objects, which store the lines of their keys."""
     if isinstance(node, yaml.MappingNode):
         loader.flatten_mapping(node)
         values = Map(node.start_mark.line + 1)
@@ -87,7 +87,7 @@ def meant(word, known):
 
 
 class EntryReader:
-    """The mapping of one log; collects its mistakes."""
+    """Reads one entry of the table and collects the mistakes in it."""
 
     def __init__(self, path, values):
         self.path, self.values, self.problems = path, values, []
@@ -183,7 +183,7 @@ class EntryReader:
 
 
 def files_of(values, data):
-    """(name, file) of every log that an entry of the table describes."""
+    """Returns name and file of every log that an entry of the table describes."""
     file = str(values.get("file", ""))
     if not file:
         return [(str(values.get("name", "?")), "")]
@@ -203,7 +203,7 @@ def with_defaults(given, defaults):
 
 
 def values_of(path):
-    """The file at `path` as plain values."""
+    """Reads the YAML file at `path`. Returns its plain values."""
     try:
         loader = yaml.SafeLoader(path.read_text())
         node = loader.get_single_node()
@@ -231,7 +231,8 @@ def refuse_what_says_nothing(path, values, known):
 
 
 def read_table(path, data, more_keys=()):
-    """The table at `path` of logs in the folder `data`. `more_keys`: keys of the whole table that the caller reads."""
+    """Reads the table at `path`, which describes logs in the folder `data`. `more_keys`: further keys of the table, which the
+    caller reads."""
     path, data = pathlib.Path(path), pathlib.Path(data)
     values = values_of(path)
     refuse_what_says_nothing(path, values, (*TABLE_KEYS, *more_keys))

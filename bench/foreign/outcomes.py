@@ -1,5 +1,5 @@
-"""Outcomes of programs, each kept in a file with a checksum of its inputs, so a repeated run only does what has
-changed."""
+"""Stores the outcome of each program in a file with a checksum of the inputs. A repeated run then only runs the programs
+whose inputs have changed."""
 import hashlib
 import json
 import os
@@ -13,7 +13,7 @@ UNREADABLE = (ValueError, KeyError, TypeError, IndexError, StopIteration)  # rai
 
 
 class Failed(Exception):
-    """A program failed; the message is the one of the program."""
+    """A program failed. The text is the error message of the program."""
 
     def __init__(self, said, code=None):
         super().__init__(said)
@@ -21,7 +21,7 @@ class Failed(Exception):
 
 
 def checksum(*parts):
-    """A checksum of files (paths) and texts."""
+    """Returns a checksum of the content of files (given as paths) and of texts."""
     whole = hashlib.sha256()
     for part in parts:
         data = part.read_bytes() if isinstance(part, pathlib.Path) else str(part).encode()
@@ -30,7 +30,7 @@ def checksum(*parts):
 
 
 def output_of(command, at_most_s):
-    """The standard output of a program that ends with 0 or NOT_ACCEPTABLE; raises Failed otherwise."""
+    """Runs a program and returns its standard output. Raises Failed if its exit code is neither 0 nor NOT_ACCEPTABLE."""
     try:
         run = subprocess.run([str(word) for word in command], capture_output=True, text=True, timeout=at_most_s)
     except subprocess.TimeoutExpired as error:
@@ -44,7 +44,7 @@ def output_of(command, at_most_s):
 
 
 def processor_s():
-    """Processor time of all child processes that have ended."""
+    """Returns the processor time of all child processes that have ended [s]."""
     usage = resource.getrusage(resource.RUSAGE_CHILDREN)
     return usage.ru_utime + usage.ru_stime
 
@@ -57,7 +57,7 @@ def read_json(path):
 
 
 def write_whole(path, text):
-    """Replaces the file in one step, so that an interrupted run leaves no half-written file."""
+    """Replaces the file in one step, so that an interrupted run leaves no incomplete file."""
     part = path.with_suffix(".part")
     part.write_text(text)
     os.replace(part, path)
@@ -68,8 +68,9 @@ def described(error):
 
 
 def outcome_in(folder, of, function, in_words=described):
-    """(outcome, whether it was kept): {"of", "wall_s", "processor_s", "load_1min", "result" or "error"} of
-    function(folder). A kept outcome counts if `of`, a checksum of its inputs, is the same and it has a result."""
+    """Returns the outcome of function(folder), and True if it was read from the folder instead of computed. The outcome is
+    a dict with the keys "of", "wall_s", "processor_s", "load_1min", and "result" or "error". A stored outcome is used if it
+    has a result and if its checksum of the inputs equals `of`."""
     kept = folder / "outcome.json"
     known = read_json(kept)
     if known and known.get("of") == of and "result" in known:

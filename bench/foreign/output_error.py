@@ -1,13 +1,14 @@
 #!/usr/bin/python3
-"""A linear output-error model of a log: the reference that a model of an actuator has to beat.
+"""Fits a linear output-error model to a log. A model of an actuator should have a smaller error than this reference.
 
     output_error.py LOG.csv SPLIT ORDER [TEST.csv]     prints JSON: RMSE of the fitted and of the predicted part [mm]
 
 The model has ORDER poles and ORDER zeros and is stable (L. Ljung, System Identification, 2nd edition, section 4.2). It
 minimises the squared error of the simulation. Its poles are searched; residues, direct term, offset and initial state
-follow by linear least squares (variable projection: Golub and Pereyra, SIAM J. Numer. Anal. 10, 1973, 413-432). All poles
-are real, or 1 pair is complex; the form with the smaller error on the fitted part is taken. On TEST, the first 5 % (at
-least 2 s) determine offset and initial state, whose priors are as wide as that of LOG. Shares nothing with softgrip.
+follow by linear least squares (variable projection: Golub and Pereyra, SIAM J. Numer. Anal. 10, 1973, 413-432). Two forms
+are fitted: all poles are real, or 1 pair is complex. The form with the smaller error on the fitted part is used. On TEST,
+the first 5 % (at least 2 s) determine the offset and the initial state. The prior of the initial state has the size of the
+initial state of LOG. The program shares no code with softgrip.
 """
 import itertools
 import json
@@ -25,12 +26,12 @@ from held_out import beginning, first_share, read, rmse
 # starting points: grids over the range that the sampling can resolve
 TIMES, FREQUENCIES, DAMPINGS = 7, 8, (0.05, 0.3, 0.9)
 NEARLY_CANCELS = 1e-4  # singular value, relative to the largest
-REFINED = 4  # the search continues from so many of the best starting points
-MOST_SAMPLES = 200000  # points of the grid on which a log is simulated
+REFINED = 4  # number of the best starting points from which the search continues
+MOST_SAMPLES = 200000  # largest number of points of the grid on which a log is simulated
 
 
 class Signals:
-    """A log on a regular grid; filtered signals are read at the times of its samples."""
+    """A log on a regular grid. Filtered signals are interpolated at the times of the log's samples."""
 
     def __init__(self, time, drive):
         step = float(np.median(np.diff(time)))
@@ -46,25 +47,25 @@ class Signals:
         return np.interp(self.time, self.grid, values)
 
     def forced(self, numerator, denominator):
-        """The response of a transfer function in s to the drive, which is linear between samples."""
+        """Returns the response of a transfer function in s to the drive, which is linear between samples."""
         b, a, _ = cont2discrete((numerator, denominator), self.step, "foh")
         return self.at_samples(lfilter(np.ravel(b), a, self.drive))
 
     def free(self, denominator):
-        """The responses without a drive, as many as there are poles; they span all initial states."""
+        """Returns one response without a drive per pole. The responses of all initial states are combinations of them."""
         _, a, _ = cont2discrete(([1.0], denominator), self.step, "foh")
         motions = [lfilter([0.0] * k + [1.0], a, self.impulse) for k in range(len(a) - 1)]
         return [self.at_samples(motion / np.max(np.abs(motion))) for motion in motions]
 
 
 class Form:
-    """A form has a number of real poles, and a complex pair or none. Its parameters are numbers of the order of 1 to
-    10."""
+    """A form of the model: a number of real poles, and one complex pair of poles or none. All its parameters have
+    magnitudes of about 1 to 10."""
 
     def __init__(self, real, pair, step_s, length_s):
         self.real, self.pair = real, pair
-        # Nothing slower than the fitted part or faster than its samples is observable. A pair is not overdamped: that
-        # would be 2 real poles.
+        # Limits of the search. Motions slower than the fitted part or faster than its samples are not observable. An
+        # overdamped pair is excluded, because it equals 2 real poles.
         self.low = [np.log(step_s)] * real + ([np.log(2 * np.pi / length_s), np.log(0.01)] if pair else [])
         self.high = [np.log(length_s)] * real + ([np.log(0.5 * np.pi / step_s), 0.0] if pair else [])
 
@@ -78,7 +79,7 @@ class Form:
                 for real, w, z in itertools.product(list(reals), frequencies, DAMPINGS)]
 
     def denominators(self, numbers):
-        """(denominator, numerators) of each part of the linear combination."""
+        """Returns the denominator and the numerators of each part of the linear combination."""
         parts = [([tau, 1.0], [[1.0]]) for tau in np.exp(numbers[:self.real])]
         if self.pair:
             w, zeta = np.exp(numbers[-2:])
@@ -92,7 +93,7 @@ class Form:
         return np.column_stack(columns)
 
     def free(self, numbers, signals):
-        """The offset, and the responses of all initial states."""
+        """Returns the columns for the offset and for the responses to initial states."""
         columns = [np.ones(len(signals.time))]
         for denominator, _ in self.denominators(numbers):
             columns += signals.free(denominator)
@@ -100,8 +101,8 @@ class Form:
 
 
 def least(columns, values):
-    """The weights of the least squares; the columns may have any size. Combinations that nearly cancel get no
-    weight."""
+    """Returns the least-squares weights of the columns, which may have any magnitude. Combinations of columns that nearly
+    cancel get no weight."""
     scale = np.linalg.norm(columns, axis=0) + 1e-300
     return np.linalg.lstsq(columns / scale, values, rcond=NEARLY_CANCELS)[0] / scale
 
@@ -124,7 +125,7 @@ class Fit:
         error = (self.simulated - reading)[self.used]
         self.fitted_mm = rmse(error)
         correlation = np.clip(error[1:] @ error[:-1] / (error @ error), 0, 0.9999)
-        # So many correlated errors count as 1 independent error.
+        # number of correlated errors that count as 1 independent error
         self.samples_per_error = (1 + correlation) / (1 - correlation)
 
     def solve(self, numbers):
@@ -140,12 +141,13 @@ class Fit:
         return float(error @ error)
 
     def predict(self, time, drive, reading):
-        """Predicts another log; its beginning determines offset and initial state."""
+        """Predicts another log. The beginning of this log determines its offset and its initial state."""
         signals = Signals(time, drive)
         forced = self.form.forced(self.numbers, signals) @ self.residues
         free = self.form.free(self.numbers, signals)
         used = beginning(time) & np.isfinite(reading)
-        # The offset is unknown. An initial state is 0, with a standard deviation of that of the fitted log.
+        # The offset has no prior. The prior of an initial state has the mean 0 and, as standard deviation, the size of the
+        # initial state of the fitted log.
         width = np.maximum(np.abs(self.start), self.fitted_mm) / np.sqrt(self.samples_per_error)
         priors = np.eye(free.shape[1])[1:] * (self.fitted_mm / width)[:, None]
         weights = least(np.vstack([free[used], priors]),
@@ -154,7 +156,7 @@ class Fit:
 
 
 def fitted(time, drive, reading, mask, order):
-    """The better of the forms of this order."""
+    """Fits all forms of this order. Returns the fit with the smallest error."""
     signals = Signals(time, drive)
     length = float(time[mask][-1] - time[0])
     forms = [Form(order, False, signals.step, length)]

@@ -1,5 +1,5 @@
-"""Runs softgrip on the logs of data sets. The result of each call is kept (outcomes.py), so judges share
-identifications."""
+"""Runs softgrip on the logs of data sets. The result of each call is stored (outcomes.py), so that several judges can use
+one identification."""
 import json
 import re
 
@@ -10,7 +10,7 @@ MOST_NAME = 100  # the largest number of characters of a folder's name
 
 
 def slug(text):
-    """A name for a file or a folder."""
+    """Converts a text to a name for a file or a folder."""
     name = re.sub(r"[^\w-]+", "_", text).strip("_")
     return name if len(name) <= MOST_NAME else f"{name[:MOST_NAME - 9]}_{checksum(text)[:8]}"
 
@@ -20,7 +20,7 @@ def rms(values):
 
 
 class PreparedLog:
-    """A log of a set in the format of softgrip, without the measured pressure where `drive` is the command."""
+    """A log of a data set in the format of softgrip. If `drive` is "command", the measured pressure is removed."""
 
     def __init__(self, entry, folder, out, drive):
         self.name, self.begin, self.file = entry.name, entry.begin, entry.file
@@ -37,11 +37,11 @@ class PreparedLog:
 
     @property
     def key(self):
-        """The name of this log in softgrip's answers."""
+        """The name of this log in the results of softgrip."""
         return self.path.stem
 
     def in_original(self, text):
-        """`text` with the file and the lines of the original log instead of those of the prepared log."""
+        """Replaces file and line numbers of the prepared log in `text` by those of the original log."""
         lines = [0, *self.lines]  # the header, then one line per sample
 
         def original(found):
@@ -57,20 +57,21 @@ class Runner:
         self.prepared, self.calls = {}, []
 
     def cost(self):
-        """Time and highest machine load of the calls since the last cost(), as measured when each call was made."""
+        """Returns the time and the highest machine load of the calls since the last cost(). For a stored call, these are
+        the values of the run in which it was made."""
         calls, self.calls = self.calls, []
         return {"wall_s": round(sum(call["wall_s"] for call in calls), 2),
                 "processor_s": round(sum(call["processor_s"] for call in calls), 2),
                 "load_1min": max((call["load_1min"] for call in calls), default=None)}
 
     def kept(self, folder, of, function, in_words=described):
-        """outcome_in(), counted in cost()."""
+        """Returns the outcome of outcome_in() and counts it in cost()."""
         outcome = outcome_in(folder, of, function, in_words)[0]
         self.calls.append(outcome)
         return outcome
 
     def log(self, data_set, name, drive=""):
-        """The prepared log; raises Failed if the file or its entry has a mistake."""
+        """Returns the prepared log. Raises Failed if the file or its entry in the table has a mistake."""
         key = (data_set.name, name, drive)
         if key not in self.prepared:
             folder = self.out / data_set.name / ("logs" + (f"-{drive}" if drive else ""))
@@ -81,7 +82,7 @@ class Runner:
         return self.prepared[key]
 
     def call(self, folder, command, files, words, logs):
-        """The outcome of `softgrip command words --out folder`, with its JSON as the result."""
+        """Runs `softgrip command words --out folder`. Returns the outcome, whose result is the JSON output."""
         of = checksum(*files, self.program, command, *words)
 
         def answer(out):
@@ -102,7 +103,7 @@ class Runner:
         return begins.pop() if len(begins) == 1 else "auto"
 
     def identify(self, data_set, logs, validated=(), words=()):
-        """softgrip identify on `logs`; the model is in the returned folder. (folder, outcome)"""
+        """Runs `softgrip identify` on `logs`. Returns the folder that contains the model, and the outcome."""
         name = " + ".join([*(log.name for log in logs), *words])
         folder = self.out / data_set.name / "identify" / slug(name + "".join(f" to {log.name}" for log in validated))
         options = ["--data", *(log.path for log in logs)]
@@ -113,8 +114,7 @@ class Runner:
         return folder, self.call(folder, "identify", files, options, (*logs, *validated))
 
     def diagnose(self, folder, model, logs, healthy=()):
-        """softgrip diagnose with `model` as the given model; with `healthy` logs it diagnoses what has changed since
-        then."""
+        """Runs `softgrip diagnose` with the given model. With `healthy` logs, it diagnoses the change since these logs."""
         options = ["--model", model, "--data", *(log.path for log in logs)]
         if healthy:
             options += ["--healthy", *(log.path for log in healthy)]
@@ -124,14 +124,14 @@ class Runner:
 
 
 def result_of(outcome):
-    """The result, or Failed with the message of the run."""
+    """Returns the result of an outcome. Raises Failed with the message of the program if it has none."""
     if "error" in outcome:
         raise Failed(outcome["error"])
     return outcome["result"]
 
 
 def names_in(diagnosis):
-    """The names, alternatives and sizes of a diagnosis, as the page and the judges use them."""
+    """Returns verdict, named causes, alternatives and sizes of a diagnosis, as the page and the judges use them."""
     return {"verdict": diagnosis["verdict"], "named": [cause["id"] for cause in diagnosis["causes"]],
             "alternatives": diagnosis["alternatives"],
             "partial": [cause["id"] for cause in diagnosis.get("partial_causes", [])],

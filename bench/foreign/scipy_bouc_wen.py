@@ -1,11 +1,12 @@
 #!/usr/bin/python3
-"""Bouc-Wen (exponent 1) with two Kelvin-Voigt branches, fitted by scipy's least_squares to the first part of a log.
+"""Fits a Bouc-Wen element (exponent 1) with two Kelvin-Voigt branches to the first part of a log with SciPy.
 
     scipy_bouc_wen.py LOG.csv SPLIT SIMULATOR.so [TEST.csv]     prints JSON: RMSE of the fitted and of the predicted part [mm]
 
-Shares nothing with softgrip: the chain is bench/sysid_peer_simulator.c, compiled. Driven by the measured pressure where
-there is one. The log is taken to begin at rest under its first pressure; the readings' zero is fitted with the other
-eight numbers. Four starts, the best of which counts. With TEST all of LOG is fitted and TEST is predicted.
+The program shares no code with softgrip: the simulator is the compiled bench/sysid_peer_simulator.c, and the optimiser is
+scipy.optimize.least_squares. The input is the measured pressure if there is one. The finger is assumed to be at rest at the
+first pressure. The zero of the readings is fitted together with the other eight parameters. The best of four starts is
+used. With TEST, the whole of LOG is fitted and TEST is predicted.
 """
 import ctypes
 import json
@@ -19,13 +20,14 @@ except ImportError as error:
 
 from held_out import first_share, read, rmse, rmse_with_own_offset
 
-K0 = 1e12  # the elastic spring only adds to alpha
+K0 = 1e12  # stiffness of the elastic spring: so large that it has no effect, because its effect equals that of alpha
 STARTS, EVALUATIONS = 4, 200
 POINTER = ctypes.POINTER(ctypes.c_double)
 
 
 class Problem:
-    """The fit in units of the fitted log's own ranges, so that every number is of the order of one."""
+    """The fit with readings and pressures divided by their ranges in the fitted log, so that all parameters have
+    magnitudes of about one."""
 
     def __init__(self, log, fitted, library):
         self.simulator = ctypes.CDLL(library).simulate
@@ -66,8 +68,8 @@ def main():
     log = read(path)
     problem = Problem(log, first_share(log[0], 1.0 if test else float(split)), library)
     length = problem.time[-1] - problem.time[0]
-    # alpha, beta, gamma + eta (below 0 the hysteresis would diverge), gamma - eta, then ln compliance and ln time
-    # constant of each branch, and the zero
+    # Bounds of alpha, beta, gamma + eta (if it were below 0, the hysteresis would diverge), gamma - eta, the logarithms of
+    # compliance and time constant of each branch, and the zero
     lower = np.array([-10, -10, 0, -50] + [np.log(1e-6), np.log(1e-3)] * 2 + [-10])
     upper = np.array([10, 10, 50, 50] + [np.log(10), np.log(100 * length)] * 2 + [10])
     first = problem.y[np.isfinite(problem.y)][0]

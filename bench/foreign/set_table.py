@@ -1,7 +1,7 @@
-"""A data set and its table: logs as in log_table.py, and what the judges may conclude from them.
+"""Reads a data set and its table. The table describes logs, as in log_table.py, and the known facts that the judges use.
 
-A mistake in a log, a pair or a loop is reported with its file and line; only the cases that need it are lost. A table
-that cannot be read as a whole raises log_table.Unusable. docs/how-to/measure.md lists the keys.
+A mistake in a log, a pair or a loop is reported with its file and line. Only the cases that use this entry are not judged. If
+the table as a whole cannot be read, log_table.Unusable is raised. docs/how-to/measure.md lists the keys.
 """
 import csv
 import dataclasses
@@ -23,14 +23,14 @@ OWN_TABLE = "foreign.yaml"  # in a data folder; otherwise sets/NAME_OF_THE_FOLDE
 
 @dataclasses.dataclass
 class Pair:
-    """Baseline logs and a later log of the same rig; without a label nothing has changed between them."""
+    """Baseline logs and a later log of the same rig. If there is no label, nothing has changed between them."""
     name: str
     baseline: list
     later: str
     because: str
     group: str = "runs"
     label: str = ""
-    causes: tuple = ()  # accepted names of a labelled change
+    causes: tuple = ()  # causes that are correct answers for the labelled change
     problems: list = dataclasses.field(default_factory=list)
 
 
@@ -47,10 +47,11 @@ class Loop:
 
 @dataclasses.dataclass
 class Fit:
-    """A log that is identified: from its first part, or as a whole and then tested on another log."""
+    """A log that is identified. Either the model is fitted to the first part of the log, or it is fitted to the whole log
+    and tested on another log."""
     log: str
     test: str = ""
-    order: int = 0  # of the linear model; 0: the default
+    order: int = 0  # order of the linear model; 0: the default
     problems: list = dataclasses.field(default_factory=list)
 
     @property
@@ -66,7 +67,7 @@ class DataSet:
     about: str = ""
     source: str = ""
     licence: str = ""
-    table: str = ""  # file name
+    table: str = ""  # name of the table's file
     logs: dict = dataclasses.field(default_factory=dict)
     repeats: list = dataclasses.field(default_factory=list)
     changes: list = dataclasses.field(default_factory=list)
@@ -75,7 +76,7 @@ class DataSet:
 
 
 class ListReader:
-    """The entries of one list of the table."""
+    """Reads the entries of one list of the table."""
 
     def __init__(self, path, values, key, logs):
         self.path, self.key, self.logs = path, key, logs
@@ -85,7 +86,7 @@ class ListReader:
             raise Unusable(f"{path}:{self.line}: `{key}` is no list")
 
     def entries(self, known):
-        """An EntryReader for each entry; its keys are checked."""
+        """Yields an EntryReader for each entry, after a check of the entry's keys."""
         for number, given in enumerate(self.given, 1):
             if not isinstance(given, Map):
                 raise Unusable(f"{self.path}:{self.line}: entry {number} of `{self.key}` is {given!r}, not keys with values")
@@ -100,7 +101,7 @@ class ListReader:
         return value
 
     def log(self, entry, key, needed=True):
-        """The name of a log of this table."""
+        """Returns the name of a log that an entry refers to, and checks that the table describes this log."""
         name = self.text(entry, key, needed)
         if name:
             self.known_log(entry, key, name)
@@ -160,7 +161,7 @@ class ListReader:
 
 
 def read_set(path, folder):
-    """The set that the table at `path` describes, with its logs in `folder`."""
+    """Reads the data set that the table at `path` describes. Its logs are in `folder`."""
     path, folder = pathlib.Path(path), pathlib.Path(folder)
     table = read_table(path, folder, SET_KEYS)
     values = values_of(path)
@@ -178,7 +179,8 @@ def is_log(path):
 
 
 def set_without_table(folder, scratch):
-    """A set without a table: each CSV file in the format of a log is identified; the other judges have no cases."""
+    """Returns a data set for a folder without a table. Each CSV file in the log format is a case of the judge
+    `identification`; the other judges have no cases."""
     files = [path for path in sorted(folder.glob("*.csv")) if is_log(path)]
     if not files:
         return None
@@ -200,7 +202,8 @@ def table_of(folder, tables):
 
 
 def find_sets(roots, tables, scratch):
-    """(sets, problems) of each folder in `roots`, or of a root that contains logs itself."""
+    """Reads the data set in each folder below `roots`, or in a root that contains logs itself. Returns the data sets and
+    the problems."""
     sets, problems, names = [], [], set()
     for root in roots:
         folders = [root, *sorted(path for path in root.iterdir() if path.is_dir())]

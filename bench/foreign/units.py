@@ -1,9 +1,9 @@
-"""The usual units, and their conversion to those of the log contract."""
+"""The usual units, and their conversion to the units of the log format."""
 import re
 
 TIME_POINT = "datetime"  # dates with times of day, ISO 8601
 
-# quantity -> unit in lower case -> contract units (s, kPa, mm) per unit
+# for each quantity: unit in lower case -> units of the log format (s, kPa, mm) per unit
 QUANTITIES = {
     "time": {"s": 1, "sec": 1, "ms": 1e-3, "us": 1e-6, "µs": 1e-6, "ns": 1e-9, "min": 60, "h": 3600, TIME_POINT: 1},
     "pressure": {"kpa": 1, "pa": 1e-3, "hpa": 0.1, "mpa": 1000, "bar": 100, "mbar": 0.1, "psi": 6.894757,
@@ -11,7 +11,7 @@ QUANTITIES = {
     "displacement": {"mm": 1, "cm": 10, "m": 1000, "um": 1e-3, "µm": 1e-3, "in": 25.4, "inch": 25.4},
     "temperature": {"c": 1, "degc": 1, "°c": 1, "k": 1, "f": 5 / 9, "degf": 5 / 9, "°f": 5 / 9},
 }
-# The zero of a temperature in its own unit.
+# The zero of the Celsius scale, expressed in each unit of temperature.
 ZEROS = {"k": 273.15, "f": 32, "degf": 32, "°f": 32}
 
 
@@ -20,7 +20,7 @@ def units_of(quantity):
 
 
 def unit_in(name, quantity):
-    """The unit in a column's name: pd1_psi, "p [bar]", "Time (ms)"; empty if no unit fits."""
+    """Returns the unit in a column's name, as in pd1_psi, "p [bar]" or "Time (ms)"; empty if the name has no known unit."""
     for pattern in (r"[\[(]\s*([^\])]+?)\s*[\])]\s*$", r"[_\s./]([A-Za-zµ°]+)\s*$"):
         found = re.search(pattern, str(name))
         if found and found.group(1).lower() in QUANTITIES[quantity]:
