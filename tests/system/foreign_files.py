@@ -362,13 +362,13 @@ def reports():
     blanks = [names] + [[t, c if i % 3 == 0 else None, y] for i, (t, c, y) in enumerate(zip(T, COMMAND, TIP))]
     step_back = [t if i < 150 else round(t - 0.015, 6) for i, t in enumerate(T)]
     return [
-        File("three_fingers.csv", "the wide export of three fingers, one of them", three, "--channel index"),
-        File("three_fingers_unsaid.csv", "the same without saying which", three,
+        File("three_fingers.csv", "the wide export of three fingers, one of them selected", three, "--channel index"),
+        File("three_fingers_unsaid.csv", "the wide export of three fingers, none of them selected", three,
              refused="the columns belong to 3 fingers: 'thumb', 'index', 'ring'"),
-        File("channel_rows.csv", "fingers in rows, one of them", rows_of_two, "--channel B", left_out={"other_channel": 300}),
-        File("channel_rows_none.csv", "the same and a name that is none", rows_of_two, "--channel C",
+        File("channel_rows.csv", "fingers in rows, one of them selected", rows_of_two, "--channel B", left_out={"other_channel": 300}),
+        File("channel_rows_none.csv", "fingers in rows, and a name that no finger has", rows_of_two, "--channel C",
              refused="no row belongs to channel 'C'"),
-        File("fingers.xlsx", "two fingers in a workbook, one of them", workbooks.book(
+        File("fingers.xlsx", "two fingers in a workbook, one of them selected", workbooks.book(
             [["time_s", "P1 set (kPa)", "P2 set (kPa)", "tip 1 (mm)", "tip 2 (mm)"]]
             + [list(row) for row in zip(T, quarter, COMMAND, other_tip, TIP)]), "--channel 2"),
         File("one_sensor.csv", "the pressures of two fingers and the reading of one finger",
@@ -470,8 +470,8 @@ def other_fingers_and_clocks():
     return [
         File("psi_as_kpa.csv", "psi in a column that is labelled kPa", table(["time_s", "set_kpa", "tip_mm"], [T, scaled(COMMAND, PSI), TIP]),
              columns=BASIC_OF | {"pressure_command_kpa": scaled(COMMAND, PSI)}, says="The largest value of `set_kpa` is 8.7"),
-        File("finger_rows.csv", "fingers in rows, by another name than channel", by_word, refused="the file has 2 channels: 'left', 'right'"),
-        File("finger_rows_left.csv", "the same, and one of them", by_word, "--channel left", **of_first),
+        File("finger_rows.csv", "fingers in rows, in a column that is not named channel", by_word, refused="the file has 2 channels: 'left', 'right'"),
+        File("finger_rows_left.csv", "two fingers, one of them selected", by_word, "--channel left", **of_first),
         File("finger_numbers.csv", "fingers in rows by their number", by_number, "--channel 1", **of_first),
         File("finger_rows.mat", "MATLAB 5: fingers in rows by their number", matlab_5(structures("run", [
             {name: matrix("", values) for name, values in zip(names, zip(*rows))}])),
@@ -533,12 +533,12 @@ def signals(stamp):
         File("signals_apart.mcap", "MCAP: a topic per signal, with a sensor clock that counts from its start", mcap(
             stamped("/valve", "set_kpa", COMMAND) + stamped("/laser", "tip_mm", TIP, begin=1717156000)),
              refused="of the topics 'laser' and 'valve' belong to two clocks: relative to log_time they differ by 1.717e+09 s"),
-        File("signals_back.mcap", "the same with a clock that steps back", mcap(
+        File("signals_back.mcap", "MCAP: a topic per signal, with a clock that steps back", mcap(
             stamped("/valve", "set_kpa", COMMAND)[100:] + [(name, t + 10, content) for name, t, content in both[:100]]
             + stamped("/laser", "tip_mm", TIP)), refused="the time goes back"),
         File("signals_fingers.mcap", "MCAP: a topic per signal of two fingers", mcap(fingers), refused="the columns belong to 2 fingers: 'left', 'right'"),
-        File("signals_left.mcap", "the same, and one of them", mcap(fingers), "--channel left", joined=COUNT, left_out={"empty": 2 * COUNT}),
-        File("signals_nobody.mcap", "the same, and a finger that is not there", mcap(fingers), "--channel middle",
+        File("signals_left.mcap", "two fingers, one of them selected", mcap(fingers), "--channel left", joined=COUNT, left_out={"empty": 2 * COUNT}),
+        File("signals_nobody.mcap", "MCAP: a topic per signal of two fingers, and a name that no finger has", mcap(fingers), "--channel middle",
              refused="no finger has the name 'middle'"),
     ]
 
@@ -569,7 +569,7 @@ def files():
              refused="'V' is not a unit of displacement"),
         File("unit_unsaid.csv", "a column without a unit", table(["time_s", "set_kpa", "tip"], [T, COMMAND, TIP]),
              refused="'tip' has no unit"),
-        File("unit_said.csv", "the same, and the unit as an option",
+        File("unit_said.csv", "a column without a unit, with the unit as an option",
              table(["time_s", "set_kpa", "tip"], [T, COMMAND, TIP]), "--unit displacement=mm"),
         File("milliseconds_tabs.tsv", "milliseconds, tabs",
              table(["Time ms", "Setpoint kPa", "Position mm"], [[round(1000 * t) for t in T], COMMAND, TIP], "\t")),
@@ -662,7 +662,7 @@ def files():
              refused="4 cells where the rows above have 3"),
         File("word.csv", "a word among the numbers", changed(PLAIN, 77, "0.75,", "0.75x,"),
              refused="'0.75x' is not a number"),
-        File("upside_down.csv", "a sensor that looks the other way", table(["time_s", "set_kpa", "tip_mm"],
+        File("upside_down.csv", "a sensor that is mounted in reverse", table(["time_s", "set_kpa", "tip_mm"],
                                                                             [T, COMMAND, [-y for y in TIP]]),
              columns={key: TRUTH[key] for key in BASIC} | {"displacement_mm": [-y for y in TIP]},
              says="the reading decreases when the pressure increases"),
@@ -712,7 +712,7 @@ def files():
              refused="below_the_first.csv:102:1: the time goes back"),
         File("minutes.csv", "minutes and seconds across the hour",
              table(["Time", "set_kpa", "tip_mm"], [times("2024-05-31T11:59:58", "%M:%S.%f"), COMMAND, TIP])),
-        File("two_fields.csv", "times that are hours and minutes, or minutes and seconds",
+        File("two_fields.csv", "times that can be hours and minutes, or minutes and seconds",
              table(["Time", "set_kpa", "tip_mm"], [[f"{i // 60:02}:{i % 60:02}" for i in range(COUNT)], COMMAND, TIP]),
              refused="'Time' can be hours and minutes, or minutes and seconds"),
         File("two_fields_said.csv", "minutes and seconds, with the unit as an option",
@@ -750,15 +750,15 @@ def files():
         File("two_times_unclear.csv", "two times that differ, without names that show to which signal they belong",
              table(["time_a_s", "time_b_s", "set_kpa", "tip_mm"], [T, [round(0.5 * t, 6) for t in T], COMMAND, TIP]),
              refused="the times of the columns 'time_a_s', 'time_b_s' differ"),
-        File("two_times_chosen.csv", "two times that differ, and one of them as an option",
+        File("two_times_chosen.csv", "two times that differ, with one of them as an option",
              table(["time_a_s", "time_b_s", "set_kpa", "tip_mm"], [T, [round(0.5 * t, 6) for t in T], COMMAND, TIP]),
              "--time time_a_s", says="the column 'time_b_s' looks like a time and is not used: it differs"),
         File("fingers.csv", "two fingers in the columns", fingers, refused="the columns belong to 2 fingers: 'left', 'right'"),
-        File("fingers_right.csv", "the same, and one of them", fingers, "--channel right", columns=right,
+        File("fingers_right.csv", "two fingers, one of them selected", fingers, "--channel right", columns=right,
              says="not used: 'P_left (kPa)', 'tip_left (mm)'"),
-        File("fingers_none.csv", "the same, and a name that is none", fingers, "--channel thumb",
+        File("fingers_none.csv", "two fingers in the columns, and a name that no finger has", fingers, "--channel thumb",
              refused="no finger has the name 'thumb': the columns belong to 'left', 'right'"),
-        File("finger_alone.csv", "a channel of a file that has one finger", PLAIN, "--channel thumb",
+        File("finger_alone.csv", "the option --channel for a file of one finger", PLAIN, "--channel thumb",
              refused="--channel 'thumb': the file has no column 'channel'"),
         File("codes.csv", "999 for missing readings", table(["time_s", "set_kpa", "tip_mm"], [T, COMMAND, coded]),
              columns=BASIC_OF | {"displacement_mm": [math.nan if v == 999 else v for v in coded]},
@@ -790,7 +790,7 @@ def files():
         File("angle_beside.csv", "a tip in mm, and the angle of the bend", table(
             ["time_s", "set_kpa", "angle (deg)", "tip (mm)"], [T, COMMAND, scaled(TIP, 0.3), TIP]),
              says="not used: 'angle (deg)'"),
-        File("angle_gon.csv", "a unit of angles that is not read", table(
+        File("angle_gon.csv", "an unknown unit of angles", table(
             ["time_s", "set_kpa", "angle (gon)"], [T, COMMAND, TIP]), refused="'gon' is not a unit of displacement"),
         File("angle_scaled.csv", "degrees, as the path of a tip 45 mm from the bend",
              table(["time_s", "set_kpa", "tip (deg)"], [T, COMMAND, scaled(TIP, math.radians(45))]),
@@ -875,9 +875,9 @@ $ tests/system/foreign_files.py --page
 ```
 
 The script writes every file, imports it, and compares each value with the original. An import passes if the deviation is at most 1e-9
-of the column's size, or if it is refused with the reason and without output. A test compares this page with the imports
-(`system.test_import`). Without options, the proposed columns, which follow from names and units, were confirmed (`--yes`).
-[How to import](../how-to/import.md) contains the rules.
+of the column's size, or if it is refused with the reason and without output. "As they are" means that all samples passed this
+comparison. A test compares this page with the imports (`system.test_import`). Without options, the proposed columns, which follow from
+names and units, were confirmed (`--yes`). [How to import](../how-to/import.md) contains the rules.
 
 | file | content | options | result | messages |
 |---|---|---|---|---|
