@@ -149,15 +149,15 @@ class Study:
              f"± {self.scipy['beta_ci95']:.2g} mm/kPa from the Jacobian, as if every sample were independent",
              f"± {half:.2g} mm/kPa: the residuals resemble each other (lag-1 correlation "
              f"{residuals['lag1_correlation']:.2f}), equivalent to {residuals['effective_samples']:.0f} independent samples"),
-            ("the model has no inverse", f"nothing: beta {self.scipy['beta']:.3f}, alpha {self.scipy['alpha']:.3f} mm/kPa "
+            ("the model has no inverse", f"not reported: beta {self.scipy['beta']:.3f}, alpha {self.scipy['alpha']:.3f} mm/kPa "
              "are printed side by side", next((w for w in self.identified["warnings"] if "inverse response" in w), "-")),
-            ("why", "nothing: the error is small", f"{self.diagnosis['verdict']}: {causes or '-'}"),
+            ("cause of this", "not reported, because the error is small", f"{self.diagnosis['verdict']}: {causes or '-'}"),
             ("improvement by the named causes", "-", f"held out, steps {mm(self.identified['validation']['rmse_mm']['steps'])} → "
              f"{mm(self.extended['steps'])} mm, sp2 {mm(self.identified['validation']['rmse_mm']['sp2'])} → "
              f"{mm(self.extended['sp2'])} mm"),
             ("a log in the wrong unit, inverted, swapped", "a fit, or one that does not converge",
              "reported with the number that shows it ([how](../how-to/import.md#plausibility-warnings))"),
-            ("reproduction of the numbers", "files that were kept by hand",
+            ("reproduction of the numbers", "from files that the user keeps",
              "`softgrip report --verify`: hashes, call and every number ([how](../how-to/identify.md))")]
 
     def page(self):
@@ -188,10 +188,10 @@ class Study:
             "## Lines, time, errors",
             "",
             *table(["", "lines to write", "processor time [s]", "fitted: tp1 [mm]", "held out: steps [mm]", "held out: sp2 [mm]",
-                    "starts that reached the best"], self.summary_rows()),
+                    "starts that reached the smallest error"], self.summary_rows()),
             "The lines include the simulator, without blank lines and comments. Processor time is that of the whole program on all",
-            f"cores: the median of {self.runs} runs, or one run for the diagnosis. The three fits are equal: the problem is small, and with a",
-            "compiled simulator each of these optimisers solves it.",
+            f"cores: the median of {self.runs} runs, or one run for the diagnosis. The three fits are equal, because the problem is small, and",
+            "each of these optimisers solves it with a compiled simulator.",
             "",
             "## Results that only softgrip gives",
             "",

@@ -194,7 +194,7 @@ def meaning(rows):
     measured = {what: text.split(" (")[0] for what, _, text, _ in rows}
     found = [measured.get(f"true cause named, or listed in an ambiguous verdict, at strength {strength}", "-") for strength in (8, 2)]
     return (f"In simulated fingers, the diagnosis names or lists the true cause in {found[0]} of the cases at 8 times the noise, "
-            f"and in {found[1]} at 2 times. It gives a name to "
+            f"and in {found[1]} at 2 times. It names a cause of its library for "
             f"{measured.get('effects outside the library: a cause of the library is named', '-')} of the effects outside its library.")
 
 

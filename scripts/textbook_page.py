@@ -57,7 +57,7 @@ def summary(rows):
              within(among, most), among)
     line("without an effect: no cause named that is not present", "at least 97 %",
          share(sum(not r["wrong"] for r in clean), len(clean)), clean)
-    line("without an effect: no name and an unexplained error (`unexplained`)", "-",
+    line("without an effect: no cause named, but an unexplained error reported (`unexplained`)", "-",
          share(sum(r["outcome"] == "unexplained" for r in clean), len(clean)), clean)
     wanted = {8: "at least 90 %", 2: "at least 70 %"}
     for strength in sorted({r["strength"] for r in singles}, reverse=True):
@@ -158,16 +158,16 @@ slices of rubber with a Prony series, and play with fractional creep. All have c
 case has three logs. The noise is 0.04 mm for readings, 0.05 kPa for pressures and 0.3 kPa for supplies.
 
 Strength is the RMS that the effect adds to the displacement over the campaign, divided by the noise. It excludes the part that a
-refit can absorb: any zero and gain, and any width, curvature and creep that fingers of this make can have. A leak counts in full.
+refit can absorb: any zero and gain, and any width, curvature and creep that fingers of this make can have. The whole effect of a leak counts.
 *Own physics* are the mechanisms of a case without an effect that change the displacement by more than 25 % of the noise when they
-are removed. To name own physics is a finding and never wrong. If the hidden cause is also own physics (a slower valve behind a valve
-with a lag), its name counts as found.
+are removed. A named cause that is own physics of the case is never counted as wrong. If the hidden cause is also own physics (a
+slower valve behind a valve with a lag) and is named, it counts as found.
 
 The diagnosis starts from a plain Bouc-Wen model of another finger (`tests/blind/textbook/given.yaml`), as if one finger of a type
 had been identified and another one had been bought. `--given commissioned` starts from the model of `softgrip identify --structure
 auto` for other logs of the same finger without the effect. A cause is *found* if it is named or among the alternatives of a named
-cause, for any verdict; a name finds at most one cause. A name is *wrong* if neither it nor any of its alternatives is present. The
-held-out error is that of `softgrip identify --structure auto` on interleaved blocks, from the measured pressure if it is recorded,
+cause, for any verdict. One named cause can account for at most one hidden cause. A named cause is *wrong* if neither it nor any of its
+alternatives is present. The held-out error is that of `softgrip identify --structure auto` on interleaved blocks, from the measured pressure if it is recorded,
 otherwise from the command. The next column is the error of the diagnosis' own model on its held-out blocks. If the pressure is
 recorded, it is the input of the finger (`--drive measured`), and the valve is judged by it."""
 

@@ -52,7 +52,7 @@ def repeated(name, times):
 
 
 def table(times, only):
-    lines = ["| beside | vents | worst | middle | runs that failed |", "|---|---|---|---|---|"]
+    lines = ["| attack or condition | vents | longest time | median time | failed runs |", "|---|---|---|---|---|"]
     worst = 0.0
     for name, words in ATTACKS:
         if only and only not in name:
@@ -63,7 +63,7 @@ def table(times, only):
         worst = max(worst, *waited)
         lines.append(f"| {words} | {len(waited)} | {max(waited) * 1000:.0f} ms | {statistics.median(waited) * 1000:.0f} ms | {wrong} |")
         print(lines[-1], flush=True)
-    return "\n".join(lines) + f"\n\nThe worst of all: **{worst * 1000:.0f} ms**.\n"
+    return "\n".join(lines) + f"\n\nThe longest time of all vents: **{worst * 1000:.0f} ms**.\n"
 
 
 def main():

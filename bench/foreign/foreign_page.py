@@ -65,9 +65,9 @@ def requirements(values):
                  ("other loops: reported as sticking by Horch's phase test", "-", of(others["horch"], others["cases"]))]
     if "identification" in summary:
         part = summary["identification"]
-        rows += [("identification, `auto`: a linear model of order 3 is better by more than 10 %", "none",
+        rows += [("identification: a linear model of order 3 is better than `auto` by more than 10 %", "none",
                   of(part["linear_better"]["auto"], part["rows"])),
-                 ("identification, `plain`: a linear model of order 3 is better by more than 10 %", "-", of(part["linear_better"]["plain"], part["rows"])),
+                 ("identification: a linear model of order 3 is better than `plain` by more than 10 %", "-", of(part["linear_better"]["plain"], part["rows"])),
                  ("identification: `auto` or `plain` has the smallest error", "-",
                   of(part["first"]["auto"] + part["first"]["plain"], part["rows"]))]
     return rows
@@ -76,9 +76,9 @@ def requirements(values):
 def required_table(values, reference):
     now = requirements(values)
     if not reference:
-        return table(["judge", "required", "reached"], now)
+        return table(["criterion", "required", "reached"], now)
     before = {row[0]: row[2] for row in requirements(reference)}
-    return table(["judge", "required", f"reference: {reference['softgrip']['version']}", "reached"],
+    return table(["criterion", "required", f"reference: {reference['softgrip']['version']}", "reached"],
                  [(sentence, required, before.get(sentence, "-"), reached) for sentence, required, reached in now])
 
 
@@ -125,7 +125,7 @@ def changes_section(values):
 STICTION_TEXT = [
     "*phase ratio* is the statistic of Horch's test (A. Horch, Control Engineering Practice 7, 1999, 1221-1231), which",
     "`bench/foreign/horch.py` computes without softgrip: above 2/3 the valve sticks, below 1/3 it is free. The labels of these loops",
-    "were known when its form was chosen, so its counts are no independent measure of the test."]
+    "were known when the form of the test was chosen, so these counts are no independent measure of the test."]
 
 
 def stiction_section(values):
@@ -141,12 +141,12 @@ IDENTIFICATION_TEXT = [
     "predicted from the start of the log. `A -> B`: A is fitted, and B is predicted. *plain* is `softgrip identify`, *auto* is",
     "`softgrip identify --structure auto`. *output error* is a linear output-error model of order 3 (`bench/foreign/output_error.py`): the",
     "published element also has 3 states. *SciPy* is Bouc-Wen with 2 Kelvin-Voigt branches, fitted by `least_squares`",
-    "(`bench/foreign/scipy_bouc_wen.py`). For B, the last 2 estimate only the offset, from the first 5 % (at least 2 s).",
+    "(`bench/foreign/scipy_bouc_wen.py`). For B, *output error* and *SciPy* estimate only the offset, from the first 5 % (at least 2 s).",
     "With the drive *command* the measured pressure is withheld from every method; with *measured* it is the input of every model.",
-    "The held-out errors of `piezo` and `hydraulic` were known when the start rule of the linear model was chosen.",
+    "The held-out errors of `piezo` and `hydraulic` were known when the rule for the initial state of the linear model was chosen.",
     "The errors on `asu_softarm` and `hydraulic` were known when the start at rest, the bounded response, the second lag and the",
-    "resonance of *auto* were added, so these counts are no independent measure of them.",
-    "The smallest error is bold. *linear better*: the linear model is better than *auto* by more than 10 %."]
+    "resonance of *auto* were added, so the counts on these sets are no independent measure of these additions.",
+    "The smallest error of each row is bold. *linear better*: the linear model is better than *auto* by more than 10 %."]
 
 
 def identification_row(case, row):
@@ -193,8 +193,8 @@ def meaning(values):
         parts.append(f"{of(part['changed'], part['cases'])} repeated runs without a change are reported as changed")
     if "changes" in summary:
         part = summary["changes"]
-        parts.append(f"{of(part.get('listed', '-'), part['cases'])} labelled changes get the labelled cause, and "
-                     f"{of(part['wrong_alone'], part['cases'])} only a wrong one")
+        parts.append(f"{of(part.get('listed', '-'), part['cases'])} labelled changes have their labelled cause named or listed, and "
+                     f"{of(part['wrong_alone'], part['cases'])} have only a wrong cause named")
     if "stiction" in summary:
         part = summary["stiction"]["sticking"]
         parts.append(f"stiction is named in {of(part['stiction_named'], part['cases'])} sticking valves")
@@ -202,7 +202,7 @@ def meaning(values):
         part = summary["identification"]
         parts.append(f"a linear model predicts better than `auto` by more than 10 % in {of(part['linear_better']['auto'], part['rows'])} "
                      "fits")
-    parts = parts or ["no judge ran"]
+    parts = parts or ["nothing was evaluated"]
     return " ".join([f"On data that the project did not make, {parts[0]}.", *(f"{part[0].upper()}{part[1:]}." for part in parts[1:])])
 
 
@@ -214,7 +214,7 @@ def head(values, title, command):
                               f"{machine['processors']} processors, {machine['threads']} thread per call, 1-minute load {load}",
                               values["began"][:10])
     return [*lines, "The time of a case includes all its calls; an identification that two cases share counts for both. "
-            "[How to run the judges](../how-to/measure.md#data-of-other-laboratories)."]
+            "[How to repeat the measurements](../how-to/measure.md#data-of-other-laboratories)."]
 
 
 def write(path, values, reference=None, title="Data of other laboratories", command="bench/foreign.py --out DIR --page"):

@@ -144,7 +144,7 @@ class Command(ForeignCase):
         self.answer({**DIAGNOSIS, "verdict": "unchanged", "causes": [], "alternatives": []})
         self.program.write_text(self.program.read_text().replace("1.2.3", "1.2.4"))
         self.run_it("--only", "repeats")
-        self.assertIn("| judge | required | reference: softgrip 1.2.3 | reached |", self.page.read_text())
+        self.assertIn("| criterion | required | reference: softgrip 1.2.3 | reached |", self.page.read_text())
         self.assertIn("| at most 1 of 12 | 2 of 2 | 0 of 2 |", self.page.read_text())
 
     def test_kept_calls_are_not_repeated(self):
