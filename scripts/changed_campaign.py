@@ -140,7 +140,7 @@ def changing_text():
         "In each case, the healthy logs of a finger (campaign 0 of its seed; 3 logs unless stated) are recorded without a hidden",
         "cause. The later logs (campaign 1, with other waveforms and other noise) contain one hidden cause or none. Strength 1 is the",
         "strength 8 of the other campaigns: an excess error of 8 times the noise of 0.04 mm. At strength 0.15 the excess error is 0.048 mm.",
-        "The zero of the sensor and the temperature differ on the later day. The outcomes are: `first`: the true cause is named first.",
+        "On the later day, the zero of the sensor and the temperature differ from those of the healthy logs. The outcomes are: `first`: the true cause is named first.",
         "`twin`: stiffening is named for a nonlinear scale, or the reverse. `listed`: the true cause is named after another cause or among",
         "the alternatives. `unnamed`: a change is reported without a cause. `missed`: the finger is reported as unchanged. `wrong`: only",
         "another cause is named. The intervals are those of true changes that are named first, for parameters with the same meaning in the",

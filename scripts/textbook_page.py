@@ -138,7 +138,7 @@ def meaning(rows):
     found = [measured.get(f"one effect at {strength} times the noise: found", "-") for strength in (8, 2)]
     return (f"In fingers and valves that share no equation with softgrip, the diagnosis finds the true cause in {found[0]} of the "
             f"cases at 8 times the noise, and in {found[1]} at 2 times. It names a wrong cause in "
-            f"{measured.get('one effect: a wrong cause is named', '-')}.")
+            f"{measured.get('one effect: a wrong cause is named', '-')} of the cases.")
 
 
 def made(results, planned):

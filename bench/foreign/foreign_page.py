@@ -146,7 +146,8 @@ IDENTIFICATION_TEXT = [
     "The held-out errors of `piezo` and `hydraulic` were known when the rule for the initial state of the linear model was chosen.",
     "The errors on `asu_softarm` and `hydraulic` were known when the start at rest, the bounded response, the second lag and the",
     "resonance of *auto* were added, so the counts on these sets are no independent measure of these additions.",
-    "The smallest error of each row is bold. *linear better*: the linear model is better than *auto* by more than 10 %."]
+    "The smallest error of each row is bold. *linear better*: the linear model is better than *auto* by more than 10 %.",
+    "In the column *structure of auto*, a creep ladder is a chain of Kelvin-Voigt elements."]
 
 
 def identification_row(case, row):
