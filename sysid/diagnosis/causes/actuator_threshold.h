@@ -1,5 +1,5 @@
 #pragma once
-// No motion below a threshold pressure.
+// The actuator does not move below a threshold pressure.
 
 #include "model/blocks/actuator_threshold.h"
 #include "sysid/diagnosis/causes/form.h"
@@ -16,7 +16,8 @@ struct ActuatorThreshold : FormOf<model::ActuatorThreshold> {
   static Starts starts(const Scales& s) {
     return every({{"threshold_kpa", {0.02 * s.largest_kpa, 0.08 * s.largest_kpa, 0.2 * s.largest_kpa}}});
   }
-  /// At a higher threshold, nearly all data would show no motion. They would then belong to another actuator.
+  /// With a higher threshold, nearly all data would show no motion, which cannot be an effect of this
+  /// actuator.
   static Bounds bounds(const Scales& s, const model::Model&) {
     return {{"threshold_kpa", 0, 0.6 * s.largest_kpa}};
   }

@@ -17,7 +17,7 @@ struct AsymmetricHysteresis {
        "Remove the load, then run the pressure up and down slowly three times."},
       {{{HealthNumber::loop_width, Moves::either_way}}}};
 
-  /// A separate element whose loading and unloading curves differ.
+  /// An additional hysteresis element whose loading and unloading curves differ.
   struct OwnLoop : FormOf<model::DuhemHysteresis> {
     static Starts starts(const Scales& s) {
       const double gain = s.gain_mm_per_kpa();
@@ -25,18 +25,18 @@ struct AsymmetricHysteresis {
                     {"unloading_kpa", {0.3 * s.largest_kpa}},
                     {"loading_kpa", {0.08 * s.largest_kpa, 0.3 * s.largest_kpa, s.largest_kpa}}});
     }
-    /// For lengths far above the largest pressure, the curve is a straight line.
+    /// If a length is far above the largest pressure, the curve is practically a straight line.
     static Bounds bounds(const Scales& s, const model::Model&) {
       return {{"unloading_kpa", 0.01 * s.largest_kpa, 3 * s.largest_kpa},
               {"loading_kpa", 0.01 * s.largest_kpa, 3 * s.largest_kpa}};
     }
   };
 
-  /// The hysteresis of the base with different loading and unloading.
+  /// The hysteresis of the base structure with different loading and unloading branches.
   struct Skew : FormOf<model::AsymmetricBoucWen> {
     static Starts starts(const Scales& s) {
       Starts starts;
-      // The hysteretic state saturates over some tenths of the pressure range.
+      // The hysteretic state saturates within some tenths of the pressure range.
       for (const double delta : {-2.0, -0.8, -0.3, 0.3, 0.8, 2.0}) {
         starts.push_back(start({{"delta_per_kpa", delta / s.largest_kpa}}));
         starts.push_back(start({{"epsilon_per_kpa", delta / s.largest_kpa}}));
@@ -46,16 +46,16 @@ struct AsymmetricHysteresis {
     }
   };
 
-  /// A loop that is wide at medium pressure. It closes at the largest pressure.
+  /// A loop that is wide at medium pressures and closes at the largest pressure.
   struct Crescent : FormOf<model::CrescentHysteresis> {
     static constexpr std::array<Parameter, 2> fitted{"gain_mm_per_kpa", "bend"};
     static Starts starts(const Scales& s) {
       const double gain = s.gain_mm_per_kpa();
       return every({{"gain_mm_per_kpa", {0.05 * gain}}, {"bend", {2, 6}}, {"range_kpa", {s.largest_kpa}}});
     }
-    /// For a bend near zero, the element has no effect. For a large bend, it is a step at the end of the
-    /// range. A negative gain would release more than it stores; a loop that is too wide is described by the
-    /// base.
+    /// With a bend near zero, the element has no effect. With a large bend, it is a step at the end of the
+    /// range. A negative gain would release more energy than the element stores. A narrower loop is described
+    /// by the parameters of the base structure.
     static Bounds bounds(const Scales&, const model::Model&) {
       return {{"gain_mm_per_kpa", 0}, {"bend", 0.5, 30}};
     }

@@ -1,5 +1,5 @@
 #pragma once
-// Play between the actuator and the measured point.
+// There is play between the actuator and the point that the sensor measures.
 
 #include "model/blocks/backlash.h"
 #include "sysid/diagnosis/causes/form.h"

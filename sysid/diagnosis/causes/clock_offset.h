@@ -1,12 +1,12 @@
 #pragma once
-// The reading leads its command.
+// The reading leads the command.
 
 #include "model/blocks/clock_offset.h"
 #include "sysid/diagnosis/causes/form.h"
 
 namespace softgrip::sysid::causes {
 
-/// A late reading equals a dead time: no log separates them.
+/// A reading with a late time stamp is equivalent to a dead time, and no log can separate the two.
 struct ClockOffset : FormOf<model::ClockOffset> {
   static constexpr bool is_ideal = true;
   static constexpr Appears appears = Appears::moving;

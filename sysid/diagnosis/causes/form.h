@@ -1,12 +1,12 @@
 #pragma once
-// Defines the format of a cause's file, with helpers that name its parameters. docs/how-to/add-a-cause.md
-// shows an example.
+// Defines the format of the file of a cause and provides helpers that refer to its parameters by name.
+// docs/how-to/add-a-cause.md shows an example.
 //
-// Each cause is a struct in its own file. A cause with a single form is that form. A cause with several forms
-// lists them as `using Forms = List<...>`. The block of the first form defines id, title and station. A cause
-// with another id declares `id` and `title` itself.
+// Each cause is a struct in its own file. A cause with a single form is the struct of that form. A cause with
+// several forms lists them as `using Forms = List<...>`. By default, the block of the first form defines id,
+// title and station. A cause whose id differs from that of the block declares `id` and `title` itself.
 //
-// A form is a struct derived from FormOf<a block>:
+// A form is a struct derived from FormOf<Block>, where Block is a block of the catalogue:
 //   static Starts starts(const Scales&);                   start points of fits; at least one
 //   static Bounds bounds(const Scales&, const model::Model&);  limits beyond which the block would duplicate
 //                                                          another effect as a false alternative
@@ -62,35 +62,36 @@
 
 namespace softgrip::sysid {
 
-/// Actions that separate causes where no waveform can. An action separates two causes that share it.
+/// Actions that separate causes which no waveform separates. An action separates two causes if both list it.
 enum class Advice : std::uint8_t {
   change_load,         ///< change the load, move the object, or hold the sensor against a gauge
-  leave_vented,        ///< leave the finger vented for an hour and read its zero
+  leave_vented,        ///< leave the finger vented for an hour and read the sensor zero
   record_temperature,  ///< record the temperature
-  vary_temperature,    ///< record the temperature and vary it, with any other cause
+  vary_temperature,    ///< record the temperature and vary it; it separates this cause from any other
 };
 
-/// The quantity that an operator checks after a change, and its relation to the fitted parameters.
+/// The quantity that states the size of a change, and its relation to the fitted parameters.
 struct SizedBy {
   enum class Of : std::uint8_t {
     full_pressure,  ///< mean effect at more than 90 % of the largest pressure
-    span,           ///< the same, as a share of the span of the readings
+    span,           ///< the same as a share of the span of the readings
     largest,        ///< largest effect, with its sign
     amplitude,      ///< largest effect, without its sign
-    number,         ///< a parameter of the block
+    number,         ///< value of a parameter of the block
   };
   Of of = Of::full_pressure;
   std::string_view what = "at full pressure";
   std::string_view unit{};    ///< empty: unit of the reading
-  std::string_view number{};  ///< name of the parameter; a form without it uses full_pressure
+  std::string_view number{};  ///< name of the parameter for `number`; a form without this parameter uses
+                              ///< full_pressure
   double factor = 1;
 };
 
-/// Instructions for the operator if a finger has acquired the cause since it was healthy. Empty: the cause
-/// does not develop over time.
+/// Texts for the operator of a finger that has acquired the cause since its baseline. Empty: the cause does
+/// not develop over time.
 struct WhenChanged {
   std::string_view words;                      ///< "the finger rings"
-  std::array<std::string_view, 2> next_steps;  ///< actions for the operator, the quicker first
+  std::array<std::string_view, 2> next_steps;  ///< actions for the operator, the quicker one first
   HealthSigns signs{};                         ///< effects on indicators of recorded grips; empty: no effect
   SizedBy size{};                              ///< quantity that states the size
 };
@@ -111,7 +112,7 @@ struct FormOf {
   using BlockType = Block<double>;
   static constexpr std::string_view id = BlockType::info.id;
 
-  /// Selects a parameter of the block by name. An unknown name is a compile-time error.
+  /// Refers to a parameter of the block by name. An unknown name is a compile-time error.
   struct Parameter {
     std::size_t index;
     // NOLINTNEXTLINE(google-explicit-constructor): a name is accepted wherever a parameter is expected.
@@ -138,8 +139,8 @@ struct FormOf {
   };
   using Bounds = std::vector<Bound>;
 
-  /// Returns the block with these values. All other values are neutral or, if the block has no neutral value,
-  /// typical.
+  /// Returns the parameters of the block with these values. All others have their neutral value or, if there
+  /// is none, their default value.
   [[nodiscard]] static Values start(std::initializer_list<Value> given) {
     Values values;
     for (const model::ParameterSpec& spec : Block<double>::parameters)
@@ -148,7 +149,7 @@ struct FormOf {
     return values;
   }
 
-  /// Returns all combinations of these values. The last axis varies fastest.
+  /// Returns start points for all combinations of these values. The last axis varies fastest.
   [[nodiscard]] static Starts every(std::initializer_list<Axis> axes) {
     Starts all{start({})};
     for (const Axis& axis : axes) {

@@ -1,5 +1,5 @@
 #pragma once
-// Defines the indicators that are computed from a recorded grip, and how a cause moves them.
+// Defines the indicators that are computed from a recorded grip, and how a cause changes them.
 
 #include <array>
 #include <cstddef>
@@ -10,20 +10,20 @@ namespace softgrip::sysid {
 
 /// Indicators of one finger in one recorded run.
 enum class HealthNumber : std::uint8_t {
-  gain,           ///< displacement at full pressure, as free motion shows it
+  gain,           ///< displacement at full pressure in free motion
   zero,           ///< reading at rest before the first motion, relative to the baseline
   lag,            ///< delay of free motion relative to the baseline
   creep,          ///< additional motion at constant pressure, relative to the baseline
   loop_width,     ///< additional displacement during unloading, relative to the baseline
-  pressure_loss,  ///< command minus measured pressure while it holds
+  pressure_loss,  ///< command minus measured pressure while the finger holds
   leak,           ///< decrease of the measured pressure per second at constant command
-  contact,        ///< reading at contact
-  time_to_grip,   ///< time from the first step to HOLDING
+  contact,        ///< reading at which a contact is detected
+  time_to_grip,   ///< time from the first step of the sequence to the result HOLDING
 };
 inline constexpr std::size_t health_numbers = 9;
 
 struct HealthNumberInfo {
-  std::string_view id;     ///< key in JSON, with its unit
+  std::string_view id;     ///< key in JSON, which includes the unit
   std::string_view title;  ///< "gain", for display
   std::string_view unit;
 };
@@ -42,15 +42,15 @@ inline constexpr std::array<HealthNumberInfo, health_numbers> health_number_info
   return health_number_infos[static_cast<std::size_t>(number)];
 }
 
-/// Direction in which an indicator moves.
+/// Direction in which an indicator changes.
 enum class Moves : std::uint8_t { not_at_all, up, down, either_way };
 
-/// One indicator that a cause moves.
+/// An indicator that a cause changes, with the direction.
 struct HealthSign {
   HealthNumber number = HealthNumber::gain;
   Moves moves = Moves::not_at_all;
 };
-/// The indicators that a cause moves. Unused elements keep their default values.
+/// The indicators that a cause changes. Unused elements keep their default values.
 using HealthSigns = std::array<HealthSign, 4>;
 
 }  // namespace softgrip::sysid

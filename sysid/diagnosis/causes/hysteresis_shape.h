@@ -6,12 +6,13 @@
 
 namespace softgrip::sysid::causes {
 
-/// Found by fits of complete alternative bases (verdict/base_findings.h), not by an additional block.
+/// This cause is found by fits of complete alternative base structures (verdict/base_findings.h), not by an
+/// additional block.
 struct HysteresisShape {
   static constexpr std::string_view id = "hysteresis_shape";
   static constexpr std::string_view title = "Hysteresis shape";
   static constexpr bool found_by_fitting = false;
-  /// The search for a change since the baseline keeps the form of the base.
+  /// Empty, because the search for a change since the baseline keeps the form of the base structure.
   static constexpr WhenChanged when_changed{};
 
   struct Plays : FormOf<model::PrandtlIshlinskii> {};

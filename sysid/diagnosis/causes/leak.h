@@ -6,11 +6,12 @@
 
 namespace softgrip::sysid::causes {
 
-/// Found by a measured pressure below the command (verdict/valve_findings.h). In the displacement, a leak
-/// looks like a smaller gain.
+/// This cause is found from a measured pressure below the command (verdict/valve_findings.h). In the
+/// displacement, a leak has the same effect as a smaller gain.
 struct Leak : FormOf<model::Leak> {
   static constexpr bool found_by_fitting = false;
-  /// A separate search finds its effect on a healthy finger (changes/causes_without_block.h).
+  /// Empty, because a separate search finds a leak of a previously healthy finger
+  /// (changes/causes_without_block.h).
   static constexpr WhenChanged when_changed{};
 };
 

@@ -1,13 +1,13 @@
 #pragma once
-// Isolated wrong samples.
+// Single samples are wrong.
 
 #include "model/blocks/outliers.h"
 #include "sysid/diagnosis/causes/form.h"
 
 namespace softgrip::sysid::causes {
 
-/// Found by comparison with neighbouring readings (residual/outliers.h), not by a fit, because no trajectory
-/// contains them.
+/// This cause is found by comparison with neighbouring readings (residual/outliers.h). A fit cannot find it,
+/// because a simulated trajectory contains no outliers.
 struct Outliers : FormOf<model::Outliers> {
   static constexpr bool found_by_fitting = false;
   static constexpr WhenChanged when_changed{

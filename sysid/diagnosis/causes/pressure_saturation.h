@@ -1,5 +1,5 @@
 #pragma once
-// The pressure does not reach the command.
+// The pressure saturates below the command.
 
 #include "model/blocks/pressure_saturation.h"
 #include "sysid/diagnosis/causes/form.h"

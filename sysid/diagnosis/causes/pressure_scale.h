@@ -6,11 +6,12 @@
 
 namespace softgrip::sysid::causes {
 
-/// Only an alternative to a leak (verdict/valve_findings.h), never a named cause. The user enters the scale,
-/// and in the displacement it looks like a gain.
+/// This cause is never named by itself, but is listed as an alternative to a leak (verdict/valve_findings.h).
+/// The user enters the scale, and a wrong scale has the same effect on the displacement as a different gain.
 struct PressureScale : FormOf<model::PressureScale> {
   static constexpr bool found_by_fitting = false;
-  /// As a change, it looks like a leak or a change of the finger. No recorded quantity separates them.
+  /// Empty, because a change of the scale has the same effect as a leak or a change of the finger, and no
+  /// recorded quantity separates them.
   static constexpr WhenChanged when_changed{};
 };
 

@@ -1,6 +1,7 @@
 #pragma once
-// The only list of causes in the project. To add a cause, write its file and add its line here
-// (docs/how-to/add-a-cause.md). A block of the catalogue that is in no list below is a compile error.
+// Lists all causes of the project. To add a cause, write its file and add a line to the list below
+// (docs/how-to/add-a-cause.md). A block of the catalogue that is in neither of the lists below causes a
+// compile error.
 
 #include "model/registry.h"
 #include "sysid/diagnosis/causes/actuator_threshold.h"

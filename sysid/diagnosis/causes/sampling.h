@@ -1,12 +1,12 @@
 #pragma once
-// The sensor is sampled more slowly than the command, or its reading is frozen for some time.
+// The sensor is sampled more slowly than the command, or the reading is frozen for some time.
 
 #include "model/blocks/sampling.h"
 #include "sysid/diagnosis/causes/form.h"
 
 namespace softgrip::sysid::causes {
 
-/// Found by repeated readings (residual/sampling.h), not by a fit.
+/// This cause is found from repeated readings (residual/sampling.h), not by a fit.
 struct Sampling : FormOf<model::Sampling> {
   static constexpr bool found_by_fitting = false;
   static constexpr WhenChanged when_changed{

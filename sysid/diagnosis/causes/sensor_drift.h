@@ -38,15 +38,15 @@ struct SensorDrift {
       return every(
           {{"warm_up_mm", {-0.05 * s.span_mm, 0.05 * s.span_mm}}, {"warm_up_time_s", {0.3 * s.campaign_s}}});
     }
-    /// A faster warm-up equals creep of the actuator. A slower one equals a steady drift.
+    /// A faster warm-up is equivalent to creep of the actuator, a slower one to a steady drift.
     static Bounds bounds(const Scales& s, const model::Model&) {
       return {{"warm_up_time_s", s.soonest_s(), s.campaign_s}};
     }
   };
 
-  /// The zero oscillates slowly.
+  /// The zero follows a slow sinusoid.
   struct Wander : FormOf<model::SensorWander> {
-    /// Starts with all phases and with two amplitudes.
+    /// Returns start points with different periods, eight phases and two amplitudes.
     static Starts starts(const Scales& s) {
       Starts starts;
       for (const double campaigns : {0.15, 0.25, 0.4, 0.65, 1.0, 1.7}) {
@@ -61,8 +61,8 @@ struct SensorDrift {
       }
       return starts;
     }
-    /// The zero completes at most 12 periods in a campaign. If the period exceeds three campaigns, only the
-    /// trend is visible.
+    /// The period is at least a twelfth of the campaign and at most three campaigns. With a longer period,
+    /// the data would contain only a trend.
     static Bounds bounds(const Scales& s, const model::Model&) {
       return {{"wander_period_s", s.campaign_s / 12, 3 * s.campaign_s}};
     }
@@ -73,7 +73,7 @@ struct SensorDrift {
     static constexpr bool free_form = true;
     static constexpr std::array<Parameter, 0> fitted{};
     static Starts starts(const Scales& s) {
-      constexpr double closest_s = 12;  // with shorter intervals, the knots would follow the hysteresis loops
+      constexpr double closest_s = 12;  // with shorter intervals, the curve would follow the hysteresis loops
       const auto knots = static_cast<std::size_t>(std::clamp(s.campaign_s / closest_s, 2.0, 16.0));
       Values values = start({{"knot_interval_s", s.campaign_s / static_cast<double>(knots)}});
       values.resize(values.size() + knots, 0.0);

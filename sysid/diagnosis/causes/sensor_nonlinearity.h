@@ -15,7 +15,7 @@ struct SensorNonlinearity : FormOf<model::SensorNonlinearity> {
       "the scale of the sensor is nonlinear",
       {"Check whether the sensor has been displaced or its target is tilted.",
        "Measure five positions with a gauge (`softgrip diagnose --gauge`)."}};
-  /// The calibrated range is fixed: it is the reference of the nonlinearity.
+  /// The calibrated range is not fitted, because the nonlinearity is defined relative to it.
   static constexpr std::array<Parameter, 2> fitted{"bow_mm", "wave_mm"};
 
   static Starts starts(const Scales& s) {

@@ -17,7 +17,7 @@ struct SensorSaturation : FormOf<model::SensorSaturation> {
       "the reading saturates",
       {"Check whether the sensor is too near or too far: its range must cover the whole stroke.",
        "Move the target by hand beyond the position of saturation and note the reading."}};
-  /// The lower limit is fixed at a value that the data do not reach.
+  /// The lower limit is not fitted. Its value is one that the data do not reach.
   static constexpr std::array<Parameter, 1> fitted{"upper_mm"};
   static constexpr double no_floor_mm = -1e4;
 

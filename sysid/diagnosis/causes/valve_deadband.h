@@ -1,5 +1,6 @@
 #pragma once
-// The valve ignores changes smaller than a band. It follows the command with play, or it sticks and jumps.
+// The valve ignores command changes smaller than a band. It follows the command with play, or it sticks and
+// jumps.
 
 #include <cmath>
 
@@ -18,14 +19,14 @@ struct ValveDeadband {
       {},
       {SizedBy::Of::number, "dead band of the valve", "kPa", "band_kpa"}};
 
-  /// The valve follows with play.
+  /// The valve follows the command with play.
   struct Play : FormOf<model::ValveDeadband> {
     static Starts starts(const Scales& s) {
       return every({{"band_kpa", {0.01 * s.largest_kpa, 0.05 * s.largest_kpa, 0.15 * s.largest_kpa}}});
     }
   };
 
-  /// The valve sticks and jumps.
+  /// The valve sticks and then jumps to the command.
   struct Stiction : FormOf<model::ValveStiction> {
     static Starts starts(const Scales& s) {
       Starts starts;
@@ -33,9 +34,10 @@ struct ValveDeadband {
       return starts;
     }
 
-    /// The model error has a minimum wherever the stick-slip motion gains or loses a step on the way to the
-    /// largest pressure. Starts that are one step apart cover all minima, down to bands of 1/60 of the
-    /// largest pressure. The effects of smaller bands differ by little more than their size.
+    /// Returns start values of the band. The model error has a local minimum at every band for which the
+    /// stick-slip motion reaches the largest pressure with one jump more or less. Start values that differ by
+    /// one jump cover all minima, down to bands of 1/60 of the largest pressure. Smaller bands differ only
+    /// slightly in their effect, so these start values are 10 % apart.
     static std::vector<double> bands_kpa(const Scales& s) {
       std::vector<double> bands;
       for (int steps = 5; steps < 60; ++steps) bands.push_back(s.largest_kpa / steps);

@@ -20,15 +20,15 @@ constexpr std::size_t most_samples = 12000;
 constexpr std::size_t most_bins = 10;
 constexpr std::size_t fewest_in_bin = 20;
 constexpr std::size_t draws = 1999;
-/// Smallest block length in correlation times and in seconds, and smallest number of blocks.
+/// Smallest block length in correlation times and in seconds [s], and smallest number of blocks.
 constexpr double memories_per_block = 8;
 constexpr double shortest_block_s = 4;
 constexpr std::size_t fewest_blocks = 12;
-/// Below this share of the noise variance, there is no unexplained error to divide among conditions.
+/// If the unexplained variance is below this share of the noise variance, it is not divided among conditions.
 constexpr double worth = 0.01;
 
 /// Returns the correlation time of the coloured part of the residual: the integral of the autocorrelation
-/// from the first lag on, relative to the value at that lag.
+/// from the first lag on, divided by its value at the first lag.
 double memory_s(const Samples& samples, const std::vector<double>& residual, double interval_s) {
   const double mean =
       std::accumulate(residual.begin(), residual.end(), 0.0) / static_cast<double>(residual.size());
@@ -55,7 +55,7 @@ double memory_s(const Samples& samples, const std::vector<double>& residual, dou
   return std::max(interval_s, sum * interval_s);
 }
 
-/// Assigns each sample to a block of about block_s within its record.
+/// Assigns each sample to a block of about `block_s` seconds within its record.
 std::vector<std::size_t> blocks_of(const Samples& samples, double block_s, std::size_t& count) {
   std::vector<std::size_t> block(samples.size());
   count = 0;
@@ -72,7 +72,7 @@ std::vector<std::size_t> blocks_of(const Samples& samples, double block_s, std::
   return block;
 }
 
-/// The bin of each sample; none_bin: the sample is in no bin.
+/// Assigns each sample to a bin. none_bin: the sample is in no bin.
 struct Binning {
   static constexpr std::size_t none_bin = std::numeric_limits<std::size_t>::max();
   std::vector<std::size_t> bin;
@@ -91,7 +91,7 @@ std::vector<double> edges_of(std::vector<double> values, bool logarithmic) {
     for (std::size_t k = 1; k < most_bins; ++k) edges.push_back(values[values.size() * k / most_bins]);
   }
   edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
-  // An edge at the smallest value would leave an empty bin below it.
+  // An edge at the smallest value would create an empty bin below it.
   if (!edges.empty() && edges.front() <= values.front()) edges.erase(edges.begin());
   return edges;
 }
@@ -145,7 +145,7 @@ Binning bin(const Condition& c) {
   return kept;
 }
 
-/// Sums by block and bin. All tests and intervals use only these.
+/// Sums of the residual by block and bin, from which all tests and intervals are computed.
 struct Sums {
   std::size_t bins = 0, blocks = 0;
   std::vector<double> sum;    ///< [block * bins + bin]
@@ -171,7 +171,7 @@ Sums sums_of(const Binning& binning, const std::vector<double>& residual,
   return s;
 }
 
-/// Returns the sum of squares between bins if the residual of every block is multiplied by the sign of the
+/// Returns the sum of squares between bins after the residual of each block was multiplied by the sign of the
 /// block.
 double between(const Sums& s, const std::vector<double>& counts, const std::vector<double>& sign,
                std::vector<double>& scratch) {
@@ -202,8 +202,8 @@ double sign_flip_p(const Sums& s, std::uint64_t seed) {
   return static_cast<double>(as_large + 1) / static_cast<double>(draws + 1);
 }
 
-/// Returns the reduction of the squared error in each block by the bin means of the other blocks, relative to
-/// their overall mean.
+/// Returns the reduction of the squared error when each block is predicted by the bin means of the other
+/// blocks instead of their overall mean.
 double cross_validated_gain(const Sums& s) {
   std::vector<double> sum(s.bins), count(s.bins);
   for (std::size_t k = 0; k < s.bins; ++k) {
@@ -226,7 +226,7 @@ double cross_validated_gain(const Sums& s) {
       if (n == 0) continue;
       const double rest = count[k] - n;
       const double mean = rest > 0 ? (sum[k] - here) / rest : overall;
-      // sum (r - overall)^2 - sum (r - mean)^2
+      // This is the sum of (r - overall)^2 - (r - mean)^2 over the samples.
       gain += 2 * here * (mean - overall) + n * (square(overall) - square(mean));
     }
   }
@@ -279,7 +279,7 @@ ConditionEvidence judge(const Condition& condition, const std::vector<double>& r
   return e;
 }
 
-/// Holm's step-down adjustment.
+/// Adjusts the p-values by Holm's step-down method.
 void adjust(std::vector<ConditionEvidence>& list) {
   std::vector<ConditionEvidence*> judged;
   for (ConditionEvidence& e : list) {
@@ -295,7 +295,7 @@ void adjust(std::vector<ConditionEvidence>& list) {
   }
 }
 
-/// Returns the squared error of all samples relative to the mean of the other blocks.
+/// Returns the sum of squared differences between each sample and the mean of all other blocks.
 double squares_about_others(const std::vector<double>& residual, const std::vector<std::size_t>& block,
                             std::size_t blocks) {
   std::vector<double> sum(blocks, 0.0), count(blocks, 0.0);

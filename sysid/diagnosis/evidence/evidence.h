@@ -1,14 +1,13 @@
 #pragma once
-// Locates the error of a model: the residual by condition. The tests remain valid if neighbouring errors are
-// correlated.
+// Determines the conditions under which a model has an error, from the residual. The tests remain valid if
+// adjacent errors are correlated.
 //
 // The samples are divided into blocks that are longer than the correlation time of the residual. The interval
 // of a conditional mean is that of a mean of clusters (Liang and Zeger 1986). Differences between conditional
 // means are tested with random signs of whole blocks (wild bootstrap, Liu 1988, on blocks). If the error does
-// not depend on the condition, both signs of a block's error are equally likely. The test preserves the
-// correlation inside a block and unequal variances. The share that a condition explains is evaluated on
-// blocks that are not used for the means.
-// blocks whose own samples are not in the means.
+// not depend on the condition, both signs of the error of a block are equally likely. The test preserves the
+// correlation inside a block and unequal variances. The share that a condition explains is computed by
+// cross-validation: the means are computed without the block on which they are evaluated.
 
 #include <cstddef>
 #include <cstdint>
@@ -22,9 +21,9 @@
 
 namespace softgrip::sysid {
 
-/// The residual in a narrow range of a condition.
+/// The residual in a narrow range (bin) of a condition.
 struct ConditionBin {
-  double value = 0;  ///< mean of the condition
+  double value = 0;  ///< mean value of the condition in the bin
   std::string label;
   std::size_t group = 0;
   std::size_t samples = 0;
@@ -36,45 +35,49 @@ struct ConditionBin {
 
 /// Dependence of a residual on one condition.
 struct ConditionEvidence {
-  Condition condition;  ///< the condition without its samples
+  Condition condition;  ///< the condition without its values at the samples
   std::vector<ConditionBin> bins;
-  double share_percent = 0;  ///< explained share of the structural variance, on other blocks; 0 if negative
-  double p_value = 1;        ///< probability of such a difference between means by chance
-  double p_adjusted = 1;     ///< adjusted for testing all conditions (Holm 1979)
+  double share_percent = 0;  ///< share of the variance beyond the noise that the condition explains, on
+                             ///< held-out blocks; 0 if negative
+  double p_value = 1;        ///< probability that differences between the means are this large by chance
+  double p_adjusted = 1;     ///< p-value adjusted for the test of all conditions (Holm 1979)
   bool clear = false;        ///< is_clear(p_adjusted, share_percent)
 };
 
-/// The residual by frequency.
+/// The spectrum of the residual.
 struct SpectrumEvidence {
   std::vector<double> frequency_hz;
   std::vector<double> density_mm2_per_hz;
   double peak_hz = 0;  ///< frequency of the most significant line
   double peak_amplitude_mm = 0;
-  double share_percent = 0;  ///< share of the structural variance in that line
-  double p_value = 1;  ///< probability of such a line in a smooth spectrum, at any frequency (Bonferroni)
+  double share_percent = 0;  ///< share of the variance beyond the noise that the line contains
+  double p_value = 1;  ///< probability of such a line in a smooth spectrum, for all frequencies together
+                       ///< (Bonferroni)
   std::string why_not;
 };
 
 /// Complete description of the residual of one model.
 struct ResidualEvidence {
   double rms_mm = 0;
-  double structure_mm = 0;  ///< square root of the variance beyond the noise
-  double memory_s = 0;      ///< correlation time of the residual without its white part
+  double structure_mm = 0;  ///< square root of the residual's variance beyond the noise
+  double memory_s = 0;      ///< correlation time of the residual without its white noise
   double block_s = 0;
   std::size_t blocks = 0;
-  std::vector<ConditionEvidence> conditions;  ///< those with the largest share first, untested ones last
+  std::vector<ConditionEvidence> conditions;  ///< sorted by share, the largest first and untested conditions
+                                              ///< last
   SpectrumEvidence spectrum;
 };
 
-/// @param residual_mm  reading minus prediction by record; NaN without reading.
-/// @param conditions  of conditions_of() for the same samples.
+/// Examines the residual of one model.
+/// @param residual_mm  reading minus prediction, one vector per record; NaN for samples without a reading.
+/// @param conditions  result of conditions_of() for the same samples.
 [[nodiscard]] ResidualEvidence examine_residual(const std::vector<Record>& records,
                                                 const std::vector<std::vector<double>>& residual_mm,
                                                 const Samples& samples,
                                                 const std::vector<Condition>& conditions, double noise_mm,
                                                 std::uint64_t seed);
 
-/// A sign that the refit absorbed an effect outside its structure and became unphysical.
+/// An indication that the refit has absorbed an effect outside its structure and has become unphysical.
 struct UnphysicalSign {
   std::string id;  ///< "wrong_way_first", "stiffness_near_zero", "creep_beyond_data", "at_bound"
   std::string sentence;
@@ -88,14 +91,15 @@ struct UnphysicalSign {
 struct Evidence {
   ResidualEvidence as_given;
   ResidualEvidence recalibrated;
-  ResidualEvidence extended;               ///< equal to recalibrated when nothing was added
-  std::vector<UnphysicalSign> unphysical;  ///< signs in the recalibrated model
+  ResidualEvidence extended;               ///< equal to `recalibrated` if nothing was added
+  std::vector<UnphysicalSign> unphysical;  ///< indications in the recalibrated model
 };
 [[nodiscard]] Evidence examine_fits(const std::vector<Record>& records, const StructureFit& as_given,
                                     const StructureFit& recalibrated, const StructureFit& extended,
                                     double noise_mm, std::uint64_t seed);
 
-/// "The error depends on the rate of the pressure (41 %) and ...", or that no condition is clear.
+/// Returns "The error depends on the rate of the pressure (41 %) and ...", or a sentence that the error
+/// depends significantly on no condition.
 [[nodiscard]] std::string dependence_sentence(const ResidualEvidence& evidence);
 
 }  // namespace softgrip::sysid

@@ -17,17 +17,17 @@ namespace {
 using Complex = std::complex<double>;
 
 constexpr std::size_t shown = 100;
-/// Number of bins on either side that form the neighbourhood of a line, in units of the resolution of one
-/// record.
+/// Number of frequency bins on each side that form the neighbourhood of a line, in units of the frequency
+/// resolution of one record.
 constexpr std::size_t around = 40;
-/// Half the width of the main lobe of a Hann window plus a margin.
+/// Half the width of the main lobe of a Hann window plus a margin, in the same units.
 constexpr std::size_t lobe = 3;
 
-/// Sum over the records of |window * residual|^2 by frequency, on one common grid.
+/// Sum of |window * residual|^2 over the records, for each frequency of a common grid.
 struct Periodogram {
   double step_hz = 0;
   double window_squares = 0;      ///< sum of the squared windows of all records
-  double window_mean_square = 0;  ///< sum over records of the square of the sum of the window
+  double window_mean_square = 0;  ///< squared sum of the window, added over all records
   double interval_s = 0;
   std::size_t longest = 0;
   std::vector<double> power;
@@ -91,8 +91,9 @@ void add_curve(const Periodogram& p, SpectrumEvidence& evidence) {
   }
 }
 
-/// Returns the level around bin b without its own lobe. The level is the higher median of the two sides,
-/// because the spectrum of a model error is steep. Returns 0 if a side has too few bins.
+/// Returns the level of the spectrum around bin b without the main lobe of the line. The level is the larger
+/// of the medians on the two sides, because the spectrum of a model error is steep. Returns 0 if a side has
+/// too few bins.
 double level_around(const Periodogram& p, std::size_t b, std::size_t padding) {
   const std::size_t reach = around * padding, width = lobe * padding;
   std::vector<double> low, high;
@@ -105,7 +106,8 @@ double level_around(const Periodogram& p, std::size_t b, std::size_t padding) {
   return high.size() < fewest ? below : std::max(below, median_of(std::span(high)));
 }
 
-/// Returns true if the command has a line at this frequency. Every response to the command then has one too.
+/// Returns true if the command has a line at this frequency, because then every response to the command also
+/// has one.
 bool driven(const Periodogram& drive, std::size_t b, std::size_t padding) {
   constexpr double stands_out = 10;
   const std::size_t width = lobe * padding;
@@ -117,7 +119,7 @@ bool driven(const Periodogram& drive, std::size_t b, std::size_t padding) {
 
 void find_line(const Periodogram& p, const Periodogram& drive, double structural_mm2,
                SpectrumEvidence& evidence) {
-  // Zero padding makes the grid finer than the window resolves.
+  // Zero padding makes the frequency grid finer than the resolution of the window.
   const std::size_t padding = std::max<std::size_t>(1, 2 * p.power.size() / p.longest);
   double strongest = 0, background = 0;
   std::size_t at = 0;
@@ -134,8 +136,8 @@ void find_line(const Periodogram& p, const Periodogram& drive, double structural
   const double amplitude2 = 4 * std::max(0.0, p.power[at] - background) / p.window_mean_square;
   evidence.peak_amplitude_mm = std::sqrt(amplitude2);
   const auto lines = static_cast<double>(p.power.size()) / static_cast<double>(padding);
-  // For one record, the ratio to the mean has an exponential distribution. For several records the tail is
-  // shorter.
+  // For a single record, the ratio to the mean has an exponential distribution. For several records, the tail
+  // of the distribution is shorter.
   evidence.p_value = std::min(1.0, lines * std::exp(-strongest * std::numbers::ln2));
   if (structural_mm2 > 0)
     evidence.share_percent = std::clamp(100 * amplitude2 / 2 / structural_mm2, 0.0, 100.0);

@@ -1,5 +1,5 @@
 #pragma once
-// Computes the spectrum of a residual and tests it for a significant line.
+// Computes the spectrum of a residual and tests whether it contains a significant line.
 
 #include <vector>
 
@@ -8,10 +8,10 @@
 
 namespace softgrip::sysid {
 
-/// Computes periodograms with a Hann window and sums them over the records. About 100 frequencies are spaced
-/// evenly on a logarithmic scale. The power of a line is compared with the median of its neighbourhood.
-/// Therefore slow model errors do not count as lines.
-/// @param structural_mm2  variance beyond the noise; 0: no shares.
+/// Sums periodograms with a Hann window over the records and returns the spectrum at about 100 frequencies,
+/// spaced evenly on a logarithmic scale. The power of a line is compared with the median of the neighbouring
+/// frequencies, so slow model errors do not count as lines.
+/// @param structural_mm2  variance of the residual beyond the noise; 0: no shares are computed.
 [[nodiscard]] SpectrumEvidence spectrum_of(const std::vector<Record>& records,
                                            const std::vector<std::vector<double>>& residual_mm,
                                            double structural_mm2);

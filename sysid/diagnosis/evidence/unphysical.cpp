@@ -12,9 +12,10 @@
 namespace softgrip::sysid {
 namespace {
 
-/// A branch has a stiffness near zero if it would move the finger by more than this multiple of its span.
+/// A branch counts as having a stiffness near zero if it moves the finger by more than this multiple of the
+/// measured span.
 constexpr double spans_of_a_branch = 3;
-/// The data do not show a time constant longer than this share of the longest log.
+/// The data cannot determine a time constant longer than this share of the longest log.
 constexpr double share_of_log = 1.0;
 
 void add_branches(const model::Model& model, const std::vector<Record>& records,

@@ -16,19 +16,20 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Above this separation the result is practically certain. A larger separation gives no further benefit.
+/// Separation above which the result is practically certain, so that a larger separation has no further
+/// benefit.
 constexpr double certain_sigma = 40;
-/// Number of alternatives that are tested for each cause.
+/// Maximum number of alternatives that are tested for each cause.
 constexpr std::size_t most_alternatives = 4;
 /// Number of waveforms whose separation is confirmed by nonlinear fits.
 constexpr std::size_t confirmed = 2;
 constexpr double usual_slew_kpa_per_s = 300;
-/// Time in which a rig comes to rest before the start.
+/// Time [s] in which a rig comes to rest before an experiment starts.
 constexpr double rest_before_s = 10;
 
-/// The alternative causes for one position.
+/// The alternative causes for one position, that is, for one named cause of the verdict.
 struct Contest {
-  std::vector<Hypothesis> hypotheses;  ///< the named cause first
+  std::vector<Hypothesis> hypotheses;  ///< hypotheses, that of the named cause first
   std::vector<std::string> ids;
 };
 
@@ -49,7 +50,7 @@ std::vector<Cause> next_best(const NamedCause& named) {
   return causes;
 }
 
-/// Returns the reason why there is no pair to separate.
+/// Returns the reason why there are no causes to separate.
 std::string without_pairs(const Diagnosis& d) {
   std::string open;
   for (const NamedCause& named : d.causes) {
@@ -120,7 +121,7 @@ class Designer {
     add_contest(rest, alternatives, std::string(named.cause.id), d_.extended);
   }
 
-  /// If no cause is named: compares the model without changes with the best rejected causes.
+  /// Compares the model without changes with the best rejected causes. Used if the verdict names no cause.
   void add_contest_of_rejected() {
     std::vector<Cause> alternatives;
     for (const CandidateScore& score : d_.rejected) {
@@ -143,7 +144,8 @@ class Designer {
     contests_.push_back(std::move(contest));
   }
 
-  /// Returns the waveform as a record after the campaign, with the surroundings at its end.
+  /// Returns the waveform as a record that follows the campaign. Its surroundings (such as the temperature)
+  /// are those at the end of the campaign.
   [[nodiscard]] Record record_of(const Waveform& waveform) const {
     const Record& last = d_.records.back();
     Record record;
@@ -172,7 +174,7 @@ class Designer {
 
   [[nodiscard]] double distance(const Record& record, const Pair& pair, Way way) const {
     const Contest& contest = contests_[pair.contest];
-    if (pair.indistinguishable) return 0;  // only the form of the catalogue blocks separates them
+    if (pair.indistinguishable) return 0;  // only the form of the catalogue blocks separates the two causes
     const auto from = [&](std::size_t truth, std::size_t alternative) {
       const std::vector<double> truth_mm = contest.hypotheses[truth].prediction(record);
       const bool finite =
@@ -205,8 +207,8 @@ class Designer {
     rank();
   }
 
-  /// Computes the separations of the first `count` entries. A more accurate method later can only reduce
-  /// them.
+  /// Computes the separations of the first `count` waveforms of the menu. The refit is the more accurate
+  /// method, and it may only reduce the result of the linear one.
   void separate(std::size_t count, Way way) {
     parallel_for(count * pairs_.size(), options_.threads, [&](std::size_t job) {
       JudgedWaveform& judged = result_.menu[job / pairs_.size()];
@@ -216,8 +218,8 @@ class Designer {
     });
   }
 
-  /// Squared separations add up over repetitions of an experiment. The merit is therefore the square per
-  /// minute.
+  /// Ranks the waveforms by the squared separation per minute, because squared separations add up over
+  /// repetitions of an experiment.
   void rank() {
     for (JudgedWaveform& judged : result_.menu) {
       double learnt = 0;

@@ -1,6 +1,6 @@
 #pragma once
-// Designs the next experiment. It selects the waveform of the menu on which alternatives that explain the
-// data equally well differ most. Each alternative is first refitted to the prediction of the other.
+// Designs the next experiment: selects the waveform for which alternatives that explain the data equally well
+// differ most. Before a comparison, each alternative is refitted to the prediction of the other one.
 
 #include <optional>
 #include <string>
@@ -14,40 +14,42 @@
 namespace softgrip::sysid {
 
 struct ExperimentOptions {
-  /// Not set: the largest pressure of the logs, 300 kPa/s.
+  /// Limits of the rig. Default: the largest pressure of the logs and 300 kPa/s.
   std::optional<RigLimits> limits;
-  /// Also design an experiment if the verdict has no alternatives, against the next best candidates.
+  /// True: if the verdict has no alternatives, design an experiment that compares it with the best rejected
+  /// candidates.
   bool always = false;
-  /// The rig can record the valve's pressure, but the logs do not have it (for advice).
+  /// True: the rig can record the measured pressure, although the logs do not contain it (for the advice).
   bool pressure_recorded = false;
   double most_minutes = 10;
-  /// Menu entries that were already played; they are not proposed again.
+  /// Names of waveforms that were already played. They are not proposed again.
   std::vector<std::string> done;
   unsigned threads = 0;
 };
 
-/// Predicted distance between two structures.
+/// Predicted distance between two structures, in one experiment.
 struct Separation {
   std::string one;
   std::string other;
-  /// Root of the sum of squares of the remaining difference, in standard deviations of the noise. The noise
-  /// has its estimated correlation. The value is the smaller of two cases: `one` is true and `other` is
-  /// refitted, or the reverse.
+  /// Root of the sum of squared differences that remain after the refit, in standard deviations of the noise.
+  /// The correlation of the noise is taken into account. The smaller value of two cases is used: `one` is
+  /// true and `other` is refitted, or the reverse.
   double sigma = 0;
 };
 
-/// One evaluated entry of the menu.
+/// A waveform of the menu with its predicted separations.
 struct JudgedWaveform {
   Waveform waveform;
-  double minutes = 0;  ///< duration including the rest before it
+  double minutes = 0;  ///< duration including the rest before the waveform
   std::vector<Separation> separations;
-  double merit = 0;  ///< information per minute
+  double merit = 0;  ///< information per minute: sum of the squared separations, divided by `minutes`
 };
 
-/// A check of the sensor at known positions. It separates alternatives with different sensor shapes if no
-/// waveform can.
+/// A check of the sensor at known positions. It can separate alternatives with different sensor shapes that
+/// no waveform separates.
 struct ProposedGaugeCheck {
-  std::vector<double> positions_mm;                       ///< positions in the order of reading
+  std::vector<double> positions_mm;                       ///< positions in the order in which they are to be
+                                                          ///< read
   model::OutputUnit output_unit = model::OutputUnit::mm;  ///< unit of the positions
   std::vector<std::string> separates;                     ///< ids of causes
   double minutes = 0;
@@ -57,29 +59,34 @@ struct ProposedGaugeCheck {
 struct NextExperiment {
   std::optional<JudgedWaveform> best;
   std::vector<std::string> separates;             ///< ids that `best` separates
-  double predicted_separation_sigma = 0;          ///< smallest separation among the pairs that it separates
-  std::vector<JudgedWaveform> menu;               ///< all evaluated entries
-  std::optional<ProposedGaugeCheck> gauge_check;  ///< empty if it separates no causes or was already made
-  /// Actions that no waveform can replace: a column to record, a load to change. Full sentences.
+  double predicted_separation_sigma = 0;          ///< smallest separation among the pairs that `best`
+                                                  ///< separates
+  std::vector<JudgedWaveform> menu;               ///< all evaluated waveforms
+  std::optional<ProposedGaugeCheck> gauge_check;  ///< empty if a gauge check separates no causes or was
+                                                  ///< already made
+  /// Advice on actions that no waveform can replace, such as to record a column or to change a load. Full
+  /// sentences.
   std::vector<std::string> advice;
 };
 
-/// Name of an empty gauge file next to diagnosis.json, written if a gauge check is proposed.
+/// Name of the gauge file without readings that is written next to diagnosis.json if a gauge check is
+/// proposed.
 inline constexpr const char* gauge_positions_file = "gauge_positions.csv";
 
-/// Pairs with a smaller separation are indistinguishable.
+/// Smallest separation of two causes that counts as distinguishable.
 inline constexpr double separation_needed_sigma = 5;
 
-/// Returns an empty design if the verdict needs no experiment.
+/// Designs the next experiment. Returns an empty design if the verdict requires no experiment.
 [[nodiscard]] NextExperiment design_experiment(const Diagnosis& diagnosis, const ExperimentOptions& options);
 
-/// Returns a sequence file of one pressure step for softgripd. @param channel  empty: all channels of the
-/// rig.
+/// Returns the proposed experiment as a sequence file for softgripd.
+/// @param channel  channel to drive; empty: all channels of the rig.
 [[nodiscard]] std::string sequence_yaml(const NextExperiment& experiment, const std::string& channel = "");
-/// Returns the sequence file of any entry of the menu.
+/// Returns the sequence file of a given waveform.
 [[nodiscard]] std::string sequence_yaml(const Waveform& waveform, const std::string& channel);
 
-/// Adds next_experiment, gauge_check (null without one) and experiment_advice to a diagnosis.json.
+/// Adds next_experiment, gauge_check and experiment_advice to the content of diagnosis.json. gauge_check is
+/// null if none is proposed.
 void add_experiment(nlohmann::ordered_json& diagnosis_json, const NextExperiment& experiment,
                     const std::string& file);
 

@@ -14,7 +14,8 @@ struct AdviceFacts {
   bool gauge_made = false;  ///< the sensor was checked against a gauge already
 };
 
-/// Returns sentences about two causes, by id. The list is empty if a waveform is sufficient.
+/// Returns advice, one sentence per element, on how to separate two causes, given by their ids. The list is
+/// empty if a waveform is sufficient.
 [[nodiscard]] std::vector<std::string> advice_for(std::string_view one, std::string_view other,
                                                   const AdviceFacts& facts);
 

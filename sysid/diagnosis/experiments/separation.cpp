@@ -14,14 +14,14 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Share of the information about a parameter that is added to its diagonal element. Directions without
-/// information remain solvable and move no further than a fit would move them.
+/// Share of the information on a parameter that is added to its diagonal element. The system of equations
+/// then remains solvable in directions without information.
 constexpr double ridge = 1e-9;
 /// The existing records are thinned to this interval for a fit together with the new record.
 constexpr double thinned_interval_s = 0.05;
 constexpr FitEffort few_iterations{.most_iterations = 10, .tolerance = 1e-6};
 
-/// Whitens every column from row `first` to `last`.
+/// Whitens the rows from `first` to `last` of every column.
 void whiten(Jacobian& matrix, std::size_t first, std::size_t last, const NoiseModel& noise) {
   const std::vector<double>& a = noise.coefficients;
   const auto row = [](std::size_t i) { return static_cast<Eigen::Index>(i); };

@@ -1,5 +1,5 @@
 #pragma once
-// Computes the distance between two fitted structures on a record that does not exist yet.
+// Computes how far two fitted structures differ in a future experiment.
 
 #include <vector>
 
@@ -10,7 +10,7 @@
 
 namespace softgrip::sysid {
 
-/// A structure that may be true, and the information of the existing records about its parameters.
+/// A structure that may be true, with the information that the existing records contain about its parameters.
 class Hypothesis {
  public:
   /// `records` must outlive this object.
@@ -19,10 +19,12 @@ class Hypothesis {
   [[nodiscard]] const StructureFit& fit() const noexcept { return fit_; }
   /// Returns the prediction for a record that starts from rest.
   [[nodiscard]] std::vector<double> prediction(const Record& record) const;
-  /// Returns the distance [noise deviations] that remains to `truth_mm` (the other's prediction on `record`).
-  /// The parameters move as far as the existing records permit. The model is linearised.
+  /// Returns the distance to `truth_mm` in standard deviations of the noise, where `truth_mm` is the
+  /// prediction of another hypothesis for `record`. The parameters are first adjusted to `truth_mm` as far as
+  /// the existing records permit. The model is linearised.
   [[nodiscard]] double linear_distance(const Record& record, const std::vector<double>& truth_mm) const;
-  /// Returns the distance after a few nonlinear iterations of a fit to the existing records and the new one.
+  /// Returns the same distance after a few nonlinear iterations of a fit to the existing records and the new
+  /// one.
   [[nodiscard]] double refitted_distance(const Record& record, const std::vector<double>& truth_mm) const;
 
  private:
@@ -30,11 +32,12 @@ class Hypothesis {
   StructureFit fit_;
   NoiseModel noise_;
   std::vector<std::size_t> free_;
-  Eigen::MatrixXd information_;  ///< about the parameters, after elimination of the initial states
+  Eigen::MatrixXd information_;  ///< information matrix of the parameters after elimination of the initial
+                                 ///< states
 };
 
-/// Returns the innovations of a series in units of their standard deviation. They are white if the noise
-/// model is correct.
+/// Returns the innovations of a series in units of their standard deviation. The innovations are white if the
+/// noise model is correct.
 [[nodiscard]] std::vector<double> whitened(const std::vector<double>& series, const NoiseModel& noise);
 
 }  // namespace softgrip::sysid

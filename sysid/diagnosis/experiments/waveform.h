@@ -1,12 +1,13 @@
 #pragma once
-// Waveforms of the proposed experiments: pressures over time that a rig can execute, from 0 back to 0.
+// Waveforms of the proposed experiments: pressures over time that a rig can execute and that begin and end at
+// 0.
 
 #include <string>
 #include <vector>
 
 namespace softgrip::sysid {
 
-/// Limits of a rig for commands.
+/// Limits of a rig for pressure commands.
 struct RigLimits {
   double pressure_max_kpa = 60;
   double slew_kpa_per_s = 300;
@@ -18,20 +19,20 @@ struct Corner {
   double pressure_kpa = 0;
 };
 
-/// One experiment of the menu. Its rate never exceeds the limits.
+/// One experiment of the menu. Its slew rate never exceeds the limit of the rig.
 struct Waveform {
   std::string name;   ///< "rest_and_repeat"
-  std::string about;  ///< one line for display
+  std::string about;  ///< description in one line, for display
   std::vector<Corner> corners;
 
   [[nodiscard]] double duration_s() const { return corners.empty() ? 0 : corners.back().time_s; }
 };
 
 /// Returns the waveforms: rest and repeat; triangles at three rates over two decades; steps with holds; minor
-/// loops; increasing amplitudes; sharp steps. All are within the limits.
+/// loops; increasing amplitudes; sharp steps. All of them are within the limits.
 [[nodiscard]] std::vector<Waveform> experiment_menu(const RigLimits& limits);
 
-/// Returns the command every `interval_s` from 0 to the end.
+/// Returns samples of the command with the interval `interval_s`, from 0 to the end of the waveform.
 [[nodiscard]] std::vector<double> sampled_kpa(const Waveform& waveform, double interval_s);
 
 }  // namespace softgrip::sysid

@@ -16,22 +16,23 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Margin beyond the range of the logs' readings, as a share of their span and in standard deviations. It is
-/// large enough to see that one sensor continues where another saturates.
+/// Margin of the clipping limits beyond the range of the logs' readings, as a share of the range and in
+/// standard deviations of the noise. The margin is large enough to distinguish a sensor that saturates from
+/// one that does not.
 constexpr double beyond_share = 0.05;
 constexpr double beyond_noise = 10;
-/// Share of the difference between two hypotheses.
+/// Tolerated share of the difference between two hypotheses.
 constexpr double tolerated_share = 0.2;
-/// Share of the logs' noise. No log can show a smaller departure.
+/// Tolerated share of the logs' noise. No log can show a smaller deviation.
 constexpr double never_matters = 0.25;
-/// Share of the range of the logs that the gauge readings must cover.
+/// Smallest share of the range of the logs that the gauge readings must cover.
 constexpr double least_covered_share = 0.5;
-/// Normal deviate of 1 in 1000, one-sided.
+/// Normal deviate that is exceeded with a probability of 1 in 1000 (one-sided).
 constexpr double deviate = 3.09;
 
-using Line = std::pair<double, double>;  // (value at 0, slope)
+using Line = std::pair<double, double>;  // value at 0 and slope
 
-/// Returns the limit of chi-square, approximated as in Wilson and Hilferty 1931.
+/// Returns the chi-square value that is exceeded with a probability of 1 in 1000 (Wilson and Hilferty 1931).
 double chi_square_limit(double freedom) {
   if (freedom < 1) return std::numeric_limits<double>::infinity();
   const double v = 2 / (9 * freedom);
@@ -113,8 +114,8 @@ class Checker {
     return values;
   }
 
-  /// Returns start values of zero and scale: the line through all readings, through those that are not
-  /// limited, and through their lower half, which a saturation does not affect.
+  /// Returns start values of zero and scale: straight lines through all readings, through the readings that
+  /// are not clipped, and through the lower half of these, which a saturation does not affect.
   [[nodiscard]] std::vector<Line> starts(double offset_mm) const {
     const double middle = (scales_.lowest_mm + scales_.highest_mm) / 2;
     const auto all = [](std::size_t) { return true; };
@@ -188,7 +189,7 @@ class Checker {
         ends, offset_mm);
   }
 
-  /// Returns the root mean square of the difference between two hypotheses.
+  /// Returns the root mean square of the difference between the predictions of two hypotheses.
   [[nodiscard]] double apart_mm(const GaugeFit& one, const GaugeFit& other) const {
     double sum = 0;
     for (std::size_t i = 0; i < readings_.size(); ++i)
@@ -206,8 +207,8 @@ class Checker {
     return chi_square(fit, tolerance_mm) <= chi_square_limit(freedom);
   }
 
-  /// Compares every hypothesis with the most likely one. A share of the difference between the two is
-  /// tolerated.
+  /// Compares every hypothesis with the most likely one and tolerates a share of the difference between the
+  /// two.
   void compare() {
     std::vector<GaugeFit>& fits = result_.fits;
     const auto likelier = [](const GaugeFit& a, const GaugeFit& b) { return a.rms_mm < b.rms_mm; };
@@ -306,7 +307,7 @@ GaugeCheck::Departure GaugeCheck::departure() const {
     result.largest_mm = std::max(result.largest_mm, std::abs(apart));
   }
   result.rms_mm = std::sqrt(sum / n);
-  // Compared with the noise alone, because no hypothesis defines a tolerance.
+  // The deviation is compared with the noise alone, because no hypothesis defines a tolerance.
   const double gained = n * (square(straight.rms_mm) - square(fit.rms_mm)) / (2 * square(noise_mm));
   const auto more = static_cast<double>(fit.free - straight.free);
   result.clear = n > static_cast<double>(fit.free) && gained - more >= gauge_log_likelihood_needed;

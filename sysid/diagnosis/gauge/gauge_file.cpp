@@ -26,7 +26,7 @@ constexpr std::array<std::string_view, reading_columns.size()> position_columns{
 constexpr std::size_t column_count = 3;
 constexpr std::size_t needed_columns = 2;
 
-/// Returns the index in reading_columns of the reading column in these names.
+/// Finds the column of the readings in a list of column names. Returns its index in reading_columns.
 std::size_t reading_column_in(const std::vector<std::string>& names) {
   for (std::size_t i = 0; i < reading_columns.size(); ++i) {
     const bool here = std::any_of(names.begin(), names.end(), [&](const std::string& name) {
@@ -152,7 +152,7 @@ class GaugeReader {
   std::vector<GaugeReading> readings_;
 };
 
-/// Returns the largest round step that gives enough positions.
+/// Returns the largest round step with which the span contains enough positions.
 double round_step(double span) {
   const double most = span / static_cast<double>(fewest_planned - 1);
   const double decade = std::pow(10.0, std::floor(std::log10(most)));
@@ -209,7 +209,7 @@ std::vector<double> planned_positions(double largest_reading_mm) {
   const double step = round_step(span);
   const auto last = static_cast<int>(std::ceil(span / step - 1e-9));
   for (int i = 0; i <= last; ++i) {
-    // Round to decimals exactly, because users read the values.
+    // Remove rounding errors from the decimal values, because users read them.
     up.push_back(std::copysign(std::round(1e6 * step * i) / 1e6, largest_reading_mm) + 0.0);
   }
   std::vector<double> all = up;

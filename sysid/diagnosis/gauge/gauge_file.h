@@ -1,14 +1,14 @@
 #pragma once
-// Reads and writes readings of a displacement sensor at positions that a gauge defines: gauge blocks or a
-// dial gauge.
+// Reads and writes gauge files: readings of a displacement sensor at positions that gauge blocks or a dial
+// gauge define.
 //
 //   gauge_mm,displacement_mm[,samples][,...]
 //
-// For a bending angle the columns are gauge_deg and angle_deg, or gauge_rad and angle_rad, which are
+// For a bending angle the columns are gauge_deg and angle_deg, or gauge_rad and angle_rad. Radians are
 // converted to degrees.
-// One row per reading, in the order in which the readings were taken. Positions may repeat and need not
-// increase. `samples`: number of sensor samples that a reading averages (1 without the column). Other columns
-// are ignored.
+// Each row contains one reading, in the order in which the readings were taken. Positions may repeat and need
+// not increase. `samples` is the number of sensor samples that were averaged for the reading (1 without this
+// column). Other columns are ignored.
 
 #include <optional>
 #include <string>
@@ -21,9 +21,9 @@
 namespace softgrip::sysid {
 
 struct GaugeReading {
-  double position_mm = 0;  ///< position by the gauge; its zero is arbitrary
+  double position_mm = 0;  ///< position according to the gauge; its zero is arbitrary
   double reading_mm = 0;   ///< reading of the sensor
-  double samples = 1;      ///< number of samples that the reading averages, at least 1
+  double samples = 1;      ///< number of sensor samples that were averaged, at least 1
 
   bool operator==(const GaugeReading&) const = default;
 };
@@ -35,17 +35,18 @@ struct GaugeFile {
   model::OutputUnit output_unit = model::OutputUnit::mm;  ///< unit of positions and readings
 };
 
-/// At least three positions are needed, because two fit a straight line exactly.
+/// Smallest number of positions: 3, because a straight line fits 2 positions exactly.
 inline constexpr std::size_t fewest_gauge_positions = 3;
 
-/// Adds all problems to `problems`. If there is a problem, no file is returned. `file` names it in messages.
+/// Parses the text of a gauge file. Adds all problems to `problems` and returns an empty value if there is
+/// one. `file` is the name of the file in messages.
 [[nodiscard]] std::optional<GaugeFile> parse_gauge(const std::string& file, std::string_view text,
                                                    document::Problems& problems);
 
-/// Reads and parses a gauge file. A file that cannot be read is reported as a problem.
+/// Reads and parses a gauge file. Reports a file that cannot be read as a problem.
 [[nodiscard]] std::optional<GaugeFile> read_gauge(const std::string& path, document::Problems& problems);
 
-/// Returns the CSV text. parse_gauge() of this text gives the same readings.
+/// Returns the readings as CSV text. parse_gauge() converts this text back to the same readings.
 [[nodiscard]] std::string format_gauge(const std::vector<GaugeReading>& readings,
                                        model::OutputUnit output_unit = model::OutputUnit::mm);
 
@@ -54,15 +55,16 @@ inline constexpr std::size_t fewest_gauge_positions = 3;
 /// Returns the distinct positions of readings.
 [[nodiscard]] std::vector<double> distinct_positions(const std::vector<GaugeReading>& readings);
 
-/// Returns the positions to read: from 0 to about 1.3 times the largest reading of the logs, so that
-/// saturation of the sensor shows. At least nine positions in round steps: up, down and up again.
+/// Returns the positions to read: at least nine positions in round steps from 0 to about 1.3 times the
+/// largest reading of the logs, so that a saturation of the sensor is visible. They are listed in increasing,
+/// decreasing and again in increasing order.
 [[nodiscard]] std::vector<double> planned_positions(double largest_reading_mm);
 
 /// Returns a gauge file without readings, as a template.
 [[nodiscard]] std::string positions_csv(const std::vector<double>& positions_mm,
                                         model::OutputUnit output_unit = model::OutputUnit::mm);
 
-/// Duration of one reading: place the target, let it rest, read [s].
+/// Duration of one reading [s]: place the target, wait until the sensor is at rest, read.
 inline constexpr double seconds_per_reading = 20;
 [[nodiscard]] inline double minutes_for(std::size_t readings) {
   return seconds_per_reading * static_cast<double>(readings) / 60;

@@ -14,17 +14,19 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Smallest nonlinearity that gives a warning, as a share of the logs' noise. No log can show a smaller one.
+/// Smallest nonlinearity that gives a warning, as a share of the logs' noise. No log can show a smaller
+/// nonlinearity.
 constexpr double worth_telling = 0.5;
 
-/// A possible cause for one position of the selection.
+/// A possible cause for one position (one named cause) of the selection.
 struct Standing {
   Cause cause;
   StructureFit fit;
-  bool implied = false;  ///< not an alternative in the verdict of the logs; only the gauge may add it
+  bool implied = false;  ///< true: the verdict of the logs does not list it as an alternative; only the gauge
+                         ///< check may add it
 };
 
-/// One explanation of the logs: one cause for each position.
+/// One possible explanation of the logs, with one cause for each position.
 struct Explanation {
   std::vector<std::size_t> standing;  ///< for each position: index of one of its possible causes
   std::size_t shape = 0;
@@ -57,7 +59,7 @@ class Weighing {
     const GaugeScales scales = gauge_scales(data_.records, question_.noise_mm);
     explain(false);
     evidence_.check = check_gauge(question_.file.readings, shapes_, scales);
-    // A cause that the logs ruled out returns only if no remaining one fits.
+    // A cause that the logs ruled out is considered again only if no remaining cause explains the readings.
     const std::size_t left_by_logs = shapes_.size();
     if (evidence_.check.outcome == GaugeOutcome::unexplained) explain(true);
     if (shapes_.size() > left_by_logs)
@@ -98,8 +100,8 @@ class Weighing {
     return fit_without_cause(data_.records, selection_.extended, selection_.chosen[place].cause);
   }
 
-  /// Lists every combination of possible causes with the sensor that it makes, optionally with the implied
-  /// causes.
+  /// Lists every combination of possible causes, one per position, with the sensor shape that results.
+  /// Combinations with implied causes are included on request.
   void explain(bool with_implied) {
     std::vector<std::size_t> at(places_.size(), 0);
     explanations_.clear();
@@ -141,7 +143,7 @@ class Weighing {
     return shapes_.size() - 1;
   }
 
-  /// Returns true if an explanation that the gauge permits has this cause in its position.
+  /// Returns true if the gauge permits an explanation with this cause in this position.
   [[nodiscard]] bool survives(std::size_t place, std::size_t standing) const {
     return std::any_of(explanations_.begin(), explanations_.end(), [&](const Explanation& e) {
       return e.standing[place] == standing && !evidence_.check.fits[e.shape].ruled_out;
@@ -175,8 +177,8 @@ class Weighing {
     replace(now);
   }
 
-  /// Keeps the remaining alternatives of a position. If only the gauge added the first cause, the cause that
-  /// the logs named becomes its alternative.
+  /// Keeps the remaining alternatives of a position. If the gauge check added the first cause, the cause that
+  /// the logs named becomes an alternative to it.
   void keep(std::size_t place, const std::vector<std::size_t>& left, bool brought_in) {
     ChosenCause& chosen = selection_.chosen[place];
     const std::vector<Standing>& standing = places_[place];
@@ -184,7 +186,7 @@ class Weighing {
     for (const Cause& alternative : chosen.alternatives) {
       const auto fitted = std::find_if(standing.begin(), standing.end(),
                                        [&](const Standing& s) { return s.cause == alternative; });
-      // An alternative without a fit could not be tested, so it remains.
+      // An alternative without a fit could not be tested, so it is kept.
       const bool stays = fitted == standing.end() ||
                          std::find(left.begin() + 1, left.end(),
                                    static_cast<std::size_t>(fitted - standing.begin())) != left.end();
@@ -282,7 +284,7 @@ class Weighing {
            ": the sensor is the cause, not the finger.";
   }
 
-  /// Returns the sentence if more than one shape remains.
+  /// Returns the result of the check if more than one shape remains possible.
   [[nodiscard]] std::string sentence_open(bool bent) const {
     const GaugeCheck& check = evidence_.check;
     std::string left, out;
@@ -336,8 +338,8 @@ class Weighing {
     }
   }
 
-  /// The sensor is nonlinear, but no named cause states this. A cause that names a nonlinearity elsewhere
-  /// therefore gets the sensor causes as alternatives.
+  /// Handles a nonlinear sensor that no named cause describes. Named causes whose nonlinearity is elsewhere
+  /// get the sensor causes as alternatives.
   void add_sensor_alternatives() {
     for (ChosenCause& chosen : selection_.chosen) {
       if (!chosen.alternatives.empty() || chosen.cause.is_static_sensor()) continue;

@@ -1,6 +1,6 @@
 #pragma once
-// Applies a gauge check of the sensor to a selection of causes. It removes the alternatives that the gauge
-// rules out. If it rules out the named cause, the remaining alternative replaces it.
+// Applies a gauge check of the sensor to the causes that a search has selected. Removes the alternatives that
+// the gauge readings rule out. If they rule out a named cause, the remaining alternative replaces it.
 
 #include <cstdint>
 #include <string>
@@ -15,26 +15,27 @@ struct GaugeEvidence {
   GaugeFile file;
   GaugeCheck check;
   std::vector<std::string> ruled_out;  ///< ids of the causes that the gauge ruled out
-  bool replaced = false;               ///< another cause replaced a named cause
-  std::string sentence;                ///< result of the gauge check
+  bool replaced = false;               ///< true: another cause replaced a named cause
+  std::string sentence;                ///< result of the gauge check as a sentence
 };
 
 struct GaugeQuestion {
   const GaugeFile& file;
   double noise_mm = 0;  ///< noise of the logs
   std::uint64_t seed = 1;
-  /// False: the alternatives were fitted to other records. Named causes and their alternatives then do not
-  /// change.
+  /// False: named causes and their alternatives are not changed, because the alternatives were fitted to
+  /// other records.
   bool may_replace = true;
 };
 
-/// Returns true if a gauge can separate the two causes: they make sensors of different static shapes.
+/// Returns true if a gauge can separate the two causes because the static shapes of their sensors differ.
 [[nodiscard]] bool gauge_tells_apart(const Cause& one, const Cause& other);
 
-/// Returns the information of a campaign about its sensor.
+/// Returns the noise and the range of the readings of a campaign.
 [[nodiscard]] GaugeScales gauge_scales(const std::vector<Record>& records, double noise_mm);
 
-/// @param warnings  receives additional warnings for the verdict.
+/// Checks the hypotheses of a selection against the gauge readings and changes the selection accordingly.
+/// @param warnings  receives further warnings for the verdict.
 [[nodiscard]] GaugeEvidence weigh_gauge(const GaugeQuestion& question, const SearchData& data,
                                         const Division& division, Selection& selection,
                                         std::vector<std::string>& warnings);

@@ -50,7 +50,7 @@ Json valve_json(const ValveFindings& in_valve) {
           {"noise_kpa", in_valve.noise_kpa}};
 }
 
-/// Returns the error budget, in mean squares of held-out readings.
+/// Returns the error budget as mean squares of held-out readings.
 Json budget_json(const Diagnosis& d, const Budget& budget) {
   Json causes = Json::object();
   for (const NamedCause& named : d.causes) causes[std::string(named.cause.id)] = spread(named.gain_mm2);
@@ -167,7 +167,7 @@ Json gauge_json(const GaugeEvidence& gauge) {
                                   {"zero_mm", fit.zero_mm},
                                   {"scale", fit.scale}});
   }
-  // Independent of the logs: the nonlinearity of the sensor by the gauge alone.
+  // Nonlinearity of the sensor from the gauge readings alone, independent of the logs.
   const GaugeCheck::Departure departure = check.departure();
   json["sensor_alone"] = {{"straight_rms_mm", check.straight.rms_mm},
                           {"bent_rms_mm", check.free_bend.rms_mm},

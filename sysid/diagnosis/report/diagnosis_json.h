@@ -1,5 +1,5 @@
 #pragma once
-// Writes diagnosis.json, whose format is documented.
+// Writes diagnosis.json in the documented format.
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -7,7 +7,7 @@
 
 namespace softgrip::sysid {
 
-/// Returns the content of diagnosis.json. `next_experiment` is null; add_experiment() replaces it.
+/// Returns the content of diagnosis.json. `next_experiment` is null until add_experiment() replaces it.
 [[nodiscard]] nlohmann::ordered_json json_of(const Diagnosis& diagnosis);
 
 }  // namespace softgrip::sysid

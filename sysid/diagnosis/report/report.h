@@ -1,5 +1,6 @@
 #pragma once
-// The diagnosis as an HTML page: the first sentence is for technicians, the rest for readers who check it.
+// Writes the diagnosis as an HTML page. The first sentence is for technicians, the rest for readers who check
+// the result.
 
 #include <cstdint>
 #include <optional>
@@ -13,31 +14,31 @@
 
 namespace softgrip::sysid {
 
-/// An experiment that separates causes which the logs do not separate.
+/// An experiment that separates causes which the logs cannot separate.
 struct ProposedExperiment {
   std::string file;                    ///< file name in the folder of the report
   std::vector<std::string> separates;  ///< ids of causes
   double predicted_separation_sigma = 0;
   double rig_minutes = 0;
-  std::string waveform;  ///< description
+  std::string waveform;  ///< description of the waveform
 };
 
-/// A reference trajectory, tracked in simulation with each model in the feedforward.
+/// Simulated tracking of a reference trajectory with each model as the feedforward.
 struct ClosedLoopCurves {
   struct Scheme {
     std::string name;  ///< "PID alone", "recalibrated model", "extended model"; it determines the line style
     double rmse_mm = 0;
-    std::vector<double> displacement_mm;  ///< at time_s
+    std::vector<double> displacement_mm;  ///< displacement at each time of `time_s`
   };
-  std::string reference;  ///< description
+  std::string reference;  ///< description of the reference trajectory
   std::vector<double> time_s;
   std::vector<double> reference_mm;
-  std::vector<Scheme> schemes;  ///< the best last; at most three
+  std::vector<Scheme> schemes;  ///< at most three schemes, the best last
   std::vector<std::string> notes;
   model::OutputUnit output_unit = model::OutputUnit::mm;
 };
 
-/// Content of the page.
+/// Data for the page.
 struct DiagnosisReport {
   const Diagnosis& result;
   const std::vector<Log>& logs;
@@ -48,7 +49,7 @@ struct DiagnosisReport {
   std::optional<ClosedLoopCurves> closed_loop;
 };
 
-/// report.html
+/// Returns the page for report.html.
 [[nodiscard]] Page diagnosis_page(const DiagnosisReport& report);
 
 }  // namespace softgrip::sysid

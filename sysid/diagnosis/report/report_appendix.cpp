@@ -18,7 +18,7 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Number of logs with figures, including the log of the first part.
+/// Maximum number of logs with figures, including the log in the first part of the report.
 constexpr std::size_t logs_shown = 3;
 
 void add_other_logs(Page& page, const Diagnosis& d) {

@@ -1,6 +1,6 @@
 #pragma once
-// The appendix for readers who check a diagnosis: other logs, candidates, conditions, equations, parameters
-// and hashes.
+// Writes the appendix for readers who check a diagnosis: further logs, candidates, conditions, equations,
+// parameters and hashes.
 
 #include "sysid/diagnosis/report/report.h"
 #include "sysid/pages/page.h"

@@ -31,8 +31,9 @@ std::string amount(double mm2, double whole_mm2, model::OutputUnit unit) {
   return square_text(mm2, unit) + ", " + fixed(100 * mm2 / whole_mm2, 1) + " %";
 }
 
-/// Draws the error of the given model and marks the part that the bar below shows enlarged. Returns the top
-/// of that bar. The space above it, between the connecting lines, is for its title.
+/// Draws the error of the given model as a bar and marks the part that a second bar shows enlarged below.
+/// Returns the top of the second bar. The space above that bar, between the connecting lines, is for its
+/// title.
 double given_bar(Canvas& canvas, const Budget& budget, model::OutputUnit unit, double top) {
   const double kept = std::clamp(budget.recalibrated / budget.as_given, 0.0, 1.0);
   const double split = right - kept * (right - left);

@@ -1,5 +1,5 @@
 #pragma once
-// The error budget as a figure: from the error of the given model down to the noise.
+// Draws the error budget: the error of the given model is divided into its parts down to the noise.
 
 #include <string>
 #include <vector>
@@ -14,13 +14,13 @@ struct BudgetPart {
   std::string name;
   double mm2 = 0;
   Colour colour = Colour::faint;
-  std::string interval;  ///< "0.01 to 0.02", or empty
+  std::string interval;  ///< interval such as "0.01 to 0.02", or empty
 };
 
-/// Returns the parts of the recalibrated model's mean square of held-out readings; they add up to it. The
-/// parts are: the reduction by each cause, measured by its removal; the reduction that several causes only
-/// achieve together; the unexplained rest; the noise. If the reductions of single causes add up to more than
-/// their common reduction, each is scaled down in proportion.
+/// Returns parts whose sum is the mean square of the recalibrated model on held-out readings. The parts are
+/// the reduction by each cause, measured by its removal; the further reduction that only several causes
+/// together achieve; the unexplained error; and the noise. If the reductions by single causes add up to more
+/// than the reduction by all causes together, each is scaled down in proportion.
 [[nodiscard]] std::vector<BudgetPart> budget_parts(const Diagnosis& diagnosis);
 
 [[nodiscard]] Figure budget_figure(const Diagnosis& diagnosis);

@@ -55,7 +55,7 @@ std::vector<std::string> lines_of(const model::BlockSpec& block, model::OutputUn
   return lines;
 }
 
-/// Returns the number of boxes per row for which the texts leave space.
+/// Returns the number of boxes per row that leaves enough space for their texts.
 std::size_t boxes_in_a_row(const model::Model& model) {
   double widest = 0;
   for (const model::BlockSpec& block : model.blocks) {

@@ -1,12 +1,12 @@
 #pragma once
-// A model as a block diagram with its parameters.
+// Draws a model as a block diagram with its parameters.
 
 #include "model/model.h"
 #include "sysid/pages/figure.h"
 
 namespace softgrip::sysid {
 
-/// Returns the figure of the chain from command to reading. Blocks that `given` lacks are marked.
+/// Returns the block diagram from command to reading. Blocks that `given` lacks are marked.
 [[nodiscard]] Figure chain_figure(const model::Model& model, const model::Model& given);
 
 }  // namespace softgrip::sysid

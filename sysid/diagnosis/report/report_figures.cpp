@@ -36,7 +36,7 @@ std::vector<Shown> shown(const Diagnosis& d) {
 const StructureFit& final_fit(const Diagnosis& d) {
   return is_extended(d) ? d.extended : d.recalibrated;
 }
-/// Returns the model that the final one is compared with.
+/// Returns the model with which the final one is compared.
 const StructureFit& first_fit(const Diagnosis& d) {
   return is_extended(d) ? d.recalibrated : d.as_given;
 }
@@ -68,7 +68,7 @@ Series curve_of(const Shown& model, const std::vector<double>& x, const std::vec
   return series;
 }
 
-/// A part of the plane of pressure and displacement.
+/// A rectangle in the pressure-displacement plane.
 struct Window {
   double lower_kpa, upper_kpa, lower_mm, upper_mm;
 
@@ -81,8 +81,8 @@ std::vector<double> prediction(const StructureFit& fit, const Record& record, st
   return predict(fit.point.model, record, fit.point.starts[k]);
 }
 
-/// Returns the window around the sample where the first and the final model differ most. It covers a tenth of
-/// the pressure range and is high enough to show the difference.
+/// Returns a window around the sample where the first and the final model differ most. The window covers a
+/// tenth of the pressure range and is high enough to show the difference.
 Window window_of(const Record& record, const std::vector<double>& first, const std::vector<double>& final) {
   std::size_t at = 0;
   double most = 0;
@@ -101,7 +101,7 @@ Window window_of(const Record& record, const std::vector<double>& first, const s
   return {kpa - half_kpa, kpa + half_kpa, mm - half_mm, mm + half_mm};
 }
 
-/// Returns the lowest and the highest value of a chart's curves with a margin of 4 %.
+/// Returns the lowest and the highest value of a chart's curves, extended by a margin of 4 %.
 std::pair<double, double> reach_of(const Chart& chart) {
   double lowest = std::numeric_limits<double>::infinity();
   double highest = -lowest;
@@ -117,7 +117,7 @@ std::pair<double, double> reach_of(const Chart& chart) {
   return {lowest - margin, highest + margin};
 }
 
-/// Returns the part of a curve in the window. Points outside become gaps.
+/// Returns the part of a curve inside the window. Points outside are replaced by gaps.
 Series within(Series series, const Window& window) {
   for (std::size_t i = 0; i < series.x.size(); ++i) {
     if (!window.holds(series.x[i], series.y[i])) series.y[i] = none;
@@ -125,7 +125,7 @@ Series within(Series series, const Window& window) {
   return series;
 }
 
-/// Draws the bins of one group as points with intervals.
+/// Draws the bins of one group as points, with intervals if `whiskers` is true.
 void add_bins(Chart& chart, const ConditionEvidence& e, std::size_t group, const std::string& label,
               Colour colour, bool whiskers) {
   Series means, intervals;
@@ -223,7 +223,7 @@ Figure error_figure(const Diagnosis& d, std::size_t k) {
   const bool given_far_off = std::sqrt(mean_square(d.as_given.residual_mm[k])) >
                              far_off * std::sqrt(mean_square(d.recalibrated.residual_mm[k]));
   Chart values, before, after;
-  // The titles name the quantities. The short axes have space for the unit only.
+  // The titles name the quantities, so the axis labels contain only the unit.
   const std::string unit(model::name_of(record.output_unit));
   values.title = record.name + ": " + model::in_unit("displacement", record.output_unit);
   values.y.label = before.y.label = after.y.label = "[" + unit + "]";
@@ -336,7 +336,7 @@ Figure closed_loop_figure(const ClosedLoopCurves& curves) {
   values.series.push_back(curve("reference", Colour::measured, 2.4, curves.time_s, curves.reference_mm));
   std::string numbers;
   for (const ClosedLoopCurves::Scheme& scheme : curves.schemes) {
-    // A model has the same line style in all figures, even if some models are missing.
+    // Each model has the same line style in all figures, even if a figure does not show all models.
     const bool extended = scheme.name.starts_with("extended");
     const bool recalibrated = scheme.name.starts_with("recalibrated");
     const Colour colour = extended ? Colour::good : recalibrated ? Colour::model : Colour::other;
@@ -396,7 +396,7 @@ Figure spectrum_figure(const Diagnosis& d) {
   if (is_extended(d)) add(models[2], d.evidence->extended);
   const SpectrumEvidence& s = d.evidence->recalibrated.spectrum;
   if (!s.frequency_hz.empty()) {
-    // Level of white noise with this standard deviation, up to half the sampling rate.
+    // Spectral density of white noise with this standard deviation, up to half the sampling rate.
     const double density = d.noise_mm * d.noise_mm / s.frequency_hz.back();
     chart.marks.push_back({Mark::Direction::horizontal, density, "noise of the readings"});
   }

@@ -1,6 +1,6 @@
 #pragma once
-// The charts of a diagnosis. In all of them the given model is dotted, the recalibrated one dashed, the
-// extended one solid.
+// Draws the charts of a diagnosis. The line of the given model is always dotted, that of the recalibrated
+// model dashed, and that of the extended model solid.
 
 #include <cstddef>
 #include <optional>
@@ -12,25 +12,27 @@
 
 namespace softgrip::sysid {
 
-/// Returns the indices of the logs in order of the error reduction by the extended (or else the recalibrated)
-/// model, the largest first.
+/// Returns the indices of the logs, sorted by the error reduction with the extended model (the recalibrated
+/// model if there is no extended one), the largest first.
 [[nodiscard]] std::vector<std::size_t> logs_by_gain(const Diagnosis& diagnosis);
-/// Returns true if the pressure changes for 10 % of the time. A pressure with steps only shows no loops.
+/// Returns true if the pressure changes during at least 10 % of the time. A log that contains only pressure
+/// steps shows no loops.
 [[nodiscard]] bool has_loops(const Record& record);
-/// Returns the first log of logs_by_gain() with loops.
+/// Returns the first log in the order of logs_by_gain() that contains loops; see has_loops().
 [[nodiscard]] std::optional<std::size_t> first_with_loops(const Diagnosis& diagnosis);
 
-/// Returns the measured and predicted displacement over time, with the errors before and after on the same
-/// time axis.
+/// Returns the measured and predicted displacement over time, with the errors of two models (before and after
+/// the extension or refit) on the same time axis.
 [[nodiscard]] Figure error_figure(const Diagnosis& diagnosis, std::size_t record);
-/// Returns the error of every run that was left out of the fit, under each available model.
+/// Returns the error of every available model on each run, which was left out of the fit.
 [[nodiscard]] Figure runs_figure(const Diagnosis& diagnosis);
-/// Returns displacement over pressure: the complete loops, and the part where the models differ most.
+/// Returns displacement over pressure in two charts: the complete loops, and the part where the models differ
+/// most.
 [[nodiscard]] Figure loops_figure(const Diagnosis& diagnosis, std::size_t record);
-/// Returns the reference with the tracked displacements, and the tracking errors.
+/// Returns two charts: the reference with the tracked displacements, and the tracking errors.
 [[nodiscard]] Figure closed_loop_figure(const ClosedLoopCurves& curves);
-/// Returns conditional means with intervals for the conditions on which the error significantly depends, two
-/// per row. The figure has no charts if there are no such conditions.
+/// Returns the mean error with its interval over each condition on which the error depends significantly, two
+/// charts per row. Without such a condition, the figure has no charts.
 [[nodiscard]] Figure conditions_figure(const Diagnosis& diagnosis);
 [[nodiscard]] Figure spectrum_figure(const Diagnosis& diagnosis);
 

@@ -26,7 +26,7 @@ constexpr double top_px = 34;
 struct Row {
   std::string name;
   bool alternative = false;
-  const Spread* gain = nullptr;  ///< nullptr: no command separates the cause from the one above
+  const Spread* gain = nullptr;  ///< nullptr: no command separates the cause from the cause of the row above
   double inclusion = 0;
 };
 

@@ -1,12 +1,12 @@
 #pragma once
-// A forest plot of the error reductions of all causes and their alternatives.
+// Draws a forest plot of the error reductions by all causes and their alternatives.
 
 #include "sysid/diagnosis/verdict/diagnosis.h"
 #include "sysid/pages/figure.h"
 
 namespace softgrip::sysid {
 
-/// Requires at least one cause, named or partial.
+/// Returns the plot. Requires at least one named cause or partial explanation.
 [[nodiscard]] Figure forest_figure(const Diagnosis& diagnosis);
 
 }  // namespace softgrip::sysid

@@ -1,5 +1,5 @@
 #pragma once
-// The section of the report about a gauge check.
+// Writes the section of the report about a gauge check.
 
 #include "sysid/diagnosis/gauge/gauge_verdict.h"
 #include "sysid/pages/chart.h"
@@ -7,8 +7,8 @@
 
 namespace softgrip::sysid {
 
-/// Returns readings and hypotheses relative to the straight line that fits the readings best, over the gauge
-/// position.
+/// Returns a chart of readings and hypotheses over the gauge position. Both are drawn relative to the
+/// straight line that fits the readings best.
 [[nodiscard]] Chart gauge_chart(const GaugeEvidence& gauge);
 
 /// Adds the section to the page.

@@ -40,7 +40,7 @@ std::string outcome_of(const CandidateScore& c, const NamedCause* chosen, double
 }
 
 /// Returns the candidates, their errors, and the reason why each was rejected.
-/// @param chosen  the cause for whose position they were tested; nullptr: they were tested as a further
+/// @param chosen  cause in whose place the candidates were tested; nullptr: they were tested as a further
 /// cause.
 Table candidate_table(const std::vector<CandidateScore>& candidates, const NamedCause* chosen,
                       double chosen_rmse_mm, model::OutputUnit unit, std::string caption) {
@@ -181,7 +181,7 @@ Table cause_parameter_table(const Diagnosis& d, std::size_t most) {
     const bool short_enough = size <= most;
     std::size_t shown = 0;
     for (const CauseParameter& p : named->parameters) {
-      // If there are many parameters, only those with an interval are shown.
+      // If a cause has many parameters, only those with a determined interval are listed.
       if (!short_enough && (!p.determined() || shown + 1 >= most)) continue;
       table.rows.push_back(row(*named, p));
       ++shown;

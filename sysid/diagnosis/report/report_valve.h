@@ -1,5 +1,5 @@
 #pragma once
-// The section of the report about the valve, if the pressure was measured.
+// Writes the section of the report about the valve, which requires a measured pressure.
 
 #include "sysid/diagnosis/verdict/valve_findings.h"
 #include "sysid/pages/page.h"

@@ -18,7 +18,7 @@ void add_third_differences(const std::vector<double>& y, std::vector<double>& si
   }
 }
 
-/// Returns the finite readings without the gaps between them.
+/// Returns the finite readings in order, as if the gaps between them did not exist.
 std::vector<double> readings_alone(std::vector<double> y) {
   y.erase(std::remove_if(y.begin(), y.end(), [](double value) { return !std::isfinite(value); }), y.end());
   return y;
@@ -27,18 +27,19 @@ std::vector<double> readings_alone(std::vector<double> y) {
 }  // namespace
 
 double measured_noise_mm(const std::vector<Record>& records) {
-  // The third difference of white noise has 1 + 9 + 9 + 1 = 20 times its variance.
+  // For white noise, the variance of the third difference is 1 + 9 + 9 + 1 = 20 times that of the noise.
   constexpr double inflation = 20.0;
   std::vector<double> sizes;
   for (const Record& record : records) {
-    // If the sensor is slower than the log, hardly any four readings are adjacent.
+    // If the sensor is slower than the log, four adjacent samples with a reading are rare.
     const std::vector<double> readings = readings_alone(record.reading_mm);
     const bool is_slow = 5 * readings.size() < 4 * record.reading_mm.size();
     add_third_differences(is_slow ? readings : record.reading_mm, sizes);
   }
   if (sizes.empty()) return 0;
-  // The median alone would be as coarse as the quantisation. It therefore only limits the contribution of a
-  // wrong sample or a corner of the motion. A limit of 4 deviations removes 0.1 % of a normal variance.
+  // The median alone would have the resolution of the quantisation. Therefore the median only defines a limit
+  // that excludes wrong samples and corners of the motion. A limit of 4 deviations removes 0.1 % of a normal
+  // variance.
   std::vector<double> sorted = sizes;
   const double bound = 4 * median_of(std::span(sorted)) / 0.6745;
   double sum = 0;
@@ -77,9 +78,9 @@ UnexplainedError unexplained_error_of(const std::vector<std::vector<double>>& re
     if (pairs[lag] > 0) sum += product[lag] / pairs[lag] / mean_square;
   }
   structure.slow_correlation = sum / lags;
-  // The mean of 25 lags of white noise has a deviation of 1/sqrt(25 n). Less than 1 % of the variance is not
-  // reported, regardless of its significance. A mean square above the noise also counts as unexplained error,
-  // if the difference exceeds the uncertainty of the noise.
+  // The mean over 25 lags of white noise has a standard deviation of 1/sqrt(25 n). A correlation below 1 % of
+  // the variance is not reported, even if it is significant. A mean square above the noise also counts as
+  // unexplained error if the difference exceeds the uncertainty of the noise.
   const double worth = 0.01;
   const double known_to = 4 * std::sqrt(6.0 / static_cast<double>(count));
   structure.present = structure.slow_correlation > worth + 4 / std::sqrt(lags * static_cast<double>(count)) ||

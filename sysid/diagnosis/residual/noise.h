@@ -1,5 +1,5 @@
 #pragma once
-// Measures the noise of the readings from the data alone, and tests a residual against it.
+// Measures the noise of the readings without a model, and tests whether a residual exceeds it.
 
 #include <vector>
 
@@ -11,18 +11,20 @@ namespace softgrip::sysid {
 /// Smooth motion and single wrong samples do not contribute; quantisation does.
 [[nodiscard]] double measured_noise_mm(const std::vector<Record>& records);
 
-/// Wrong readings that add less than this share of the noise to the error are not reported, because they may
-/// be corners of a motion.
+/// Wrong readings are not reported if they increase the error by less than this share of the noise, because
+/// they may be corners of a motion.
 inline constexpr double distorting_share = 0.25;
 
-/// The unexplained error: the part of a residual beyond the noise.
+/// The unexplained error: the part of a residual that exceeds the measurement noise.
 struct UnexplainedError {
-  double excess_mm = 0;         ///< root of mean square minus noise squared; 0 if negative
-  double slow_correlation = 0;  ///< mean autocorrelation over the first lags (about a quarter of a second)
-  bool present = false;         ///< the residual is more than noise
+  double excess_mm = 0;         ///< square root of (mean square of the residual - noise squared); 0 if
+                                ///< negative
+  double slow_correlation = 0;  ///< mean autocorrelation over the first 25 lags
+  bool present = false;         ///< true: the residual contains more than noise
 };
 
-/// @param residual_mm  by record; NaN where there is no reading.
+/// Returns the unexplained error of a residual.
+/// @param residual_mm  one vector per record; NaN for samples without a reading.
 [[nodiscard]] UnexplainedError unexplained_error_of(const std::vector<std::vector<double>>& residual_mm,
                                                     double noise_mm);
 

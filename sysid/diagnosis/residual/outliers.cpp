@@ -12,10 +12,11 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Limit of the distance to the median of four neighbours [noise]. For a normal reading, the standard
-/// deviation of this distance is about 1.15. It exceeds the limit less than once in 10 million readings.
+/// Smallest distance of an outlier to the median of four neighbours, in standard deviations of the noise. For
+/// a normal reading, the standard deviation of this distance is about 1.15, so it exceeds the limit less than
+/// once in 10 million readings.
 constexpr double beyond = 6.0;
-/// A smaller number of outliers is not significant.
+/// Smallest number of outliers that is reported. Fewer outliers are not significant.
 constexpr std::size_t fewest = 5;
 
 double neighbours_median(const std::vector<double>& y, std::size_t i) {
@@ -24,17 +25,19 @@ double neighbours_median(const std::vector<double>& y, std::size_t i) {
   return 0.5 * (near[1] + near[2]);
 }
 
-/// Returns the motion over the neighbourhood, so that a fast motion does not count as an outlier.
+/// Returns the change of the reading over the neighbourhood, so that a fast motion does not count as an
+/// outlier.
 double motion(const std::vector<double>& y, std::size_t i) {
   return std::abs(0.5 * (y[i + 1] + y[i + 2]) - 0.5 * (y[i - 1] + y[i - 2]));
 }
 
-/// Distance to which neighbours are used on each side, and the number required on each side.
+/// Maximum distance of a neighbour in samples, and smallest number of neighbours on each side.
 constexpr std::size_t reach = 3;
 constexpr std::size_t fewest_neighbours = 2;
-/// A reading is isolated if its deviation exceeds this multiple of the spread of its neighbours.
+/// A reading is isolated if its deviation from the median of its neighbours exceeds this multiple of their
+/// spread.
 constexpr double alone = 4.0;
-/// Uncertainty of clocks, latencies and corners, in samples.
+/// Uncertainty of clocks, latencies and the times of corners, in samples.
 constexpr double timing_samples = 1.5;
 
 /// Median of the neighbours (readings or residuals) and their spread. The spread is the second largest
@@ -73,7 +76,7 @@ bool is_outlier(const std::vector<double>& y, std::size_t i, double noise_mm, do
   return near.known && std::abs(size) > alone * near.spread_mm;
 }
 
-/// Returns the largest change of the prediction between neighbouring samples near sample i.
+/// Returns the largest change of the prediction between adjacent samples near sample i.
 double largest_step(const std::vector<double>& y, const std::vector<double>& r, std::size_t i) {
   double largest = 0;
   for (std::size_t j = i < reach ? 1 : i - reach + 1; j <= std::min(i + reach, r.size() - 1); ++j) {
@@ -105,7 +108,7 @@ void weigh(OutlierEvidence& evidence, double noise_mm) {
   const double deviation = std::sqrt(std::max(0.0, fourth / count - square / count * square / count) / count);
   evidence.size_low_mm = std::sqrt(std::max(0.0, square / count - z * deviation));
   evidence.size_high_mm = std::sqrt(square / count + z * deviation);
-  // Noise alone does not exceed six deviations. A few outliers may come from a knock on the table.
+  // Noise alone does not exceed the limit of `beyond`, but a few outliers may come from a knock on the table.
   evidence.distorts = evidence.excess_mm > distorting_share * noise_mm;
   evidence.present = evidence.count >= fewest && evidence.distorts;
 }
@@ -146,8 +149,8 @@ Readings readings_of(const Record& record) {
   return readings;
 }
 
-/// Tests the first and last readings, which have too few neighbours for the other rule. The value 0 is always
-/// permitted: a log may begin with the last readings before a step.
+/// Tests the first and the last readings, which have too few neighbours for the other test. The value 0 is
+/// always permitted, because a log may begin with the last readings before a step.
 void hide_far_ends(Record& record, OutlierEvidence& evidence) {
   constexpr std::size_t ends = 2;
   constexpr double far_outside = 3;

@@ -9,15 +9,16 @@
 namespace softgrip::sysid {
 namespace {
 
-/// With fewer intervals, the sampling rate of the sensor is uncertain.
+/// Smallest number of intervals of equal readings. With fewer of them, the sampling rate of the sensor is
+/// uncertain.
 constexpr std::size_t fewest_stretches = 20;
-/// A sensor with fine resolution has changes smaller than this share of the typical change.
+/// The smallest changes of a sensor with a fine resolution are below this share of its typical change.
 constexpr double fine_share = 0.25;
-/// An interval is frozen if it is this many times as long as the usual longest one while the drive changes by
-/// this share of its range.
+/// A frozen interval is at least this many times as long as the 95 % quantile of the intervals, and the drive
+/// changes by at least this share of its range during it.
 constexpr double frozen_ratio = 5, moved_share = 0.1;
 
-/// Consecutive equal readings: indices in `samples`.
+/// Consecutive equal readings, given by indices in `samples`.
 struct Stretch {
   std::size_t first = 0, length = 0;
 };
@@ -44,7 +45,7 @@ double quantile(std::vector<double> values, double share) {
   return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
 }
 
-/// Returns the lengths without the first and the last interval, which may be incomplete.
+/// Returns the lengths of all intervals except the first and the last, which may be incomplete.
 std::vector<double> whole_lengths(const Stretches& readings) {
   std::vector<double> lengths;
   for (std::size_t k = 1; k + 1 < readings.stretches.size(); ++k)
@@ -62,7 +63,7 @@ bool is_fine(const Record& record, const Stretches& readings) {
   return quantile(changes, 0.05) < fine_share * quantile(changes, 0.5);
 }
 
-/// Returns the number of samples per new reading; 1: each is new.
+/// Returns the number of samples per new reading; 1 means that each sample is a new reading.
 std::size_t samples_per_reading(const Record& record, const Stretches& readings) {
   const std::vector<double> lengths = whole_lengths(readings);
   if (lengths.size() < fewest_stretches || quantile(lengths, 0.1) < 2 || !is_fine(record, readings)) return 1;
@@ -84,7 +85,8 @@ bool is_frozen(const Record& record, const Stretches& readings, const Stretch& s
   return *most - *least > moved_share * (*highest - *lowest);
 }
 
-/// Returns the sum of squared distances of hidden readings to the line between the kept readings around them.
+/// Returns the sum of squared distances between the hidden readings and the line through the kept readings
+/// around them.
 double squares_beside_lines(const Record& before, const Record& after) {
   double squares = 0;
   std::size_t last = after.size();

@@ -1,5 +1,5 @@
 #pragma once
-// Finds the start points of a search for a steady oscillation.
+// Finds start points for the search for a sustained oscillation.
 
 #include <algorithm>
 #include <cstddef>
@@ -9,7 +9,7 @@
 
 namespace softgrip::sysid {
 
-/// An oscillation sine sin(2 pi f t) + cosine cos(2 pi f t), t in campaign time.
+/// An oscillation sine * sin(2 pi f t) + cosine * cos(2 pi f t), where t is the campaign time.
 struct Line {
   double frequency_hz = 0;
   double sine_mm = 0;
@@ -22,12 +22,12 @@ struct Line {
   return std::max(0.2, 10 / std::max(campaign_s, 1.0));
 }
 
-/// Number of lines that a search for causes tests.
+/// Number of spectral lines that a search for causes tests.
 inline constexpr std::size_t looked_at_lines = 3;
 
-/// Returns the significant lines in the spectrum of the residual over the whole campaign, most significant
-/// first. Each is compared with its neighbourhood.
-/// @param residual_mm  by record, as long as the record; NaN where there is no reading.
+/// Returns the significant lines in the spectrum of the residual over the whole campaign, the most
+/// significant first. The significance of a line is its ratio to the neighbouring part of the spectrum.
+/// @param residual_mm  one vector per record, as long as the record; NaN for samples without a reading.
 [[nodiscard]] std::vector<Line> spectrum_peaks(const std::vector<Record>& records,
                                                const std::vector<std::vector<double>>& residual_mm,
                                                std::size_t count = looked_at_lines);

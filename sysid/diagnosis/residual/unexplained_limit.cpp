@@ -5,13 +5,14 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Largest share of the recalibrated model's excess mean square.
+/// Largest permitted ratio of the unexplained mean square with the causes to that of the refitted model.
 constexpr double may_be_left = 0.15;
-/// Limits for a remaining error clearly above the noise. In that case the data could have shown the whole
-/// cause, but did not. A smaller remainder may result from the form of an equation alone.
+/// Stricter limits if the remaining error is clearly above the noise. Then the data contain enough
+/// information to fit the complete cause, so a large remainder has another source. A smaller remainder may
+/// result from the inexact form of an equation.
 struct UnexplainedLimit {
-  double noises;  ///< applies above this multiple of the noise
-  double share;   ///< largest permitted share
+  double noises;  ///< the limit applies to an error above this multiple of the noise
+  double share;   ///< largest permitted ratio of the mean squares; see may_be_left
 };
 constexpr std::array unexplained_limits{UnexplainedLimit{3, 0.05}, UnexplainedLimit{5, 0.02}};
 

@@ -1,13 +1,13 @@
 #pragma once
-// Limits the unexplained error that a set of causes may leave.
+// Defines how much unexplained error a set of causes may leave.
 
 #include "sysid/diagnosis/residual/noise.h"
 
 namespace softgrip::sysid {
 
-/// Returns true if the unexplained error is too large. In that case another effect is present, or the cause
-/// has a different form.
-/// @param before  unexplained error of the refitted model.
+/// Returns true if the unexplained error `left` is too large for the causes to be complete. Another effect is
+/// then present, or a cause has a different form.
+/// @param before  unexplained error of the refitted model without causes.
 [[nodiscard]] bool leaves_too_much(const UnexplainedError& left, const UnexplainedError& before,
                                    double noise_mm);
 

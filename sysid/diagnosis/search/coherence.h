@@ -1,5 +1,5 @@
 #pragma once
-// Tests whether a model fits the logs at all, and whether the logs are consistent with each other.
+// Tests whether a model fits the logs at all, and whether one model can fit all logs.
 
 #include <optional>
 #include <string>
@@ -14,10 +14,11 @@ namespace softgrip::sysid {
 [[nodiscard]] std::optional<std::string> why_not_about(const std::vector<Record>& records,
                                                        const StructureFit& recalibrated);
 
-/// Returns a warning if the logs are inconsistent: they come from two rigs, or the rig changed between them.
-/// Separate parameters for each log must then leave at most 10 % of the common mean square.
-/// @param together_mm2  mean square of the common fit with the causes that were found. A drift makes logs
-/// inconsistent too, but a cause explains it.
+/// Returns a warning if the logs are inconsistent, for example because they come from two rigs or the rig was
+/// changed between them. Logs are inconsistent if separate parameters for each log leave at most 10 % of the
+/// mean square that common parameters leave.
+/// @param together_mm2  mean square of the common fit with the causes that were found. They are included
+/// because a drift also makes logs inconsistent, but is explained by a cause.
 [[nodiscard]] std::optional<std::string> inconsistent_among(const std::vector<Record>& records,
                                                             const StructureFit& recalibrated,
                                                             double together_mm2);

@@ -1,5 +1,6 @@
 #pragma once
-// Fits causes that can absorb part of each other's effect (Cause::confounded_with), each as a separate test.
+// Fits causes that can absorb part of the effect of an already selected cause (Cause::confounded_with), and
+// tests each of them.
 
 #include <vector>
 
@@ -8,15 +9,15 @@
 
 namespace softgrip::sysid {
 
-/// A structure with one more cause that is confounded with one of its causes.
+/// A structure to which a cause was added that is confounded with one of its causes.
 struct Confounded {
   Cause cause;
   StructureFit fit;
   BlockLosses losses;  ///< held-out losses
 };
 
-/// Fits each cause that is confounded with a cause of the structure and is not yet part of it. All causes are
-/// fitted together.
+/// For each cause that is confounded with a cause of the structure but not part of it, fits the structure
+/// with that cause added. All parameters are fitted together.
 [[nodiscard]] std::vector<Confounded> fit_confounded(const SearchData& data, const StructureFit& structure,
                                                      const Division& division);
 

@@ -1,5 +1,5 @@
 #pragma once
-// Held-out losses of a structure by refits (linear_holdout.h computes them without refits).
+// Computes held-out losses of a structure by refits (linear_holdout.h computes them without refits).
 
 #include <vector>
 
@@ -10,19 +10,19 @@
 
 namespace softgrip::sysid {
 
-/// Length of the blocks on which causes are compared [s]. Longer correlation times are rare.
+/// Length of the blocks on which causes are compared [s]. Residuals rarely have longer correlation times.
 inline constexpr double block_length_s = 8;
 
-/// Returns the losses of the structure, refitted without each fold. The records keep their initial states in
-/// `fit`.
+/// Returns the losses of each block under a refit without the fold of that block. The initial states of the
+/// records are those in `fit`.
 [[nodiscard]] BlockLosses held_out_losses(const std::vector<Record>& records, const Division& division,
                                           const StructureFit& fit);
-/// Returns the losses of the structure, refitted without each unit (sysid/evidence/units.h). The first
-/// readings of a completely omitted log determine its initial state (sysid/fitting/start_estimate.h).
-/// @param by_unit  divide_by_unit(records).
+/// Returns the losses of each unit (sysid/evidence/units.h) under a refit without that unit. If a log is left
+/// out completely, its first readings determine its initial state (sysid/fitting/start_estimate.h).
+/// @param by_unit  result of divide_by_unit(records).
 [[nodiscard]] BlockLosses left_out_losses(const std::vector<Record>& records, const Division& by_unit,
                                           const StructureFit& fit);
-/// Returns the losses of a model without a refit.
+/// Returns the losses of a fitted structure without a refit.
 [[nodiscard]] BlockLosses losses_of(const StructureFit& fit, const Division& division);
 
 }  // namespace softgrip::sysid

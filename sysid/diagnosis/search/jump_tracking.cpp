@@ -17,14 +17,16 @@ namespace {
 
 constexpr std::size_t most_tracks = 40;
 constexpr std::size_t most_jump_targets = 24;
-/// Of all path hypotheses closer together than this [resolutions], only one is followed. Thus the limited
-/// number covers different paths.
+/// Of all path hypotheses whose positions differ by less than this multiple of the resolution, only the best
+/// is followed, so that the limited number of hypotheses covers different paths.
 constexpr double same_place = 1;
-/// A path is given up if its squared error exceeds the best by this [squares of the error of one resolution].
+/// A path is given up if its squared error exceeds that of the best path by this multiple of the squared
+/// resolution (converted to mm).
 constexpr double hopeless_resolutions = 4000;
-/// Number of samples without a jump after which the paths are compared again.
+/// The paths are compared after this number of samples even if no jump has occurred.
 constexpr std::size_t look_again = 32;
-/// The jump time is well resolved if the command moves by less than this share of the band during the sample.
+/// The time of a jump is well resolved if the command moves by less than this share of the band during the
+/// sample.
 constexpr double slow_share = 0.2;
 
 constexpr std::size_t no_jump = std::numeric_limits<std::size_t>::max();
@@ -44,8 +46,8 @@ struct Track {
   std::size_t last = no_jump;
 };
 
-/// A list of tracks. A dropped track keeps its chain. A later track is copied into it, which allocates no
-/// memory.
+/// A list of tracks that avoids memory allocation: a removed track keeps its memory, into which a later track
+/// is copied.
 class Tracks {
  public:
   void clear() { count_ = 0; }
@@ -60,7 +62,7 @@ class Tracks {
       all_[count_] = track;
     return all_[count_++];
   }
-  /// Moves `track` into the list. It is then in a valid but unspecified state.
+  /// Moves `track` into the list. Afterwards, the argument is in a valid but unspecified state.
   Track& take(Track& track) {
     if (count_ == all_.size())
       all_.push_back(track);
@@ -70,12 +72,12 @@ class Tracks {
   }
 
  private:
-  std::vector<Track> all_;  ///< only the first `count_` are in use
+  std::vector<Track> all_;  ///< only the first `count_` elements are in use
   std::size_t count_ = 0;
 };
 
-/// Removes whole samples from a transport delay and returns their number. The readings show a jump only after
-/// that number of samples. Until then the paths are indistinguishable.
+/// Removes the whole samples from a transport delay and returns their number. A jump becomes visible in the
+/// readings only after this number of samples, and until then the paths are indistinguishable.
 std::size_t take_whole_samples(model::Model& model, const Record& record) {
   model::BlockSpec* delay = model::find_block<model::TransportDelay>(model);
   if (delay == nullptr || record.sample_time_s <= 0) return 0;
@@ -148,8 +150,8 @@ class JumpTracker {
     if (!std::isnan(error)) track.cost_mm2 += error * error;
   }
 
-  /// Returns the possible positions of a valve at `held` after a jump while the command went from `from` to
-  /// `to`.
+  /// Returns the possible positions after a jump of a valve at position `held`, while the command moves from
+  /// `from` to `to`.
   const std::vector<double>& jump_targets_of(double held, double from, double to) {
     jump_targets_.clear();
     if (from == to) {
@@ -208,7 +210,7 @@ class JumpTracker {
 
   const Record& record_;
   double band_kpa_, resolution_kpa_, worth_mm2_;
-  std::size_t seen_later_ = 0;  ///< samples after which a reading shows a jump
+  std::size_t seen_later_ = 0;  ///< number of samples between a jump and the first reading that shows it
   double give_up_mm2_ = 0;
   bool is_beaten_ = false;
   std::vector<double> start_mm_;

@@ -12,10 +12,10 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Damping as a share of the diagonal of the normal matrix.
+/// Damping of the step as a share of the diagonal of the normal matrix.
 constexpr double block_damping = 1e-3;
 
-/// Row ranges of the readings of a block, and of the neighbouring readings that are not fitted.
+/// Rows of the Jacobian for the readings of a block, and for the readings around them that are not fitted.
 struct BlockRows {
   Eigen::Index first, last, hidden_first, hidden_last;
 };
@@ -62,7 +62,8 @@ BlockLosses linear_held_out_losses(const std::vector<Record>& records, const Div
   for (std::size_t fold = 0; fold < division.folds; ++fold) {
     Eigen::MatrixXd normal = whole;
     Eigen::VectorXd right = gradient;
-    Eigen::Index done = 0;  // the neighbourhoods of two blocks may overlap
+    Eigen::Index done = 0;  // end of the rows that were already removed, because the surroundings of two
+                            // blocks may overlap
     for (std::size_t b = 0; b < rows.size(); ++b) {
       if (division.blocks[b].fold != fold) continue;
       const Eigen::Index from = std::max(rows[b].hidden_first, done), length = rows[b].hidden_last - from;

@@ -24,31 +24,35 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Limits of the candidates that are judged on held-out blocks: the best medium fits whose mean square is at
-/// most this multiple of the best one. A base whose refit absorbed part of a cause hides half of it, never
-/// nearly all.
+/// Candidates are tested on held-out blocks if they are among the best medium fits and their mean square is
+/// at most this multiple of the smallest one. The refit of a base structure can absorb half of a cause, but
+/// never nearly all of it.
 constexpr std::size_t most_finalists = 5;
 constexpr double hopeless_ratio = 4;
-/// Number of alternating fits of base and cause, each with the other fixed.
+/// Number of alternating fits: the base structure with the cause fixed, then the cause with the base
+/// structure fixed.
 constexpr int turns = 2;
 constexpr int look_iterations = 15;
-/// A fit starts where the base responds best to the cause. For a strongly nonlinear base, the full linear
-/// step is too large.
+/// Tried shares of the linear response of the base structure to a cause. The fit starts at the best share,
+/// because the full step is too large for a strongly nonlinear base structure.
 constexpr std::array answers{1.0, 0.5, 0.2, 0.0};
-/// Smallest log ratio of block losses by which a cause significantly exceeds another. For a contact and a
-/// sensor saturation, the ratio is 0.01 in every block (textbook test cases).
+/// One cause rules out another one if the logarithm of the ratio of their block losses exceeds this value.
+/// Between a contact and a sensor saturation, the ratio is 0.01 in every block (textbook test cases).
 constexpr double clearly_ahead = 0.05;
-/// Smallest mean of the log ratios of the blocks for a reduction in most blocks; see LeastTaken.
+/// A reduction counts as one in most blocks if the mean logarithm of the ratios of the block losses exceeds
+/// this value; see LeastTaken.
 constexpr double in_most_blocks = 0.15;
-/// Limit of the elastic share of play operators. Below it they may compensate for a backlash.
+/// Upper limit of the elastic share of play operators (elastic_share()) below which they may compensate for a
+/// backlash.
 constexpr double little_elastic = 0.3;
-/// Largest number of causes that the named one does not significantly exceed.
+/// Largest number of alternatives that may fit nearly as well as the named cause.
 constexpr std::size_t most_undecided = 2;
-/// Smallest share of the remaining mean square beyond the noise that a further cause must remove. The correct
-/// cause removes a second effect almost entirely.
+/// Smallest share of the remaining mean square beyond the noise that a further cause must remove. If a second
+/// effect is present, the correct cause removes almost all of this mean square.
 constexpr double most_of_the_rest = 0.6;
 
-/// Residuals as a function of the parameters of one cause, without the part that the base can absorb.
+/// Residuals as a function of the parameters of one cause, after removal of the part that the base structure
+/// can absorb.
 class ResidualsBesideBase final : public Residuals {
  public:
   ResidualsBesideBase(const Scan& base, const std::vector<Record>& records, const FitSpace& of_the_cause)
@@ -74,11 +78,13 @@ class ResidualsBesideBase final : public Residuals {
   std::unique_ptr<Residuals> inner_;
 };
 
-/// One cause on a base, fitted to thinned records.
+/// A cause that was fitted to thinned records together with the linear response of the base structure.
 struct Look {
-  FitPoint beside;  ///< the unchanged base with the parameters of the cause
+  FitPoint beside;  ///< model with the fitted parameters of the cause and the unchanged parameters of the
+                    ///< base structure
   Eigen::VectorXd left;
-  double mean_square_mm2 = std::numeric_limits<double>::infinity();  ///< after the linear response
+  double mean_square_mm2 = std::numeric_limits<double>::infinity();  ///< mean square after the linear
+                                                                     ///< response
 };
 
 Look look_from(const std::vector<Record>& records, const Scan& base, const Cause& cause,
@@ -95,7 +101,7 @@ Look look_from(const std::vector<Record>& records, const Scan& base, const Cause
   return {numbers.point(minimum.z), std::move(left), minimum.rmse_mm * minimum.rmse_mm};
 }
 
-/// A start point of a fit and its mean square.
+/// A start point of a fit and the mean square of its residual.
 struct Start {
   FitPoint point;
   double left_mm2 = std::numeric_limits<double>::infinity();
@@ -137,8 +143,8 @@ class SelectorUpon {
   }
 
  private:
-  /// Returns every cause that the structure lacks, with its best fit of a physical law and of a free form;
-  /// best first.
+  /// Returns the fits of all causes that the structure lacks, sorted by mean square, the smallest first. A
+  /// cause with a free form has two entries: its best physical law and its best free form.
   std::vector<std::pair<Cause, Look>> looks(const Scan& scan) {
     const StructureFit& current = result_.extended;
     if (!scan.usable()) return {};
@@ -148,7 +154,7 @@ class SelectorUpon {
           unanswerable(cause, scales_).empty())
         causes.push_back(cause);
     }
-    std::vector<std::array<Look, 2>> best(causes.size());  // physical law, free form
+    std::vector<std::array<Look, 2>> best(causes.size());  // two elements per cause: physical law, free form
     std::atomic<std::size_t> tried{0};
     parallel_for(causes.size(), data_.threads, [&](std::size_t i) {
       for (const FitPoint& start : best_starts({&scan, 1}, causes[i], scales_, fewest_looks)) {
@@ -172,8 +178,8 @@ class SelectorUpon {
     return list;
   }
 
-  /// A base that was fitted without a cause has absorbed a part of it. Fits the base and the cause
-  /// alternately, each to the remainder of the other. The cause is the last of `causes`.
+  /// Fits the base structure and the last of `causes` alternately, each to the readings without the effect of
+  /// the other. A base structure that was fitted without the cause has absorbed a part of its effect.
   [[nodiscard]] FitPoint settled(Start best, const std::vector<Cause>& causes) const {
     if (!options_.base_again) return best.point;
     const Cause& cause = causes.back();
@@ -198,7 +204,8 @@ class SelectorUpon {
     return best.point;
   }
 
-  /// Fits the last of `causes` to all readings from its best start, and computes the held-out losses.
+  /// Fits the structure with `causes` to all readings and computes the held-out losses. The fit starts at
+  /// `best`, in which the last cause is new.
   [[nodiscard]] ScoredCandidate finished(Start best, const std::vector<Cause>& causes) const {
     ScoredCandidate one;
     one.candidate.cause = causes.back();
@@ -231,7 +238,9 @@ class SelectorUpon {
     return scored;
   }
 
-  /// A base whose operators compensate for a backlash is far from its optimum with a backlash.
+  /// Returns a fit with a backlash that starts at reduced thresholds of the play operators, or an empty value
+  /// if the operators cannot represent a backlash. From the current fit, the optimum with a backlash would be
+  /// too far away.
   [[nodiscard]] std::optional<ScoredCandidate> play_as_backlash() const {
     const FitPoint& point = result_.extended.point;
     if (elastic_share(point.model) > little_elastic) return std::nullopt;
@@ -299,8 +308,9 @@ class SelectorUpon {
     return true;
   }
 
-  /// The first cause was chosen, and its base fitted, without the second. Each cause is fitted alone from the
-  /// common fit and compared with both. A cause that is not worth its place is removed.
+  /// Tests whether both causes are needed. The first cause was selected, and the base structure fitted,
+  /// without the second one. Therefore each cause is now fitted alone, starting from the common fit, and
+  /// compared with the fit of both causes. A cause without a sufficient error reduction is removed.
   bool both_stay(const BlockLosses& beside_the_first) {
     const Cause first = result_.extended.causes.front(), second = result_.extended.causes.back();
     ScoredCandidate first_alone = alone(first, second);
@@ -317,12 +327,13 @@ class SelectorUpon {
     return false;
   }
 
-  /// @param before  the losses without the cause.
+  /// Returns true if the error reduction by one of the two causes is sufficient.
+  /// @param before  the losses without that cause.
   [[nodiscard]] bool is_worth_its_place(const BlockLosses& before) const {
     return is_gain(before, result_.extended_losses, further_share_mm2(before));
   }
 
-  /// Returns one of two causes fitted without the other, from the common fit.
+  /// Returns the fit with `cause` and without `other`, starting from the common fit.
   [[nodiscard]] ScoredCandidate alone(const Cause& cause, const Cause& other) const {
     FitPoint rest = result_.extended.point;
     rest.model = without(std::move(rest.model), other);
@@ -340,7 +351,7 @@ class SelectorUpon {
     take(in_first_place_);
   }
 
-  /// Returns the smallest reduction of the remaining mean square by one more cause.
+  /// Returns the smallest reduction of the mean square that a further cause must achieve [mm^2].
   [[nodiscard]] double share_worth_mm2() const {
     return result_.chosen.empty() ? 0 : further_share_mm2(result_.extended_losses);
   }
@@ -359,8 +370,8 @@ class SelectorUpon {
     return beyond_noise_mm2(result_.extended_losses) > std::max(least_mm2, share_worth_mm2());
   }
 
-  /// Returns true if the candidate wins alone or with a few alternatives. A candidate that it does not
-  /// clearly beat is an alternative. More than a few alternatives give no decision.
+  /// Returns true if the candidate can be named, alone or with a few alternatives. A candidate that is not
+  /// clearly worse is an alternative. Too many alternatives make the result undecided.
   [[nodiscard]] bool stands(ChosenCause& chosen, const std::vector<ScoredCandidate>& scored) const {
     const ScoredCandidate& best = scored.front();
     const auto beats = [&](const BlockLosses& losses) {

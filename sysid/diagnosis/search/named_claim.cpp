@@ -57,12 +57,13 @@ void claim_size(Claim& claim, const std::vector<Record>& records, const Cause& c
     farthest = distance;
     claim.size =
         Interval{free.to_value(z[j] - half) - spec.neutral, free.to_value(z[j] + half) - spec.neutral};
-    // A limit has its neutral value far above all signals. The distance to it has no meaning.
+    // The neutral value of a limit is far above all signals, so the distance to this value has no meaning.
     claim.largest_size = spec.neutral == 0 ? range_of(records, spec.unit) : infinity;
   }
 }
 
-/// Returns for every reading, in the order of the records, whether the cause must act there.
+/// Returns one flag per reading, in the order of the records: true if the cause must have an effect on the
+/// reading.
 std::vector<bool> required_readings(const std::vector<Record>& records, Appears appears,
                                     const StructureFit& without) {
   std::vector<OperatingPoint> conditions;
@@ -78,7 +79,8 @@ std::vector<bool> required_readings(const std::vector<Record>& records, Appears 
   return required_at(appears, conditions);
 }
 
-/// Returns the squared residuals with and without the cause, by block, for the readings where it must act.
+/// Returns the sums of squared residuals with and without the cause in each block, over the readings on which
+/// the cause must have an effect.
 PairedLosses losses_there(const std::vector<Record>& records, const std::vector<bool>& required,
                           const StructureFit& with, const StructureFit& without) {
   PairedLosses losses;
@@ -122,7 +124,7 @@ Veto veto_of(const std::vector<Record>& records, const Cause& cause, const Struc
 bool put_nameable_first(std::vector<ScoredCandidate>& scored, const std::vector<Record>& records,
                         const StructureFit& without, const std::function<bool(const ScoredCandidate&)>& gains,
                         const LeftOutLosses& left_out, std::uint64_t seed) {
-  std::optional<BlockLosses> losses_without;  // equal for all candidates
+  std::optional<BlockLosses> losses_without;  // losses without the cause, which are equal for all candidates
   const LeftOutLosses once = [&](const StructureFit& fit) {
     if (&fit != &without) return left_out(fit);
     if (!losses_without) losses_without = left_out(without);

@@ -20,7 +20,7 @@ namespace {
 constexpr FitEffort recalibration{.most_iterations = 12, .tolerance = 1e-6};
 constexpr std::size_t burn_in = 500;
 
-/// Innovations of a residual that is treated as noise.
+/// Autoregressive model and innovations of a residual that is treated as noise.
 struct Innovations {
   NoiseModel model;
   std::vector<double> samples_mm;
@@ -57,14 +57,14 @@ std::vector<double> drawn_noise(const Innovations& innovations, std::size_t coun
   return e;
 }
 
-/// Returns the records with simulated readings: those of the recalibrated model plus noise.
+/// Returns the records with simulated readings: the prediction of the recalibrated model plus noise.
 std::vector<Record> null_records(const SearchData& data, const StructureFit& recalibrated,
                                  const Innovations& innovations, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   std::vector<Record> records = data.records;
   for (std::size_t k = 0; k < records.size(); ++k) {
     const std::vector<double> noise = drawn_noise(innovations, records[k].size(), random);
-    // reading - residual is the prediction. Samples without a reading have no residual either.
+    // The prediction is the reading minus the residual. Samples without a reading have no residual.
     for (std::size_t i = 0; i < records[k].size(); ++i)
       records[k].reading_mm[i] += noise[i] - recalibrated.residual_mm[k][i];
   }
@@ -82,7 +82,7 @@ double searched_gain_percent(const SearchData& data, const StructureFit& recalib
   null.scales.residual_lines = spectrum_peaks(null.records, base.residual_mm);
   SelectionOptions options;
   options.seed = seed;
-  options.most_causes = 1;  // the first cause decides if the search names any
+  options.most_causes = 1;  // the first cause already decides whether the search names one
   const double noise_mm = measured_noise_mm(null.records);
   const Selection selection = select_causes(null, std::move(base), noise_mm, division, options);
   if (selection.chosen.empty()) return 0;

@@ -14,13 +14,13 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Share of the diagonal of the normal matrix. It suppresses steps along directions that the data hardly
-/// determine.
+/// Damping as a share of the diagonal of the normal matrix. It suppresses steps in directions that the data
+/// hardly determine.
 constexpr double damping = 1e-3;
 constexpr double least_size = 0.7;
 constexpr double largest_size = 1.4;
 
-/// A start at one of the places.
+/// A start point on one of the scans, with the mean square that the scan predicts.
 struct Judged {
   double mean_square_mm2 = 0;
   const Scan* place = nullptr;

@@ -1,5 +1,5 @@
 #pragma once
-// Compares candidates on held-out blocks, and the chosen one with the others.
+// Compares candidates on held-out blocks, and the chosen candidate with the others.
 
 #include <cstdint>
 #include <vector>
@@ -11,23 +11,25 @@
 namespace softgrip::sysid {
 
 /// Smallest share of the excess mean square of the model without causes that a further cause must remove. A
-/// smaller reduction can result from an inexact form of the first cause. A finger that softens, ages or bends
-/// by a law outside the catalogue leaves up to a few percent. Any second block absorbs part of that.
+/// smaller reduction can result from an inexact form of the first cause: if a finger softens, ages or bends
+/// by a law that is not in the catalogue, the first cause leaves up to a few percent, and any second block
+/// absorbs part of this remainder.
 inline constexpr double one_more_share = 0.05;
 
 struct ScoredCandidate {
   Candidate candidate;
-  BlockLosses losses;  ///< empty: too far behind for a comparison
+  BlockLosses losses;  ///< held-out losses; empty: the fit is too much worse than the best one for a
+                       ///< comparison
 };
 
-/// Returns true for a form that can follow any slow signal. It is named only if no physical law explains
-/// nearly as much, and it is not an alternative to such a law.
+/// Returns true if the candidate was fitted in a form that can follow any slow signal. Such a form is named
+/// only if no physical law explains nearly as much, and it is never an alternative to such a law.
 [[nodiscard]] bool is_free_form(const ScoredCandidate& scored);
 /// Returns true if the cause has a free form in the model.
 [[nodiscard]] bool has_free_form(const model::Model& model, const Cause& cause);
 
-/// Returns true if the other candidate explains the data as well as the best one. Its loss must be smaller in
-/// more than 1 of 20 resamples of the held-out blocks.
+/// Returns true if the other candidate explains the data as well as the best one: its loss is smaller in more
+/// than 5 % of the bootstrap samples of the held-out blocks.
 [[nodiscard]] bool ties(const ScoredCandidate& best, const ScoredCandidate& other, std::uint64_t seed);
 
 /// The structures with and without a chosen cause.
@@ -40,7 +42,7 @@ struct ChosenBetween {
 };
 
 /// Computes error reductions, inclusion frequency and alternatives of a cause.
-/// @param scored  the candidates that were tested in its place.
+/// @param scored  the candidates that were tested in the place of the cause.
 [[nodiscard]] ChosenCause weigh(const Cause& cause, const ChosenBetween& between,
                                 const std::vector<ScoredCandidate>& scored);
 

@@ -14,25 +14,27 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Interval of thinned records until the final fit on all samples [s]. It must resolve the lag of a valve. A
-/// resonance above half this rate is still visible, because prediction and readings are thinned equally.
+/// Sample interval of the records for all fits except the final one [s]. It must resolve the lag of a valve.
+/// A resonance above half this rate remains visible, because prediction and readings are thinned in the same
+/// way.
 constexpr double look_interval_s = 0.02;
-/// Interval of the records with which the best causes are preselected [s].
+/// Sample interval of the records for the preselection of causes [s].
 constexpr double glance_interval_s = 0.04;
-/// Coarse fits of every start, then medium fits of those that may become the best or an alternative.
+/// Coarse fits start at every start point. Medium fits continue those that may become the best candidate or
+/// an alternative.
 constexpr FitEffort coarse_fit{.most_iterations = 8, .tolerance = 1e-5};
 constexpr FitEffort look{.most_iterations = 12, .tolerance = 1e-5};
-/// Number of causes that get a medium fit. All causes whose coarse fit leaves less than this multiple of the
-/// best one also get it.
+/// Number of causes that always get a medium fit. A further cause gets one if the mean square of its coarse
+/// fit is below this multiple of the smallest one.
 constexpr std::size_t always_looked_at = 7;
 constexpr double worth_a_look = 1.5;
 constexpr FitEffort full{.most_iterations = 40, .tolerance = 1e-8};
-/// Number of medium fits that are continued to a full fit.
+/// Number of medium fits per cause that are continued to a full fit.
 constexpr std::size_t followed = 2;
-/// Smallest reduction of the mean square by a form with more parameters.
+/// Smallest relative reduction of the mean square by which a form with more parameters is preferred.
 constexpr double more_numbers_gain = 0.02;
-/// Number of candidates that always get a full fit: first on thinned records, then on all samples. More
-/// candidates get one if they are as near.
+/// Number of candidates that always get a full fit, on thinned records and on all samples. A further
+/// candidate gets one if its mean square is below this multiple of the smallest one.
 constexpr std::size_t always_followed = 5;
 constexpr double near_enough = 1.4;
 constexpr std::size_t always_finished = 4;
@@ -46,16 +48,17 @@ void sort_and_keep(std::vector<StructureFit>& fits, std::size_t count) {
   if (fits.size() > count) fits.resize(count);
 }
 
-/// Returns the points from which searches for a cause in addition to `current` may start.
+/// Returns the points from which the search for a further cause may start.
 std::vector<Scan> places(const SearchData& data, const StructureFit& current) {
   std::vector<Scan> scans;
   scans.emplace_back(data.glimpsed, current.causes, current.point);
-  // The refit may be far from the true parameters because it absorbed the effect.
+  // Also start from the given model, because the refit may have absorbed the effect and be far from the true
+  // parameters.
   if (current.causes.empty()) scans.emplace_back(data.glimpsed, current.causes, data.given);
   return scans;
 }
 
-/// Returns the best coarse fits of one candidate, on thinned records, best first.
+/// Returns the best coarse fits of one candidate to thinned records, the best first.
 std::vector<StructureFit> coarse_fits(const SearchData& data, const StructureFit& current,
                                       std::span<const Scan> scans, const Cause& cause) {
   std::vector<Cause> causes = current.causes;
@@ -68,7 +71,7 @@ std::vector<StructureFit> coarse_fits(const SearchData& data, const StructureFit
   return fits;
 }
 
-/// Returns the best medium fits, from the ends of the coarse fits.
+/// Returns the best medium fits, which start from the coarse fits.
 std::vector<StructureFit> looks(const SearchData& data, const std::vector<StructureFit>& from) {
   std::vector<StructureFit> fits;
   fits.reserve(from.size());
@@ -78,8 +81,8 @@ std::vector<StructureFit> looks(const SearchData& data, const std::vector<Struct
   return fits;
 }
 
-/// Returns true if the fit is better. Of two forms of a cause, the one with more parameters must be better by
-/// more than chance.
+/// Returns true if `fit` is better than `best`. A form with more parameters must be better by more than
+/// chance.
 bool is_better(const StructureFit& fit, const StructureFit& best) {
   double needed = 1;
   if (fit.free_parameters > best.free_parameters) needed = 1 - more_numbers_gain;
@@ -97,8 +100,8 @@ StructureFit follow(const SearchData& data, const std::vector<StructureFit>& fro
   return best;
 }
 
-/// Narrows down the candidates on one structure. A candidate that is far behind after a small effort gets no
-/// more.
+/// Fits the candidates for one structure in stages of increasing effort. A candidate that is much worse than
+/// the best after one stage is not continued.
 class CandidateFitter {
  public:
   CandidateFitter(const SearchData& data, const StructureFit& current, const CandidateSearch& search)
@@ -152,7 +155,8 @@ class CandidateFitter {
     });
   }
 
-  /// The leader is fitted first, because the comparison with another explanation needs its full fit.
+  /// Fits the best candidate completely before the others, because the comparison with another explanation
+  /// needs this full fit.
   bool is_hopeless() {
     if (!search_.is_hopeless) return false;
     leader_ = ranking().front();
@@ -184,7 +188,7 @@ class CandidateFitter {
 
   [[nodiscard]] double best_of(std::size_t i) const { return fits_[i].front().mean_square_mm2; }
 
-  /// Returns the indices of the candidates with a fit, smallest mean square first.
+  /// Returns the indices of the candidates that have a fit, the one with the smallest mean square first.
   [[nodiscard]] std::vector<std::size_t> ranking() const {
     std::vector<std::size_t> order;
     for (std::size_t i = 0; i < fits_.size(); ++i) {
@@ -199,8 +203,10 @@ class CandidateFitter {
   const StructureFit& current_;
   const CandidateSearch& search_;
   std::vector<Candidate> candidates_;
-  std::vector<std::vector<StructureFit>> fits_;  ///< fits of every candidate to thinned records, best first
-  std::optional<std::size_t> leader_;            ///< received its full fit before the others
+  std::vector<std::vector<StructureFit>> fits_;  ///< fits of each candidate to thinned records, the best fit
+                                                 ///< first
+  std::optional<std::size_t> leader_;            ///< index of the candidate that received its full fit before
+                                                 ///< the others
 };
 
 }  // namespace

@@ -1,5 +1,5 @@
 #pragma once
-// Searches for causes: every candidate is fitted together with the base, from several starts.
+// Searches for causes. Every candidate is fitted together with the base structure, from several start points.
 
 #include <cstddef>
 #include <functional>
@@ -11,20 +11,20 @@
 
 namespace softgrip::sysid {
 
-/// The data of a campaign for the search.
+/// The records of a campaign, prepared for the search.
 struct SearchData {
   std::vector<Record> records;
-  std::vector<Record> thinned;   ///< used until the final fit of a candidate
-  std::vector<Record> glimpsed;  ///< thinned further, for the preselection
+  std::vector<Record> thinned;   ///< records for all fits of a candidate except the final one
+  std::vector<Record> glimpsed;  ///< records with fewer samples than `thinned`, for the preselection
   Scales scales;
   unsigned threads = 0;  ///< 0: one per core
-  FitPoint given;        ///< the given model, a second start point
+  FitPoint given;        ///< the given model, which is a second start point
 };
 
-/// Prepares records for the search: thinned copies, scales.
+/// Prepares records for the search: computes thinned copies and scales.
 [[nodiscard]] SearchData make_search_data(std::vector<Record> records, const model::Model& given);
 
-/// One fitted candidate. `why_not` is the reason if there is no fit.
+/// A fitted candidate. If there is no fit, `why_not` states the reason.
 struct Candidate {
   Cause cause;
   std::optional<StructureFit> fit;
@@ -32,13 +32,14 @@ struct Candidate {
 };
 
 struct CandidateSearch {
-  std::vector<Cause> only = {};  ///< empty: all
-  /// Called with the smallest mean square of all candidates. Returns true if the others need no full fit.
+  std::vector<Cause> only = {};  ///< causes to be tested; empty: all
+  /// Called with the smallest mean square of all candidates. Returns true if the other candidates need no
+  /// full fit.
   std::function<bool(double best_mm2)> is_hopeless = {};
   std::function<void(std::size_t tried, std::size_t of)> progress = {};  ///< called from any thread
 };
 
-/// Fits `current` plus each cause that it does not have, in the order of all_causes().
+/// Fits `current` together with each cause that it does not contain, in the order of all_causes().
 [[nodiscard]] std::vector<Candidate> fit_candidates(const SearchData& data, const StructureFit& current,
                                                     const CandidateSearch& search = {});
 

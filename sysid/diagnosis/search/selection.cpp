@@ -14,16 +14,17 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Candidates that are refitted without held-out blocks.
+/// Number of candidates that are refitted for held-out losses.
 constexpr std::size_t finalists = 4;
-/// A smaller effect must remove at least this share, and leave at most this share of the previous remainder.
-/// A cause that only compensates for a form does not remove the whole remainder.
+/// A further cause with a small effect must remove at least the first share of the excess mean square of the
+/// base structure, and leave at most the second share of the previous unexplained mean square. A cause that
+/// only compensates for the inexact form of another cause leaves more.
 constexpr double small_share = 0.01;
 constexpr double left_by_a_small_one = 0.1;
-/// Largest ratio of the best further cause to another explanation [mean square] for which the other
-/// candidates are fitted.
+/// The other candidates for a further cause are fitted if the mean square of the best one is at most this
+/// multiple of that of another explanation.
 constexpr double near_the_other = 1.25;
-/// An error below this multiple of the noise [mean square] counts as explained.
+/// A mean square below this multiple of the squared noise counts as explained.
 constexpr double near_the_noise = 2;
 
 class Selector {
@@ -57,8 +58,8 @@ class Selector {
  private:
   using Scored = ScoredCandidate;
 
-  /// Fits all candidates for a cause in addition to `current`. The best ones get held-out losses. Returns
-  /// them best first.
+  /// Fits all candidates for a cause in addition to `current` and computes the held-out losses of the best
+  /// ones. Returns the candidates, the best first.
   std::vector<Scored> score(const StructureFit& current) {
     CandidateSearch search;
     if (!result_.extended.causes.empty() && options_.to_beat_mm2)
@@ -95,16 +96,16 @@ class Selector {
     return scored;
   }
 
-  /// Returns true if another explanation leaves far less than the best further cause. No explanation leaves
-  /// less than the noise.
+  /// Returns true if another explanation leaves a much smaller mean square than the best further cause.
+  /// Returns false without a comparison if that cause reduces the error nearly to the noise.
   bool is_far_behind(double best_mm2) {
     if (best_mm2 <= near_the_noise * square(noise_)) return false;
     if (!to_beat_mm2_) to_beat_mm2_ = options_.to_beat_mm2();
     return best_mm2 > near_the_other * *to_beat_mm2_;
   }
 
-  /// Returns true if the error reduction is significant and large enough. `without` and `with` are the
-  /// structures before and after it.
+  /// Returns true if the reduction of the losses from `before` to `after` is significant and large enough.
+  /// `without` and `with` are the corresponding structures.
   [[nodiscard]] bool is_gain(const BlockLosses& before, const BlockLosses& after, const StructureFit& without,
                              const StructureFit& with) const {
     const Spread difference = mean_difference(before, after, options_.seed);
@@ -157,7 +158,7 @@ class Selector {
     without_.clear();
   }
 
-  /// Returns the structure without one of its causes. It is refitted and judged once per structure.
+  /// Returns the refitted structure without one of its causes. The refit is made once and stored.
   const StructureFit& without(std::size_t index) {
     if (result_.extended.causes.size() == 1) return result_.base;
     std::optional<StructureFit>& fit = without_[index].fit;
@@ -173,7 +174,8 @@ class Selector {
     return *losses;
   }
 
-  /// Tests if another cause is better in the position of an earlier one, now that a further cause is present.
+  /// Tests whether another cause is better in the place of an earlier one, now that a further cause has been
+  /// added.
   void swap_others() {
     for (std::size_t i = 0; i + 1 < result_.extended.causes.size(); ++i) {
       const Cause old = result_.extended.causes[i];
@@ -189,7 +191,8 @@ class Selector {
       best.why_not = reason_of(veto);
       if (better && veto == Veto::none) {
         take(scored.front());
-        // The cause is last now. The other causes were searched with the previous one.
+        // The new cause is the last one now. The stored results of the other causes are invalid, because they
+        // were computed with the replaced cause.
         fresh_[result_.extended.causes.size() - 1] = std::move(scored);
         return;
       }
@@ -197,7 +200,7 @@ class Selector {
     }
   }
 
-  /// Removes a cause that has no effect after another cause was replaced.
+  /// Removes the least effective cause if it has no effect any more after another cause was replaced.
   bool drop_idle_one() {
     std::size_t least = 0;
     for (std::size_t i = 1; i < result_.extended.causes.size(); ++i) {
@@ -209,8 +212,9 @@ class Selector {
     return true;
   }
 
-  /// A confounded cause removes little error beside the other, but it explains why the parameter of the other
-  /// is wrong. Therefore a reduction in all block resamples is sufficient here.
+  /// Adds a confounded cause if it is necessary. Such a cause reduces the error only slightly if the other
+  /// cause is present, but it explains why the parameter of the other cause is wrong. Therefore a significant
+  /// reduction is sufficient, even if it is small.
   bool add_confounded() {
     result_.undecided = fit_confounded(data_, result_.extended, division_);
     for (Confounded& one : result_.undecided) {
@@ -241,14 +245,15 @@ class Selector {
   const SelectionOptions& options_;
   Division by_unit_;
   Selection result_;
-  std::optional<double> to_beat_mm2_;  ///< mean square of another explanation, if computed
-  /// A structure without one cause: its fit and its held-out losses, if computed.
+  std::optional<double> to_beat_mm2_;  ///< mean square of another explanation, if it was computed
+  /// The structure without one of its causes: its fit and its held-out losses, if they were computed.
   struct Without {
     std::optional<StructureFit> fit;
     std::optional<BlockLosses> losses;
   };
-  std::map<std::size_t, std::vector<Scored>> fresh_;  ///< results that are still valid, by position
-  std::map<std::size_t, Without> without_;            ///< structures by the position of the removed cause
+  std::map<std::size_t, std::vector<Scored>> fresh_;  ///< candidates that are still valid, by the index of
+                                                      ///< the cause
+  std::map<std::size_t, Without> without_;            ///< structures by the index of the removed cause
 };
 
 }  // namespace

@@ -15,7 +15,8 @@ struct Operator {
   double threshold_kpa, weight_mm_per_kpa;
 };
 
-/// Returns the play operators of the model in order of their thresholds; empty if it has none.
+/// Returns the play operators of the model in the order of their thresholds. The list is empty if the model
+/// has none.
 std::vector<Operator> operators_of(const model::Model& model) {
   std::vector<Operator> operators;
   const model::BlockSpec* const plays = model::find_block<model::PrandtlIshlinskii>(model);

@@ -16,17 +16,17 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Ratio of neighbouring trial bands; the tracker tolerates a larger one.
+/// Ratio of consecutive trial bands. The tracker tolerates a larger error of the band.
 constexpr double next_band = 1.3;
 /// Limits of the trial bands as shares of the largest pressure.
 constexpr double narrowest = 0.004, widest = 0.25;
-/// The band and the chain behind the valve are estimated in turns. The iteration ends if the relative changes
-/// of the band and the remaining error are below these limits.
+/// The dead band and the model behind the valve are estimated alternately. The iteration ends when the
+/// relative changes of the band and of the remaining mean square are below these limits.
 constexpr int most_rounds = 20;
 constexpr double band_stays = 5e-4, rest_stays = 0.01;
-/// Number of rounds after which the distances of a true band scatter less than by chance.
+/// After this number of rounds, the distances of a true band scatter less than random ones.
 constexpr int rounds_of_chance = 6;
-/// A ratio of sums that exceeds rounding errors.
+/// Ratio of two sums of squares above which their difference is not a rounding error.
 constexpr double clearly_more = 1 + 1e-9;
 
 struct ValvePaths {
@@ -45,8 +45,8 @@ ValvePaths track_all(const std::vector<Record>& records, const FitPoint& point, 
   return all;
 }
 
-/// Returns the band whose paths leave the smallest error, or the first of equal ones. A band that already
-/// exceeds the total of another band is not followed further.
+/// Returns the band whose paths leave the smallest error (the first of several equal ones). A band is given
+/// up as soon as its error exceeds the total error of another band.
 double best_band(const std::vector<Record>& records, const FitPoint& point, const std::vector<double>& bands,
                  double resolution_kpa, unsigned threads) {
   std::vector<double> left(bands.size(), std::numeric_limits<double>::infinity());
@@ -87,8 +87,8 @@ double mean(std::span<const double> values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
-/// Computes mean and spread of the distances without the outermost 10 %. A jump that is detected one sample
-/// late causes a wrong distance.
+/// Computes mean and scatter of the distances without the outermost 10 %, because a jump that is detected one
+/// sample late has a wrong distance.
 void measure_band(std::span<const double> distances, StickSlip& found) {
   found.jumps = distances.size();
   if (distances.size() < fewest_jumps) return;
@@ -106,8 +106,8 @@ std::vector<Record> driven(const std::vector<Record>& records, const ValvePaths&
   return all;
 }
 
-/// Iterates from a start band to a stick-slip motion. Returns an empty value if there are too few jumps or
-/// their distances are random.
+/// Estimates the stick-slip motion iteratively from a start value of the band. Returns an empty value if
+/// there are too few jumps or if their distances scatter like random ones.
 std::optional<StickSlip> stick_slip_from(const std::vector<Record>& records, const StructureFit& behind,
                                          double band_kpa, double resolution_kpa, unsigned threads) {
   StickSlip found;
@@ -133,7 +133,7 @@ std::optional<StickSlip> stick_slip_from(const std::vector<Record>& records, con
   return found;
 }
 
-/// Returns half the noise, converted to pressure.
+/// Returns the pressure change that moves the finger by half the noise [kPa].
 double resolution_of(const Scales& scales, double noise_mm) {
   return 0.5 * noise_mm * scales.largest_kpa / scales.span_mm;
 }
@@ -165,8 +165,9 @@ std::optional<StickSlip> find_stick_slip(const std::vector<Record>& records, con
   const std::vector<double> bands = bands_of(scales, resolution_kpa);
   if (bands.empty()) return std::nullopt;
   const double band_kpa = best_band(records, behind.point, bands, resolution_kpa, threads);
-  // If jumps over half the band are permitted, a path can reach nearly every position. It then has a smaller
-  // error than the correct path until the chain behind the valve is accurate.
+  // With a start value below the true band, a path can reach nearly every position with short jumps. Until
+  // the model behind the valve is accurate, such a path has a smaller error than the correct one. Therefore
+  // twice the band is tried as well.
   for (const double start_kpa : {band_kpa, 2 * band_kpa}) {
     auto found = stick_slip_from(records, behind, start_kpa, resolution_kpa, threads);
     if (found && is_a_band(*found, resolution_kpa) && found->fit.mean_square_mm2 < behind.mean_square_mm2)

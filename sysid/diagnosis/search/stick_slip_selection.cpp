@@ -13,10 +13,10 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Remaining error of a path with a few wrong jumps [multiples of the noise].
+/// Largest unexplained error of a path with a few wrong jumps, as a multiple of the noise.
 constexpr double a_jump_off = 0.5;
 
-/// Returns the cause in its smooth form: the mean of all stick-slip motions.
+/// Returns the dead-band cause in its smooth form, which is the mean of all stick-slip motions.
 Cause dragged_along(Cause dead_band) {
   constexpr std::size_t play = model::block_type<model::ValveDeadband>();
   const auto form = std::find_if(dead_band.forms.begin(), dead_band.forms.end(),
@@ -25,8 +25,8 @@ Cause dragged_along(Cause dead_band) {
   return dead_band;
 }
 
-/// Returns a structure with the dead band in its smooth form. A model without one has absorbed the mean lag
-/// of the valve.
+/// Returns a structure with the dead band in its smooth form, fitted again if the dead band was missing. A
+/// model without a dead band has absorbed the mean lag of the valve.
 std::optional<StructureFit> with_mean_of_stick_slip(const SearchData& data, const StructureFit& selected,
                                                     const Cause& dead_band) {
   if (position_of(selected.point.model, dead_band)) return selected;
@@ -34,8 +34,8 @@ std::optional<StructureFit> with_mean_of_stick_slip(const SearchData& data, cons
   return fits.empty() ? std::nullopt : std::move(fits.front().fit);
 }
 
-/// Returns the cause that best explains the remainder of the mean stick-slip motion. It is a second effect
-/// that was not selected while the first cause had to represent both.
+/// Adds the cause that best explains the error that the mean stick-slip motion leaves. This cause is a second
+/// effect that was not selected as long as one cause had to represent both effects.
 std::optional<StructureFit> with_second_effect(const SearchData& data, const StructureFit& beside) {
   std::optional<StructureFit> best;
   for (Candidate& candidate : fit_candidates(data, beside)) {
@@ -45,8 +45,8 @@ std::optional<StructureFit> with_second_effect(const SearchData& data, const Str
   return best;
 }
 
-/// Removes a substitute for the stick-slip motion. If two causes were selected without it, one of them may be
-/// unnecessary: the fit without it leaves no more error.
+/// Removes a cause that was selected as a substitute for the stick-slip motion. If the selection has two
+/// causes, one of them is unnecessary if a fit without it leaves no more error.
 StickSlip without_stand_in(const SearchData& data, StickSlip found, double noise_mm) {
   if (found.fit.causes.size() < 2) return found;
   const std::vector<Cause> causes = found.fit.causes;
@@ -57,13 +57,14 @@ StickSlip without_stand_in(const SearchData& data, StickSlip found, double noise
   return found;
 }
 
-/// Keeps the stick-slip motion with the smallest remaining error among those in front of several structures.
+/// Searches for a stick-slip motion in front of several structures and keeps the one with the smallest
+/// remaining error.
 class BestStickSlip {
  public:
   BestStickSlip(const SearchData& data, const Cause& dead_band, double noise_mm)
       : data_(data), dead_band_(dead_band), noise_mm_(noise_mm) {}
 
-  /// @param beside  a structure with the mean of the stick-slip motions before it.
+  /// @param beside  a structure with the dead band in its smooth form.
   void look(const std::optional<StructureFit>& beside) {
     if (!beside) return;
     auto found = find_stick_slip(data_.records, without_cause(*beside, dead_band_), noise_mm_, data_.threads);
@@ -71,7 +72,7 @@ class BestStickSlip {
     if (!found || (best_ && found->fit.mean_square_mm2 > best_->fit.mean_square_mm2)) return;
     best_ = std::move(found);
   }
-  /// Returns true if at most a few jumps are wrong.
+  /// Returns true if so little error remains that at most a few jumps are wrong.
   [[nodiscard]] bool meets_all() const {
     return best_ &&
            unexplained_error_of(best_->fit.residual_mm, noise_mm_).excess_mm < a_jump_off * noise_mm_;
@@ -85,9 +86,10 @@ class BestStickSlip {
   std::optional<StickSlip> best_;
 };
 
-/// Returns the stick-slip motion in front of the base or of the whole selection, with the smaller remaining
-/// error. A cause that was selected without it may be a second effect or a substitute for the motion. If
-/// neither is found, a third attempt combines the base with a second effect.
+/// Returns the stick-slip motion in front of the base structure or of the whole selection: the motion that
+/// leaves the smaller error. A cause that was selected without stick-slip may be a second effect or a
+/// substitute for the motion. If neither structure leads to a stick-slip motion, the base structure with a
+/// second effect is tried.
 std::optional<StickSlip> stick_slip_before(const SearchData& data, const Selection& plain,
                                            const Cause& dead_band, double noise_mm) {
   BestStickSlip stick_slip(data, dead_band, noise_mm);
@@ -99,14 +101,14 @@ std::optional<StickSlip> stick_slip_before(const SearchData& data, const Selecti
   return stick_slip.best();
 }
 
-/// Returns the base alone, fitted to records whose drive is the valve position.
+/// Returns the base structure alone, fitted to records whose drive is the valve position.
 StructureFit base_behind(const StickSlip& found) {
   StructureFit base = found.fit;
   for (const Cause& cause : found.fit.causes) base = without_cause(base, cause);
   return found.fit.causes.empty() ? base : fit_structure(found.records, {}, base.point);
 }
 
-/// Returns the point with the valve in front again.
+/// Returns the point with the valve block inserted again.
 template <template <class> class Valve>
 FitPoint with_valve(const FitPoint& behind, double band_kpa) {
   FitPoint point = behind;
@@ -114,8 +116,8 @@ FitPoint with_valve(const FitPoint& behind, double band_kpa) {
   return point;
 }
 
-/// Extends the model with an effect that the command alone predicts. This is the stick-slip motion while it
-/// stays in step, or its mean otherwise.
+/// Extends the model for a simulation from the command alone. Uses the stick-slip motion if its simulated
+/// jumps stay synchronous with the readings, and its mean otherwise.
 void extend(Selection& selection, const SearchData& data, const StructureFit& behind, const Cause& dead_band,
             double band_kpa, const Division& division) {
   std::vector<Cause> causes{dead_band};
@@ -146,7 +148,7 @@ std::optional<StickSlipSelection> select_behind_stick_slip(const SearchData& dat
   driven.threads = data.threads;
   StructureFit base = base_behind(*found);
   driven.scales.residual_lines = spectrum_peaks(driven.records, base.residual_mm);
-  // The remainder of a path with a few wrong jumps is no second cause.
+  // A path with a few wrong jumps leaves an error that is not a second cause.
   SelectionOptions behind = options;
   if (!leaves_too_much(unexplained_error_of(base.residual_mm, noise_mm), plain.base_unexplained, noise_mm))
     behind.most_causes = 0;

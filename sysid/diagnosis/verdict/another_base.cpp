@@ -16,14 +16,14 @@ namespace softgrip::sysid {
 namespace {
 
 /// Largest share of the mean square beyond the noise that the correct cause may leave because its form is
-/// inexact. Softening in the test cases of tests/blind leaves 0.009. A hysteresis loop of another shape that
-/// resembles a cause leaves 0.1 (textbook test cases).
+/// inexact. Softening leaves 0.009 in the test cases of tests/blind. A cause that only imitates a hysteresis
+/// loop of another shape leaves 0.1 (textbook test cases).
 constexpr double left_by_its_own_cause = 0.03;
-/// Above this multiple of the noise, the remainder of another base may be a small effect. The form of a
-/// finger alone leaves 0.5 to 1 (textbook test cases without an effect).
+/// If another base structure leaves more than this multiple of the noise, a small effect may be missing.
+/// Without any effect, the inexact form of a finger model leaves 0.5 to 1 (textbook test cases).
 constexpr double worth_asking = 0.5;
 
-/// Largest ratio of the held-out remainder of a rejected base.
+/// Largest ratio of the held-out RMSE of a rejected base structure to that of the selection on the given one.
 constexpr double about_as_well = 1.1;
 
 }  // namespace

@@ -21,24 +21,25 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Largest ratio of the held-out error of a richer base to that of the selection on the given base.
+/// Largest ratio of the held-out RMSE of a richer base structure to that of the selection on the given one.
 constexpr double worth_having = 0.9;
-/// Largest ridge of the choice. If a cause is missing, the choice of the ridge and of the simplest structure
-/// is unreliable.
+/// Upper limit of the ridge regularisation if causes are added to a richer base structure. While a cause is
+/// missing, the choice of the ridge and of the simplest structure is unreliable.
 constexpr double most_ridge = 1e-5;
-/// Smallest error increase if a present cause is removed, in squares of the noise. The values are 1.9 to 100
-/// for causes hidden at 2 and 8 times the noise, and 0.001 to 0.5 for absent causes (60 textbook test cases).
+/// Smallest increase of the held-out mean square when a cause is removed that proves its presence, as a
+/// multiple of the squared noise. The increase is 1.9 to 100 for causes hidden at 2 and 8 times the noise,
+/// and 0.001 to 0.5 for absent causes (60 textbook test cases).
 constexpr double least_missed = 1;
-/// On another base, some of the causes may leave at most this multiple of the remainder of all of them on the
-/// given base.
+/// Largest ratio of two held-out RMSEs: that of another base structure with a subset of the causes, and that
+/// of the given base structure with all of them.
 constexpr double as_good_with_fewer = 1.25;
-/// Starts for the published element. Its refit was already a search, and this one only tests if it is far
-/// behind.
+/// Number of start points for a fit of the published element. The element was already fitted with a full
+/// search, and this fit only checks that it is not far behind.
 constexpr std::size_t published_starts = 6;
 
-/// Returns true if the richer base, fitted to the first halves of the logs, predicts the second halves
-/// significantly better than the given one. A given base with an inverse response is never accepted, because
-/// no finger has one.
+/// Returns true if the richer base structure, fitted to the first halves of the logs, predicts the second
+/// halves significantly better than the given base structure. Also returns true if the given model has an
+/// inverse response, because no finger has one.
 bool foretells_better(const std::vector<Record>& records, const StructureTrial& chosen, const FitPoint& given,
                       Drive drive) {
   if (beta_over_gain(given.model) > 1) return true;
@@ -56,9 +57,9 @@ double slowest_branch_s(const model::Model& model) {
   return slowest_s;
 }
 
-/// Returns the time constant from which creep is slow for a base with its own branches. A missing component
-/// may have made the branches too fast. A refit without a slower branch gives them the time constant of that
-/// component.
+/// Returns the time constant [s] from which creep counts as slow if the given base structure has creep
+/// branches. The fit may have made these branches too fast to compensate for a missing component, and a refit
+/// without a slower branch may have given them the time constant of that component.
 double slow_from_s(const SearchData& data, const model::Model& recalibrated) {
   double longest_s = 0;
   for (const Record& record : data.records) longest_s = std::max(longest_s, record.length_s());
@@ -66,7 +67,8 @@ double slow_from_s(const SearchData& data, const model::Model& recalibrated) {
   return std::max(longest_s / 10, std::min(2 * slowest_s, longest_s));
 }
 
-/// A structure with a better prediction, and the same structure without each of its components.
+/// A structure that predicts better than the given one, and the same structure without each of its
+/// components.
 struct BetterStructure {
   StructureTrial chosen;
   std::vector<WithoutIngredient> ablation;
@@ -76,14 +78,14 @@ std::optional<BetterStructure> better_structure(const std::vector<Record>& recor
                                                 const StructureChoiceOptions& options) {
   const StructureChoice choice = choose_structure(records, options);
   const StructureTrial& chosen = choice.trials[choice.chosen];
-  // The published element with delay and lag equals the given base with two causes. The search for causes
-  // covers it.
+  // A published element with delay and lag equals the given base structure with two causes, and the search
+  // for causes covers that combination.
   if (chosen.structure.published || !foretells_better(records, chosen, given, options.drive))
     return std::nullopt;
   return BetterStructure{chosen, ablation_of(records, choice, options, named_ingredients())};
 }
 
-/// Returns true if the base may have absorbed a cause that is confounded with the finding.
+/// Returns true if the base structure may have absorbed a cause that is confounded with the finding.
 bool is_confounded(const NamedCause& finding, const std::vector<Cause>& causes) {
   return std::any_of(causes.begin(), causes.end(),
                      [&](const Cause& cause) { return cause.is_confounded_with(finding.cause); });
@@ -103,7 +105,7 @@ void take_back_confounded(BaseFindings& found, const SearchData& data, const Bas
   });
 }
 
-/// Recomputes the parameters of all named causes in the common fit.
+/// Recomputes the parameters of all named causes from the fit that contains all of them.
 void renumber(BaseFindings& found, const SearchData& data) {
   const FitSpace space = structure_space(data.records, found.fit.point.model, found.fit.causes);
   const UncertainPoint at = uncertain_point(data.records, found.fit.point, space);
@@ -113,23 +115,23 @@ void renumber(BaseFindings& found, const SearchData& data) {
   }
 }
 
-/// Fits the structure to the original readings with free time constants. Otherwise a cause would absorb the
-/// error of the time-constant grid.
+/// Fits the structure to the original readings with free time constants. With the fixed grid of time
+/// constants, a cause would absorb the error of the grid.
 StructureFit fit_off_grid(const StructureTrial& trial, const SearchData& data, Drive drive) {
   return fit_structure(data.records, {}, fit_again(trial, data.records, drive), finishing_effort);
 }
 
-/// Judges a nonlinearity that the simplest equally good structure omits in the same way as the other
-/// components.
-/// @param straight  the base without it.
+/// Tests a nonlinearity in the same way as the other components. The choice had omitted it because a simpler
+/// structure was equally good.
+/// @param straight  the base structure without the nonlinearity.
 void name_the_bend(BaseFindings& found, StructureTrial straight, const BaseSearch& search) {
   const StructureFit fit = fit_off_grid(straight, search.data, search.question.drive);
   straight.block_losses_mm2 = linear_held_out_losses(search.data.records, search.question.division, fit);
   name_ingredients(found, {{Ingredient::characteristic, std::move(straight)}}, search);
 }
 
-/// Gives the base alone the same freedom as the base with a cause. Otherwise the cause would receive the
-/// reduction from that freedom.
+/// Refits the base structure without causes, with the same free parameters as the base structure with a
+/// cause. Otherwise the error reduction of these parameters would be attributed to the cause.
 void free_the_base(BaseFindings& found, const StructureTrial& as_beside_causes, const BaseSearch& search) {
   const auto& [data, plain, question] = search;
   const bool is_free = found.chosen.structure == as_beside_causes.structure &&
@@ -154,7 +156,7 @@ void free_the_base(BaseFindings& found, const StructureTrial& as_beside_causes, 
   renumber(found, data);
 }
 
-/// Removes a cause from the alternatives of a component if it is now named itself.
+/// Removes a cause from the alternatives of each finding if that cause was found as well.
 void take_back_alternatives(BaseFindings& found) {
   for (NamedCause& finding : found.named) {
     std::erase_if(finding.alternatives, [&](const Cause& alternative) {
@@ -164,10 +166,10 @@ void take_back_alternatives(BaseFindings& found) {
   }
 }
 
-/// Removes causes that are not needed. The base was fitted again together with the causes and may now have a
-/// smaller error by itself. A cause is present only if a refit of the base without it has a significantly
-/// larger loss.
-/// @param losses  of `with`.
+/// Removes causes that are not needed. The base structure was refitted together with the causes and may now
+/// have a smaller error by itself. A cause is kept only if a refit without it has a significantly larger
+/// loss.
+/// @param losses  held-out losses of `with`.
 void drop_what_is_not_missed(StructureFit& with, BlockLosses& losses, std::vector<ChosenCause>& chosen,
                              const SearchData& data, const BaseQuestion& question) {
   std::erase_if(chosen, [&](const ChosenCause& one) {
@@ -180,7 +182,8 @@ void drop_what_is_not_missed(StructureFit& with, BlockLosses& losses, std::vecto
   });
 }
 
-/// Returns true if the causes on the base are a proper subset of the selection on the given base.
+/// Returns true if the causes on the richer base structure are a proper subset of the selection on the given
+/// one.
 bool has_some_of(const BaseFindings& found, const Selection& plain) {
   const std::vector<Cause>&some = found.fit.causes, &all = plain.extended.causes;
   const auto is_in_all = [&](const Cause& cause) {
@@ -189,8 +192,8 @@ bool has_some_of(const BaseFindings& found, const Selection& plain) {
   return !some.empty() && some.size() < all.size() && std::all_of(some.begin(), some.end(), is_in_all);
 }
 
-/// Fits on a base with many parameters are expensive. Thinned records are sufficient to determine which cause
-/// is present.
+/// Selects causes with thinned records, because fits of a base structure with many parameters are expensive.
+/// Thinned records are sufficient to determine which causes are present.
 Selection select_among_thinned(const FitPoint& base, const SearchData& data, const BaseQuestion& question,
                                const SelectionOptions& options) {
   SearchData thinned = data;
@@ -215,8 +218,8 @@ std::optional<BaseFindings> find_base(const BaseSearch& search) {
   options.progress = question.progress;
   options.published_yields_below = worth_having;
   options.starts = published_starts;
-  // An effect outside all structures may increase the error of all of them. Therefore the search also uses
-  // readings without the causes that were found, and without a drift.
+  // An effect that no structure contains may increase the error of all structures. Therefore the search is
+  // repeated with readings from which the causes found so far, or a drift, have been subtracted.
   using Readings = std::vector<Record>;
   std::vector<std::function<Readings(const Readings&)>> views{std::identity{}};
   if (!plain.extended.causes.empty()) {
@@ -248,8 +251,8 @@ std::optional<BaseFindings> find_base(const BaseSearch& search) {
 }
 
 bool has_lower_loss(const BaseFindings& found, const Selection& plain, double noise_mm, bool plain_explains) {
-  // If the selection leaves too much error, none of its causes is named. A base with an equal loss and named
-  // components is then more informative.
+  // If the selection leaves too much error, none of its causes is named. A base structure with a slightly
+  // lower loss and named components is then more informative.
   const bool says_more = !plain_explains && !plain.extended.causes.empty() && !found.named.empty();
   const bool needs_fewer = plain.left.excess_mm > noise_mm && has_some_of(found, plain);
   const double at_most = needs_fewer ? as_good_with_fewer : says_more ? 1 : worth_having;

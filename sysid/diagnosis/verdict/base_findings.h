@@ -1,6 +1,6 @@
 #pragma once
-// Searches for a richer base if no cause on the given base explains the data (sysid/structure). Each
-// component of it that reduces the held-out error is named.
+// Searches for a richer base structure (sysid/structure) if no cause on the given base structure explains the
+// data. Each component of the richer structure that reduces the held-out error is named.
 
 #include <cstddef>
 #include <cstdint>
@@ -17,13 +17,14 @@
 namespace softgrip::sysid {
 
 struct BaseFindings {
-  StructureFit fit;       ///< the richer base, with the causes that were found on it
-  StructureTrial chosen;  ///< the richer base as it was found, or as it is together with causes
-  bool off_grid = false;  ///< `fit` uses the original readings and has free time constants
+  StructureFit fit;  ///< the richer base structure with the causes that were found on it
+  StructureTrial
+      chosen;  ///< the richer base structure as it was chosen first, or as refitted together with causes
+  bool off_grid = false;  ///< true: `fit` uses the original readings and has free time constants
   std::string description;
-  BlockLosses losses;                ///< held-out losses on the given division
-  std::vector<NamedCause> named;     ///< causes at full inclusion
-  std::vector<NamedCause> possible;  ///< causes below full inclusion
+  BlockLosses losses;                ///< losses on the held-out blocks of the diagnosis
+  std::vector<NamedCause> named;     ///< causes with full_inclusion or more
+  std::vector<NamedCause> possible;  ///< causes with less than full_inclusion
 };
 
 struct BaseQuestion {
@@ -35,37 +36,41 @@ struct BaseQuestion {
   std::function<void(const std::string&)> progress;
 };
 
-/// Inputs of a search for a base, with the selection on the given base.
+/// Inputs of a search for a base structure, with the selection on the given base structure.
 struct BaseSearch {
   const SearchData& data;
   const Selection& plain;
   const BaseQuestion& question;
 };
 
-/// Returns an empty value if no richer base predicts the readings after the fitted ones significantly better
-/// than the given base.
+/// Returns an empty value unless a richer base structure, fitted to the first halves of the logs, predicts
+/// the second halves significantly better than the given base structure.
 [[nodiscard]] std::optional<BaseFindings> find_base(const BaseSearch& search);
 
-/// Limits for causes on a richer base. No base matches a finger exactly, and a cause can absorb part of the
-/// difference.
+/// Limits for causes on a richer base structure. No base structure matches a finger exactly, and a cause can
+/// absorb part of the difference.
 struct CausesUpon {
-  std::size_t most;    ///< largest number of causes
-  double least_share;  ///< smallest share of the base's remaining mean square that they must remove together
-  bool parts;          ///< causes that remove less are reported as partial explanations
+  std::size_t most;    ///< maximum number of causes
+  double least_share;  ///< smallest share of the mean square left by the base structure that the causes must
+                       ///< remove together
+  bool parts;          ///< true: causes that remove less than this share are reported as partial explanations
 };
 inline constexpr CausesUpon upon_much_left{2, 0.3, true};
-/// If the base leaves little error, most of it is due to its form. With the command as input, the form of the
-/// valve contributes too.
+/// Limits if the base structure leaves little error. Most of that error is due to the inexact form of the
+/// structure. With the command as input, the form of the valve model contributes as well, so that limit is
+/// stricter.
 inline constexpr CausesUpon upon_little_left{1, 0.65, false};
 inline constexpr CausesUpon upon_little_left_measured{1, 0.35, false};
 
-/// Continues the search for causes on a richer base, and adds its results.
+/// Continues the search for causes on a richer base structure and adds its results to `found`.
 void find_causes_upon(BaseFindings& found, const BaseSearch& search, const CausesUpon& allowed);
 
-/// Returns true if the richer base and its causes have a significantly lower held-out loss than the selection
-/// on the given base. An equal loss is sufficient if the selection is unphysical. A slightly higher loss is
-/// sufficient with a subset of the same causes, if the selection leaves more than the noise.
-/// @param plain_explains  true if the selection on the given base leaves little enough to be named.
+/// Returns true if the richer base structure and its causes have a held-out RMSE of less than 90 % of that of
+/// the selection on the given base structure. Any lower RMSE is sufficient if nothing can be named on the
+/// given base structure. Any lower mean square is sufficient if the selection is unphysical. Up to 125 % of
+/// the RMSE is sufficient if the causes are a proper subset of those of the selection and the selection
+/// leaves more than the noise.
+/// @param plain_explains  true if the error left by the selection is small enough for its causes to be named.
 [[nodiscard]] bool has_lower_loss(const BaseFindings& found, const Selection& plain, double noise_mm,
                                   bool plain_explains);
 

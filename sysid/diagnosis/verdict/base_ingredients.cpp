@@ -33,21 +33,22 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Smallest share of the refitted base's mean square beyond the noise that a component must remove.
+/// Smallest error reduction by a component, as a share of the mean square that the refitted given model
+/// leaves beyond the noise.
 constexpr double least_share = 0.01;
-/// A held-out fold has diverged if its loss exceeds this multiple of the fitted one.
+/// A held-out fold has diverged if its RMSE exceeds this multiple of the RMSE of the fit.
 constexpr double ran_off_above = 3;
 
-/// Limit of the share of operators that follow a reversal at once. Below it the operators behave like a
-/// backlash. The share is 0.09 to 0.81 in 20 textbook fingers, and 0.01 to 0.15 with a hidden backlash of 8
-/// times the noise.
+/// If a smaller share of the play operators than this limit follows a reversal at once, the operators behave
+/// like a backlash. The share is 0.09 to 0.81 in 20 textbook fingers, and 0.01 to 0.15 with a hidden backlash
+/// of 8 times the noise.
 constexpr double stands_still_below = 0.07;
 
-/// The name of a finding and its blocks in the model.
+/// The cause that a component is reported as, and the type of its block in the model.
 struct FindingName {
   Ingredient ingredient;
   std::string_view id;
-  std::string_view alternative;  ///< a cause with the same readings for every command; empty: none
+  std::string_view alternative;  ///< id of a cause with the same readings for every command; empty: none
   std::size_t (*block)(const BaseStructure& structure, Drive drive);
 };
 constexpr std::array names{
@@ -71,8 +72,8 @@ constexpr std::array names{
     FindingName{Ingredient::characteristic, causes::Stiffening::id, causes::SensorNonlinearity::id,
                 [](const BaseStructure&, Drive) { return model::block_type<model::Characteristic>(); }}};
 
-/// Returns the held-out mean square of the refitted base beyond the noise. A fold that diverged does not show
-/// how large the unexplained error is.
+/// Returns the held-out mean square of the refitted given model beyond the noise [mm^2]. The value is
+/// limited, because a fold that diverged does not show how large the unexplained error is.
 double left_by_the_given_mm2(const BaseSearch& search) {
   const double noise_mm = search.question.noise_mm;
   const double held_out_mm2 = std::pow(rmse_mm(search.plain.base_losses), 2) - noise_mm * noise_mm;
@@ -121,15 +122,15 @@ class Labeller {
  private:
   const StructureTrial& chosen_;
   const BaseQuestion& question_;
-  bool stands_still_;  ///< the finger does not move after a reversal until the pressure has changed by some
-                       ///< kPa
+  bool stands_still_;  ///< true: after a reversal, the finger does not move until the pressure has changed by
+                       ///< some kPa
   FitSpace space_;
   UncertainPoint at_;
 };
 
-/// A delay and a lag compensate for most of each other, so the data may require neither although the finger
-/// responds late. The one with the larger loss represents both. Returns an empty value if one of them is
-/// already named.
+/// Returns the latency (delay or lag) as a finding. A delay and a lag can largely replace each other, so the
+/// data may require neither of them although the finger responds late. The one whose removal causes the
+/// larger loss represents both. Returns an empty value if one of them is already named.
 std::optional<NamedCause> latency_of(const std::vector<WithoutIngredient>& ablation, const Labeller& labeller,
                                      const BaseFindings& found) {
   const StructureTrial* const neither = trial_without(ablation, Ingredient::latency);

@@ -1,5 +1,6 @@
 #pragma once
-// Measures the error reduction of each component of a richer base by its removal, and names the components.
+// Measures how much the error increases when a component of a richer base structure is removed, and names the
+// components.
 
 #include <vector>
 
@@ -10,11 +11,11 @@
 
 namespace softgrip::sysid {
 
-/// Returns the components that must be removed for name_ingredients().
+/// Returns the components for which name_ingredients() needs a fit without them.
 [[nodiscard]] std::vector<Ingredient> named_ingredients();
 
-/// Adds the components of `found.chosen` with a sufficient error reduction as named causes. Components with
-/// an uncertain reduction become possible causes. `found.fit` is that base fitted to all readings.
+/// Adds the components of `found.chosen` that reduce the error sufficiently as named causes. Components with
+/// an uncertain reduction become possible causes. `found.fit` is the base structure fitted to all readings.
 void name_ingredients(BaseFindings& found, const std::vector<WithoutIngredient>& ablation,
                       const BaseSearch& search);
 

@@ -7,18 +7,18 @@
 
 namespace softgrip::sysid {
 
-/// All values are in mm^2.
+/// The error budget. All values are mean squares [mm^2].
 struct Budget {
   double as_given = 0;
   double recalibrated = 0;
   double extended = 0;
   double noise = 0;
 
-  /// Returns the mean square of the refitted model beyond the noise.
+  /// Returns the mean square of the refitted model minus that of the noise.
   [[nodiscard]] double excess() const { return std::max(recalibrated - noise, 0.0); }
-  /// Returns the mean square of the extended model beyond the noise.
+  /// Returns the mean square of the extended model minus that of the noise.
   [[nodiscard]] double left() const { return std::max(extended - noise, 0.0); }
-  /// Returns the share of the excess that one cause explains, measured by its removal [%], from 0 to 100.
+  /// Returns the share of excess() that one cause explains, measured by its removal [%], from 0 to 100.
   [[nodiscard]] double share_percent(const NamedCause& named) const {
     return excess() > 0 ? std::clamp(100 * named.gain_mm2.value / excess(), 0.0, 100.0) : 0.0;
   }

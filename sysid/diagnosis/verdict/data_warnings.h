@@ -17,8 +17,8 @@ void warn_unphysical(const model::Model& model, std::vector<std::string>& warnin
 /// Warns about limits of the data that restrict the diagnosis.
 void warn_of_data(const std::vector<Log>& logs, const Scales& scales, std::vector<std::string>& warnings);
 
-/// Warns if the ratio of readings to the given model equals the ratio of two units.
-/// @param residual_mm  reading minus prediction, by record
+/// Warns if the readings differ from the given model by a factor that equals the ratio of two units.
+/// @param residual_mm  reading minus prediction, one vector per record
 void warn_of_scale(const std::vector<Record>& records, const std::vector<std::vector<double>>& residual_mm,
                    std::vector<std::string>& warnings);
 

@@ -32,8 +32,8 @@ using Failure = tl::unexpected<std::string>;
 
 constexpr double clearly_correlated = 0.05;
 constexpr std::size_t fewest_samples = 200;
-/// Refits the base from the given model and from the scale of the data, because the given model may be far
-/// from the data.
+/// Refits the base structure from two starts: the given model, and start points from the scale of the data,
+/// because the given model may be far from the data.
 tl::expected<StructureFit, std::string> recalibrate(const SearchData& data, const DiagnosisOptions& options) {
   StructureFit best = fit_structure(data.records, {}, data.given);
   IdentifyOptions wide;
@@ -54,7 +54,7 @@ tl::expected<StructureFit, std::string> recalibrate(const SearchData& data, cons
   return best;
 }
 
-/// Returns the RMSE of each run, or of each half of a single run.
+/// Returns the RMSE of each run, or of each half if there is a single run.
 std::vector<RunError> run_errors(const std::vector<Record>& records, const Division& by_unit,
                                  const BlockLosses& given, const BlockLosses& recalibrated,
                                  const BlockLosses& extended) {
@@ -135,7 +135,7 @@ class Diagnostician {
         clock.ended("staircase");
       }
     } else {
-      another.drop();  // a second cause explains the data
+      another.drop();  // the selection with a second cause explains the data
     }
     if (another.is_found()) {
       measure_recalibrated(selection);
@@ -164,7 +164,7 @@ class Diagnostician {
     return {};
   }
 
-  /// Removes the causes that the displacement has already shown.
+  /// Removes the causes that were already found in the displacement.
   void take_out_named(ValveFindings& in_valve) {
     std::erase_if(in_valve.named, [&](const NamedCause& one) { return is_among(d_.causes, one.cause); });
   }
@@ -178,7 +178,8 @@ class Diagnostician {
                      " readings in total: too few to separate a cause from noise (" +
                      std::to_string(fewest_samples) + " are needed)");
     }
-    // The zero of the first log is arbitrary. A zero that changes between logs is a drift, which is a cause.
+    // The zero of the first log is arbitrary. A zero that changes from log to log is a drift, which is a
+    // possible cause.
     const bool zero_free = records.front().offset_free && !records.front().start_unknown;
     for (Record& record : records) record.offset_free = zero_free || record.start_unknown;
     d_.sampling = hide_repeated(records);
@@ -202,8 +203,8 @@ class Diagnostician {
     d_.as_given_rmse_mm = std::sqrt(d_.as_given.mean_square_mm2);
   }
 
-  /// With a recalibrated model, outliers are also visible during a motion. Without them, the model fits
-  /// better and may show more outliers.
+  /// Hides outliers during a motion, which become visible after the recalibration. The fit without them is
+  /// better and may show further outliers, so the search is repeated.
   void hide_more_outliers(StructureFit& base) {
     constexpr int most_rounds = 3;
     for (int round = 0; round < most_rounds; ++round) {
@@ -214,8 +215,9 @@ class Diagnostician {
     }
   }
 
-  /// A log may begin without pressure before the finger has settled. If the given structure with an estimated
-  /// start explains the logs better than all causes found, it takes the place of the recalibrated one.
+  /// Handles logs that begin without pressure before the finger has settled. If the given structure with
+  /// estimated start states explains the logs better than all causes found, it replaces the recalibrated
+  /// model. Returns true in this case.
   bool open_starts(const Selection& selection, const Division& division) {
     const auto is_given = [](const Record& r) { return r.start != Start::automatic || r.start_unknown; };
     if (!selection.left.present || std::all_of(data_.records.begin(), data_.records.end(), is_given))
@@ -231,7 +233,7 @@ class Diagnostician {
     if (!is_missed(selection.extended_losses, held_out_losses(open, division, fit),
                    0.01 * square(d_.noise_mm), options_.seed))
       return false;
-    // Creep that never settles can fit any difference between logs of two rigs.
+    // Creep that never settles can compensate for any difference between logs of two rigs.
     if (inconsistent_among(data_.records, selection.base, fit.mean_square_mm2)) return false;
     use(std::move(open));
     d_.recalibrated = std::move(fit);
@@ -241,8 +243,8 @@ class Diagnostician {
     return true;
   }
 
-  /// If the drive is shifted, the shift is a part of the extension. The earlier errors are those with the
-  /// given drive.
+  /// Includes a shift of the drive in the error reduction. The errors of the given and of the refitted model
+  /// are those with the original drive.
   void count_shift(const BlockLosses& extended) {
     if (!d_.lead) return;
     d_.as_given_rmse_mm = unshifted_.as_given_rmse_mm;
@@ -250,7 +252,7 @@ class Diagnostician {
     d_.gain = gain_percent(unshifted_.recalibrated, extended, options_.seed);
   }
 
-  /// If the readings lead their command, the drive is shifted, and the search begins again.
+  /// Shifts the drive if the readings lead their command. Returns true if the search must be repeated.
   bool shift_drive(const Selection& selection, const Division& division) {
     std::optional<LeadFit> shifted = fit_lead(data_, selection, d_.noise_mm);
     if (!shifted) return false;
@@ -263,8 +265,8 @@ class Diagnostician {
     return true;
   }
 
-  /// Returns true if a selection with causes leaves more than they may leave, or one without causes leaves
-  /// unexplained error.
+  /// Returns true if the selection leaves too much error: more than its causes may leave, or, without causes,
+  /// more than the noise explains.
   [[nodiscard]] bool leaves_too_much(const Selection& selection) const {
     if (!selection.left.present) return false;
     if (selection.extended.causes.empty()) {
@@ -273,8 +275,9 @@ class Diagnostician {
     return sysid::leaves_too_much(selection.left, selection.base_unexplained, d_.noise_mm);
   }
 
-  /// No simulation from the command alone can predict the remainder of a valve with stick-slip. Returns true
-  /// if stick-slip was the missing effect. The selection is then the one behind the valve.
+  /// Searches for stick-slip of the valve, whose effect no simulation from the command alone can predict.
+  /// Returns true if stick-slip was the missing effect; `selection` then contains the causes found with the
+  /// valve's stick-slip motion as input.
   bool look_for_stick_slip(Selection& selection, const Division& division) {
     if (options_.record.drive != Drive::command) return false;
     if (options_.progress) options_.progress("search for stick-slip");
@@ -284,8 +287,8 @@ class Diagnostician {
     one_more.progress = options_.progress;
     auto found = select_behind_stick_slip(data_, selection, d_.noise_mm, division, one_more);
     if (!found || leaves_too_much(found->selection)) return false;
-    // A path of many small steps can fit any residual. Therefore stick-slip must explain most of the
-    // remaining error.
+    // A path of many small steps can fit any residual. Therefore stick-slip must explain at least 75 % of the
+    // remaining mean square.
     if (square(found->selection.left.excess_mm) > left_by_what_was_missing * square(selection.left.excess_mm))
       return false;
     selection = std::move(found->selection);
@@ -293,7 +296,8 @@ class Diagnostician {
     return true;
   }
 
-  /// Another base is searched only after a gauge or null campaigns have tested the selection.
+  /// Returns true if another base structure may be searched for now. A gauge or null campaigns must test the
+  /// selection first.
   [[nodiscard]] bool may_ask_at_once() const { return !options_.gauge && options_.null_campaigns == 0; }
 
   void look_for_base(AnotherBase& another, const Selection& selection) {
@@ -369,7 +373,7 @@ class Diagnostician {
     d_.unexplained_error = selection.left;
     d_.extended_rmse_mm = rmse_mm(selection.extended_losses);
     d_.gain = gain_percent(selection.base_losses, selection.extended_losses, options_.seed);
-    // The new parameters are compared with the old ones, both with fitted initial states.
+    // Compare the refitted with the given parameters, both with fitted initial states.
     const StructureFit given = fit_starts(data_.records, {}, data_.given);
     recalibration_gain_ = mean_difference(losses_of(given, division), selection.base_losses, options_.seed);
     d_.unexplained_percent =
@@ -404,9 +408,10 @@ class Diagnostician {
     d_.null_calibration = calibrate_on_nulls(data_, d_.recalibrated, d_.gain.value, division, nulls);
   }
 
-  /// Equal names for two models would make files and figures ambiguous.
+  /// Returns the model under a name of its own. Equal names for two models would make files and figures
+  /// ambiguous.
   [[nodiscard]] model::Model named_model(model::Model model, const std::string& how) const {
-    // The daemon needs the command as input, so the valve is inserted again.
+    // The daemon uses the command as input, so the valve blocks are inserted again.
     if (options_.record.drive == Drive::measured && d_.in_valve)
       model = with_valve(std::move(model), d_.in_valve->stage);
     model.name = given_.name + '_' + how.substr(0, how.find(' '));
@@ -439,7 +444,8 @@ class Diagnostician {
     }
     for (NamedCause& named : chosen) {
       if (d_.stick_slip && named.cause.id == causes::ValveDeadband::id) {
-        // Use the values of the stick-slip motion, because the extended model may contain those of its mean.
+        // Report the band of the stick-slip motion, because the extended model may contain the band of the
+        // mean motion.
         named.parameters.front() = {"band_kpa", "kPa", d_.stick_slip->band_kpa, d_.stick_slip->band_ci95,
                                     true};
       }
@@ -447,14 +453,16 @@ class Diagnostician {
     }
   }
 
-  /// Undetected wrong samples are isolated, but the effect of a cause is correlated from sample to sample.
+  /// Returns true if the remaining error is due to undetected wrong samples. These are isolated, but the
+  /// effect of a cause is correlated from sample to sample.
   [[nodiscard]] bool left_by_outliers(const UnexplainedError& structure) const {
     return d_.outliers.present && structure.slow_correlation <= clearly_correlated &&
            structure.excess_mm < d_.noise_mm;
   }
 
   void conclude(const Selection& selection) {
-    // If the gauge selected one of two indistinguishable causes, the fit of its form is irrelevant.
+    // If the gauge selected one of two indistinguishable causes, the remaining error of that cause is not
+    // considered.
     const bool placed_by_gauge = d_.gauge && d_.gauge->replaced;
     const bool too_much_left = !placed_by_gauge && leaves_too_much(selection);
     const bool by_chance = d_.null_calibration && d_.null_calibration->reach_the_gain();
@@ -491,7 +499,7 @@ class Diagnostician {
   const model::Model& given_;
   const DiagnosisOptions& options_;
   SearchData data_;
-  /// Errors with the given drive, and held-out losses with the shifted drive.
+  /// Errors with the original drive, and held-out losses with the shifted drive.
   struct Unshifted {
     double as_given_rmse_mm = 0;
     BlockLosses recalibrated, shifted;

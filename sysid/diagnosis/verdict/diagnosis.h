@@ -1,5 +1,5 @@
 #pragma once
-// Diagnoses a model: its error, the cause, the extension and the error reduction.
+// Diagnoses a model: determines its error and the cause, extends it, and measures the error reduction.
 
 #include <chrono>
 #include <cstdint>
@@ -35,14 +35,14 @@ struct DiagnosisOptions {
   RecordOptions record;
   std::uint64_t seed = 1;
   unsigned threads = 0;
-  /// Number of simulated null campaigns that calibrate the whole search if it names a cause; 0: none.
+  /// Number of simulated data sets without a cause that calibrate the search if it names a cause; 0: none.
   std::size_t null_campaigns = 0;
-  /// Sensor readings at known positions, if an operator has measured them.
+  /// Sensor readings at known positions; empty: the operator has measured none.
   std::optional<GaugeFile> gauge;
   std::function<void(const std::string&)> progress;
 };
 
-/// RMSE of a run, or of half of a single one, under the models that a diagnosis compares [mm].
+/// RMSE of one run, or of one half if there is a single run, for the models that a diagnosis compares [mm].
 struct RunError {
   std::string run;
   double given = 0;
@@ -51,40 +51,41 @@ struct RunError {
 };
 
 struct Diagnosis {
-  Verdict verdict = Verdict::unexplained;  ///< verdict on the displacement; see whole_verdict()
-  std::vector<NamedCause> causes;          ///< causes of cause_found, ambiguous and partly_explained
+  Verdict verdict = Verdict::unexplained;  ///< verdict from the displacement alone; see whole_verdict()
+  std::vector<NamedCause> causes;          ///< named causes for the verdicts cause_found, ambiguous and
+                                           ///< partly_explained
   std::vector<NamedCause> partial;         ///< partial explanations of an unexplained error
   std::vector<CandidateScore> rejected;
   double noise_mm = 0;
-  Spread gain;  ///< held-out error reduction of the extended relative to the refitted model [%]
-  double as_given_rmse_mm = 0;  ///< RMSE of all readings; initial states by sysid/fitting/start_estimate.h
-  double recalibrated_rmse_mm = 0;  ///< held out
-  double extended_rmse_mm = 0;      ///< held out
-  /// Held-out RMSE with whole logs held out; empty with a single log.
+  Spread gain;  ///< held-out error reduction by the extended model, relative to the refitted model [%]
+  double as_given_rmse_mm = 0;  ///< RMSE over all readings; initial states by sysid/fitting/start_estimate.h
+  double recalibrated_rmse_mm = 0;  ///< RMSE on held-out blocks
+  double extended_rmse_mm = 0;      ///< RMSE on held-out blocks
+  /// RMSE on logs that were held out completely; empty if there is a single log.
   std::optional<double> recalibrated_other_logs_rmse_mm;
   std::optional<double> extended_other_logs_rmse_mm;
   std::vector<RunError> runs;
   double unexplained_percent = 0;
-  std::optional<NullCalibration> null_calibration;  ///< if requested and a cause was to be named
+  std::optional<NullCalibration> null_calibration;  ///< present if requested and if a cause was found
   OutlierEvidence outliers;
   SamplingEvidence sampling;
   std::optional<ReadingLead> lead;              ///< present if the drive of the records was shifted
-  std::optional<StickSlipEvidence> stick_slip;  ///< if the named dead band shows stick-slip
+  std::optional<StickSlipEvidence> stick_slip;  ///< present if the named dead band shows stick-slip
   std::optional<GaugeEvidence> gauge;           ///< present if gauge readings were given
   std::optional<ValveFindings> in_valve;  ///< present if the pressure was measured; contains none of `causes`
-  /// components of a richer base, if the given base is insufficient; empty: it is sufficient
+  /// components of a richer base structure; empty: the given base structure is sufficient
   std::string base;
   UnexplainedError unexplained_recalibrated;
   UnexplainedError unexplained_error;
   StructureFit as_given;
   StructureFit recalibrated;
   StructureFit extended;
-  model::Model extended_model;  ///< ready for the daemon: GIVEN_extended
+  model::Model extended_model;  ///< model for the daemon, named GIVEN_extended
   model::Model recalibrated_model;
   std::vector<Record> records;
   std::vector<std::string> warnings;
-  /// Untested causes by id: the logs never meet their condition. The value names the recording that would
-  /// test them.
+  /// Untested causes by id: the logs never contain the condition in which the cause has an effect. The value
+  /// names the recording that would test the cause.
   std::map<std::string, std::string, std::less<>> not_tested;
   std::optional<Evidence> evidence;  ///< conditions on which the errors depend; see examine()
   double wall_s = 0;
@@ -96,14 +97,14 @@ struct Diagnosis {
   return !d.extended.causes.empty() || !d.base.empty();
 }
 
-/// Returns the verdict including the causes that only the measured pressure shows.
+/// Returns the verdict that also includes the causes found in the measured pressure.
 [[nodiscard]] Verdict whole_verdict(const Diagnosis& d);
 
 /// Measures the wall time of the stages of a diagnosis in sequence.
 class StageClock {
  public:
   explicit StageClock(Diagnosis& diagnosis) : diagnosis_(diagnosis) {}
-  /// Assigns the time since construction or the last call to this stage.
+  /// Assigns the time since the construction or since the last call of ended() to this stage.
   void ended(std::string stage) {
     const auto now = std::chrono::steady_clock::now();
     const double took_s = std::chrono::duration<double>(now - began_).count();
@@ -117,12 +118,13 @@ class StageClock {
   std::chrono::steady_clock::time_point began_ = std::chrono::steady_clock::now();
 };
 
-/// Returns an error sentence if the logs cannot be diagnosed at all.
+/// Returns an error sentence if the logs cannot be diagnosed.
 [[nodiscard]] tl::expected<Diagnosis, std::string> diagnose(const std::vector<Log>& logs,
                                                             const model::Model& given,
                                                             const DiagnosisOptions& options = {});
 
-/// Adds the evidence to a diagnosis. It describes the remaining error and does not change the verdict.
+/// Adds the evidence to a diagnosis: the conditions on which the remaining error depends. The verdict stays
+/// unchanged.
 void examine(Diagnosis& diagnosis, const DiagnosisOptions& options);
 
 /// Returns the verdict as one sentence for a technician.

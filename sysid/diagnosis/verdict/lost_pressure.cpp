@@ -8,11 +8,12 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Smallest share of the reduction by a sensor gain that a leak must reach. The share is at least 0.99 for a
-/// leak or a scale, and 0.84 for a ceiling at 90 % of the range.
+/// A leak must reach at least this share of the error reduction that a sensor gain achieves. The share is at
+/// least 0.99 if the cause is a leak or a wrong scale, and 0.84 if the pressure saturates at 90 % of the
+/// range.
 constexpr double taken_by_a_leak = 0.95;
-/// Smallest share of the error without both that the leak must explain. Otherwise most of the error has
-/// another cause.
+/// A leak must explain at least this share of the error without leak and gain. Otherwise most of that error
+/// has another cause.
 constexpr double least_taken = 0.5;
 
 double mean_of(const BlockLosses& losses) {

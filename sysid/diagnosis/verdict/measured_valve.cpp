@@ -41,7 +41,7 @@ BlockLosses MeasuredValve::held_out_losses(ValveParts parts, const ValveStage& w
                                            PressureSensorFit sensor) const {
   BlockLosses losses(blocks_end_.back(), 0);
   std::vector<double> counts(losses.size(), 0);
-  // Each block belongs to one fold.
+  // There are two folds, each with every second block.
   parallel_for_idle(2, [&](std::size_t fold) {
     ValveFit fit = fit_of(parts, {whole}, sensor);
     fit.is_fitted = [&](std::size_t log, std::size_t sample) { return block(log, sample) % 2 != fold; };
@@ -120,7 +120,7 @@ Eigen::VectorXd MeasuredValve::derivative(const ValveStage& at, double ValveStag
   ValveStage above = at, below = at;
   above.*number += step;
   below.*number -= step;
-  if (number == &ValveStage::filling_s && at.filling_s == at.venting_s) {  // one lag for both directions
+  if (number == &ValveStage::filling_s && at.filling_s == at.venting_s) {  // one time constant for both
     above.venting_s = above.filling_s;
     below.venting_s = below.filling_s;
   }

@@ -1,5 +1,5 @@
 #pragma once
-// Fits a valve stage to the measured pressure of a few logs. It computes the held-out error and the
+// Fits a valve stage to the measured pressure of several logs, and computes the held-out error and the
 // uncertainty of the parameters.
 
 #include <cstddef>
@@ -13,22 +13,23 @@
 
 namespace softgrip::sysid {
 
-/// Fits valve stages. It refers to its logs, which must outlive it. Each log has a measured pressure.
+/// Fits valve stages. Keeps a reference to the logs, which must outlive it. Each log must have a measured
+/// pressure.
 class MeasuredValve {
  public:
   /// @param held  true: the command is constant until the next sample.
   MeasuredValve(const std::vector<Log>& logs, bool held);
 
-  /// Fits some parts and the pressure sensor to all data.
-  /// @param tolerance  of the fit; a reported fit needs a small one.
+  /// Fits the given parts and the pressure sensor to all data, from the start points `from`.
+  /// @param tolerance  tolerance of the fit; a fit that is reported needs a small one.
   [[nodiscard]] ValveStage fit(ValveParts parts, const std::vector<ValveStage>& from, double tolerance = 1e-6,
                                PressureSensorFit sensor = PressureSensorFit::gain_and_zero) const;
 
-  /// Returns the better of two fits of `parts`: `one`, and a fit that starts at `other`, which has some of
-  /// the parts. The second fit runs only if `other` leaves little more than `one`.
+  /// Returns the better of two fits of `parts`: `one`, or a fit that starts at `other`, which has some of the
+  /// parts. The second fit is only computed if the error of `other` is little larger than that of `one`.
   [[nodiscard]] ValveStage better_fit(ValveParts parts, const ValveStage& one, const ValveStage& other) const;
 
-  /// Returns the mean square of every block while it was held out [kPa^2].
+  /// Returns the mean square of each block under a fit that did not use the block [kPa^2].
   [[nodiscard]] BlockLosses held_out_losses(
       ValveParts parts, const ValveStage& whole,
       PressureSensorFit sensor = PressureSensorFit::gain_and_zero) const;
@@ -51,7 +52,7 @@ class MeasuredValve {
   const std::vector<Log>& logs_;
   bool held_;
   std::size_t samples_ = 0;              ///< number of samples in all logs
-  std::vector<std::size_t> blocks_end_;  ///< end index of the blocks of every log
+  std::vector<std::size_t> blocks_end_;  ///< index after the last block of each log
 };
 
 }  // namespace softgrip::sysid

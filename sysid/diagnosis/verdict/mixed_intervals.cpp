@@ -8,7 +8,7 @@
 namespace softgrip::sysid {
 namespace {
 
-/// A structure with a lower loss in fewer than this share of the draws is ruled out.
+/// A structure is excluded if it has the lower loss in fewer than this share of the bootstrap samples.
 constexpr double least_weight = 0.05;
 
 /// Returns true if any interval became wider.

@@ -1,7 +1,7 @@
 #pragma once
-// Intervals over a set of plausible structures. The value of a parameter depends on the other causes in the
-// structure. If the data do not determine whether a confounded cause is present, the interval covers both
-// cases.
+// Computes intervals over a set of plausible structures. The value of a parameter depends on the other causes
+// in the structure. If the data do not determine whether a confounded cause is present, the interval covers
+// the values with and without that cause.
 
 #include <cstdint>
 #include <string>
@@ -12,8 +12,8 @@
 
 namespace softgrip::sysid {
 
-/// Widens the intervals of `named` (the chosen causes of `selection`) to cover every undecided structure that
-/// the held-out blocks do not rule out. Returns a sentence for each widened interval.
+/// Widens the intervals of `named` (the chosen causes of `selection`) until they cover every undecided
+/// structure that the held-out blocks do not exclude. Returns a sentence for each widened interval.
 [[nodiscard]] std::vector<std::string> mix_intervals(std::vector<NamedCause>& named,
                                                      const std::vector<Record>& records,
                                                      const Selection& selection, std::uint64_t seed);

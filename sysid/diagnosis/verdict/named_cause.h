@@ -22,19 +22,19 @@ struct CauseParameter {
   [[nodiscard]] bool determined() const { return has_interval && is_determined(ci95, value); }
 };
 
-/// A cause is named alone at this inclusion frequency and above.
+/// Smallest inclusion frequency at which a cause is named. Below it, the cause is only possible.
 inline constexpr double full_inclusion = 0.95;
 
 struct NamedCause {
   Cause cause;
-  std::size_t block_type = 0;  ///< block type of the form in which it was found
+  std::size_t block_type = 0;  ///< type of the block in the form in which the cause was found
   std::vector<CauseParameter> parameters;
   Spread heldout_gain_percent;
-  Spread gain_mm2;  ///< decrease of the held-out mean square with the cause
-  /// Decrease of the mean square of the measured pressure, if the pressure was used to judge the cause
-  /// [kPa^2].
+  Spread gain_mm2;  ///< decrease of the held-out mean square by the cause
+  /// Decrease of the mean square error of the measured pressure [kPa^2]; empty: the pressure was not used.
   std::optional<Spread> gain_kpa2;
-  double inclusion = 1;  ///< weight of the structures with this cause in the confidence set
+  double inclusion =
+      1;  ///< inclusion frequency: weight of the structures with this cause in the confidence set
   std::vector<Cause> alternatives;
   std::vector<CandidateScore> candidates;
 };

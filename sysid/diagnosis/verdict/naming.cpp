@@ -42,8 +42,8 @@ std::vector<CauseParameter> block_numbers(const UncertainPoint& at, std::size_t 
       const double deviation = std::sqrt(std::max(0.0, at.uncertainty.covariance(row, row)));
       if (deviation == 0) continue;
       const double half = at.uncertainty.quantile * deviation;
-      // Limits of an interval stay within the permitted range (a delay is not negative). Infinite limits stay
-      // infinite, because they mean that the value is unknown.
+      // Clip finite interval limits to the permitted range (a delay is not negative). Infinite limits mean
+      // that the value is unknown, so they stay infinite.
       const auto possible = [&](double value) {
         return std::isfinite(value) ? std::clamp(value, spec.lower, spec.upper) : value;
       };
@@ -79,7 +79,8 @@ std::vector<NamedCause> name_chosen(const std::vector<Record>& records, const St
 
 namespace {
 
-/// @param excess_mm  error that the readings of the cause add. @param readings  number of these readings.
+/// Returns a cause that was detected in the readings.
+/// @param excess_mm  error of the affected readings. @param readings  number of affected readings.
 NamedCause cause_in_readings(std::string_view id, std::vector<CauseParameter> parameters, double excess_mm,
                              std::size_t readings, double noise_mm) {
   NamedCause named;

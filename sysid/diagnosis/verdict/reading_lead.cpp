@@ -10,8 +10,8 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Further leads to try, relative to that of the block. The block is wrong at corners, so its lead may be
-/// inaccurate.
+/// Further leads to try, as multiples of the lead of the block. The block is wrong at corners, so its lead
+/// may be inaccurate.
 constexpr std::array other_leads{0.5, 1.5, 2.0, 3.0};
 constexpr int refinements = 5;
 
@@ -27,7 +27,7 @@ class LeadSearch {
     return shifted;
   }
 
-  /// Returns the best lead of a grid, refined by repeated halving of the step.
+  /// Returns the best lead on a grid, refined by search steps that are halved repeatedly.
   [[nodiscard]] LeadFit best(double about_s) const {
     LeadFit best = at(about_s);
     const auto try_at = [&](double lead_s) {

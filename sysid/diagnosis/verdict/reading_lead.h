@@ -1,5 +1,5 @@
 #pragma once
-// Estimates the time by which the readings lead their command.
+// Estimates the time by which the readings lead the command.
 
 #include <optional>
 #include <vector>
@@ -11,8 +11,8 @@ namespace softgrip::sysid {
 
 struct ReadingLead {
   double lead_s = 0;
-  /// 95 % interval from the profile of the mean square: all parameters of the structure are fitted at each
-  /// lead.
+  /// 95 % interval from the profile of the mean square: all parameters of the structure are fitted again at
+  /// each lead.
   Interval ci95;
 };
 
@@ -22,14 +22,15 @@ struct LeadFit {
   std::vector<Record> records;  ///< records whose drive is shifted by the lead
 };
 
-/// Returns the records with a drive that comes `lead_s` earlier. The first sample keeps its drive, which is
-/// the initial state of the record. Readings that would need a drive after the end of the record become NaN.
+/// Returns the records with a drive that is shifted to an earlier time by `lead_s`. The first sample keeps
+/// its drive, which defines the initial state of the record. Readings that would need a drive from after the
+/// end of the record become NaN.
 [[nodiscard]] std::vector<Record> with_drive_ahead(std::vector<Record> records, double lead_s);
 
-/// Fits the lead exactly, if a selection contains clock_offset. That block extrapolates the motion and is
-/// wrong at its corners; the shifted drive is not.
-/// @returns no value if the selection does not contain the cause, if the readings do not lead with 95 %
-/// confidence, or if the shift leaves more than the causes of the selection.
+/// Determines the lead precisely if a selection contains the cause clock_offset. The block of that cause
+/// extrapolates the motion and is wrong at corners. A shifted drive has no such error.
+/// @returns no value if the selection does not contain the cause, if zero lies within the 95 % interval of
+/// the lead, or if the shifted drive leaves more error than the causes of the selection.
 [[nodiscard]] std::optional<LeadFit> fit_lead(const SearchData& data, const Selection& selection,
                                               double noise_mm);
 

@@ -23,7 +23,7 @@ std::string listed(const std::vector<NamedCause>& causes) {
   });
 }
 
-/// Returns the sentence for wrong readings and a correct model.
+/// Returns the sentence for a correct model and wrong readings.
 std::string readings_sentence(const Diagnosis& d) {
   std::string wrong;
   if (d.outliers.present)
@@ -48,8 +48,8 @@ std::string readings_sentence(const Diagnosis& d) {
   return wrong + "; " + those + "the recalibrated model's error is " + reading(d, d.extended_rmse_mm) + ".";
 }
 
-/// Returns the sentence on stick-slip. The readings determine the position of the valve; the command does
-/// not.
+/// Returns the sentence on stick-slip. The position of a sticking valve follows from the readings, not from
+/// the command.
 std::string stick_slip_sentence(const Diagnosis& d, const std::string& before, const std::string& after) {
   return "The model lacks " + listed(d.causes) +
          ": the valve sticks and jumps. The command alone does not determine the times of the jumps, so the "
@@ -58,8 +58,9 @@ std::string stick_slip_sentence(const Diagnosis& d, const std::string& before, c
          reading(d, d.stick_slip->heldout_rmse_mm) + ".";
 }
 
-/// Returns ": with them the held-out error falls from 2 mm to 1 mm". If the error does not fall, the model
-/// without the causes fits equally well only with an inverse response.
+/// Returns the end of the sentence on the named causes: ": with them the held-out error falls from 2 mm to 1
+/// mm". If the error does not fall, it says that the model without the causes needs an inverse response for
+/// an equally good fit.
 std::string with_them(const Diagnosis& d, const std::string& before, const std::string& after) {
   const std::string them = d.causes.size() > 1 ? "them" : "it";
   constexpr double next_to_nothing = 0.02;
