@@ -22,22 +22,25 @@
 namespace softgrip::sysid {
 namespace {
 
-/// A valve responds faster than a finger. With the command as input the bins are therefore shorter, which
-/// also separates the delay of a finger from its lag.
+/// Shortest bins for a finger with the measured pressure and with the command as input [s]. The bins are
+/// shorter for the command, because a valve responds faster than a finger, and because short bins separate
+/// the delay of a finger from its lag.
 constexpr double shortest_finger_bin_s = 0.05, shortest_commanded_bin_s = 0.02;
-/// Order of the autoregression of the residual [bins]. A finger has a longer memory, so its order covers at
-/// least finger_memory_s.
+/// Order of the autoregression of the residual [bins]. The residual of a finger has a longer correlation
+/// time, so the order then covers at least finger_memory_s.
 constexpr std::size_t whitening_order = 8;
 constexpr double finger_memory_s = 0.4;
-/// Lower limits of the spread of gain and zero: from day to day, no finger repeats more exactly.
+/// Lower limits of the spread of gain (relative) and zero (share of the span). No finger is more repeatable
+/// from day to day.
 constexpr double least_gain_spread = 0.002;
 constexpr double least_zero_share = 0.0005;
 
-/// A model that may become the base.
+/// A model that may become the baseline model.
 struct Candidate {
   std::string description;
   std::optional<Regulator> regulator;
-  /// Fits it to records behind the regulator. A model without blocks predicts its input.
+  /// Fits the model to records with the output of the regulator as drive. A model without blocks predicts its
+  /// input.
   std::function<FitPoint(const std::vector<Record>&)> fit;
 };
 
@@ -60,14 +63,14 @@ double mean_temperature(const std::vector<Record>& records) {
   return count > 0 ? sum / count : 20;
 }
 
-/// Returns the prediction of a pressure without a model: the output of the regulator, or 0 without a
+/// Returns the predicted pressure if there is no model: the output of the regulator, or 0 without a
 /// regulator.
 std::vector<double> without_model(const std::optional<Regulator>& regulator, const Record& driven) {
   return regulator ? driven.drive_kpa : std::vector<double>(driven.size(), 0.0);
 }
 
-/// Returns the estimated initial state of a run that was not fitted. Its zero is estimated by the comparison
-/// of runs.
+/// Returns the estimated initial state of a run that was not fitted. The offset is 0, because the comparison
+/// of runs estimates the zero.
 StartState start_of(const model::Model& model, const Record& record) {
   if (model.blocks.empty()) return {};
   StartState start = estimated_start(model, record);
@@ -82,14 +85,14 @@ std::vector<double> plain_prediction(const model::Model& model, const std::optio
   own.peak_before_kpa = start.peak_before_kpa;
   own.valley_before_kpa = start.valley_before_kpa;
   own.arrival_kpa_per_s = start.arrival_kpa_per_s;
-  // An additional block may have a creep branch, which is settled at the start.
+  // An additional block may add a creep branch, which is settled at the start.
   std::copy_n(start.unsettled_mm.begin(), std::min(start.unsettled_mm.size(), own.unsettled_mm.size()),
               own.unsettled_mm.begin());
   return predict(model, record, own);
 }
 
-/// Residual of a candidate for all records, in bins. The candidate is fitted without one unit.
-/// @param model  receives the model.
+/// Returns the residual of a candidate for all records, in bins, after a fit without one unit.
+/// @param model  receives the fitted model.
 Binned left_by(const Candidate& candidate, const std::vector<Record>& records, const Units& units,
                std::size_t unit, double bin_s, model::Model& model) {
   std::vector<std::size_t> kept;
@@ -112,7 +115,7 @@ Binned left_by(const Candidate& candidate, const std::vector<Record>& records, c
   return left;
 }
 
-/// Returns play operators and creep with the same drive as the records.
+/// Returns the candidate with play operators and creep, with the same input as the records.
 Candidate play_candidate(Drive drive) {
   const BaseStructure play{
       .hysteresis = HysteresisForm::play, .delay = drive == Drive::command, .hinged_creep = true};
@@ -148,14 +151,15 @@ std::vector<Candidate> candidates(const std::vector<Record>& records, const Base
   return all;
 }
 
-/// If the pressure is not recorded, the filter bank must represent both valve and finger.
+/// Returns the kinds of filter banks to try. If the pressure is not recorded, the filter bank may have to
+/// represent both the valve and the finger.
 std::vector<FilterKind> kinds_for(Judged judged, Drive drive) {
   if (judged == Judged::pressure) return {FilterKind::valve};
   if (drive == Drive::measured) return {FilterKind::finger};
   return {FilterKind::finger, FilterKind::valve_and_finger};
 }
 
-/// A candidate with its residuals, fitted without each unit and to all units.
+/// A candidate with its residuals after the fits without each unit and the fit to all units.
 struct Fitted {
   std::vector<Record> driven;
   model::Model model;  ///< fitted to all records
@@ -178,14 +182,15 @@ std::vector<Fitted> fit_all(const std::vector<Candidate>& all, const std::vector
   return fitted;
 }
 
-/// Selects the base. The first candidate is the default. A later one replaces it only if it predicts left-out
-/// units better. A regulator is fitted to all units; only the rest of its model is fitted without a unit.
+/// Selects the baseline model. The first candidate is the default, and a later one replaces it only if it
+/// predicts left-out units significantly better. A regulator is always fitted to all units, and only the rest
+/// of its candidate is fitted without a unit.
 void choose(Base& base, const std::vector<Candidate>& all, const std::vector<Record>& records,
             const BaseOptions& options) {
   const std::vector<FilterKind> kinds = kinds_for(base.judged, base.drive);
   const std::vector<Fitted> fitted = fit_all(all, records, base, options.threads);
   std::vector<FittedFilters> fits(all.size() * kinds.size());
-  // Candidates without a regulator have the same drive, so they share the columns of the filter bank.
+  // Candidates without a regulator have the same input, so they share the columns of the filter bank.
   std::vector<std::vector<std::size_t>> groups(1);
   for (std::size_t c = 0; c < all.size(); ++c) {
     if (all[c].regulator)
@@ -228,7 +233,7 @@ std::size_t order_for(const Base& base) {
   return std::max(whitening_order, static_cast<std::size_t>(std::lround(finger_memory_s / base.bin_s)));
 }
 
-/// Computes the spread of gain and zero between units.
+/// Computes the spread of gain and zero between the units.
 void spread(Base& base) {
   std::vector<PairSums> sums(base.units.count() * base.records.size());
   for (std::size_t r = 0; r < base.records.size(); ++r) {
@@ -262,8 +267,8 @@ std::vector<double> walked_with(const Driven& driven, const std::vector<model::B
 }
 
 /// Returns the prediction of model and filter bank with the blocks of an extension. Blocks after the model
-/// also act on the filter bank. The model is simulated again only if a block changes it or depends on the
-/// motion between samples.
+/// also act on the contribution of the filter bank. The model is simulated again only if a block changes the
+/// model or depends on the motion between samples.
 std::vector<double> extended_prediction(const Driven& driven, const std::vector<model::BlockSpec>& blocks) {
   std::vector<model::BlockSpec> within, behind;
   for (const model::BlockSpec& block : blocks) {
@@ -278,7 +283,8 @@ std::vector<double> extended_prediction(const Driven& driven, const std::vector<
   if (behind.empty()) return with_filters;
   with_filters = downstream(behind, driven.walked, std::move(with_filters));
   if (is_downstream(behind, driven.model, driven.walked)) return with_filters;
-  // Between samples, only the motion of the model is known. That of the filter bank is linear.
+  // Between the samples, the motion of the model is simulated, and that of the filter bank is assumed to be
+  // linear.
   const std::vector<double> without_filters_mm = downstream(behind, driven.walked, plain);
   std::vector<double> exact = walked_with(driven, blocks);
   for (std::size_t i = 0; i < exact.size(); ++i) exact[i] += with_filters[i] - without_filters_mm[i];
@@ -306,8 +312,9 @@ std::vector<double> driven_prediction(const Base& base, const Driven& driven, co
   return y;
 }
 
-/// Returns the output of the base's regulator, if it has one, for a command that has passed the valve blocks.
-/// A command that is not linear between the samples is simulated with finer steps.
+/// Returns the output of the regulator of the baseline model, if it has one, for a command that has passed
+/// the valve blocks. After these blocks, the command is not linear between the samples, so the regulator is
+/// then simulated with finer steps.
 std::vector<double> drive_of(const Base& base, const Record& record,
                              const std::vector<model::BlockSpec>& valve, const RegulatorFault& fault) {
   if (!base.regulator) return drive_behind(valve, record);

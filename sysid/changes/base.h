@@ -1,6 +1,6 @@
 #pragma once
-// The base of a finger: a model that is fitted to its healthy logs and then kept constant, with its
-// uncertainty.
+// Fits the baseline model of a finger: a model that is fitted to the logs of the healthy finger and then kept
+// constant, with its uncertainty. A unit is a run or half of a run (sysid/evidence/units.h).
 
 #include <cstdint>
 #include <functional>
@@ -22,8 +22,8 @@
 
 namespace softgrip::sysid {
 
-/// The column that is compared with the base. For `pressure`, the model leads from the command to
-/// pressure_kpa, and every name below that ends with _mm is in kPa.
+/// The quantity that is compared with the baseline model. For `pressure`, the model describes the path from
+/// the command to pressure_kpa, and every name below that ends with _mm is in kPa.
 enum class Judged { displacement, pressure };
 [[nodiscard]] constexpr const char* name_of(Judged judged) {
   return judged == Judged::pressure ? "pressure" : "displacement";
@@ -36,72 +36,77 @@ struct Base {
   Judged judged = Judged::displacement;
   Drive drive = Drive::command;
   std::string description;  ///< description of the selected model
-  model::Model model;       ///< without blocks: only the regulator, or only the filter bank
+  model::Model model;       ///< model of the finger; without blocks, the base consists of the regulator or
+                            ///< the filter bank only
   FilterKind kind = FilterKind::finger;
-  std::optional<Regulator> regulator;  ///< between the command and the model
+  std::optional<Regulator> regulator;  ///< regulator between the command and the model; empty: none
   double largest_kpa = 0;
   Eigen::VectorXd filter_weights;
-  double temperature_c = 20;  ///< mean of the healthy logs
+  double temperature_c = 20;  ///< mean temperature in the healthy logs
   double gain_per_c = 0;      ///< temperature coefficient of the gain in the healthy logs
-  double noise_mm = 0;        ///< sample-to-sample noise of the readings
-  Units units;                ///< units of the healthy records
-  double left_mm = 0;         ///< RMS residual of left-out units about their means
+  double noise_mm = 0;        ///< noise of the readings between consecutive samples
+  Units units;                ///< division of the healthy records into units
+  double left_mm = 0;         ///< RMS residual of left-out units about the mean of each unit
   double span_mm = 0;
-  double gain_spread = 0;  ///< spread between units of the healthy logs, relative
-  double zero_mm = 0;      ///< mean of the healthy readings minus the prediction
+  double gain_spread = 0;  ///< relative spread of the gain between units of the healthy logs
+  double zero_mm = 0;      ///< mean of the healthy readings minus the predictions
   double zero_spread_mm = 0;
   double bin_s = 0.05;
   Whitener whitener;
-  std::vector<Record> records;  ///< healthy records, thinned
-  Binned left;                  ///< residual of each left-out unit
+  std::vector<Record> records;  ///< thinned healthy records
+  Binned left;                  ///< residual of each unit under a fit without this unit
 };
 
 struct BaseOptions {
-  std::optional<model::Model> given;  ///< the model in use; one of the candidates for the base
+  std::optional<model::Model> given;  ///< the model in use, which is one of the candidates for the baseline
+                                      ///< model; empty: none
   std::uint64_t seed = 1;
   unsigned threads = 0;
   std::function<void(const std::string&)> progress;
 };
 
-/// Fits the base.
-/// @param records  healthy, at the full sampling rate.
+/// Fits the baseline model.
+/// @param records  records of the healthy finger at the full sampling rate.
 [[nodiscard]] Base fit_base(const std::vector<Record>& records, Judged judged, Drive drive,
                             const BaseOptions& options);
 
 /// Returns the bin length for a finger with a measured pressure [s].
 [[nodiscard]] double finger_bin_s(const std::vector<Record>& records);
-/// Returns the reading minus the prediction of play operators and creep, in bins. They are fitted without the
-/// unit of the reading. The first readings of a record, from which its start is estimated, are NaN.
-/// @param records  healthy, with the drive that `drive` names.
+/// Returns the reading minus the prediction of play operators and creep, in bins. The prediction for each
+/// unit comes from a fit without this unit. The first readings of a record, from which its initial state is
+/// estimated, are NaN.
+/// @param records  records of the healthy finger with the input that `drive` selects.
 [[nodiscard]] Binned left_out_by_play(const std::vector<Record>& records, Drive drive, double bin_s,
                                       unsigned threads);
 
-/// A record behind the valve of a base, with the predictions of the model and the filter bank.
+/// A record after the simulated valve of a baseline model, with the predictions of model and filter bank.
 struct Driven {
-  Record record;       ///< its drive is the input of the finger at the samples
-  Record walked;       ///< record with which `model` is simulated: the same, or that of the command
-  model::Model model;  ///< model of the base; it contains the valve blocks if that is possible
-  Eigen::VectorXd filters;
-  StartState start;  ///< initial state of the model, without offset
-  std::vector<double> plain;
+  Record record;       ///< record whose drive is the input of the finger at each sample
+  Record walked;       ///< record with which `model` is simulated: equal to `record`, or with the command as
+                       ///< drive
+  model::Model model;  ///< model of the base, including the valve blocks if they can be added
+  Eigen::VectorXd filters;    ///< contribution of the filter bank at each sample
+  StartState start;           ///< initial state of the model, without an offset
+  std::vector<double> plain;  ///< prediction of the model alone at each sample
 };
-/// Simulates the valve of the base.
-/// @param valve  additional blocks between the command and the base. @param fault  of the base's regulator.
+/// Simulates the valve of the baseline model.
+/// @param valve  additional blocks between the command and the baseline model.
+/// @param fault  faults of the regulator of the baseline model.
 /// @param start  initial state of the record; nullptr: it is estimated from the first readings.
 [[nodiscard]] Driven driven_by(const Base& base, const Record& record,
                                const std::vector<model::BlockSpec>& valve = {},
                                const RegulatorFault& fault = {}, const StartState* start = nullptr);
 
-/// Returns the prediction of the base with `extension`, without an offset.
-/// @param driven  driven_by() of the record, if it is already known.
+/// Returns the prediction of the baseline model with the effects of `extension`, without an offset.
+/// @param driven  result of driven_by() for the record, if it is already known; otherwise nullptr.
 [[nodiscard]] std::vector<double> predict_base(const Base& base, const Record& record,
                                                const Extension& extension, const Driven* driven = nullptr);
 
-/// Returns the record for a search for changes, with several samples in every bin. A valve responds faster
-/// than a finger.
+/// Returns a copy of the record for a search for changes, thinned to several samples per bin. The number is
+/// larger for a pressure, because a valve responds faster than a finger.
 [[nodiscard]] Record thinned_for(const Base& base, const Record& record);
 
-/// Returns the reading minus the prediction of the unchanged base for each sample.
+/// Returns the reading minus the prediction of the unchanged baseline model, for each sample of each record.
 [[nodiscard]] std::vector<std::vector<double>> residuals_of(const Base& base,
                                                             const std::vector<Record>& records);
 

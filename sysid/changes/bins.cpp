@@ -12,10 +12,11 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Upper limits of the classes of the input rate, as shares of all bins.
+/// Upper limits of the input-rate classes, as shares of all bins in order of their rate.
 constexpr std::array class_ends{0.4, 0.7, 0.9};
 
-/// Subtracts the mean of the finite values, because the zero of a run is a separate parameter.
+/// Subtracts the mean of the finite values from the series, because the zero of a run is a separate
+/// parameter.
 void subtract_mean(std::vector<double>& series) {
   double sum = 0, count = 0;
   for (const double v : series) {

@@ -1,6 +1,6 @@
 #pragma once
-// Averages series over short bins and whitens the residuals of a healthy base. Slow and frequent errors then
-// have a lower weight.
+// Averages series over short bins and whitens the residuals of the healthy finger, which gives slow and
+// frequent errors a lower weight.
 
 #include <cstddef>
 #include <vector>
@@ -11,29 +11,32 @@
 
 namespace softgrip::sysid {
 
-/// Means of each record over intervals of equal duration. NaN: the interval contains no reading.
+/// Means of each record over bins of equal duration. NaN: the bin contains no reading.
 using Binned = std::vector<std::vector<double>>;
 
-/// Returns the bin length of records [s]: `least_s`, or two samples if that is longer.
+/// Returns the bin length for these records [s]: `least_s`, or two sampling intervals if these are longer.
 [[nodiscard]] double bin_s(const std::vector<Record>& records, double least_s);
 
 /// Returns the mean of the finite values in every bin.
 [[nodiscard]] std::vector<double> binned(const Record& record, const std::vector<double>& series,
                                          double bin_s);
 
-/// Returns the series with the given number of bins. A thinned record may be one bin shorter; its last value
-/// is then repeated.
+/// Returns the series with the given number of bins. A thinned record may have one bin less, and its last
+/// value is then repeated.
 [[nodiscard]] std::vector<double> with_bins(std::vector<double> series, std::size_t bins);
 
 /// Returns the rate |dp/dt| of the drive in bins [kPa/s], after a peak detector that decays with a time
 /// constant of 0.5 s.
 [[nodiscard]] std::vector<double> peak_rate_of(const Record& record, double bin_s);
 
-/// Prediction error of an autoregression, in units of its standard deviation at this rate of the input.
+/// Computes the prediction error of an autoregression, divided by its standard deviation at the current input
+/// rate.
 struct Whitener {
   std::vector<double> before;               ///< weights of the previous bins, the nearest first
-  std::vector<double> peak_rate_kpa_per_s;  ///< lower limits of the classes of peak_rate except the first
-  std::vector<double> spread;               ///< standard deviation of each class; one more than the limits
+  std::vector<double> peak_rate_kpa_per_s;  ///< limits between the classes of peak_rate_of(), in increasing
+                                            ///< order
+  std::vector<double> spread;               ///< standard deviation for each class; one element more than the
+                                            ///< limits
 
   [[nodiscard]] std::size_t class_of(double peak_rate) const;
   [[nodiscard]] double spread_at(double peak_rate) const {
@@ -41,12 +44,12 @@ struct Whitener {
   }
 };
 
-/// Fits the whitener to a residual by the Yule-Walker equations. The mean of every record is subtracted
-/// first.
-/// @param peak_rate  of the same bins.
+/// Fits the whitener to a residual by the Yule-Walker equations, after subtraction of the mean of every
+/// record.
+/// @param peak_rate  peak_rate_of() in the same bins.
 [[nodiscard]] Whitener whitener_of(Binned residual, const Binned& peak_rate, std::size_t order);
 
-/// The rows of a residual that can be whitened, because enough finite bins precede them.
+/// The bins of a residual that can be whitened, because enough finite bins precede them. Each bin is a row.
 class WhiteRows {
  public:
   struct Row {
@@ -56,7 +59,7 @@ class WhiteRows {
 
   WhiteRows(const Binned& residual, const Binned& peak_rate, Whitener whitener);
   [[nodiscard]] const std::vector<Row>& rows() const { return rows_; }
-  /// Returns the whitened series. Missing values count as 0.
+  /// Returns the whitened series. Missing values of the series count as 0.
   [[nodiscard]] Eigen::VectorXd operator()(const Binned& series) const;
 
  private:

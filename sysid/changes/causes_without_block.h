@@ -1,5 +1,5 @@
 #pragma once
-// Causes of a change without a block of a model: the air supply and the load.
+// Declares causes of a change that no block of a model describes: faults of the air supply, and a load.
 
 #include <array>
 #include <string_view>
@@ -37,8 +37,8 @@ inline constexpr CauseWithoutBlock leak{
      {SizedBy::Of::number, "pressure loss per second with a closed line", "kPa", "loss_kpa_per_s"}},
     Appears::held};
 
-/// A weight or a preload changes gain and zero together. The readings do not separate it from a change of the
-/// finger together with a change of the zero.
+/// A weight or a preload changes gain and zero together. The readings cannot separate this cause from a
+/// change of the finger that occurs together with a change of the zero.
 inline constexpr CauseWithoutBlock payload{
     "payload",
     "Payload",

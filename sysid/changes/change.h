@@ -1,6 +1,6 @@
 #pragma once
-// Diagnoses the change of a finger since it was healthy. A base is fitted to the healthy logs and kept
-// constant. Causes are fitted as changes of it.
+// Diagnoses how a finger has changed since it was healthy. A baseline model is fitted to the healthy logs and
+// kept constant. Causes are fitted as changes of this model.
 
 #include <cstdint>
 #include <functional>
@@ -29,7 +29,7 @@ struct ChangeOptions {
   std::function<void(const std::string&)> progress;
 };
 
-/// A size that a technician can check.
+/// The size of a change as a quantity that a technician can check.
 struct ChangeSize {
   std::string what;  ///< "dead time", "gain"
   double value = 0;
@@ -46,9 +46,10 @@ struct ChangeCause {
   ChangeSize size;
   EffectIntervals intervals;
   double full_pressure_mm = 0;  ///< change of the displacement at full pressure
-  double effect_mm = 0;         ///< root mean square in the later logs
-  double share_percent = 0;     ///< share of the error beyond the healthy spread
-  double gain = 0;              ///< improvement per bin, in units of the healthy spread
+  double effect_mm = 0;         ///< root mean square effect in the later logs
+  double share_percent = 0;     ///< share of the whitened error beyond that of the healthy logs that the
+                                ///< cause explains
+  double gain = 0;              ///< reduction of the whitened mean square, whose healthy value is 1
   double gain_lower = 0, gain_upper = 0;
   std::vector<std::string> alternatives;  ///< ids of causes that explain the data equally well
 };
@@ -56,41 +57,47 @@ struct ChangeCause {
 /// A cause that was tested, and the reason if it was rejected.
 struct TriedCause {
   std::string id, form;
-  double gain = 0;
-  double healthy_gain = 0;  ///< mean improvement in healthy units that are left out
-  double tolerance = 0;     ///< smallest improvement of a change
-  std::string rejected;     ///< reason of the rejection, if known
+  double gain = 0;          ///< reduction of the whitened mean square
+  double healthy_gain = 0;  ///< mean reduction in healthy units that were left out of the fit
+  double tolerance = 0;     ///< smallest reduction that counts as a change
+  std::string rejected;     ///< reason of the rejection; empty: not known
 };
 
-/// RMS error of the base in a run about its mean, without and with the causes.
+/// RMS error of the baseline model in a run about its mean: without (base) and with the causes (explained).
 struct RunLeft {
   std::string run;
-  bool is_healthy = false;  ///< the run was left out of the fit, and no cause acts
+  bool is_healthy = false;  ///< true: a healthy run that was left out of the fit; it contains no cause
   double base = 0, explained = 0;
 };
 
-/// Result for one reading: the displacement or the pressure.
+/// Result for one quantity: the displacement or the pressure.
 struct JudgedChange {
   Judged judged = Judged::displacement;
   model::OutputUnit output_unit = model::OutputUnit::mm;
-  std::string base;     ///< description
-  double noise_mm = 0;  ///< sample-to-sample noise; in kPa for the pressure
+  std::string base;     ///< description of the baseline model
+  double noise_mm = 0;  ///< noise between consecutive samples; in kPa for the pressure
   std::size_t healthy_runs = 0;
-  double healthy_mm = 0;    ///< error of the base in left-out healthy units
-  double allowed_mm = 0;    ///< largest expected error in another healthy run
-  double later_mm = 0;      ///< error of the base in the later logs, without differences of zero and gain
-  double explained_mm = 0;  ///< error with the causes
-  double loss_before = 1, loss_left = 1;  ///< whitened mean squares; 1: as in the healthy logs
+  double healthy_mm = 0;    ///< RMS error of the baseline model in left-out healthy units
+  double allowed_mm = 0;    ///< largest RMS error to be expected in a further healthy run
+  double later_mm = 0;      ///< RMS error of the baseline model in the later logs, apart from differences of
+                            ///< zero and gain
+  double explained_mm = 0;  ///< the same error if the causes are included
+  double loss_before = 1, loss_left = 1;  ///< whitened mean squares without and with the causes; 1: as in the
+                                          ///< healthy logs
   double zero_mm = 0;                     ///< change of the zero
-  double gain_percent = 0;                ///< change of the gain within the healthy spread
+  double gain_percent = 0;                ///< change of the gain that is within the spread of the healthy
+                                          ///< logs
   bool left_over = false;
   std::vector<TriedCause> tried;
-  std::vector<EffectIntervals> intervals;  ///< intervals of its causes, in the order in which they were found
-  std::map<std::string, std::string> not_tested;  ///< causes, each with the recording that would test it
+  std::vector<EffectIntervals> intervals;  ///< intervals of the causes, in the order in which these were
+                                           ///< found
+  std::map<std::string, std::string> not_tested;  ///< causes by id, each with the recording that would test
+                                                  ///< it
   double bin_s = 0.05;
-  std::vector<RunLeft> runs;      ///< healthy runs first
+  std::vector<RunLeft> runs;      ///< all runs, the healthy ones first
   std::vector<std::string> logs;  ///< names of the later logs
-  Binned left, explained;         ///< residuals in the later logs, without and with the causes
+  Binned left, explained;         ///< residuals in the later logs: without the causes (left) and with them
+                                  ///< (explained)
 };
 
 struct ChangeDiagnosis {
@@ -107,9 +114,9 @@ struct ChangeDiagnosis {
                                                                          const std::vector<Log>& later,
                                                                          const ChangeOptions& options = {});
 
-/// Returns the size as a text: "more dead time 0.03 s".
+/// Returns the size as a text, such as "more dead time 0.03 s".
 [[nodiscard]] std::string size_text(const ChangeCause& cause);
-/// Returns the interval of the size in its unit: "0.0275 .. 0.0325", or "-" if there is none.
+/// Returns the interval of the size in its unit, such as "0.0275 .. 0.0325", or "-" if there is none.
 [[nodiscard]] std::string interval_text(const ChangeCause& cause);
 
 /// Returns the verdict as one sentence for a technician.

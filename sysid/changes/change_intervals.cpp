@@ -15,7 +15,7 @@ namespace {
 
 constexpr double quantile = 1.959963984540054;
 
-/// A parameter of an effect, and its step for a numerical derivative.
+/// A parameter of an effect, and the step of its numerical derivative.
 struct Place {
   std::size_t effect = 0, number = 0;
   double by = 0;
@@ -35,8 +35,8 @@ std::vector<FittedEffect> moved(std::vector<FittedEffect> found, const Place& pl
   return found;
 }
 
-/// Returns the derivatives of white_and_gain() with respect to the parameters. The steps in `places` are the
-/// units.
+/// Returns the derivatives of white_and_gain() with respect to the parameters, in units of the steps in
+/// `places`.
 Eigen::MatrixXd slopes_of(const LaterReadings& readings, const std::vector<FittedEffect>& found,
                           const std::vector<Place>& places, const Eigen::VectorXd& white) {
   Eigen::MatrixXd slopes(white.size(), static_cast<Eigen::Index>(places.size()));
@@ -45,8 +45,8 @@ Eigen::MatrixXd slopes_of(const LaterReadings& readings, const std::vector<Fitte
   return slopes;
 }
 
-/// Returns the sum of the squared gradients of the blocks of rows. Each row after those of the readings is a
-/// block with known variance.
+/// Returns the sum over the blocks of the squared gradient (outer product). Each penalty row after the rows
+/// of the readings is a block of its own with a known variance of 1.
 Eigen::MatrixXd spread_of_gradient(const LaterReadings& readings, const Eigen::MatrixXd& slopes,
                                    const Eigen::VectorXd& white) {
   const std::vector<std::size_t> blocks = blocks_of(readings);
@@ -60,7 +60,8 @@ Eigen::MatrixXd spread_of_gradient(const LaterReadings& readings, const Eigen::M
         slopes.row(i).transpose() * (row < blocks.size() ? white(i) : 1);
   }
   const auto n = static_cast<double>(count), numbers = static_cast<double>(slopes.cols());
-  const double few = n > numbers ? n / (n - numbers) : 1;  // as many degrees of freedom as blocks
+  const double few = n > numbers ? n / (n - numbers) : 1;  // correction for the degrees of freedom: blocks
+                                                           // minus parameters
   return few * gradients * gradients.transpose();
 }
 
@@ -88,7 +89,8 @@ std::optional<Interval> within(const EffectNumber& number, std::optional<Interva
   return interval;
 }
 
-/// Returns the fit of the same form in a healthy unit, or nullptr if it improves nothing there.
+/// Returns the fit of the same form in a healthy unit, or nullptr if the form does not reduce the error
+/// there.
 const FittedEffect* same_form(const HealthyFits& unit, const FittedEffect& effect) {
   for (const ScoredEffect& each : unit.ranked) {
     const FittedEffect& fitted = each.fit.fitted;
@@ -98,8 +100,9 @@ const FittedEffect* same_form(const HealthyFits& unit, const FittedEffect& effec
   return nullptr;
 }
 
-/// Returns the variance of `value_of` a fitted form between runs: its mean square over healthy units, for the
-/// difference of another run from their mean.
+/// Returns the variance between runs of a quantity of a fitted form. `value_of` computes the quantity. The
+/// variance is the mean square over the healthy units, increased for the comparison of a further run with
+/// their mean.
 template <class ValueOf>
 double between_runs(const std::vector<HealthyFits>& healthy, const FittedEffect& effect, ValueOf value_of) {
   const auto units = static_cast<double>(healthy.size());
@@ -119,7 +122,7 @@ double healthy_variance(const std::vector<HealthyFits>& healthy, const FittedEff
   });
 }
 
-/// Returns the size of the effect with its parameters.
+/// Returns the size of the effect for its current parameters.
 double size_with(const LaterReadings& readings, const FittedEffect& effect) {
   return size_of(readings, effect, at_full_pressure(readings, readings.added({effect}))).value;
 }

@@ -1,5 +1,6 @@
 #pragma once
-// Writes a change as diagnosis.json: the keys of every diagnosis and those of a change.
+// Writes the diagnosis of a change as diagnosis.json: the keys of every diagnosis and those specific to a
+// change.
 
 #include <nlohmann/json_fwd.hpp>
 

@@ -44,7 +44,8 @@ double at_full_pressure(const LaterReadings& readings, const Binned& added) {
 }
 
 ChangeSize size_of(const LaterReadings& readings, const FittedEffect& effect, double full_pressure_mm) {
-  // A change of the gain alone also includes the gain that counts as no change.
+  // If only the gain has changed, its size includes the difference within the healthy spread, which was
+  // fitted separately.
   if (const double* gain = number(effect, "gain_change"); gain != nullptr && effect.numbers.size() == 1)
     return {"gain", 100 * (*gain + readings.nuisance({effect}).gain), "%"};
   const SizedBy size = effect.effect.size.value_or(sized_by(effect.effect.id));

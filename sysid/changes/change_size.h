@@ -1,14 +1,14 @@
 #pragma once
-// Size of a change as a quantity that a technician can check.
+// Computes the size of a change as a quantity that a technician can check.
 
 #include "sysid/changes/change.h"
 
 namespace softgrip::sysid {
 
-/// Returns the mean of a series over the bins whose drive is above 90 % of the largest drive.
+/// Returns the mean of a series over the bins in which the drive exceeds 90 % of its largest value.
 [[nodiscard]] double at_full_pressure(const LaterReadings& readings, const Binned& added);
 
-/// Returns the size.
+/// Returns the size of an effect.
 /// @param full_pressure_mm  change of the displacement at full pressure.
 [[nodiscard]] ChangeSize size_of(const LaterReadings& readings, const FittedEffect& effect,
                                  double full_pressure_mm);

@@ -1,6 +1,6 @@
 #pragma once
-// Blocks after all blocks of a base. Their output follows from the output of the base at the samples, so the
-// base is not simulated again.
+// Simulates blocks that follow all blocks of a baseline model. Their output depends only on the output of the
+// baseline model at the samples, so this model is not simulated again.
 
 #include <vector>
 
@@ -9,13 +9,14 @@
 
 namespace softgrip::sysid {
 
-/// Returns true if all `blocks` are behind those of `base` and their output at a sample depends on the base's
-/// output at that sample alone. Always false for a held command or an unknown start.
+/// Returns true if all `blocks` follow those of `base` in the chain and their output at a sample depends only
+/// on the output of `base` at this sample. Always false for a held command or an unknown initial state.
 [[nodiscard]] bool is_downstream(const std::vector<model::BlockSpec>& blocks, const model::Model& base,
                                  const Record& record);
 
-/// Returns the result of predict() for the base with the blocks.
-/// @param blocks  is_downstream() is true. @param base_mm  prediction of the record by the base.
+/// Returns the same result as predict() for the baseline model with the blocks.
+/// @param blocks  blocks for which is_downstream() is true.
+/// @param base_mm  prediction of the baseline model for the record.
 [[nodiscard]] std::vector<double> downstream(const std::vector<model::BlockSpec>& blocks,
                                              const Record& record, std::vector<double> base_mm);
 

@@ -17,12 +17,12 @@ namespace {
 
 constexpr int most_effect_steps = 9;
 constexpr std::size_t followed = 2;
-/// Smallest damping of a number, as a share of the sum of all curvatures.
+/// Smallest damping of a parameter, as a share of the sum of all curvatures.
 constexpr double least_curvature = 0.01;
-/// More starts than this are dense: none of them is scaled.
+/// If an effect has more start points than this, they are close together, and sized() is not applied to them.
 constexpr std::size_t most_sized = 16;
 
-/// Time constants of the transient after a start that no healthy record has [s].
+/// Time constants [s] of the transient in a record that begins differently from all healthy records.
 constexpr auto transient_lags_s = std::span(finger_lags_s).last<slow_lags>();
 
 bool begins_as_a_healthy_one(const Base& base, const Record& record) {
@@ -38,7 +38,8 @@ std::vector<double> transient(std::size_t bins, double bin_s, double lag_s) {
   return series;
 }
 
-/// Largest gain that another run of an unchanged finger may have. A larger one is a change.
+/// Returns the largest relative gain that counts as unchanged: another run of an unchanged finger may have
+/// it.
 double free_gain(const Base& base) {
   return t_quantile(static_cast<double>(base.units.count() - 1)) * base.gain_spread;
 }
@@ -49,7 +50,7 @@ std::vector<double> within(const Effect& effect, std::vector<double> numbers) {
   return numbers;
 }
 
-/// Scale of a parameter during the fit.
+/// Returns the unit of a parameter during the fit.
 double unit(const FittedEffect& fitted, std::size_t i) {
   const double scale = std::min(fitted.effect.numbers[i].scale, fitted.effect.numbers[i].upper);
   return std::max(0.3 * std::abs(fitted.numbers[i]), 0.05 * scale);
@@ -69,7 +70,7 @@ class Fit {
     return fit;
   }
 
-  /// Returns the better of a start and of the same effect with the size that fits best.
+  /// Returns the better of two fits: a start point, and the same effect scaled to the size that fits best.
   [[nodiscard]] EffectFit sized(EffectFit fit, const Eigen::VectorXd& without) const {
     if (!std::isfinite(fit.sum_of_squares)) return fit;
     const Eigen::VectorXd change = fit.white - without;
@@ -92,7 +93,7 @@ class Fit {
                     .longest_step = std::numeric_limits<double>::infinity(),
                     .least_share = 1e-4,
                     .least_gain = 0.1,
-                    // A gain has no curvature while the nuisance gain replaces it.
+                    // The gain of an effect has no curvature where the fitted common gain can replace it.
                     .least_damping = least_curvature})
         .point;
   }
@@ -125,8 +126,8 @@ class Fit {
   }
 
  private:
-  /// Value at which the number has no effect; if this is far outside the data, the value at which its effect
-  /// begins.
+  /// Returns the value at which the parameter has no effect. If this value is far outside the data, returns
+  /// the value at which the effect begins.
   [[nodiscard]] double limit_of_nothing(std::size_t i) const {
     const double nothing = effect_.nothing[i];
     double reach = std::numeric_limits<double>::infinity();
@@ -382,7 +383,7 @@ EffectFit fit_effect(const LaterReadings& readings, const Effect& effect,
   std::vector<EffectFit> looks;
   for (const std::vector<double>& start : effect.starts) {
     EffectFit first = fit.at(within(effect, start));
-    // If the base does not respond to the effect, no other start changes that.
+    // If the baseline model does not respond to the effect at all, no other start point can change that.
     if (!effect.free_form && looks.empty() && first.white == without) return first;
     looks.push_back(dense ? std::move(first) : fit.sized(std::move(first), without));
   }

@@ -1,5 +1,5 @@
 #pragma once
-// Fits one effect to the residual of later records after a frozen base.
+// Fits an effect to the residual that the constant baseline model leaves in later records.
 
 #include <vector>
 
@@ -11,43 +11,45 @@
 
 namespace softgrip::sysid {
 
-/// An effect with its numbers.
+/// An effect with the values of its parameters.
 struct FittedEffect {
   Effect effect;
   std::vector<double> numbers;
 };
 
-/// Residuals of later records after the base, without the differences that are not a change: the zero, and a
-/// gain within the variation of the healthy logs.
+/// Residuals that the baseline model leaves in later records. Differences that do not count as a change are
+/// fitted and removed: the zero, and a gain within the variation of the healthy logs.
 class LaterReadings {
  public:
-  /// @param later  thinned_for() the base. @param left  their residual after the base, in bins.
+  /// @param later  later records, thinned by thinned_for().
+  /// @param left  their residuals in bins.
   LaterReadings(const Base& base, std::vector<Record> later, Binned left);
-  /// Returns the readings of one unit, or those of all other units.
+  /// Returns the readings of one unit. without() returns those of all other units.
   [[nodiscard]] LaterReadings only(const Units& units, std::size_t unit) const;
   [[nodiscard]] LaterReadings without(const Units& units, std::size_t unit) const;
 
-  /// Returns the whitened residual of the base with these effects, after the fit of zero and gain. It has a
-  /// few rows more than rows(): the penalties of zero and gain.
+  /// Returns the whitened residual of the baseline model with these effects, after the fit of zero and gain.
+  /// The rows are those of rows(), followed by a few rows with the penalties of the zeros.
   [[nodiscard]] Eigen::VectorXd white(const std::vector<FittedEffect>& effects) const;
-  /// Returns white() and, as the last row, the gain that is not a change, in units of the variation of the
-  /// healthy logs.
+  /// Returns white() with one more row: the fitted gain that does not count as a change, in units of the
+  /// variation of the healthy logs.
   [[nodiscard]] Eigen::VectorXd white_and_gain(const std::vector<FittedEffect>& effects) const;
   [[nodiscard]] const WhiteRows& rows() const { return rows_; }
   [[nodiscard]] const Base& base() const { return base_; }
   [[nodiscard]] const std::vector<Record>& records() const { return later_; }
-  /// Returns the names of the records whose start no healthy record has: under pressure, or without pressure.
-  /// The healthy records do not show the slow transient of such a start, so it is not a change.
+  /// Returns the names of the records that begin differently from all healthy records (under pressure or
+  /// without pressure). The healthy records do not show the slow transient of such a start, so this transient
+  /// does not count as a change.
   [[nodiscard]] std::vector<std::string> other_starts() const;
   [[nodiscard]] const Binned& left() const { return left_; }
-  /// Prediction of the unchanged base, in bins.
+  /// Returns the prediction of the unchanged baseline model, in bins.
   [[nodiscard]] const Binned& plain() const { return plain_; }
-  /// Difference of the prediction with and without the effects, in bins.
+  /// Returns the difference between the predictions with and without the effects, in bins.
   [[nodiscard]] Binned added(const std::vector<FittedEffect>& effects) const;
-  /// Returns the root mean square of the residual with these effects, not whitened. The zero of each record
-  /// and the common gain are fitted.
+  /// Returns the root mean square of the residual with these effects without whitening, after a fit of one
+  /// zero per record and one common gain.
   [[nodiscard]] double plain_rms(const std::vector<FittedEffect>& effects) const;
-  /// Zero and gain that are fitted beside the effects: common zero [mm], relative gain.
+  /// Zero and gain that are fitted in addition to the effects: common zero [mm], relative gain.
   struct Nuisance {
     double zero_mm = 0, gain = 0;
   };
@@ -75,16 +77,20 @@ class LaterReadings {
   std::vector<Driven> driven_;
   WhiteRows rows_;
   Eigen::VectorXd target_;
-  /// Columns of zeros and of transients after other starts, and the matrix that gives their sizes.
+  /// Columns of the zeros and of the transients after unknown starts, and the matrix that computes their
+  /// sizes.
   Eigen::MatrixXd nuisance_, solver_;
-  Eigen::VectorXd price_;                 ///< root of the penalty of each
-  Eigen::VectorXd motion_, motion_left_;  ///< motion of the base, complete and after the fit of the zeros
+  Eigen::VectorXd price_;                 ///< square root of the penalty of each column
+  Eigen::VectorXd motion_, motion_left_;  ///< motion of the baseline model: complete, and after the fit of
+                                          ///< the zeros
 };
 
-/// Returns the records of the base with its residual for each unit that is left out of the fit.
+/// Returns the healthy records with the residual of each unit under a fit without this unit.
 [[nodiscard]] LaterReadings healthy_readings(const Base& base);
 
-/// @param records  at full rate. @param left  residuals_of() them.
+/// Returns the readings of later records.
+/// @param records  records at the full sampling rate.
+/// @param left  result of residuals_of() for these records.
 [[nodiscard]] LaterReadings readings_of(const Base& base, const std::vector<Record>& records,
                                         const std::vector<std::vector<double>>& left);
 
@@ -94,13 +100,14 @@ struct EffectFit {
   Eigen::VectorXd white;
 };
 
-/// Fits an effect from the best of its starts. The other effects are fixed.
-/// @param without  readings.white(others).
+/// Fits the parameters of an effect, starting from the best of its start points. The other effects stay
+/// constant.
+/// @param without  result of readings.white(others).
 [[nodiscard]] EffectFit fit_effect(const LaterReadings& readings, const Effect& effect,
                                    const std::vector<FittedEffect>& others, const Eigen::VectorXd& without);
 
-/// Returns the difference of a number for a derivative: a small share of its value or of its usual value,
-/// within its bounds.
+/// Returns the step of a parameter for its numerical derivative: a small share of its value or of its typical
+/// value. The step stays within the bounds of the parameter.
 [[nodiscard]] double small_move(const FittedEffect& fitted, std::size_t number);
 
 [[nodiscard]] Extension extension_of(const std::vector<FittedEffect>& effects);

@@ -25,14 +25,14 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t most_starts = 8;
 const EffectNumber gain_change{"gain_change", "", 0.01, -0.9, 9};
 
-/// Returns the cause that has a form with this block.
+/// Returns the cause of which this block is a form.
 template <template <class> class Block>
 const Cause& cause_with() {
   return *cause_of(model::block_type<Block>());
 }
 
-/// Thins a list of starts evenly. Starts with a single parameter are all kept, because the error has a
-/// separate minimum at each.
+/// Returns an evenly thinned list of start points. If there is a single parameter, all are kept, because the
+/// error has a separate minimum at each of them.
 std::vector<std::vector<double>> some(std::vector<std::vector<double>> all) {
   if (all.size() <= most_starts || all.front().size() == 1) return all;
   std::vector<std::vector<double>> kept;
@@ -40,7 +40,7 @@ std::vector<std::vector<double>> some(std::vector<std::vector<double>> all) {
   return kept;
 }
 
-/// Returns true if the block can be added to the base.
+/// Returns true if the block can be added to the baseline model.
 bool is_carried(const Base& base, const model::BlockSpec& block) {
   if (base.model.blocks.empty()) return false;
   return model::validate(model::with_block(base.model, block)).empty();
@@ -84,8 +84,9 @@ class Collector {
     std::vector<model::BlockSpec> starts = form.starts(scales_);
     if (starts.empty()) return;
     const model::BlockDescriptor& descriptor = model::catalogue()[form.type];
-    if (form.type == model::block_type<model::SensorWander>()) return;  // the knots follow this drift too
-    // add_softening() and add_crescent() add similar effects to any base.
+    // The free form of this cause (piecewise linear) also represents a sinusoidal drift.
+    if (form.type == model::block_type<model::SensorWander>()) return;
+    // add_softening() and add_crescent() add similar effects for any baseline model.
     if (form.type == model::block_type<model::PseudoElasticSoftening>()) return;
     if (form.type == model::block_type<model::CrescentHysteresis>()) return;
     if (cause.station != model::Station::valve && !is_carried(base_, starts.front())) return;
@@ -116,7 +117,7 @@ class Collector {
     effects_.push_back(std::move(effect));
   }
 
-  /// Returns a form of a cause without its parameters.
+  /// Returns an effect for a form of a cause, still without parameters.
   static Effect form_of(const Cause& cause, std::string_view form) {
     Effect effect;
     effect.id = cause.id;
@@ -136,14 +137,15 @@ class Collector {
     effect.appears = cause.appears;
     return effect;
   }
-  /// Returns the first form of a cause so far, or nullptr if it cannot be added to the base.
+  /// Returns the first effect of this cause that was added so far, or nullptr if the cause cannot be added to
+  /// the baseline model.
   Effect* first_of(const Cause& cause) {
     const auto found =
         std::find_if(effects_.begin(), effects_.end(), [&](const Effect& e) { return e.id == cause.id; });
     return found == effects_.end() ? nullptr : &*found;
   }
 
-  /// A gain that has changed and is constant.
+  /// Adds the effect of a gain that has changed and is constant since then.
   void add_gain() {
     Effect effect = form_of(cause_with<model::Ageing>(), "another_gain");
     effect.numbers = {gain_change};
@@ -168,7 +170,8 @@ class Collector {
     since.apply = [](Extension& e, const std::vector<double>& n) { e.softening = {n[0], 0}; };
     effects_.push_back(std::move(since));
   }
-  /// Adds a loop that is wider on one side to a base without a Bouc-Wen loop.
+  /// Adds the effect of a loop whose loading and unloading curves differ, which does not require a Bouc-Wen
+  /// model.
   void add_crescent() {
     Effect effect = form_of(cause_with<model::DuhemHysteresis>(), "crescent");
     effect.numbers = {{"share", "", 0.05, 0, 3}, {"exponent", "", 1, 1.2, 6}};
@@ -177,11 +180,12 @@ class Collector {
     effect.apply = [](Extension& e, const std::vector<double>& n) { e.crescent = {n[0], n[1]}; };
     effects_.push_back(std::move(effect));
   }
-  /// The displacement at which the gain is unchanged is unknown, so a gain is fitted with the curvature.
+  /// Adds the effect of a stiffening about a point. The displacement at which the gain is unchanged is
+  /// unknown, so a gain is fitted together with the curvature.
   void add_stiffening() {
     Effect* const plain = first_of(cause_with<model::Stiffening>());
     if (plain == nullptr) return;
-    // A finger whose gain increases with the displacement has not stiffened.
+    // An increase of the gain with the displacement is not a stiffening.
     plain->numbers[0].lower = 0;
     std::erase_if(plain->starts, [](const std::vector<double>& start) { return start[0] < 0; });
     Effect effect = *plain;
@@ -196,7 +200,7 @@ class Collector {
     };
     effects_.push_back(std::move(effect));
   }
-  /// Adds a sensor scale with a one-sided curvature.
+  /// Adds the effect of a sensor scale with a curvature of one sign.
   void add_bow() {
     const Effect* const bent = first_of(cause_with<model::SensorNonlinearity>());
     if (bent == nullptr) return;
@@ -208,7 +212,8 @@ class Collector {
     effect.apply = [bend = bent->apply](Extension& e, const std::vector<double>& n) { bend(e, {n[0], 0}); };
     effects_.push_back(std::move(effect));
   }
-  /// The temperature at which the gain is unchanged is unknown, so a gain is fitted with the slope.
+  /// Adds the effect of the temperature on the gain. The temperature at which the gain is unchanged is
+  /// unknown, so a gain is fitted together with the slope.
   void add_thermal() {
     Effect effect = form_of(cause_with<model::ThermalGain>(), causes::ThermalGain::id);
     effect.numbers = {{"gain_per_c", "1/degC", 0.002, -0.2, 0.2}, gain_change};
@@ -239,7 +244,7 @@ class Collector {
     effects_.push_back(std::move(slow));
   }
 
-  /// Adds faults of the regulator that the base contains.
+  /// Adds faults of the regulator that is part of the baseline model.
   void add_faults() {
     const double p = base_.largest_kpa, per_s = leaking_kpa_per_s(p);
     Effect leaking = form_of(leak);

@@ -1,5 +1,5 @@
 #pragma once
-// The causes as changes of a constant base, each with few parameters.
+// Defines the causes as changes of a constant baseline model, each with few parameters.
 
 #include <functional>
 #include <optional>
@@ -20,7 +20,7 @@ struct EffectNumber {
   double scale = 1, lower = 0, upper = 0;
 };
 
-/// One form of a cause.
+/// One form of a cause, as an effect on the baseline model.
 struct Effect {
   std::string id;  ///< id of the cause
   std::string title;
@@ -29,22 +29,23 @@ struct Effect {
   bool free_form = false;
   std::vector<EffectNumber> numbers;
   std::vector<std::vector<double>> starts;
-  std::vector<double> nothing;  ///< neutral values; NaN: the value then has no influence
-  /// Adds the effect with these parameters.
+  std::vector<double> nothing;  ///< neutral value of each parameter; NaN: there is none, because the
+                                ///< parameter is irrelevant if the effect is neutral
+  /// Adds the effect with these parameter values to an extension.
   std::function<void(Extension&, const std::vector<double>&)> apply;
-  /// Id of a cause with equal readings; empty: none.
+  /// Id of a cause with equal readings for every command; empty: none.
   std::string twin = {};
   /// Number of parameters that only define the reference of the effect.
   std::size_t nuisance_numbers = 0;
-  /// No mechanism matches this effect exactly.
+  /// True: no mechanism matches this effect exactly.
   bool is_ideal = false;
   Appears appears = Appears::anywhere;
-  /// Size of this form, if it differs from that of its cause.
+  /// Quantity that states the size of this form, if it differs from that of its cause.
   std::optional<SizedBy> size = {};
 };
 
-/// Returns all effects that the readings of these later records can show.
-/// @param lines  significant lines in the spectrum of their residual.
+/// Returns all effects that the later records can show.
+/// @param lines  significant lines in the spectrum of the residual of these records.
 [[nodiscard]] std::vector<Effect> effects_for(const Base& base, const std::vector<Record>& later,
                                               const std::vector<Line>& lines, bool pressure_is_judged);
 

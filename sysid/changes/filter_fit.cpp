@@ -20,12 +20,13 @@ constexpr std::array ridges{1e-8, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2};
 
 using Factor = Eigen::LDLT<Eigen::MatrixXd, Eigen::Lower>;
 
-/// A bin of a record with a reading.
+/// A bin with a reading: its record, its index there, and its unit.
 struct Row {
   std::size_t record = 0, bin = 0, unit = 0;
 };
 
-/// Subtracts the mean of each record in each unit, because a model does not predict the zero of a run.
+/// Subtracts the mean of each record in each unit from the values, because a model does not predict the zero
+/// of a run.
 Eigen::VectorXd centred(Eigen::VectorXd values, const std::vector<Row>& rows) {
   std::map<std::pair<std::size_t, std::size_t>, std::pair<double, double>> sums;
   for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -40,7 +41,7 @@ Eigen::VectorXd centred(Eigen::VectorXd values, const std::vector<Row>& rows) {
   return values;
 }
 
-/// The columns of all records in bins, with the unit of each row.
+/// The filtered signals of all records in bins, with the unit of each row.
 class FilterBank {
  public:
   FilterBank(const std::vector<Record>& records, const Units& units, FilterKind kind, double bin_s,
@@ -54,10 +55,11 @@ class FilterBank {
     }
   }
 
-  /// The residuals of a model and data of their fit.
+  /// The residuals of a model, and the results of the fit to them.
   struct Target {
-    std::vector<Eigen::VectorXd> values;   ///< fitted without each unit, and to all units
-    std::vector<Eigen::VectorXd> moments;  ///< columns times values, over the rows of the fit
+    std::vector<Eigen::VectorXd> values;   ///< residuals after the fit without each unit, and after the fit
+                                           ///< to all units
+    std::vector<Eigen::VectorXd> moments;  ///< columns times values, summed over the rows of the fit
     Eigen::VectorXd plain_left, left, weights;
     double left_mm = std::numeric_limits<double>::infinity();
   };
@@ -81,7 +83,7 @@ class FilterBank {
     return target;
   }
 
-  /// Fits every target with the ridge that leaves the smallest error.
+  /// Fits every target with the ridge that leaves the smallest error in the left-out units.
   void fit(std::vector<Target>& targets) const {
     for (const double ridge : ridges) {
       std::vector<std::vector<Eigen::VectorXd>> weights(targets.size(), std::vector<Eigen::VectorXd>(units_));
@@ -105,7 +107,8 @@ class FilterBank {
     }
   }
 
-  /// Returns the filter bank only if it is significantly better than no filter bank (is_better()).
+  /// Returns the weights if the filter bank is significantly better than no filter bank (is_better()), and
+  /// otherwise a result without weights.
   [[nodiscard]] FittedFilters answer(Target target, const LeftByUnit& model, std::uint64_t seed) const {
     if (target.values.empty()) return {{}, model.back(), std::numeric_limits<double>::infinity()};
     const Binned plain = in_bins(target.plain_left, model.back()), left = in_bins(target.left, model.back());
@@ -126,7 +129,7 @@ class FilterBank {
       if (std::isfinite(readings[b]) && middle_s > begin_s(record))
         rows_.push_back({r, b, units.unit_of(r, middle_s)});
     }
-    // Each record has an additional column for its offset.
+    // Each record gets an additional column for its offset.
     const auto count = static_cast<Eigen::Index>(rows_.size());
     columns_.conservativeResize(count, filter_count_ + static_cast<Eigen::Index>(records.size()));
     columns_.bottomRows(count - first).setZero();
@@ -157,7 +160,7 @@ class FilterBank {
     return values(rows_of(unit));
   }
 
-  /// Returns the residual of each unit with the model and the weights that were fitted without it.
+  /// Returns the residual of each unit, with the model and the weights that were fitted without this unit.
   [[nodiscard]] Eigen::VectorXd left_out(const Target& target,
                                          const std::vector<Eigen::VectorXd>& weights) const {
     Eigen::VectorXd left(columns_.rows());
@@ -179,7 +182,7 @@ class FilterBank {
   [[nodiscard]] double rms_of(const Eigen::VectorXd& left) const {
     return std::sqrt(centred(left, rows_).squaredNorm() / static_cast<double>(left.size()));
   }
-  /// Returns the factorised normal equations of all units except `unit`; units_: of all units.
+  /// Returns the factorised normal equations of all units except `unit`, or of all units if `unit` is units_.
   [[nodiscard]] Factor factor_without(std::size_t unit, double ridge) const {
     Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(columns_.cols(), columns_.cols());
     for (std::size_t u = 0; u < units_; ++u) {

@@ -7,13 +7,14 @@ namespace softgrip::sysid {
 namespace {
 
 constexpr double atmosphere_kpa = 101.325;
-/// Longest step [s] and largest number of steps in one sampling interval. The implicit step is stable, and
-/// samples of more than 0.1 s do not show the dynamics of a regulator.
+/// Longest step [s], and largest number of steps in one sampling interval. The number is limited because the
+/// implicit steps are stable, and because sampling intervals of more than 0.1 s do not resolve the dynamics
+/// of a regulator.
 constexpr double longest_step_s = 0.002;
 constexpr int most_steps = 50;
-constexpr double supply_unknown = 4;  ///< multiple of the largest command
-/// Returns the flow between two absolute pressures per conductance [kPa], by ISO 6358-1 with a critical ratio
-/// of 0.3.
+constexpr double supply_unknown = 4;  ///< assumed supply, as a multiple of the largest command
+/// Returns the flow between two absolute pressures, divided by the conductance [kPa], by ISO 6358-1 with a
+/// critical pressure ratio of 0.3.
 double flow(double from_kpa, double to_kpa) {
   if (from_kpa < to_kpa) return -flow(to_kpa, from_kpa);
   constexpr double critical = 0.3, linear_above = 0.995;
@@ -27,7 +28,7 @@ double flow(double from_kpa, double to_kpa) {
   return from_kpa * (ratio < linear_above ? subsonic(ratio) : at_linear * (1 - ratio) / (1 - linear_above));
 }
 
-/// Simulates one regulator. Pressures are absolute.
+/// Simulates one regulator. The pressures of finger, valve and supply are absolute.
 class Walk {
  public:
   Walk(const Regulator& regulator, double command_kpa)
@@ -53,14 +54,15 @@ class Walk {
   [[nodiscard]] double gauge_kpa() const { return finger_kpa_ - atmosphere_kpa; }
 
  private:
-  /// Returns the position of the spool at the end of a step, in units of the error that causes it [kPa].
+  /// Returns the position of the spool at the end of a step, expressed as the control error that causes it
+  /// [kPa].
   [[nodiscard]] double spool_with(double valve_kpa, double step_s) const {
     const Regulator& r = regulator_;
     const double most = r.dead_kpa + r.full_kpa;
     const double wanted = std::clamp(seen_kpa_ + atmosphere_kpa - valve_kpa + integral_kpa_, -most, most);
     return spool_kpa_ + (wanted - spool_kpa_) * step_s / (step_s + r.spool_lag_s);
   }
-  /// Returns the flow through the ports [kPa/s of the finger].
+  /// Returns the flow through the ports, as the rate at which it changes the pressure of the finger [kPa/s].
   [[nodiscard]] double inflow(double spool_kpa, double valve_kpa, double supply_kpa) const {
     const Regulator& r = regulator_;
     const double open = std::min((std::abs(spool_kpa) - r.dead_kpa) / r.full_kpa, 1.0);
@@ -68,23 +70,23 @@ class Walk {
     return r.port_per_s * open *
            (spool_kpa > 0 ? flow(supply_kpa, valve_kpa) : -flow(valve_kpa, atmosphere_kpa));
   }
-  /// Returns the flow into the finger [kPa/s of the finger]. In one step, the flow can at most equalise both
-  /// pressures.
+  /// Returns the flow into the finger, as the rate at which it changes the pressure there [kPa/s]. During one
+  /// step, the flow can at most equalise the pressures at both ends.
   [[nodiscard]] double through_the_tube(double valve_kpa, double step_s) const {
     const double above = valve_kpa - finger_kpa_;
     if (above == 0) return 0;
     const double flows = regulator_.tube_per_s * flow(valve_kpa, finger_kpa_);
     return flows / (1 + step_s * flows / above);
   }
-  /// Returns the inflow through the ports minus the flow into tube and chamber.
+  /// Returns the inflow through the ports minus the flows into the tube and the chamber.
   [[nodiscard]] double surplus(double valve_kpa, double supply_kpa, double step_s) const {
     const Regulator& r = regulator_;
     return inflow(spool_with(valve_kpa, step_s), valve_kpa, supply_kpa) -
            through_the_tube(valve_kpa, step_s) - r.chamber_share * (valve_kpa - valve_kpa_) / step_s;
   }
-  /// Returns the pressure before the tube at which the surplus is zero. The surplus falls with this pressure.
-  /// The secant method starts at the last pressure and nearly always converges at once; otherwise false
-  /// position is used.
+  /// Returns the pressure before the tube at which surplus() is zero. surplus() decreases with this pressure.
+  /// The secant method starts at the previous pressure and nearly always converges. If it does not, the
+  /// method of false position is used.
   [[nodiscard]] double before_the_tube(double supply_kpa, double step_s) const {
     constexpr int most_secants = 6;
     constexpr double beside_kpa = 0.01, near_kpa = 1e-4;
@@ -102,7 +104,7 @@ class Walk {
     }
     return by_false_position(supply_kpa, step_s);
   }
-  /// Finds the zero by false position (Illinois algorithm).
+  /// Finds the zero of surplus() by the method of false position (Illinois algorithm).
   [[nodiscard]] double by_false_position(double supply_kpa, double step_s) const {
     constexpr int most = 40;
     constexpr double near_kpa = 1e-4;

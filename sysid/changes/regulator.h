@@ -1,6 +1,6 @@
 #pragma once
-// Simulates a pressure regulator between a command and a finger if the pressure is not recorded: controller,
-// ports and tube.
+// Simulates the pressure regulator between a command and a finger if the pressure is not recorded. The model
+// consists of controller, ports and tube.
 
 #include <vector>
 
@@ -8,27 +8,31 @@
 
 namespace softgrip::sysid {
 
-/// A controller with a play and an integral moves a spool, which has a lag and overlaps its ports. Air flows
-/// through the port into a chamber and through the tube into the finger's volume by ISO 6358-1 (choked,
-/// subsonic, linear near zero difference), at constant temperature.
+/// Parameters of a regulator. A controller with a play and an integral moves a spool, which has a lag and
+/// overlaps its ports. Air flows through a port into a chamber and from there through the tube into the
+/// volume of the finger. The flows follow ISO 6358-1 (choked or subsonic, linear near zero pressure
+/// difference) at constant temperature.
 struct Regulator {
-  double play_kpa = 0.15;     ///< half the width of the controller's insensitive range
-  double dead_kpa = 0.5;      ///< error at which a port opens
-  double full_kpa = 10;       ///< additional error at which it is fully open
+  double play_kpa = 0.15;     ///< half the width of the range to which the controller does not respond
+  double dead_kpa = 0.5;      ///< pressure error at which a port opens
+  double full_kpa = 10;       ///< additional pressure error at which the port is fully open
   double integral_per_s = 2;  ///< gain of the integral of the error
-  double port_per_s = 5;  ///< choked and fully open: pressure rise in 1 s as a share of the upstream pressure
-  double tube_per_s = 10;      ///< like port_per_s, for the tube
-  double spool_lag_s = 0.01;   ///< lag behind the command of the controller
-  double chamber_share = 0.2;  ///< volume of the valve before the tube, as a share of the finger's volume
-  double leak_per_s = 0;       ///< like tube_per_s, from the finger to the atmosphere
+  double port_per_s = 5;      ///< conductance of a fully open port: pressure rise at choked flow in 1 s, as a
+                              ///< share of the upstream pressure
+  double tube_per_s = 10;     ///< conductance of the tube, defined like port_per_s
+  double spool_lag_s = 0.01;  ///< time constant of the spool
+  double chamber_share = 0.2;  ///< volume between valve and tube, as a share of the volume of the finger
+  double leak_per_s = 0;       ///< conductance of a leak from the finger to the atmosphere, defined like
+                               ///< tube_per_s
 };
 
-/// Returns the pressure that a finger loses through a leak of 1 per second without inflow [kPa/s].
+/// Returns the rate at which a finger without inflow loses pressure through a leak with leak_per_s = 1
+/// [kPa/s].
 [[nodiscard]] double leaking_kpa_per_s(double gauge_kpa);
 
-/// Returns the pressure at the finger [kPa] at each sample. It is settled at the start.
-/// @param command_kpa  as long as the record. A supply that is not recorded counts as four times the largest
-/// command.
+/// Returns the pressure at the finger [kPa] at each sample. The initial state is settled.
+/// @param command_kpa  command at each sample of the record. If the supply is not recorded, four times the
+/// largest command is assumed.
 [[nodiscard]] std::vector<double> regulated(const Regulator& regulator, const Record& record,
                                             const std::vector<double>& command_kpa);
 

@@ -15,17 +15,17 @@ namespace {
 
 constexpr Eigen::Index numbers = 8;
 constexpr int most_regulator_steps = 15;
-/// Difference of a logarithm for its derivative, and its largest change in one step.
+/// Step of a logarithm for its numerical derivative, and its largest change in one iteration.
 constexpr double beside_by = 0.03, longest_move = 1.5;
-/// Bound of the logarithms: a factor of 400.
+/// Bound of the logarithms, which corresponds to a factor of 400.
 constexpr double largest_logarithm = 6;
 constexpr double least_progress = 0.003;
-/// Penalty for a parameter that differs from its usual value by a factor of e, as a share of the residual
-/// squares: lags of the bank can replace a wide tube, and a parameter that the readings do not determine
-/// keeps its usual value.
+/// Penalty for a parameter that differs from its typical value by a factor of e, as a share of the sum of
+/// squared residuals. The penalty is necessary because lags of the filter bank can replace a wide tube. A
+/// parameter that the readings do not determine keeps its typical value.
 constexpr double prior_share = 0.003;
 
-/// The coordinates are logarithms, 0 at the start.
+/// Returns the regulator for the coordinates t, which are the logarithms of the ratios to typical values.
 Regulator regulator_at(const Eigen::VectorXd& t, double largest_kpa) {
   const auto times = [&](Eigen::Index i) { return std::exp(t(i)); };
   return {0.002 * largest_kpa * times(0),
@@ -39,7 +39,7 @@ Regulator regulator_at(const Eigen::VectorXd& t, double largest_kpa) {
           0};
 }
 
-/// The readings in bins, and the columns that a finger behind a regulator could give.
+/// The readings in bins, and the signals that a finger or a pressure sensor after the regulator could show.
 class BinnedReadings {
  public:
   BinnedReadings(const std::vector<Record>& records, double largest_kpa, ReadBy read_by)
@@ -104,11 +104,11 @@ class BinnedReadings {
   std::size_t bins_ = 0;
 };
 
-/// The search for a regulator, as descend() needs it.
+/// The search for a regulator, with the interface that descend() requires.
 class RegulatorSearch {
  public:
   struct Point {
-    Eigen::VectorXd t, left;  ///< residuals, and behind them the penalties
+    Eigen::VectorXd t, left;  ///< coordinates, and the residuals followed by the penalties
   };
 
   RegulatorSearch(const BinnedReadings& bank, double largest_kpa)

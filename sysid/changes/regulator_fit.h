@@ -1,5 +1,5 @@
 #pragma once
-// Estimates the regulator between a command and a reading.
+// Estimates the parameters of the regulator between a command and a reading.
 
 #include <vector>
 
@@ -8,14 +8,15 @@
 
 namespace softgrip::sysid {
 
-/// The sensor behind a regulator.
+/// The quantity that was recorded after a regulator.
 enum class ReadBy {
-  gauge,   ///< the pressure, except for gain and zero
-  finger,  ///< a bank of plays and lags, whose weights are fitted again for each regulator
+  gauge,   ///< the pressure, of which gain and zero are fitted
+  finger,  ///< the displacement, described by a bank of plays and lags with weights that are refitted for
+           ///< each regulator
 };
 
-/// Returns the regulator with the smallest residual of the readings.
-/// @param records  driven by the command.
+/// Returns the regulator that leaves the smallest residual of the readings.
+/// @param records  records with the command as drive.
 [[nodiscard]] Regulator fit_regulator(const std::vector<Record>& records, double largest_kpa,
                                       ReadBy read_by = ReadBy::finger);
 
