@@ -1,6 +1,6 @@
 #pragma once
-// Compares two hypotheses by their losses on the same data. All decisions between two causes or models use
-// it.
+// Compares two hypotheses by their losses on the same data. All decisions between two causes or two models
+// use this comparison.
 
 #include <cstdint>
 #include <vector>
@@ -9,21 +9,24 @@ namespace softgrip::sysid {
 
 /// Losses of two hypotheses on the same blocks.
 struct PairedLosses {
-  std::vector<double> worse, better;  ///< sums of squares
-  std::vector<double> rows;           ///< number of rows of each block
+  std::vector<double> worse, better;  ///< sums of squared residuals of the two hypotheses in each block
+  std::vector<double> rows;           ///< number of rows (residuals) of each block
 };
 
 struct Comparison {
-  double share = 0;             ///< share of the draws in which `better` wins by more than the tolerance
-  double lower = 0, upper = 0;  ///< 95 % interval of the difference per row
+  double share = 0;             ///< share of the bootstrap samples in which the loss of `better` is smaller
+                                ///< by more than the tolerance
+  double lower = 0, upper = 0;  ///< 95 % interval of the difference (worse minus better) per row
 };
 
-/// Draws weights of the blocks (Bayesian bootstrap: Rubin, Annals of Statistics 9, 1981) and compares the
-/// weighted mean losses per row.
-/// @param tolerance  required difference per row. @param seed  the same seed gives the same result.
+/// Compares the weighted mean losses per row, with random weights of the blocks (Bayesian bootstrap: Rubin,
+/// Annals of Statistics 9, 1981).
+/// @param tolerance  required difference per row.
+/// @param seed  seed of the random weights; the same seed gives the same result.
 [[nodiscard]] Comparison compare(const PairedLosses& losses, double tolerance, std::uint64_t seed);
 
-/// Returns true if `better` wins by more than the tolerance in at least limits::probability of the draws.
+/// Returns true if the loss of `better` is smaller by more than the tolerance in at least limits::probability
+/// of the bootstrap samples.
 [[nodiscard]] bool is_better(const Comparison& comparison);
 
 }  // namespace softgrip::sysid

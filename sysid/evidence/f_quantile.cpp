@@ -6,7 +6,8 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Continued fraction of the incomplete beta function by Lentz's method (Abramowitz and Stegun 26.5.8).
+/// Computes the continued fraction of the incomplete beta function by Lentz's method (Abramowitz and Stegun
+/// 26.5.8).
 double beta_fraction(double a, double b, double x) {
   constexpr double tiny = 1e-300;
   const auto kept_off_zero = [](double value) { return std::abs(value) < tiny ? tiny : value; };
@@ -24,7 +25,7 @@ double beta_fraction(double a, double b, double x) {
   return result;
 }
 
-/// Regularised incomplete beta function I_x(a, b).
+/// Returns the regularised incomplete beta function I_x(a, b).
 double incomplete_beta(double a, double b, double x) {
   const double front =
       std::exp(std::lgamma(a + b) - std::lgamma(a) - std::lgamma(b) + a * std::log(x) + b * std::log1p(-x));

@@ -1,11 +1,12 @@
 #pragma once
-// Quantiles of Fisher's F distribution.
+// Computes quantiles of Fisher's F distribution.
 
 namespace softgrip::sysid {
 
-/// Returns the value that an F-distributed ratio does not exceed with this probability (Abramowitz and Stegun
-/// 26.6).
-/// @param probability  in (0, 1). @param above, below  degrees of freedom of numerator and denominator, >= 1.
+/// Returns the value that an F-distributed ratio does not exceed with the given probability (Abramowitz and
+/// Stegun 26.6).
+/// @param probability  in (0, 1).
+/// @param above, below  degrees of freedom of numerator and denominator, >= 1.
 [[nodiscard]] double f_quantile(double probability, double above, double below);
 
 }  // namespace softgrip::sysid

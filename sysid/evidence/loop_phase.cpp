@@ -19,7 +19,7 @@ struct Pair {
   Eigen::VectorXd command, reading;
 };
 
-/// Returns the samples where both values are finite, without the mean and in units of the standard deviation.
+/// Returns the samples in which both values are finite, normalised to zero mean and unit standard deviation.
 /// The result is empty if one series is constant.
 Pair pairs_of(const std::vector<double>& command, const std::vector<double>& reading) {
   std::vector<double> u, y;
@@ -76,7 +76,8 @@ bool is_closed_loop(const std::vector<double>& command, const std::vector<double
   const Eigen::VectorXd target = u.tail(rows);
   const double own = squares_left(columns.leftCols(order), target), both = squares_left(columns, target);
   const auto free = static_cast<double>(rows - 2 * order);
-  // If the past of the command predicts it to rounding, no error remains that the readings could explain.
+  // If the command follows from its own past except for rounding, no error remains that the readings could
+  // explain.
   if (!(own > 1e-12 * static_cast<double>(rows)) || !(both > 0)) return false;
   const double f = (own - both) / static_cast<double>(order) / (both / free);
   return f > f_quantile(limits::feedback_probability, static_cast<double>(order), free);

@@ -8,7 +8,7 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Lowest and highest value of one quantity.
+/// Lowest value and range of one quantity.
 class Extent {
  public:
   Extent(const std::vector<OperatingPoint>& conditions, double OperatingPoint::*of) : of_(of) {
@@ -18,7 +18,7 @@ class Extent {
     low_ = (*low).*of;
     range_ = (*high).*of - low_;
   }
-  /// Returns the position of a value between the lowest (0) and the highest (1).
+  /// Returns the position of a value in the range, from 0 (lowest) to 1 (highest).
   [[nodiscard]] double share(const OperatingPoint& condition) const {
     return range_ > 0 ? (condition.*of_ - low_) / range_ : 0;
   }

@@ -1,5 +1,5 @@
 #pragma once
-// Divides repeated records into units. Each unit is predicted by a model that is fitted to the others.
+// Divides repeated records into units. Each unit is predicted by a model that is fitted to the other units.
 
 #include <cstddef>
 #include <vector>
@@ -10,18 +10,18 @@ namespace softgrip::sysid {
 
 struct Division;
 
-/// A unit is a run. With many runs, a unit contains several runs. With a single run, the units are its two
-/// halves, because one run does not show how runs differ.
+/// Division of a campaign into units. A unit is a run, or several runs if there are many. With a single run,
+/// the units are its two halves, although they do not show how runs differ.
 class Units {
  public:
   Units() = default;
-  /// @param records  at least one, each with at least one sample.
+  /// @param records  at least one record, each with at least one sample.
   explicit Units(const std::vector<Record>& records);
 
   [[nodiscard]] std::size_t count() const noexcept { return count_; }
   [[nodiscard]] std::size_t runs() const noexcept { return middle_s_.size(); }
   [[nodiscard]] bool are_runs() const noexcept { return runs() > 1; }
-  /// Returns the unit of a time of a record.
+  /// Returns the index of the unit to which a time of a record belongs.
   /// @param since_start_s  time since the first sample of the record.
   [[nodiscard]] std::size_t unit_of(std::size_t record, double since_start_s) const noexcept;
   /// Returns the records with the readings of one unit replaced by NaN. A record that belongs to the unit
@@ -33,10 +33,10 @@ class Units {
 
  private:
   std::size_t count_ = 0;
-  std::vector<double> middle_s_;  ///< middle of each record, since its start
+  std::vector<double> middle_s_;  ///< time from the start to the middle of each record
 };
 
-/// Divides the records into blocks of limits::block_s. Each unit is held out completely.
+/// Divides the records into blocks of limits::block_s seconds. All blocks of a unit are held out together.
 [[nodiscard]] Division divide_by_unit(const std::vector<Record>& records);
 
 }  // namespace softgrip::sysid

@@ -10,7 +10,8 @@ Veto veto_of(const Claim& claim) {
   if (claim.size) {
     const auto& [lower, upper] = *claim.size;
     if (!(lower > 0 || upper < 0)) return Veto::size_uncertain;
-    // Use the end of the interval that is nearer to zero: a size that may be plausible is not rejected.
+    // The end of the interval that is nearer to zero is used, so that a possibly plausible size is not
+    // rejected.
     if (std::min(std::abs(lower), std::abs(upper)) > claim.largest_size) return Veto::size_beyond_range;
   }
   if (!(claim.error_with < claim.error_without)) return Veto::error_not_reduced;
