@@ -9,7 +9,7 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Returns the first parts of the names of the parameters that need this excitation.
+/// Returns the prefixes of the names of the parameters that need this excitation.
 std::span<const std::string_view> that_need(Excitation excitation) {
   static constexpr std::string_view hysteresis[]{
       "bouc_wen.beta",       "bouc_wen.gamma",    "bouc_wen.eta",        "asymmetric_bouc_wen.",

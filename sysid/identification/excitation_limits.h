@@ -1,5 +1,5 @@
 #pragma once
-// Names the parameters that a fit cannot determine because the logs do not excite them.
+// Lists the parameters that a fit cannot determine because the logs do not excite them.
 
 #include <string>
 #include <vector>
@@ -9,7 +9,8 @@
 
 namespace softgrip::sysid {
 
-/// Returns a sentence for each excitation that no log contains, with the fitted parameters that need it.
+/// Returns one sentence for each kind of excitation that no log contains. The sentence names the fitted
+/// parameters that need this excitation.
 [[nodiscard]] std::vector<std::string> excitation_limits(const std::vector<Log>& logs,
                                                          const std::vector<Estimate>& parameters);
 

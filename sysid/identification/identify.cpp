@@ -24,13 +24,13 @@ namespace {
 
 using Failure = tl::unexpected<std::string>;
 
-/// A search counts as successful if its RMSE exceeds the best by at most this share.
+/// A search counts as successful if its RMSE exceeds the smallest one by at most this share.
 constexpr double reached_share = 1e-3;
 
-/// Which values of the model are free, by flat index.
+/// Parameters of the model that are fitted, by flat index.
 struct FreeIndices {
   std::vector<std::size_t> flat;
-  bool k0_kept = false;  ///< k0 is fixed by the program, because only the sum of alpha and 1/k0 acts
+  bool k0_kept = false;  ///< true: the program fixes k0, because only the sum of alpha and 1/k0 has an effect
 };
 
 tl::expected<FreeIndices, std::string> free_indices(const model::Model& model,
@@ -69,7 +69,7 @@ double huber_width_mm(const Residuals& residuals, const std::vector<double>& z) 
   return std::max(2.5 * median_of(std::span(r)) / 0.6745, 1e-9);
 }
 
-/// Fits the model with one exponent.
+/// Fits the model with a given exponent.
 class Run {
  public:
   Run(std::vector<Record> records, model::Model start, const IdentifyOptions& options)
@@ -107,7 +107,7 @@ class Run {
     MinimiseOptions options;
     options.normal_equations = true;
     Minimum minimum = minimise(*residuals, z, options);
-    // Huber's width and the fit depend on each other. Two passes are enough.
+    // The width of Huber's loss and the fit depend on each other. Two iterations are sufficient.
     for (int pass = 0; pass < 2 && options_.robust; ++pass) {
       options.huber_mm = result_.huber_mm = huber_width_mm(*residuals, minimum.z);
       minimum = minimise(*residuals, minimum.z, options);
@@ -147,8 +147,8 @@ class Run {
   Identification result_;
 };
 
-/// Returns the model with another exponent and about the same loop size. gamma and eta act on h^n instead of
-/// h.
+/// Returns the model with another exponent and loops of about the same size. The parameters gamma and eta are
+/// scaled, because they act on h^n.
 model::Model with_exponent(model::Model model, int exponent) {
   const auto position = model::position_of<model::BoucWen>(model);
   if (!position) return model;
@@ -161,7 +161,7 @@ model::Model with_exponent(model::Model model, int exponent) {
   return model;
 }
 
-/// Returns the complete start model with the fitted values. Blocks that were not fitted keep theirs.
+/// Returns the complete start model with the fitted values. Blocks that were not fitted keep their values.
 model::Model put_back(const model::Model& start, const model::Model& fitted) {
   model::Model whole = start;
   std::size_t next = 0;  // the fitted blocks are a subset of the start's blocks, in the same order

@@ -12,7 +12,8 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Residuals count as noise up to this multiple of the sample-to-sample noise, or below this correlation.
+/// Residuals count as noise if one of two quantities is below its limit: the ratio of their RMSE to the noise
+/// between consecutive samples, or their correlation from sample to sample.
 constexpr double noise_factor = 1.3;
 constexpr double hardly_correlated = 0.3;
 
@@ -64,7 +65,7 @@ Table estimate_table(const std::vector<Estimate>& list, std::string caption) {
   return table;
 }
 
-/// Returns the autocorrelation of the errors, pooled over the logs, for lags of up to a tenth of the log.
+/// Returns the autocorrelation of the errors over all logs, for lags of up to a tenth of the log.
 Chart correlation_chart(const Identification& r) {
   Chart chart;
   chart.width = 380;
@@ -168,7 +169,7 @@ void add_residuals(Page& page, const Identification& r) {
   }
 }
 
-/// Adds the candidate structures, and the contribution of each component of the chosen structure.
+/// Adds the candidate structures to the page, and the contribution of each component of the chosen structure.
 void add_structure(Page& page, const StructureEvidence& s, model::OutputUnit unit) {
   const std::string fitted = model::in_unit("RMSE fitted [mm]", unit);
   const std::string held_out = model::in_unit("RMSE held-out blocks [mm]", unit);

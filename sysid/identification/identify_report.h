@@ -19,15 +19,16 @@ struct IdentifyReport {
   std::vector<Record> validation_records;
   std::vector<Score> validation;
   const std::vector<Log>* validation_logs = nullptr;
-  std::vector<std::string> call;  ///< command line; empty if the identification was not started by a command
+  std::vector<std::string> call;  ///< command line; empty if no command started the identification
 };
 
-/// "The model explains 3 logs to the noise: RMSE 0.050 mm, 0.17 % of the span."
+/// Returns the result as one sentence, such as "The model explains 3 logs to the noise: RMSE 0.050 mm, 0.17 %
+/// of the span."
 [[nodiscard]] std::string verdict_of(const Identification& result);
-/// report.html
+/// Returns the page for report.html.
 [[nodiscard]] Page identify_page(const IdentifyReport& report);
-/// Returns the content of identify.json: schema, rmse_mm, rmse_percent_of_span, parameters, combinations,
-/// multistart, wall_s and more.
+/// Returns the content of identify.json, with schema, rmse_mm, rmse_percent_of_span, parameters,
+/// combinations, multistart, wall_s and further keys.
 [[nodiscard]] std::string identify_json(const IdentifyReport& report);
 
 }  // namespace softgrip::sysid

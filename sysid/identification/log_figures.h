@@ -1,5 +1,5 @@
 #pragma once
-// Figures of a log and its prediction, equal in all reports.
+// Draws the figures of a log and its prediction, which are the same in all reports.
 
 #include <vector>
 
@@ -10,7 +10,7 @@
 
 namespace softgrip::sysid {
 
-/// Returns measured and predicted displacement over time, and the error below.
+/// Returns two charts: measured and predicted displacement over time, and below them the error.
 [[nodiscard]] std::vector<Chart> overlay(const Record& record, const Score& score);
 /// Returns measured and predicted displacement over pressure.
 [[nodiscard]] Chart loops(const Record& record, const Score& score);
@@ -20,8 +20,8 @@ namespace softgrip::sysid {
 /// Adds the figures of one log to a page.
 void add_log_figures(Page& page, const Record& record, const Score& score);
 
-/// Returns one row per log: signal that drives the model, samples, RMSE, % of span, first and settled cycles,
-/// largest error.
+/// Returns a table with one row per log. Its columns are the signal that drives the model, number of samples,
+/// RMSE, RMSE in % of the span, RMSE of the first cycle and of the settled cycles, and the largest error.
 [[nodiscard]] Table score_table(const std::vector<Record>& records, const std::vector<Score>& scores);
 
 /// Returns a formatted number, or a dash if it is not finite.

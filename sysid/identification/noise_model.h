@@ -1,33 +1,33 @@
 #pragma once
-// Models the correlation of the residuals of a fit by an autoregressive process.
+// Models the correlation of the residuals of a fit as an autoregressive process.
 
 #include <span>
 #include <vector>
 
 namespace softgrip::sysid {
 
-/// e_t = a_1 e_(t-1) + ... + a_p e_(t-p) + innovation.
+/// The autoregressive process e_t = a_1 e_(t-1) + ... + a_p e_(t-p) + innovation.
 struct NoiseModel {
   std::vector<double> coefficients;  ///< a_1 ... a_p; empty: white noise
   double innovation_mm = 0;          ///< standard deviation of the innovation
-  double deviation_mm = 0;           ///< standard deviation of e itself
+  double deviation_mm = 0;           ///< standard deviation of e
   double lag1_correlation = 0;
-  /// Number of white samples that would determine a constant with the same accuracy.
+  /// Number of uncorrelated samples that would determine a constant with the same accuracy.
   double effective_samples = 0;
 };
 
-/// Pooled autocovariances of several series, up to a lag of `most_lags` or a tenth of all samples. Values
-/// that are not finite are gaps. Sums are divided by the number of all samples, not of pairs, so that the
-/// result is a valid covariance.
+/// Autocovariances of several series together, up to a lag of `most_lags` or of a tenth of all samples.
+/// Values that are not finite count as gaps. For every lag, the sum is divided by the number of all samples
+/// and not of pairs, so that the result is a valid covariance.
 struct Autocovariance {
-  std::vector<double> lags;  ///< [mm^2], by lag from 0
+  std::vector<double> lags;  ///< autocovariance for each lag from 0 [mm^2]
   std::size_t samples = 0;
 };
 [[nodiscard]] Autocovariance autocovariance_of(const std::vector<std::span<const double>>& series,
                                                int most_lags = 40);
 
-/// Returns the process with these autocovariances by the Yule-Walker equations. Akaike's criterion selects
-/// the order.
+/// Returns the autoregressive process with these autocovariances, computed by the Yule-Walker equations. Its
+/// order is selected by Akaike's criterion.
 [[nodiscard]] NoiseModel fit_noise(const Autocovariance& covariance);
 
 }  // namespace softgrip::sysid

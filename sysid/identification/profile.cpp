@@ -9,7 +9,7 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Moves one parameter away from the minimum in one direction and fits the others.
+/// Changes one parameter from its optimum in one direction and fits the others.
 class Profile {
  public:
   Profile(const Residuals& residuals, const std::vector<double>& z, const Uncertainty& u, double huber_mm,
@@ -19,13 +19,14 @@ class Profile {
     const double white = u.naive(i, i);
     const double inflation = white > 0 ? std::max(1.0, u.covariance(i, i) / white) : 1;
     step_ = std::sqrt(std::max(u.covariance(i, i), 1e-12));
-    // The cost is half the sum of squares, so the threshold is half of sigma^2 chi^2. Student's quantile
-    // replaces the normal one.
+    // The cost is half the sum of squares, so the threshold is half of sigma^2 chi^2. The quantile of
+    // Student's t distribution is used instead of the normal quantile.
     allowed_ = 0.5 * u.noise.deviation_mm * u.noise.deviation_mm * u.quantile * u.quantile * inflation;
     at_minimum_ = cost_at(z, z[index]).cost;
   }
 
-  /// Returns the value at which the cost has risen by the threshold, or the bound if it never does.
+  /// Returns the value of the parameter at which the cost has risen by the threshold, or the bound of the
+  /// parameter if the cost never rises by the threshold.
   [[nodiscard]] double edge(double direction) const {
     const FreeParameter& p = residuals_.space().free()[index_];
     const double bound = direction < 0 ? p.lower_z() : p.upper_z();
@@ -58,7 +59,8 @@ class Profile {
   }
 
  private:
-  /// Returns the best cost with the parameter fixed at `held`. The search starts at `from`.
+  /// Returns the smallest cost with the parameter fixed at `held`. The search for the other parameters starts
+  /// at `from`.
   [[nodiscard]] Minimum cost_at(const std::vector<double>& from, double held) const;
 
   const Residuals& residuals_;

@@ -1,5 +1,5 @@
 #pragma once
-// Intervals by profile likelihood: one parameter is moved while all others are fitted again.
+// Computes intervals by profile likelihood: one parameter is changed while all others are fitted again.
 
 #include <functional>
 #include <vector>
@@ -9,9 +9,10 @@
 
 namespace softgrip::sysid {
 
-/// Fills profile95 of every free model parameter of `estimates`, in the order of parameter_estimates(). The
-/// threshold on the sum of squares is that of a likelihood ratio. It is widened by the factor by which the
-/// correlation of the residuals increases the variance of the parameter.
+/// Computes profile95 of every free model parameter in `estimates`, which are in the order of
+/// parameter_estimates(). The threshold of the sum of squares is that of a likelihood-ratio test. It is
+/// multiplied by the factor by which the correlation of the residuals increases the variance of the
+/// parameter.
 void add_profiles(const Residuals& residuals, const std::vector<double>& z, const Uncertainty& uncertainty,
                   double huber_mm, unsigned threads, std::vector<Estimate>& estimates);
 

@@ -1,6 +1,6 @@
 #pragma once
-// Writes logs and scores as JSON, equally in identify.json and validate.json. Only files that write JSON
-// include it.
+// Writes logs and scores as JSON in the same way for identify.json and validate.json. Include this header
+// only in source files that write JSON.
 
 #include <cmath>
 #include <vector>
@@ -31,7 +31,8 @@ namespace softgrip::sysid {
   return json;
 }
 
-/// Adds drive, rmse_mm, rmse_percent_of_span and the other scores, each as an object with one entry per log.
+/// Adds drive, rmse_mm, rmse_percent_of_span and the other scores. Each key is an object with one entry per
+/// log.
 inline void add_scores(nlohmann::ordered_json& json, const std::vector<Score>& scores) {
   for (const Score& s : scores) {
     json["drive"][s.name] = name_of(s.drive);

@@ -20,8 +20,8 @@ class Drawer {
   Drawer(const FitSpace& space, const std::vector<Record>& records, std::uint64_t seed)
       : space_(space), scale_(campaign_size(records)), random_(seed) {}
 
-  /// Draws a point around `given`: positive values by factors of about two, others by half their value or
-  /// half a typical change.
+  /// Draws a point around `given`. The typical change is a factor of about two for positive values, and half
+  /// the value or half a typical change for other values.
   FitPoint around(const FitPoint& given) {
     std::vector<double> z = space_.z(given);
     for (std::size_t i = 0; i < z.size(); ++i) {
@@ -34,8 +34,8 @@ class Drawer {
     return valid(space_.point(z), given);
   }
 
-  /// Draws Bouc-Wen, Kelvin-Voigt, delay and lag from the scale of the data alone. Other blocks are drawn as
-  /// in around().
+  /// Draws the parameters of Bouc-Wen, Kelvin-Voigt, delay and lag from the scale of the data only, and those
+  /// of other blocks as in around().
   FitPoint from_scale(const FitPoint& given) {
     FitPoint point = around(given);
     const double gain = scale_.span_mm / scale_.largest_kpa;
@@ -54,7 +54,7 @@ class Drawer {
         v[0] = uniform(0.005, 0.3);
       }
     }
-    // The conversion through the coordinates of the fit restores all fixed values.
+    // The conversion to the coordinates of the fit and back restores all fixed values.
     return valid(space_.point(space_.z(point)), given);
   }
 
@@ -64,7 +64,8 @@ class Drawer {
   }
   double between(double lower, double upper) { return std::exp(uniform(std::log(lower), std::log(upper))); }
 
-  /// Draws time constants over the length of the log and assigns them in the order of the given ones.
+  /// Draws time constants up to half the length of the longest log and assigns them in the same order (rising
+  /// or falling) as the given ones.
   void branches(double gain, std::vector<double>& v) {
     const std::size_t count = (v.size() - 1) / 2;
     std::vector<double> time_constants;
@@ -104,7 +105,8 @@ std::vector<FitPoint> draw_starts(const FitSpace& space, const FitPoint& given,
                                   const std::vector<Record>& records, std::size_t count, std::uint64_t seed) {
   std::vector<FitPoint> starts{given};
   for (std::size_t i = 1; i < count; ++i) {
-    // Every start has its own seed: the first ten of twenty starts equal the ten of a run with ten.
+    // Every start point has a seed of its own, so that the first ten of twenty start points equal those of a
+    // run with ten.
     std::seed_seq sequence{seed, static_cast<std::uint64_t>(i)};
     std::vector<std::uint64_t> derived(1);
     sequence.generate(derived.begin(), derived.end());
@@ -128,7 +130,7 @@ model::Model base_model(const std::vector<Record>& records, std::size_t branches
   const double levelling = 1 / std::max(scale.largest_kpa, 1e-6);
   model = model::with_block(std::move(model), {model::block_type<model::BoucWen>(),
                                                {0.6 * gain, 0.3 * gain, levelling, levelling, 1}});
-  // A rigid k0: alpha alone is the instantaneous gain, because the data determine only alpha + 1/k0.
+  // k0 is rigid, so alpha alone is the instantaneous gain. The data determine only the sum alpha + 1/k0.
   std::vector<double> creep{1e9};
   const double slowest = std::max(scale.longest_s / 4, 1.0);
   for (std::size_t b = 0; b < branches; ++b) {

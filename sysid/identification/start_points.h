@@ -1,5 +1,5 @@
 #pragma once
-// Draws the start points of searches.
+// Draws the start points of a search at random.
 
 #include <cstdint>
 #include <vector>
@@ -18,9 +18,9 @@ struct CampaignSize {
 };
 [[nodiscard]] CampaignSize campaign_size(const std::vector<Record>& records);
 
-/// Returns `count` points. The first is the given model. The others are drawn alternately from the scale of
-/// the data (pressure, span, length) and around the given model. Only parameters that are free in `space` are
-/// drawn.
+/// Returns `count` start points. The first is the given model. The others are drawn alternately from the
+/// scale of the data (pressure, span, length) and around the given model. Parameters that are not free in
+/// `space` keep their values.
 [[nodiscard]] std::vector<FitPoint> draw_starts(const FitSpace& space, const FitPoint& given,
                                                 const std::vector<Record>& records, std::size_t count,
                                                 std::uint64_t seed);

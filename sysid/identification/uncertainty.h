@@ -1,8 +1,9 @@
 #pragma once
-// Covariance of the estimates if the residuals are correlated.
+// Computes the covariance of the estimates for correlated residuals.
 //
-// Least squares is unbiased under correlated noise, but its usual intervals are far too short. The covariance
-// is therefore the sandwich (J'J)^-1 J' C J (J'J)^-1, with C from an autoregressive model of the residuals.
+// Least squares is unbiased under correlated noise, but the usual intervals are far too short. Therefore the
+// covariance is the sandwich (J'J)^-1 J' C J (J'J)^-1, where C comes from an autoregressive model of the
+// residuals.
 
 #include <string>
 #include <vector>
@@ -15,26 +16,26 @@
 
 namespace softgrip::sysid {
 
-/// A combination of parameters that can change together with little effect on the error.
+/// A combination of parameters whose change has little effect on the error.
 struct LooseDirection {
-  std::vector<std::string> names;  ///< parameters that contribute, the largest weight first
+  std::vector<std::string> names;  ///< parameters in this combination, the largest weight first
   std::vector<double> weights;     ///< weights of these parameters, in the scale of the fit
   double deviation = 0;            ///< standard deviation in the scale of the fit
 };
 
-/// Covariance of the estimates in the coordinates of the fit.
+/// Covariance of the estimates in the coordinates z of the fit.
 struct Uncertainty {
   Eigen::MatrixXd covariance;  ///< covariance of z; rows of parameters at a bound or without effect are zero
-  Eigen::MatrixXd naive;       ///< the same covariance for white noise
+  Eigen::MatrixXd naive;       ///< covariance of z under the assumption of white noise
   std::vector<bool> at_bound;
   std::vector<bool> without_effect;
   NoiseModel noise;
-  double quantile = 1.96;  ///< quantile of Student's t for 95 %, from the effective number of samples
+  double quantile = 1.96;  ///< 95 % quantile of Student's t distribution for the effective number of samples
   std::vector<LooseDirection> loose;
 };
 
 /// Computes the uncertainty at the minimum `z`.
-/// @param huber_mm  as in the minimisation.
+/// @param huber_mm  width of Huber's loss in the minimisation; infinity: squared loss.
 [[nodiscard]] Uncertainty uncertainty_at(const Residuals& residuals, const std::vector<double>& z,
                                          double huber_mm);
 

@@ -16,7 +16,7 @@
 namespace softgrip::sysid {
 namespace {
 
-/// A prediction is good if its RMSE is below this share of the span [%].
+/// A prediction is good if its RMSE is below this percentage of the span.
 constexpr double good_percent = 2;
 
 double largest_percent(const Validation& v) {

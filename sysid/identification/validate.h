@@ -1,5 +1,5 @@
 #pragma once
-// Validation: compares the prediction of a model with logs that it was not fitted to.
+// Validates a model: compares its predictions with logs to which it was not fitted.
 
 #include <optional>
 #include <string>
@@ -19,24 +19,25 @@ struct Validation {
   std::vector<Score> scores;  ///< scores of each log
   std::vector<std::string> warnings;
   std::optional<double> at_most_percent;  ///< largest permitted RMSE of a log, in % of its span
-  std::vector<std::string> call;  ///< command line; empty if the validation was not started by a command
+  std::vector<std::string> call;          ///< command line; empty if no command started the validation
   double wall_s = 0;
 };
 
-/// Predicts every log. The start state is estimated from the first readings (sysid/fitting/start_estimate.h).
+/// Predicts every log. The initial state is estimated from the first readings
+/// (sysid/fitting/start_estimate.h).
 [[nodiscard]] Validation validate_logs(const model::Model& model, const std::vector<Log>& logs,
                                        const RecordOptions& options = {});
 
-/// Returns true if the prediction does not diverge and its RMSE does not exceed the bound, if there is one. A
-/// log whose readings have no span exceeds every bound.
+/// Returns true if the prediction does not diverge and its RMSE does not exceed the bound (if there is a
+/// bound). A log whose readings have no span exceeds every bound.
 [[nodiscard]] bool is_acceptable(const Validation& validation, const Score& score);
 
-/// "3 logs predicted with an RMSE of 0.26 to 0.54 mm, at most 1.9 % of a log's span: 1 of them above
-/// the permitted 1.5 %."
+/// Returns the result as one sentence, such as "3 logs predicted with an RMSE of 0.26 to 0.54 mm, at most 1.9
+/// % of a log's span: 1 of them above the permitted 1.5 %."
 [[nodiscard]] std::string verdict_of(const Validation& validation);
-/// report.html
+/// Returns the page for report.html.
 [[nodiscard]] Page validate_page(const Validation& validation, const std::vector<Log>& logs);
-/// validate.json
+/// Returns the content of validate.json.
 [[nodiscard]] std::string validate_json(const Validation& validation, const std::vector<Log>& logs);
 
 }  // namespace softgrip::sysid
