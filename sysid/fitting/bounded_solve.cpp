@@ -7,10 +7,10 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Regularisation: it is added to the unit diagonal, so that a singular matrix has a unique minimum.
+/// Regularisation that is added to the unit diagonal, so that a singular matrix also has a unique minimum.
 constexpr double hair = 1e-13;
 
-/// A primal active-set method on scaled variables.
+/// Primal active-set method on scaled variables.
 class ActiveSet {
  public:
   ActiveSet(const Eigen::MatrixXd& gram, const Eigen::VectorXd& b, const Eigen::VectorXd& lower,
@@ -36,7 +36,7 @@ class ActiveSet {
  private:
   [[nodiscard]] bool held(Eigen::Index i) const { return held_[static_cast<std::size_t>(i)]; }
 
-  /// Steps to the minimum over the free variables. Returns true if a bound shortened the step.
+  /// Moves x to the minimum over the free variables. Returns true if a bound shortened the step.
   bool advance() {
     std::vector<Eigen::Index> free;
     for (Eigen::Index i = 0; i < b_.size(); ++i) {
@@ -73,7 +73,8 @@ class ActiveSet {
     return 0;
   }
 
-  /// Releases the bound with the largest multiplier of the wrong sign. Returns false if there is none.
+  /// Releases the active bound whose multiplier has the wrong sign and the largest magnitude. Returns false
+  /// if there is no such bound.
   bool release() {
     const Eigen::VectorXd gradient = b_ - gram_ * x_;
     double most = 1e-12;

@@ -1,5 +1,5 @@
 #pragma once
-// Solver of small bounded least-squares problems that are given by their normal equations.
+// Solves small bounded least-squares problems that are given by their normal equations.
 
 #include <vector>
 
@@ -10,12 +10,12 @@ namespace softgrip::sysid {
 /// The minimum of x' G x / 2 - b' x subject to lower <= x <= upper.
 struct BoundedSolution {
   Eigen::VectorXd x;
-  std::vector<bool> at_bound;  ///< the bound is active
+  std::vector<bool> at_bound;  ///< true: the variable is at a bound
 };
 
-/// Solves the problem. @param gram  G: symmetric and positive semidefinite. It may be badly scaled or
-/// singular:
-///              the solver scales it to a unit diagonal and adds a small regularisation.
+/// Solves the problem.
+/// @param gram  G, symmetric and positive semidefinite. It may be badly scaled or singular, because the
+/// solver scales it to a unit diagonal and adds a small regularisation.
 [[nodiscard]] BoundedSolution solve_bounded(const Eigen::MatrixXd& gram, const Eigen::VectorXd& b,
                                             const Eigen::VectorXd& lower, const Eigen::VectorXd& upper);
 

@@ -1,5 +1,5 @@
-// Residuals of any chain by automatic differentiation. Only this file instantiates Chain with derivatives.
-// Idle threads compute the records and the groups of derivatives in parallel.
+// Computes residuals of any chain by automatic differentiation. Only this file instantiates Chain with
+// derivatives. Idle threads process the records and the groups of derivatives in parallel.
 
 #include <algorithm>
 #include <cmath>
@@ -15,14 +15,14 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Possible sizes of a group of derivatives. The parameters of one cause need a small group. A structure with
-/// two branches and the first parameters of a cause need one large group.
+/// Possible sizes of a group of derivatives. The parameters of one cause fit into a small group, and those of
+/// a structure with two branches together with the first parameters of a cause into a large group.
 constexpr std::size_t least_group = 4;
 constexpr std::size_t small_group = 8;
 constexpr std::size_t large_group = 12;
 
-/// Returns the size of the next group if `left` derivatives remain. The number of groups is minimised first,
-/// then their size.
+/// Returns the size of the next group if `left` derivatives remain. The choice minimises first the number of
+/// groups and then their size.
 std::size_t group_for(std::size_t left) {
   if (left <= least_group) return least_group;
   if (left <= small_group) return small_group;
@@ -63,20 +63,21 @@ class ChainResiduals final : public Residuals {
   }
 
  private:
-  /// Derivatives that are computed together. `size` is the capacity, `columns` are the columns of the
-  /// Jacobian.
+  /// Derivatives that are computed together. `size` is the capacity of the group, and `columns` are the
+  /// columns of its derivatives in the Jacobian.
   struct Group {
     std::size_t size;
     std::vector<std::size_t> columns;
   };
-  /// The task of one simulation of a record.
+  /// One simulation of a record, with one group of derivatives.
   struct Part {
     std::size_t record;
     const std::vector<std::size_t>& columns;
-    bool values;  ///< also store the residuals
+    bool values;  ///< true: also store the residuals
   };
 
-  /// Groups the derivatives by model parameters and peaks. Returns at least one group, for the residuals.
+  /// Returns groups of the derivatives with respect to model parameters and previous peaks. Returns at least
+  /// one group, because the residuals are computed with the first one.
   [[nodiscard]] std::vector<Group> groups_of_derivatives() const {
     std::vector<std::size_t> dynamic;
     for (std::size_t i = 0; i < space_.size(); ++i) {
@@ -110,8 +111,8 @@ class ChainResiduals final : public Residuals {
     return std::all_of(finite.begin(), finite.end(), [](char one) { return one != 0; });
   }
 
-  /// Simulates one record: values of the chain, and its derivatives with respect to the parameters of the
-  /// part.
+  /// Simulates one record. Stores the values of the chain and its derivatives with respect to the parameters
+  /// of the part.
   template <std::size_t group>
   void derivatives(const FitPoint& point, std::span<const double> z, const Part& part, std::span<double> r,
                    std::span<double> jacobian) const {
@@ -137,7 +138,8 @@ class ChainResiduals final : public Residuals {
     });
   }
 
-  /// Adds the offset and the unsettled creep of a record, and fills their columns.
+  /// Adds the offset and the unsettled creep of a record to the residuals, and computes their columns of the
+  /// Jacobian.
   void start(const FitPoint& point, std::span<const double> z, std::size_t k, std::span<double> r,
              std::span<double> jacobian) const {
     const std::vector<double> time_constants = branch_time_constants_s(point.model);
@@ -162,7 +164,8 @@ class ChainResiduals final : public Residuals {
     }
   }
 
-  /// Returns the offset columns of a row of the Jacobian, which are equal in all rows of record k.
+  /// Returns the part of a row of the Jacobian that belongs to the offsets. It is the same for all rows of
+  /// record k.
   [[nodiscard]] std::vector<double> offset_columns(std::span<const double> z, std::size_t k) const {
     std::vector<double> line(space_.size());
     for (const std::size_t c : offsets_) {
@@ -195,8 +198,8 @@ class ChainResiduals final : public Residuals {
     }
   }
 
-  /// Adds the derivatives of unsettled creep with respect to k and c. Given is the derivative by ln tau,
-  /// where tau = c/k is the branch's time constant.
+  /// Adds the derivatives of unsettled creep with respect to k and c to a row. They follow from the given
+  /// derivative with respect to ln tau, where tau = c/k is the time constant of the branch.
   void creep_columns(const FitPoint& point, std::span<const double> z, std::size_t branch, double by_ln_tau,
                      double* line) const {
     if (by_ln_tau == 0) return;

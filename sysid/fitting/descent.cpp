@@ -17,7 +17,7 @@ Eigen::VectorXd damped_step(const NormalEquations& normal, const StepBounds& bou
       damped(i, i) = 1;
       downhill(i) = 0;
     } else {
-      // The smallest number keeps a matrix of zeros solvable.
+      // The constant 1e-300 makes the system solvable even if the matrix is zero.
       damped(i, i) += damping * damped(i, i) + (damping * options.least_damping + 1e-12) * all + 1e-300;
     }
   }

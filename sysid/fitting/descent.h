@@ -1,6 +1,6 @@
 #pragma once
-// The descent of all fits whose linear parameters are eliminated: damped Gauss-Newton steps (Levenberg 1944,
-// Marquardt 1963) within bounds. minimise() is for residuals that are kept whole.
+// Descends to a minimum by damped Gauss-Newton steps (Levenberg 1944, Marquardt 1963) within bounds. All fits
+// whose linear parameters are eliminated use this descent. Fits with the complete residuals use minimise().
 
 #include <algorithm>
 #include <cmath>
@@ -12,40 +12,44 @@
 
 namespace softgrip::sysid {
 
-/// Derivatives of half a loss by the coordinates of a search.
+/// Derivatives of half the loss with respect to the coordinates of a search.
 struct NormalEquations {
   Eigen::VectorXd gradient;
   Eigen::MatrixXd curvature;  ///< Gauss-Newton matrix
 };
 
-/// Change of each coordinate that its bounds permit: lower <= 0 <= upper.
+/// Changes of each coordinate that its bounds permit, where lower <= 0 <= upper.
 struct StepBounds {
   Eigen::VectorXd lower, upper;
 };
 
 struct DescentOptions {
-  int most_steps = 40;       ///< steps that reduce the loss
-  int most_trials = 8;       ///< of one step, each with more damping
-  double damping = 1e-2;     ///< of the first trial, as a share of the curvature
+  int most_steps = 40;       ///< maximum number of steps that reduce the loss
+  int most_trials = 8;       ///< maximum number of trials per step, each with more damping than the previous
+                             ///< one
+  double damping = 1e-2;     ///< damping of the first trial, as a share of the curvature
   double longest_step = 1;   ///< largest change of a coordinate in one step
-  double least_share = 0;    ///< the descent ends after a step that reduces the loss by a smaller share
-  double least_gain = 0;     ///< and this much
-  double least_damping = 0;  ///< of a coordinate: a share of the sum of all curvatures, times the damping
+  double least_share = 0;    ///< the descent ends after a step that reduces the loss by less than least_share
+                             ///< times the loss plus least_gain
+  double least_gain = 0;     ///< see least_share
+  double least_damping = 0;  ///< smallest damping of a coordinate, as a share of the sum of all curvatures,
+                             ///< multiplied by the current damping
 };
 
-/// End of a descent.
+/// Result of a descent.
 template <class Point>
 struct Descent {
   Point point;
   int steps = 0;
-  bool converged = false;  ///< false if the number of steps ended it
+  bool converged = false;  ///< false: the descent ended because the maximum number of steps was reached
 };
 
-/// One damped Gauss-Newton step. A coordinate at a bound that the gradient pushes against does not move.
+/// Returns one damped Gauss-Newton step. A coordinate at a bound stays there if the step would cross the
+/// bound.
 [[nodiscard]] Eigen::VectorXd damped_step(const NormalEquations& normal, const StepBounds& bounds,
                                           double damping, const DescentOptions& options);
 
-/// Descends from a point to a minimum of the loss. `Problem` has the functions
+/// Descends from a start point to a minimum of the loss. `Problem` has the functions
 ///   double loss(const Point&)                         infinity or NaN if the point is impossible
 ///   NormalEquations normal(const Point&)
 ///   StepBounds bounds(const Point&)

@@ -1,5 +1,6 @@
 #pragma once
-// The free parameters of a fit: model parameters and start states of records, scaled for the minimiser.
+// Defines the free parameters of a fit: model parameters and start states of records, scaled for the
+// minimiser.
 
 #include <cstddef>
 #include <span>
@@ -11,14 +12,14 @@
 
 namespace softgrip::sysid {
 
-/// One free parameter. The minimiser uses z = value / scale. For parameters that are always positive
-/// (stiffnesses, dampings) it uses z = ln(value).
+/// One free parameter. The minimiser uses z = value / scale, or z = ln(value) for parameters that are always
+/// positive (stiffnesses, dampings).
 struct FreeParameter {
   enum class Kind { model, offset, peak_before, unsettled };
   Kind kind = Kind::model;
-  std::size_t flat_index = 0;  ///< index of a model parameter
-  std::size_t record = 0;      ///< record of a start state
-  std::size_t branch = 0;      ///< branch of unsettled creep
+  std::size_t flat_index = 0;  ///< index in the flat values of a model parameter
+  std::size_t record = 0;      ///< record to which a start state belongs
+  std::size_t branch = 0;      ///< creep branch to which unsettled creep belongs
   std::string name;            ///< "kelvin_voigt.k1_kpa_per_mm", "tp1: offset_mm"
   std::string unit;            ///< unit of the value
   bool logarithmic = false;
@@ -34,13 +35,13 @@ struct FreeParameter {
   [[nodiscard]] double upper_z() const { return to_z(upper); }
 };
 
-/// Returns true if a fit of a model structure may change this parameter. Exponents and placed parameters,
-/// such as thresholds, are fixed. Envelope parameters are fixed if the operators have no envelope.
-/// The spring k0 is fixed if the hysteresis has an instantaneous gain, because the data determine only their
-/// sum.
+/// Returns true if a fit of a model structure may change this parameter. Exponents and parameters on a fixed
+/// grid, such as thresholds, are not changed. Envelope parameters are fixed if the operators have no
+/// envelope. The spring k0 is fixed if the hysteresis has an instantaneous gain, because the data determine
+/// only the sum of that gain and 1/k0.
 [[nodiscard]] bool is_movable(const model::Model& model, std::size_t flat_index);
 
-/// A point of the search: a complete model and the start state of each record.
+/// A point in the space of a search: a complete model and the start state of each record.
 struct FitPoint {
   model::Model model;
   std::vector<StartState> starts;
@@ -50,15 +51,15 @@ struct FitPoint {
 class FitSpace {
  public:
   /// Makes the parameters in `free_flat` (indices of flat_values(model)) and the unknown start states free.
-  /// @param model  values of the fixed parameters.
+  /// @param model  model with the values of the fixed parameters.
   FitSpace(const model::Model& model, const std::vector<Record>& records,
            const std::vector<std::size_t>& free_flat);
 
   [[nodiscard]] std::size_t size() const noexcept { return free_.size(); }
   [[nodiscard]] const std::vector<FreeParameter>& free() const noexcept { return free_; }
-  /// Fixes the start states of the records at `starts`.
+  /// Fixes the start states of the records at the values in `starts`.
   void hold_starts(const std::vector<StartState>& starts);
-  /// Narrows the bounds of one parameter. It never widens them.
+  /// Narrows the bounds of parameter `index` to the given range. The bounds are never widened.
   void bound(std::size_t index, double lower, double upper);
 
   [[nodiscard]] FitPoint point(std::span<const double> z) const;
@@ -72,9 +73,9 @@ class FitSpace {
   std::vector<FreeParameter> free_;
 };
 
-/// Returns start states with settled creep and zero offset. A record with a known start begins at rest; for
-/// an unknown start, the previous peak is halfway between the first and the largest pressure. `unsettled_mm`
-/// has one element for each branch of the model.
+/// Returns start states with settled creep and zero offset. A record with a known start begins at rest. If
+/// the start is unknown, the previous peak is assumed halfway between the first and the largest pressure.
+/// `unsettled_mm` has one element for each branch of the model.
 [[nodiscard]] std::vector<StartState> rest_starts(const model::Model& model,
                                                   const std::vector<Record>& records);
 

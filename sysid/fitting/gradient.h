@@ -1,12 +1,12 @@
 #pragma once
-// A number with many derivatives (forward-mode automatic differentiation), laid out for vector registers.
-// Ceres' Jet is equivalent, but the compiler does not inline its expressions into the steps of a chain, which
-// take most of the time.
+// A number with many derivatives (forward-mode automatic differentiation), stored for vector registers. The
+// Jet type of Ceres is equivalent, but the compiler does not inline its expressions into the steps of a
+// chain, which need most of the computing time.
 //
-// An operator returns an expression. Its value is computed at once. Its derivatives are computed in pairs
-// when a Gradient is constructed from it, so a formula loops over the derivatives once and not once per
-// operator. An expression refers to the Gradients in it. Convert it to a Gradient while they exist, and never
-// store it in an `auto` variable.
+// An operator returns an expression. The value of an expression is computed immediately. Its derivatives are
+// computed in pairs when a Gradient is constructed from the expression, so that a formula needs one loop over
+// the derivatives instead of one per operator. An expression refers to the Gradients that it contains.
+// Convert it to a Gradient while they exist, and never store it in an `auto` variable.
 
 #include <array>
 #include <cmath>
@@ -16,10 +16,10 @@
 
 namespace softgrip::sysid {
 
-/// Two derivatives.
+/// Two derivatives in one vector register.
 using DerivativePair [[gnu::vector_size(16)]] = double;
 
-/// Derivatives with respect to `count` (even) seeded parameters.
+/// Derivatives with respect to `count` parameters. `count` is even.
 template <std::size_t count>
 struct Derivatives {
   static_assert(count % 2 == 0);
@@ -38,7 +38,7 @@ struct Derivatives {
   }
 };
 
-/// A Gradient or an expression. It has a value `a`, and pair(i) returns two of its derivatives.
+/// A Gradient or an expression. It has a value `a`, and pair(i) returns the derivatives 2i and 2i + 1.
 template <class E>
 concept GradientLike = requires(const E& e, std::size_t i) {
   { e.a } -> std::convertible_to<double>;
@@ -59,7 +59,8 @@ struct Gradient {
   [[gnu::always_inline]] Gradient(const E& e) : a(e.a) {  // NOLINT(google-explicit-constructor): its value
     for (std::size_t i = 0; i < count / 2; ++i) v.pairs[i] = e.pair(i);
   }
-  /// Assigns an expression, which may contain *this: pair i of the expression depends only on pairs i.
+  /// Assigns an expression, which may contain *this, because pair i of an expression depends only on the
+  /// pairs i of its operands.
   template <GradientLike E>
   [[gnu::always_inline]] Gradient& operator=(const E& e) {
     for (std::size_t i = 0; i < count / 2; ++i) v.pairs[i] = e.pair(i);
@@ -102,7 +103,7 @@ struct HeldInExpression<Gradient<count>> {
 template <class E>
 using Held = typename HeldInExpression<E>::Type;
 
-/// Value `a` and derivatives s x.
+/// An expression with value `a` and derivatives s x', where x' are the derivatives of x.
 template <class X>
 struct ScaledGradient {
   static constexpr std::size_t derivatives = X::derivatives;
@@ -111,7 +112,7 @@ struct ScaledGradient {
   Held<X> x;
   [[nodiscard, gnu::always_inline]] DerivativePair pair(std::size_t i) const { return x.pair(i) * s; }
 };
-/// Value `a` and derivatives s x + t y.
+/// An expression with value `a` and derivatives s x' + t y'.
 template <class X, class Y>
 struct CombinedGradient {
   static_assert(X::derivatives == Y::derivatives);
@@ -125,7 +126,8 @@ struct CombinedGradient {
     return x.pair(i) * s + y.pair(i) * t;
   }
 };
-/// x + y or x - y, depending on the sign. Both have one type, so a conditional expression can contain both.
+/// The expression x + y or x - y, depending on `sign`. Both have the same type, so that a conditional
+/// expression can contain both.
 template <class X, class Y>
 struct AddedGradient {
   static_assert(X::derivatives == Y::derivatives);
@@ -138,7 +140,7 @@ struct AddedGradient {
     return x.pair(i) + y.pair(i) * sign;
   }
 };
-/// Value `a` and the derivatives of x.
+/// An expression with value `a` and the derivatives of x.
 template <class X>
 struct MovedGradient {
   static constexpr std::size_t derivatives = X::derivatives;

@@ -1,14 +1,14 @@
 #pragma once
-// One step of g for a monotone change of the pressure, with all derivatives. h = beta g is the Bouc-Wen state
-// for exponent 1: dg/dp = 1 - k g with k = +-(gamma + eta) while |g| grows and -+(gamma - eta) while it
-// shrinks.
+// Computes one step of g for a monotonic change of the pressure, with all derivatives. h = beta g is the
+// Bouc-Wen state for exponent 1: dg/dp = 1 - k g with k = +-(gamma + eta) while |g| grows and -+(gamma - eta)
+// while |g| decreases.
 
 #include <cmath>
 
 namespace softgrip::sysid {
 
-/// f(x) = (1 - exp(-x)) / x and its derivative. Short pressure steps make x small. For |x| < 0.05 a
-/// polynomial is used, with a relative error below 2e-16.
+/// f(x) = (1 - exp(-x)) / x and its derivative. The argument x is small for short pressure steps. For |x| <
+/// 0.05, a polynomial with a relative error below 2e-16 is used.
 struct Decay {
   double f;
   double slope;
@@ -30,8 +30,8 @@ struct Decay {
   return {-e / x, ((1 + e) * (1 + x) - 1) / (x * x)};
 }
 
-/// g and its derivatives with respect to gamma + eta, gamma - eta, the valve's lag and the peak before the
-/// start.
+/// g and its derivatives with respect to gamma + eta, gamma - eta, the time constant of the valve lag, and
+/// the pressure peak before the start.
 struct Hysteresis {
   double g = 0;
   double by_growing = 0;
@@ -45,7 +45,7 @@ struct HysteresisRates {
   double shrinking;  ///< gamma - eta [1/kPa]
 };
 
-/// Returns g after a monotone change of the pressure, without derivatives.
+/// Returns g after a monotonic change of the pressure, without derivatives.
 [[nodiscard]] inline double stepped(double g, double change, const HysteresisRates& rates) {
   const double direction = change < 0 ? -1 : 1;
   const bool grows = g * direction >= 0;
@@ -57,7 +57,8 @@ struct HysteresisRates {
   return rest * decay(rates.growing * direction * rest).f;
 }
 
-/// Steps g and its derivatives. @param change_by_lag,change_by_peak  derivatives of the change.
+/// Computes g and its derivatives after a monotonic change of the pressure.
+/// @param change_by_lag,change_by_peak  derivatives of the pressure change.
 inline void step(Hysteresis& h, double change, double change_by_lag, double change_by_peak,
                  const HysteresisRates& rates) {
   const double direction = change < 0 ? -1 : 1;

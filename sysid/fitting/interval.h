@@ -1,5 +1,5 @@
 #pragma once
-// A 95 % confidence interval and its text.
+// A 95 % confidence interval and its representation as text.
 
 #include <string>
 #include <string_view>
@@ -11,10 +11,11 @@ struct Interval {
   double upper = 0;
 };
 
-/// Returns the interval as a text, for example "0.127 .. 0.133" if `between` is " .. ". If is_determined() is
-/// false, the text states that these logs do not determine the value.
+/// Returns the interval as text, for example "0.127 .. 0.133" if `between` is " .. ". If is_determined() is
+/// false, the text states that the logs do not determine the value.
 [[nodiscard]] std::string text_of(const Interval& interval, double value, std::string_view between);
-/// Returns true if the width of the interval is at most 20 times the magnitude of the value.
+/// Returns true if the logs determine the value: the interval is at most 20 times as wide as the magnitude of
+/// the value.
 [[nodiscard]] bool is_determined(const Interval& interval, double value);
 
 }  // namespace softgrip::sysid

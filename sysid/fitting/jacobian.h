@@ -1,5 +1,5 @@
 #pragma once
-// Matrix type of the Jacobian of residuals.
+// Matrix type for the Jacobian of residuals.
 
 #include <Eigen/Core>
 

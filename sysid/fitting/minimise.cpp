@@ -1,4 +1,4 @@
-// The only file that includes Ceres' solver.
+// This is the only file that includes the solver of Ceres.
 
 #include "sysid/fitting/minimise.h"
 
@@ -15,7 +15,8 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Ceres reports through glog. The summary of the solver contains the relevant part.
+/// Switches off the log messages of Ceres, which uses glog. The summary of the solver contains the relevant
+/// information.
 void quieten_log() {
   static std::once_flag once;
   std::call_once(once, [] {
@@ -24,9 +25,9 @@ void quieten_log() {
   });
 }
 
-/// All residuals as one block. Ceres would apply a loss function to the whole block. Huber's loss is
-/// therefore applied to each residual: the square of f = sign(r) sqrt(2 d |r| - d^2), for |r| > d, is Huber's
-/// cost.
+/// All residuals in a single cost function. Ceres would apply a loss function to the sum of squares of all
+/// residuals. Therefore Huber's loss is applied to each residual here: for |r| > d, the square of f = sign(r)
+/// sqrt(2 d |r| - d^2) is Huber's cost.
 class WholeTrajectory final : public ceres::CostFunction {
  public:
   WholeTrajectory(const Residuals& residuals, double huber_mm) : residuals_(residuals), huber_mm_(huber_mm) {
@@ -35,7 +36,7 @@ class WholeTrajectory final : public ceres::CostFunction {
   }
 
   bool Evaluate(double const* const* parameters, double* r, double** jacobians) const override {
-    if (is_cancelled()) return false;  // an exception must not pass through Ceres
+    if (is_cancelled()) return false;  // exceptions must not propagate through Ceres
     const std::size_t rows = residuals_.count();
     const std::size_t columns = residuals_.space().size();
     const bool wanted = jacobians != nullptr && jacobians[0] != nullptr;
@@ -110,8 +111,8 @@ Minimum minimise(const Residuals& residuals, std::vector<double> z, const Minimi
   solver.parameter_tolerance = 1e-10;
   solver.gradient_tolerance = 0;
   solver.initial_trust_region_radius = 1e3;
-  // With bounds, Ceres would search along each step and compute the derivatives at each trial. Without this
-  // search, it still limits the steps to the bounds.
+  // If there are bounds, Ceres would by default search along each step and compute the derivatives at each
+  // trial. Without this line search, Ceres still limits the steps to the bounds.
   solver.max_num_line_search_step_size_iterations = 0;
   ceres::Solver::Summary summary;
   ceres::Solve(solver, &problem, &summary);

@@ -1,5 +1,5 @@
 #pragma once
-// Least squares with bounds from a given start, with the trust region method of Ceres.
+// Solves least-squares problems with bounds from a given start point by the trust-region method of Ceres.
 
 #include <cstddef>
 #include <functional>
@@ -14,12 +14,13 @@ namespace softgrip::sysid {
 
 struct MinimiseOptions {
   int most_iterations = 60;
-  /// Residuals above this limit have a linear cost instead of a quadratic one (Huber). Infinity: none.
+  /// Residuals above this limit have a linear instead of a quadratic cost (Huber). Infinity: all costs are
+  /// quadratic.
   double huber_mm = std::numeric_limits<double>::infinity();
-  /// Index of a parameter that is fixed.
+  /// Index of a parameter that is held constant; empty: none.
   std::optional<std::size_t> held;
-  /// Normal equations instead of an orthogonal factorisation. They are several times faster and have half the
-  /// digits, which is sufficient if only the error of the fit is used.
+  /// Use normal equations instead of an orthogonal factorisation. They are several times faster but give only
+  /// half as many digits, which is sufficient if only the error of the fit is used.
   bool normal_equations = false;
   /// Relative change of the cost at which the search ends.
   double tolerance = 1e-10;
@@ -27,13 +28,14 @@ struct MinimiseOptions {
 
 struct Minimum {
   std::vector<double> z;
-  double rmse_mm = 0;  ///< of the residuals without Huber's loss
-  double cost = 0;     ///< half the sum of squares, or of Huber's loss
+  double rmse_mm = 0;  ///< RMSE of the residuals, without Huber's loss
+  double cost = 0;     ///< half the sum of squares, or half of Huber's loss
   int iterations = 0;
   bool converged = false;
 };
 
-/// @param z  the start; it is first limited to the bounds.
+/// Minimises the sum of squared residuals.
+/// @param z  start point, which is first clipped to the bounds.
 [[nodiscard]] Minimum minimise(const Residuals& residuals, std::vector<double> z,
                                const MinimiseOptions& options = {});
 
@@ -45,7 +47,8 @@ struct PlainMinimum {
   double sum_of_squares = 0;
 };
 
-/// Minimises over a few parameters, or none, without bounds. Derivatives are central differences.
+/// Minimises the sum of squared residuals over a few parameters without bounds. The list of parameters may be
+/// empty. Derivatives are computed by central differences.
 /// @param count  number of residuals.
 /// @param tolerance  relative change of the cost at which the search ends.
 [[nodiscard]] PlainMinimum minimise_plain(const PlainResiduals& residuals, std::size_t count,

@@ -1,6 +1,6 @@
 #pragma once
-// Paired comparison of the losses of two models on the same blocks, by a bootstrap over blocks.
-// sysid/evidence/comparison.h uses weights instead.
+// Compares the losses of two models on the same blocks by a bootstrap that draws whole blocks.
+// sysid/evidence/comparison.h uses random weights of the blocks instead.
 
 #include <cstddef>
 #include <cstdint>
@@ -10,10 +10,10 @@
 
 namespace softgrip::sysid {
 
-/// Mean square error of each block while it was held out [mm^2].
+/// Mean square error of each block under a fit that did not use the block [mm^2].
 using BlockLosses = std::vector<double>;
 
-/// A number with its uncertainty.
+/// A value with its uncertainty.
 struct Spread {
   double value = 0;
   double standard_error = 0;
@@ -21,10 +21,11 @@ struct Spread {
   double upper = 0;
 };
 
-/// A statistic of the blocks at `indices`.
+/// Computes a statistic of the blocks with these indices.
 using BlockStatistic = std::function<double(std::span<const std::size_t> indices)>;
-/// Returns the statistic of each bootstrap resample (Efron 1979): `blocks` blocks drawn with replacement.
-/// Whole blocks are drawn, so correlation within a block does not matter. Equal seeds give equal draws.
+/// Returns the statistic of each bootstrap sample (Efron 1979). A bootstrap sample consists of `blocks`
+/// blocks, drawn with replacement. Because whole blocks are drawn, correlation within a block is permitted.
+/// Equal seeds give equal samples.
 /// @param blocks  number of blocks, at least 1.
 [[nodiscard]] std::vector<double> statistic_of_draws(std::size_t blocks, std::size_t draws,
                                                      std::uint64_t seed, const BlockStatistic& statistic);
@@ -35,15 +36,15 @@ using BlockStatistic = std::function<double(std::span<const std::size_t> indices
 /// interval of mean_difference() is above 0, and the mean exceeds `least_mm2`.
 [[nodiscard]] bool is_missed(const BlockLosses& without, const BlockLosses& with, double least_mm2,
                              std::uint64_t seed);
-/// Returns the mean over blocks of log(worse / better), from the same draws. Each block counts by the ratio
-/// of its losses, so one block with a very poor fit does not outweigh all others. A block in which a loss is
-/// 0 counts as a tie.
+/// Returns the mean over blocks of log(worse / better), from the same bootstrap samples as mean_difference().
+/// Because ratios are used, one block with a very poor fit does not outweigh all others. A block in which a
+/// loss is 0 counts as a tie.
 [[nodiscard]] Spread mean_log_ratio(const BlockLosses& worse, const BlockLosses& better, std::uint64_t seed);
-/// Returns the error reduction 100 (1 - rms(after)/rms(before)) [%], from the same draws.
+/// Returns the error reduction 100 (1 - rms(after)/rms(before)) [%], from the same bootstrap samples.
 [[nodiscard]] Spread gain_percent(const BlockLosses& before, const BlockLosses& after, std::uint64_t seed);
-/// Returns the share of paired draws of blocks in which `ours` has the lower loss; ties count half.
+/// Returns the share of the bootstrap samples in which `ours` has the lower loss. A tie counts as one half.
 [[nodiscard]] double winning_share(const BlockLosses& ours, const BlockLosses& other, std::uint64_t seed);
-/// Returns the square root of the mean over blocks [mm].
+/// Returns the square root of the mean of the losses over the blocks [mm].
 [[nodiscard]] double rmse_mm(const BlockLosses& losses);
 
 /// Mean over blocks of worse minus better, and its standard error [mm^2].
@@ -52,9 +53,9 @@ struct LossDifference {
   double standard_error_mm2 = 0;
 };
 [[nodiscard]] LossDifference loss_difference(const BlockLosses& worse, const BlockLosses& better);
-/// Returns true if `better` has the lower mean loss and the difference exceeds twice its standard error,
-/// either for the losses or for their logarithms. With logarithms, a block that is difficult for both models
-/// does not outweigh the others.
+/// Returns true if the mean loss of `better` is lower and the difference exceeds twice its standard error,
+/// computed either from the losses or from their logarithms. With logarithms, a block that is difficult for
+/// both models does not outweigh the others.
 [[nodiscard]] bool is_clearly_less(const BlockLosses& better, const BlockLosses& worse);
 
 }  // namespace softgrip::sysid

@@ -1,5 +1,5 @@
 #pragma once
-// Residuals of a model over whole trajectories, with exact derivatives.
+// Computes residuals of a model over complete trajectories, with exact derivatives.
 
 #include <cstddef>
 #include <memory>
@@ -11,7 +11,7 @@
 
 namespace softgrip::sysid {
 
-/// Prediction minus reading for each reading of each record, in order. evaluate() is thread-safe.
+/// Prediction minus reading for all readings, record by record. evaluate() is thread-safe.
 class Residuals {
  public:
   virtual ~Residuals() = default;
@@ -23,8 +23,10 @@ class Residuals {
 
   /// Computes the residuals and the Jacobian. Returns false if the model is not defined at z, or if a value
   /// is not finite.
-  /// @param z  in the coordinates of space(). @param r  count() residuals [mm], or empty.
-  /// @param jacobian  derivatives with respect to z: count() rows of space().size(), or empty.
+  /// @param z  point in the coordinates of space().
+  /// @param r  receives count() residuals [mm]; may be empty.
+  /// @param jacobian  receives the derivatives with respect to z, in count() rows of space().size() elements;
+  /// may be empty.
   [[nodiscard]] virtual bool evaluate(std::span<const double> z, std::span<double> r,
                                       std::span<double> jacobian) const = 0;
 
@@ -40,9 +42,9 @@ class Residuals {
 /// result.
 [[nodiscard]] std::unique_ptr<Residuals> chain_residuals(const std::vector<Record>& records, FitSpace space);
 
-/// Returns residuals for a chain of at most one delay, at most one valve lag, Bouc-Wen with exponent 1 and
-/// Kelvin-Voigt. Sensitivities in closed form give the same values several times faster. Returns nullptr for
-/// any other chain.
+/// Returns residuals for a chain that consists of at most one delay, at most one valve lag, Bouc-Wen with
+/// exponent 1 and Kelvin-Voigt. Their sensitivities are computed in closed form, which gives the same values
+/// several times faster. Returns nullptr for any other chain.
 [[nodiscard]] std::unique_ptr<Residuals> separable_residuals(const std::vector<Record>& records,
                                                              FitSpace space);
 

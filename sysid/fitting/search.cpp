@@ -17,20 +17,21 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Maximum number of iterations from one starting point.
+/// Maximum number of iterations from one start point.
 constexpr int search_iterations = 60;
 constexpr int chain_search_iterations = 40;
-/// Number of samples for the coarse fit from many starting points. More samples do not improve it.
+/// Number of samples for the coarse fit from many start points. More samples do not improve the result.
 constexpr std::size_t samples_of_a_look = 4000;
-/// A start whose RMSE exceeds the lowest by this factor is repeated with a larger initial damping.
+/// A search whose RMSE is higher than the lowest one by this factor is repeated with a larger initial
+/// damping.
 constexpr double higher = 1.02;
 constexpr double slow_damping = 10;
-/// Minima within this factor of the lowest RMSE are refined on all samples.
+/// A minimum is refined on all samples if its RMSE is at most this multiple of the lowest one.
 constexpr double not_far = 1.3;
-/// Results whose distance in the coordinates of the fit is below this are one minimum.
+/// Two results are the same minimum if their distance in the coordinates of the fit is below this value.
 constexpr double same_place = 0.02;
 
-/// Reports the progress of several threads, one call at a time.
+/// Reports the progress of several threads. The calls are serialised.
 class Teller {
  public:
   Teller(const ShowProgress& show, std::size_t starts)
@@ -54,7 +55,7 @@ double lowest_rmse_mm(const std::vector<SearchResult>& results) {
   return lowest;
 }
 
-/// Returns for each result the index of the first result with the same minimum.
+/// Returns, for each result, the index of the first result that is the same minimum.
 std::vector<std::size_t> places(const FitSpace& space, const std::vector<SearchResult>& results) {
   std::vector<std::size_t> firsts;
   std::vector<std::vector<double>> at;
@@ -74,7 +75,7 @@ std::vector<std::size_t> places(const FitSpace& space, const std::vector<SearchR
   return place;
 }
 
-/// Searches from all starting points on few samples.
+/// Searches from all start points with few samples.
 std::vector<SearchResult> look(const SeparableSearch& few, const std::vector<FitPoint>& starts,
                                unsigned threads, const ShowProgress& progress) {
   Teller teller(progress, starts.size());

@@ -1,5 +1,5 @@
 #pragma once
-// Parameter search from many starting points.
+// Searches for the parameters of a model from many start points.
 
 #include <cstddef>
 #include <functional>
@@ -17,21 +17,23 @@ struct Progress {
   std::size_t done = 0;
   std::size_t starts = 0;
   double best_rmse_mm = 0;
-  std::string stage;  ///< name of the current task, if it is not a search from starting points
+  std::string stage;  ///< name of the current task; empty: the search from start points
 };
 
-/// Callback for progress. It is called from any thread, but never concurrently. It may be empty.
+/// Callback that receives the progress. It is called from any thread, but never concurrently, and may be
+/// empty.
 using ShowProgress = std::function<void(const Progress&)>;
 
-/// Searches from all starting points and returns the results in their order. A separable chain is fitted by
-/// variable projection: first from each starting point on thinned records. Each distinct minimum with an RMSE
-/// of at most 1.3 times the lowest is then refined on all samples. Any other chain is fitted by minimise().
-/// @param threads  0: one thread for each core.
+/// Searches from all start points and returns the results in the order of the start points. A separable chain
+/// is fitted by variable projection, first on thinned records from each start point. Each distinct minimum
+/// whose RMSE is at most 1.3 times the lowest one is then refined on all samples. Any other chain is fitted
+/// by minimise().
+/// @param threads  number of threads; 0: one for each core.
 [[nodiscard]] std::vector<SearchResult> search(const FitSpace& space, const std::vector<Record>& records,
                                                const std::vector<FitPoint>& starts, unsigned threads,
                                                const ShowProgress& progress);
 
-/// Sorts the creep branches of a point into the order of the given time constants.
+/// Sorts the creep branches of a point so that their time constants have the same order as those in `like_s`.
 void order_branches(const std::vector<double>& like_s, FitPoint& point);
 
 }  // namespace softgrip::sysid

@@ -16,12 +16,13 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Rate of a dashpot without a spring. It never settles, so its state begins at zero.
+/// Rate assigned to a dashpot without a spring. Such a branch never settles, so its state begins at zero.
 constexpr double without_spring_hz = 1e-30;
 
 constexpr std::size_t most_branches = 8;
 
-/// Response of a branch to a stretch of one duration, and its derivatives with respect to the branch's rate.
+/// Response of a branch to a pressure segment of a given duration, and its derivatives with respect to the
+/// rate of the branch.
 struct BranchWeights {
   double loss, begin, rise, bend;
   double loss_by_rate, begin_by_rate, rise_by_rate, bend_by_rate;
@@ -47,14 +48,14 @@ std::vector<BranchWeights> branch_weights(const std::vector<double>& durations,
   return weights;
 }
 
-/// A Kelvin-Voigt branch of unit damping, w' = p - r w, with its derivatives.
+/// State of a Kelvin-Voigt branch with unit damping, w' = p - r w, with its derivatives.
 struct Branch {
   double w = 0;
   double by_rate = 0;
   double by_lag = 0;
 };
 
-/// Collects rows into blocks.
+/// Collects rows and passes them to the sink in blocks.
 class Rows {
  public:
   Rows(Eigen::Index columns, SeparableRecord::Sink& sink)
@@ -76,7 +77,7 @@ class Rows {
   Eigen::Index used_ = 0;
 };
 
-/// Simulates one record; if Full is true, with sensitivities.
+/// Simulates one record, with sensitivities if Full is true.
 template <bool Full>
 class Walker {
  public:
@@ -213,7 +214,7 @@ class Walker {
     double by_delay = 0;
     double by_lag = 0;
     if (delayed_) {
-      // The chain is time-invariant, so a delay shifts its response: dy/d(delay) = -y'.
+      // The chain is time-invariant, so a longer delay shifts its response, and dy/d(delay) = -y'.
       const double g = hysteresis_.g;
       const double k = g * rate_kpa_per_s >= 0 ? rates_.growing : rates_.shrinking;
       by_delay = rate_kpa_per_s * (point_.instantaneous - point_.beta * (1 - k * std::abs(g)));

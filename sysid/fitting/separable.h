@@ -1,14 +1,16 @@
 #pragma once
-// The separable chain in closed form, with all sensitivities: at most one transport delay and one valve lag,
-// then Bouc-Wen with exponent 1 and Kelvin-Voigt branches.
+// Simulates a separable chain in closed form, with all sensitivities. The chain consists of at most one
+// transport delay and at most one valve lag, followed by Bouc-Wen with exponent 1 and Kelvin-Voigt branches.
 //
-// With h = beta g the hysteresis obeys g' = p' - gamma p' |g| - eta |p'| g, without beta. The displacement
+// With h = beta g, the hysteresis follows g' = p' - gamma p' |g| - eta |p'| g, which does not contain beta.
+// The displacement
 //
 //   y = A p - beta g + sum_b a_b w_b + offset + sum_b u_b exp(-r_b t),   w_b' = p - r_b w_b,
 //
-// is linear in A = alpha + 1/k0, beta, a_b = 1/c_b, and the offset and unsettled creep u_b of the start. The
-// nonlinear parameters are gamma + eta ("growing"), gamma - eta ("shrinking"), the rates r_b = k_b/c_b,
-// delay, lag and the peak before a record's start. A search iterates over these only (variable projection).
+// is linear in A = alpha + 1/k0, beta, a_b = 1/c_b, the offset, and the unsettled creep u_b at the start. The
+// nonlinear parameters are gamma + eta ("growing"), gamma - eta ("shrinking"), the rates r_b = k_b/c_b, the
+// delay, the lag, and the peak before the start of a record. A search iterates only over the nonlinear
+// parameters (variable projection).
 
 #include <cstddef>
 #include <optional>
@@ -23,7 +25,7 @@
 
 namespace softgrip::sysid {
 
-/// Indices of the blocks of a separable chain in Model::blocks, and its number of branches.
+/// Indices of the blocks of a separable chain in Model::blocks, and the number of Kelvin-Voigt branches.
 struct SeparableShape {
   std::optional<std::size_t> delay;
   std::optional<std::size_t> lag;
@@ -32,29 +34,29 @@ struct SeparableShape {
   std::size_t branches = 0;
 };
 
-/// Returns the shape of a separable model; nullopt for any other model.
+/// Returns the shape of a separable model, or an empty value for any other model.
 [[nodiscard]] std::optional<SeparableShape> separable_shape(const model::Model& model);
 
-/// The parameters of a separable chain in the coordinates above.
+/// The parameters of a separable chain, named as in the equations above.
 struct SeparablePoint {
   double growing_per_kpa = 0;
   double shrinking_per_kpa = 0;
   double delay_s = 0;
   double lag_s = 0;
-  std::vector<double> rate_hz;     ///< k/c, by branch [1/s]
+  std::vector<double> rate_hz;     ///< k/c of each branch [1/s]
   double instantaneous = 0;        ///< alpha + 1/k0 [mm/kPa]
   double beta = 0;                 ///< [mm/kPa]
-  std::vector<double> amplitude;   ///< 1/c, by branch [mm/(kPa s)]
+  std::vector<double> amplitude;   ///< 1/c of each branch [mm/(kPa s)]
   std::vector<StartState> starts;  ///< start state of each record
 };
 
 [[nodiscard]] SeparablePoint to_separable(const SeparableShape& shape, const FitPoint& point);
 
-/// Column indices of one record's rows. The linear columns are first. Each contains the term that its linear
-/// parameter multiplies.
+/// Indices of the columns in the rows of one record. The linear columns are first. Each of them contains the
+/// factor of its linear parameter.
 struct SeparableColumns {
   std::size_t branches = 0;
-  bool has_start = false;  ///< there are columns for unsettled creep and peak
+  bool has_start = false;  ///< true: there are columns for unsettled creep and peak
 
   [[nodiscard]] static constexpr Eigen::Index pressure() { return 0; }
   [[nodiscard]] static constexpr Eigen::Index hysteresis() { return 1; }  ///< -g
@@ -64,7 +66,8 @@ struct SeparableColumns {
     return offset() + 1 + static_cast<Eigen::Index>(b);
   }
   [[nodiscard]] Eigen::Index linear() const { return has_start ? unsettled(branches) : offset() + 1; }
-  // Sensitivities of y to the nonlinear parameters, at the given linear parameters.
+  // The following columns are sensitivities of y to the nonlinear parameters, for the given linear
+  // parameters.
   [[nodiscard]] Eigen::Index growing() const { return linear(); }
   [[nodiscard]] Eigen::Index shrinking() const { return linear() + 1; }
   [[nodiscard]] Eigen::Index rate(std::size_t b) const { return linear() + 2 + static_cast<Eigen::Index>(b); }
@@ -74,7 +77,7 @@ struct SeparableColumns {
   [[nodiscard]] Eigen::Index all() const { return delay() + (has_start ? 3 : 2); }
 };
 
-/// A record, prepared for many evaluations.
+/// A record that is prepared for many evaluations.
 class SeparableRecord {
  public:
   SeparableRecord(const Record& record, const SeparableShape& shape);
@@ -82,8 +85,9 @@ class SeparableRecord {
   [[nodiscard]] const Record& record() const noexcept { return record_; }
   [[nodiscard]] const SeparableColumns& columns() const noexcept { return columns_; }
 
-  /// Receives up to `block_rows` consecutive rows with a reading. The columns are those of SeparableColumns
-  /// (linear() or all() of them) and one more: the reading, or, with sensitivities, prediction minus reading.
+  /// Receives up to `block_rows` consecutive rows, one per reading. The columns are linear() or all() of
+  /// those in SeparableColumns, followed by one more column. This last column is the reading, or prediction
+  /// minus reading if the sensitivities are included.
   class Sink {
    public:
     virtual ~Sink() = default;
@@ -91,9 +95,10 @@ class SeparableRecord {
   };
   static constexpr Eigen::Index block_rows = 128;
 
-  /// Writes the linear columns and the readings, at the nonlinear parameters of `point`.
+  /// Passes the linear columns and the readings to `sink`, for the nonlinear parameters of `point`.
   void linear(const SeparablePoint& point, std::size_t index, Sink& sink) const;
-  /// Writes all columns and the residual. @param index  index of the record in point.starts.
+  /// Passes all columns and the residual to `sink`.
+  /// @param index  index of the record in point.starts.
   void full(const SeparablePoint& point, std::size_t index, Sink& sink) const;
 
  private:

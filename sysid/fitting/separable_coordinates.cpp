@@ -1,4 +1,4 @@
-// The coordinates of SeparableSearch, and their conversion from and to the parameters.
+// Defines the coordinates of SeparableSearch, and converts parameters to coordinates and back.
 
 #include <algorithm>
 #include <cmath>
@@ -34,8 +34,8 @@ void SeparableSearch::add_coordinates(const FreeParts& parts) {
   for (std::size_t b = 0; b < shape_.branches; ++b) {
     const FreeParameter& k = at(parts.stiffness[b]);
     const FreeParameter& c = at(parts.damping[b]);
-    // A branch slower than 20 lengths of the log acts as a dashpot; one faster than half a sample, as a
-    // spring.
+    // A branch with a time constant of more than 20 lengths of the log behaves like a dashpot, and one with
+    // less than half a sampling interval like a spring.
     coordinates_.push_back({Coordinate::Kind::rate, b, 1,
                             std::log(std::max(k.lower / c.upper, 0.05 / longest_s)),
                             std::log(std::min(k.upper / c.lower, 2 / shortest_s))});
@@ -58,7 +58,7 @@ void SeparableSearch::add_linear(const FreeParts& parts) {
     lower_.push_back(lower);
     upper_.push_back(upper);
   };
-  // Only the sum alpha + 1/k0 is fitted. Its lower bound follows from alpha.
+  // The data determine only the sum alpha + 1/k0, so the sum is fitted. Its lower bound follows from alpha.
   const FitPoint base = space_->point(std::vector<double>(space_->size(), 0.0));
   const double fixed_alpha = base.model.blocks[shape_.bouc_wen].values[0];
   bound(parts.alpha >= 0 ? 0 : fixed_alpha, 1e6);
@@ -166,7 +166,7 @@ MatrixXd SeparableSearch::coordinate_map(const SeparablePoint& point, std::size_
     const Coordinate& q = coordinates_[i];
     auto column = map.col(static_cast<Index>(i));
     switch (q.kind) {
-      case Coordinate::Kind::growing:  // eta is fixed, so gamma - eta changes by the same amount
+      case Coordinate::Kind::growing:  // eta is constant here, so gamma - eta changes by the same amount
         column(c.growing()) = column(c.shrinking()) = q.scale;
         break;
       case Coordinate::Kind::eta:
@@ -196,7 +196,7 @@ FitPoint SeparableSearch::to_fit_point(FitPoint start, const SeparablePoint& poi
   if (alpha_free_) {
     bw[0] = point.instantaneous - 1 / kv[0];
     if (bw[0] <= 0) {
-      // The spring alone yields more than the fitted sum, so it must be stiffer.
+      // The spring alone would have a larger compliance than the fitted sum, so its stiffness is increased.
       kv[0] = 1 / std::max(point.instantaneous, 1e-9);
       bw[0] = 0;
     }

@@ -1,5 +1,6 @@
 #pragma once
-// The free parameters of a separable chain. Only separable_search includes this file.
+// Assigns the free parameters of a separable chain. Include this header only in separable_search and
+// separable_coordinates.
 
 #include <algorithm>
 #include <utility>
@@ -9,7 +10,7 @@
 
 namespace softgrip::sysid {
 
-/// Indices of the parameters in the fit space; -1: fixed.
+/// Indices of the parameters in the fit space; -1: the parameter is fixed.
 struct SeparableSearch::FreeParts {
   int alpha = -1, k0 = -1, beta = -1, gamma = -1, eta = -1, delay = -1, lag = -1;
   std::vector<int> stiffness, damping;

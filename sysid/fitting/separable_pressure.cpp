@@ -14,8 +14,8 @@ using model::ExponentialWeights;
 using model::Segment;
 using Number = Dual<double>;
 
-/// Assigns one index to equal durations. It compares only the last 8 distinct durations, because a log either
-/// alternates between few durations or has many different ones.
+/// Assigns the same index to equal durations. A duration is only compared with the last 8 distinct ones,
+/// because a log either alternates between few durations or has many different ones.
 class DurationTable {
  public:
   explicit DurationTable(std::vector<double>& durations) : durations_(durations) {}
@@ -66,7 +66,7 @@ void append_straight(PressureWalk& walk, double begin_kpa, double end_kpa, doubl
   walk.stretches.push_back(s);
 }
 
-/// Appends the pieces without a delay.
+/// Appends the pieces of the drive without a delay.
 void append_undelayed(PressureWalk& walk, const std::vector<Piece>& pieces, DurationTable& durations) {
   double last = walk.first_kpa;
   for (const Piece& piece : pieces) {
@@ -76,10 +76,10 @@ void append_undelayed(PressureWalk& walk, const std::vector<Piece>& pieces, Dura
   }
 }
 
-/// Appends the pieces, delayed by `delay_s` and split at the samples.
+/// Appends the pieces of the drive, delayed by `delay_s` and split at the samples.
 void append_delayed(PressureWalk& walk, const Record& record, const std::vector<Piece>& pieces,
                     double delay_s, DurationTable& durations) {
-  std::size_t next = 0;  // the piece after the current one
+  std::size_t next = 0;  // index of the piece after the current one
   Piece current{delay_s, walk.first_kpa};
   double at = walk.first_kpa;  // pressure at the beginning of the current piece
   for (std::size_t i = 1; i < record.size(); ++i) {
@@ -109,8 +109,8 @@ void append_delayed(PressureWalk& walk, const Record& record, const std::vector<
   }
 }
 
-/// Filters linear stretches with a lag, as model::ValveLag does, and computes the derivatives with respect to
-/// its time constant.
+/// Filters the linear segments with a lag, as model::ValveLag does, and computes the derivatives with respect
+/// to the time constant.
 void apply_lag(PressureWalk& walk, double lag_s) {
   const Number rate = Number(1.0) / Number(lag_s, 1);
   std::vector<ExponentialWeights<Number>> weights;

@@ -1,4 +1,4 @@
-// Residuals of a separable chain: its columns are mapped to the parameters of the fit.
+// Computes residuals of a separable chain and maps its columns to the parameters of the fit.
 
 #include <cmath>
 
@@ -10,10 +10,11 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Minimum number of samples per thread. The simulation is fast, so a shorter record is not worth a thread.
+/// Minimum number of samples per thread. The simulation is fast, so that a thread is not worthwhile for fewer
+/// samples.
 constexpr std::size_t samples_worth_one = 4 * samples_worth_a_thread;
 
-/// Returns the matrix M with: rows of the Jacobian = full columns of the record * M.
+/// Returns the matrix M for which the rows of the Jacobian are the full columns of the record times M.
 Eigen::MatrixXd mapping(const SeparableShape& shape, const SeparableColumns& c, const FitSpace& space,
                         const FitPoint& point, std::span<const double> z, std::size_t record) {
   const auto& blocks = point.model.blocks;
@@ -56,7 +57,7 @@ Eigen::MatrixXd mapping(const SeparableShape& shape, const SeparableColumns& c, 
   return m;
 }
 
-/// Copies blocks of rows into residuals and Jacobian.
+/// Copies blocks of rows to the residuals and the Jacobian.
 class Writer final : public SeparableRecord::Sink {
  public:
   Writer(const Eigen::MatrixXd& map, double* r, double* jacobian) : map_(map), r_(r), jacobian_(jacobian) {}

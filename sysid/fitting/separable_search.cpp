@@ -16,7 +16,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Accumulates the Gram matrix of the columns, block by block.
+/// Accumulates the Gram matrix of the columns from blocks of rows.
 class GramSink final : public SeparableRecord::Sink {
  public:
   explicit GramSink(Index columns) : gram_(MatrixXd::Zero(columns, columns)) {}
@@ -105,7 +105,8 @@ NormalEquations SeparableSearch::normal(const SeparablePoint& point, const Linea
       }
     }
   }
-  // Curvature of the reduced problem: curvature - cross' G^-1 cross, with the free linear parameters.
+  // The curvature of the reduced problem is curvature - cross' G^-1 cross, where G contains the free linear
+  // parameters.
   std::vector<Index> free;
   for (Index i = 0; i < n; ++i) {
     if (!linear.at_bound[static_cast<std::size_t>(i)]) free.push_back(i);
@@ -121,7 +122,7 @@ NormalEquations SeparableSearch::normal(const SeparablePoint& point, const Linea
   return normal;
 }
 
-/// The search from one start, as descend() needs it.
+/// The search from one start point, with the interface that descend() requires.
 struct SeparableSearch::Descending {
   struct Point {
     SeparablePoint point;
@@ -156,7 +157,8 @@ struct SeparableSearch::Descending {
 SearchResult SeparableSearch::run(const FitPoint& start, int most_iterations, double damping) const {
   const SeparablePoint point = to_separable(shape_, start);
   const Descending problem{*this};
-  // More than a factor of e^2 in a rate, or twice the range, is beyond the validity of the derivatives.
+  // The steps are limited, because the derivatives are not valid beyond a change of a rate by a factor of e^2
+  // or of another coordinate by twice its range.
   const auto end = descend(problem, problem.at(point, coordinates_of(point)),
                            {.most_steps = most_iterations,
                             .most_trials = 12,

@@ -1,10 +1,10 @@
 #pragma once
-// Search for the parameters of a separable chain from poor starts: variable projection (Golub and Pereyra
-// 1973, with the simplification by Kaufman 1975) and damped steps (descent.h).
+// Searches for the parameters of a separable chain from inaccurate start points. The method is variable
+// projection (Golub and Pereyra 1973, with the simplification by Kaufman 1975) with damped steps (descent.h).
 //
-// For given nonlinear parameters, the linear ones follow from normal equations with bounds. Reading the
-// data once gives the Gram matrix of all columns. The cost, the gradient and the Gauss-Newton matrix of the
-// reduced problem follow from it. No array has the size of the data.
+// For given nonlinear parameters, the linear parameters follow from normal equations with bounds. Reading the
+// data once gives the Gram matrix of all columns, from which the cost, the gradient and the Gauss-Newton
+// matrix of the reduced problem follow. Therefore no array has the size of the data.
 
 #include <memory>
 #include <optional>
@@ -18,7 +18,7 @@
 
 namespace softgrip::sysid {
 
-/// End of one search.
+/// Result of a search from one start point.
 struct SearchResult {
   FitPoint point;
   double rmse_mm = 0;
@@ -26,27 +26,28 @@ struct SearchResult {
   bool converged = false;
 };
 
-/// A search that is prepared for many starts. run() is thread-safe.
+/// A search that is prepared for many start points. run() is thread-safe.
 class SeparableSearch {
  public:
-  /// Returns nullopt unless the chain is separable, all its linear parameters are free in `space` (alpha or
-  /// k0, beta, each k with its c), and gamma and eta are both free or both fixed.
-  /// @param records  must outlive the search.
+  /// Returns an empty value unless three conditions are met: the chain is separable; all its linear
+  /// parameters are free in `space` (alpha or k0, beta, each k with its c); and gamma and eta are both free
+  /// or both fixed.
+  /// @param records  records that must outlive the search.
   [[nodiscard]] static std::optional<SeparableSearch> make(const std::vector<Record>& records,
                                                            const FitSpace& space);
 
-  /// Starts from the nonlinear parameters of `start`. Its linear ones have no effect.
-  /// @param damping  of the first step: a small value gives a Gauss-Newton step, a large one a short step
-  /// along the gradient.
+  /// Searches from the nonlinear parameters of `start`. The linear parameters of `start` have no effect.
+  /// @param damping  damping of the first step. A small value gives a Gauss-Newton step, a large one a short
+  /// step along the gradient.
   [[nodiscard]] SearchResult run(const FitPoint& start, int most_iterations, double damping = 1e-3) const;
 
  private:
-  /// A nonlinear parameter and its bounds, in the scale of the search: growing, eta, delay, lag and peak are
-  /// divided by a typical size, rates are logarithms.
+  /// A nonlinear parameter and its bounds in the scale of the search. The values of growing, eta, delay, lag
+  /// and peak are divided by a typical size; rates are logarithmic.
   struct Coordinate {
     enum class Kind { growing, eta, rate, delay, lag, peak };
     Kind kind;
-    std::size_t index = 0;  ///< branch or record
+    std::size_t index = 0;  ///< index of the branch or record
     double scale = 1;
     double lower = 0;
     double upper = 0;
@@ -69,20 +70,22 @@ class SeparableSearch {
   [[nodiscard]] SeparablePoint moved(SeparablePoint point, const Eigen::VectorXd& q) const;
   void set_linear(SeparablePoint& point, const Eigen::VectorXd& values) const;
   [[nodiscard]] Linear project(const SeparablePoint& point) const;
-  /// Returns the normal equations of the reduced problem.
+  /// Returns the normal equations of the reduced problem, which depends only on the nonlinear parameters.
   [[nodiscard]] NormalEquations normal(const SeparablePoint& point, const Linear& linear) const;
   [[nodiscard]] Eigen::MatrixXd coordinate_map(const SeparablePoint& point, std::size_t record) const;
   [[nodiscard]] FitPoint to_fit_point(FitPoint start, const SeparablePoint& point) const;
-  /// Indices of the linear columns of a record among all linear parameters; -1: fixed.
+  /// Returns, for each linear column of a record, its index among all linear parameters; -1: the parameter is
+  /// fixed.
   [[nodiscard]] std::vector<Eigen::Index> places(std::size_t record) const;
 
   std::shared_ptr<const FitSpace> space_;
   SeparableShape shape_;
   std::vector<SeparableRecord> records_;
   std::vector<Coordinate> coordinates_;
-  std::vector<Eigen::Index> first_own_;  ///< by record: index of its first own linear parameter
-  std::vector<bool> offset_free_;        ///< by record
-  std::vector<double> lower_;            ///< of the linear parameters
+  std::vector<Eigen::Index> first_own_;  ///< index of the first linear parameter that belongs to one record
+                                         ///< only, for each record
+  std::vector<bool> offset_free_;        ///< true: the offset of the record is free
+  std::vector<double> lower_;            ///< lower bounds of the linear parameters
   std::vector<double> upper_;
   bool alpha_free_ = false;
   std::size_t residual_count_ = 0;

@@ -20,7 +20,8 @@ namespace softgrip::sysid {
 namespace {
 
 constexpr double used_share = 0.05, used_at_least_s = 2, used_at_most_share = 0.5;
-/// Standard deviation of unsettled creep, as a share of the branch's settled creep over the drive's range.
+/// Prior standard deviation of unsettled creep, as a share of the settled creep of the branch over the range
+/// of the drive.
 constexpr double unsettled_share = 0.3;
 /// Assumed error of the model, as a share of the predicted motion.
 constexpr double model_tolerance = 0.05;
@@ -28,12 +29,12 @@ constexpr double model_tolerance = 0.05;
 constexpr double rejected_at = 3;
 /// Duration [s] from the first sample over which the speed of the drive is computed.
 constexpr double speed_over_s = 0.1;
-/// The last reversals are searched on a grid with this number of steps. The step is then halved this many
-/// times.
+/// Number of steps of the grid on which the last reversals are searched for, and number of times that the
+/// step is then halved.
 constexpr int grid_steps = 5, halvings = 4;
-/// The sum of the autocorrelation ends at the first value below this.
+/// The summation of the autocorrelation ends at the first value below this limit.
 constexpr double least_correlation = 0.05;
-/// Assumed number of independent readings in the beginning, before a residual is known.
+/// Number of independent readings in the beginning that is assumed before a residual is known.
 constexpr double independent_at_first = 5;
 
 Record beginning_of(const Record& unit) {
@@ -44,7 +45,7 @@ Record beginning_of(const Record& unit) {
   return beginning;
 }
 
-/// Returns the effective number of independent residuals, from the sum of the autocorrelation.
+/// Returns the effective number of independent residuals, computed from the sum of their autocorrelation.
 double independent_among(const Eigen::VectorXd& residual) {
   const Eigen::Index n = residual.size();
   const double squares = residual.squaredNorm();
@@ -57,16 +58,18 @@ double independent_among(const Eigen::VectorXd& residual) {
   return std::max(1.0, static_cast<double>(n) / (1 + 2 * sum));
 }
 
-/// Weight of the readings: mean square of the residual, and effective number of independent readings.
+/// Determines the weight of the readings relative to the priors: mean square of the residual, and effective
+/// number of independent readings.
 struct Trust {
   double mean_square_mm2 = 0;
   double independent = 1;
 };
 
-/// A start state and its residual in the beginning.
+/// A start state and the residual that it leaves in the beginning of the unit.
 struct Trial {
   StartState start;
-  double misfit = std::numeric_limits<double>::infinity();  ///< minus twice the log posterior of the start
+  double misfit = std::numeric_limits<double>::infinity();  ///< -2 times the logarithm of the posterior
+                                                            ///< probability
   Trust left;
 };
 
@@ -103,7 +106,7 @@ class StartSearch {
     return rest;
   }
 
-  /// Returns the readings minus the prediction from `start` with zero offset and settled creep.
+  /// Returns the readings minus the prediction from `start`, but with zero offset and settled creep.
   [[nodiscard]] Eigen::VectorXd unexplained(StartState start) const {
     start.offset_mm = 0;
     std::fill(start.unsettled_mm.begin(), start.unsettled_mm.end(), 0.0);
@@ -124,7 +127,8 @@ class StartSearch {
     return trial;
   }
 
-  /// Estimates offset and unsettled creep by least squares with priors, for given reversals of the pressure.
+  /// Estimates offset and unsettled creep by least squares with priors, for the reversals of the pressure in
+  /// `start`.
   [[nodiscard]] Trial with_creep(StartState start, const Trust& trust) const {
     const Eigen::VectorXd y = unexplained(start);
     const double weight = trust.independent / (static_cast<double>(y.size()) * trust.mean_square_mm2);
@@ -153,14 +157,15 @@ class StartSearch {
     return best;
   }
 
-  /// Returns the start with the highest posterior probability, given the first readings and the priors.
+  /// Returns the start state with the highest posterior probability for the first readings and the priors.
   [[nodiscard]] Trial anywhere(const StartState& rest) {
     prepare_creep();
     const std::vector<StartState> starts = grid(rest);
     const Eigen::VectorXd y = unexplained(rest);
     const double spread_mm2 = (y.array() - y.mean()).square().mean();
     Trial best = best_of(starts, {std::max(spread_mm2, smallest_mm2), independent_at_first});
-    // The residual determines the weight of the priors, and the priors influence the residual: iterate.
+    // The residual determines the weight of the priors, and the priors influence the residual. Therefore the
+    // estimate is iterated.
     for (int pass = 0; pass < 2; ++pass) best = best_of(starts, best.left);
     double peak_step = (highest_kpa_ - first_kpa_) / grid_steps;
     double valley_step = (first_kpa_ - lowest_kpa_) / grid_steps;
@@ -170,7 +175,7 @@ class StartSearch {
       best = best_of(around(best.start, peak_step, valley_step), best.left);
     }
     if (!under_pressure_) return best;
-    // One stroke may not determine the start. Without this rule, the noise would select it.
+    // A single stroke may not determine the start state. Without this rule, the noise would select one.
     const Trial usual = with_creep(turned(rest, highest_kpa_, lowest_kpa_), best.left);
     return usual.misfit < best.misfit + square(rejected_at) ? usual : best;
   }
@@ -193,7 +198,7 @@ class StartSearch {
     }
   }
 
-  /// Returns `rest` and all pairs of a last peak and a later valley on the grid.
+  /// Returns `rest`, and a start state for every pair of a last peak and a subsequent valley on the grid.
   [[nodiscard]] std::vector<StartState> grid(const StartState& rest) const {
     std::vector<StartState> starts{rest};
     for (int peak = 0; peak <= grid_steps; ++peak) {
@@ -227,7 +232,7 @@ class StartSearch {
     return (beginning_.drive_kpa[i] - first_kpa_) / (beginning_.time_s[i] - beginning_.time_s[0]);
   }
 
-  /// Returns true if neither noise nor the assumed model error explains the residual of a start at rest.
+  /// Returns true if neither the noise nor the assumed model error explains the residual for a start at rest.
   [[nodiscard]] bool is_rejected(const Trial& resting, const Trial& moving) const {
     const Eigen::VectorXd still = unexplained(resting.start);
     double sum = 0, squares = 0;
@@ -251,8 +256,8 @@ class StartSearch {
   double first_kpa_, lowest_kpa_ = 0, highest_kpa_ = 0;
   bool under_pressure_;
   std::vector<std::size_t> rows_;  ///< samples with readings
-  Eigen::MatrixXd columns_;        ///< contributions of offset and unsettled creep
-  Eigen::VectorXd precision_;      ///< precision of their priors
+  Eigen::MatrixXd columns_;        ///< contributions of the offset and of unsettled creep to the readings
+  Eigen::VectorXd precision_;      ///< precision of the priors of these contributions
 };
 
 }  // namespace

@@ -1,5 +1,5 @@
 #pragma once
-// Simulation of a record with a model, and its residual.
+// Simulates a record with a model and computes the residual.
 
 #include <span>
 #include <vector>
@@ -9,24 +9,25 @@
 
 namespace softgrip::sysid {
 
-/// Returns the predicted reading at each sample of the record [mm]. The model is simulated from the start,
-/// and readings never correct its hidden state.
+/// Returns the predicted reading at each sample of the record [mm]. The model is simulated from the start
+/// state, and readings never correct its hidden state.
 [[nodiscard]] std::vector<double> predict(const model::Model& model, const Record& record,
                                           const StartState& start);
 
-/// Adds the offset and the unsettled creep of the start, which are not part of the chain's state.
-/// @param series_mm  as long as the record.
+/// Adds the offset and the unsettled creep of the start state to a series. They are not part of the state of
+/// the chain.
+/// @param series_mm  predicted displacement at each sample of the record.
 void add_start(const model::Model& model, const Record& record, const StartState& start,
                std::vector<double>& series_mm);
 
-/// Returns reading minus prediction [mm]; NaN if there is no reading.
+/// Returns reading minus prediction for each sample [mm]; NaN for samples without a reading.
 [[nodiscard]] std::vector<double> residual(const Record& record, const std::vector<double>& prediction);
 
 /// Returns the root mean square of the finite values.
 [[nodiscard]] double rms(std::span<const double> values);
 
-/// Returns the RMSE over all readings [mm]; infinity if a prediction is not finite.
-/// @param starts  by record.
+/// Returns the RMSE over all readings [mm], or infinity if a prediction is not finite.
+/// @param starts  start state of each record.
 [[nodiscard]] double rmse_of(const model::Model& model, const std::vector<StartState>& starts,
                              const std::vector<Record>& records);
 

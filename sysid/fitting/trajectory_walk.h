@@ -1,5 +1,5 @@
 #pragma once
-// Simulation of a record with a Chain<T>, for any number type T (double, or with derivatives).
+// Simulates a record with a Chain<T>, where T is double or a number type with derivatives.
 
 #include <algorithm>
 #include <cmath>
@@ -11,34 +11,34 @@
 
 namespace softgrip::sysid {
 
-/// Durations [s] after which a valve, or any creep, has settled before the first sample.
+/// Times [s] within which a valve or any creep has settled before the first sample.
 inline constexpr double valve_settling_s = 10;
 inline constexpr double creep_settling_s = 1e6;
 
-/// Maximum duration [s] for which the pressure moved at its arrival speed before the first sample.
+/// Maximum time [s] before the first sample during which the pressure moved at its arrival speed.
 inline constexpr double longest_arrival_s = 2;
 
-/// Number of cycles between a peak and a valley before the first sample, so that the hysteresis is in its
-/// steady cycle.
+/// Number of simulated cycles between peak and valley before the first sample, after which the hysteresis is
+/// in its steady cycle.
 inline constexpr int cycles_before = 15;
 
-/// Returns the pressure [kPa] at which the final movement to the first sample began. It is not beyond the
-/// last reversal. Without an arrival speed, it is the first pressure.
+/// Returns the pressure [kPa] at which the movement to the first sample began. This pressure is not beyond
+/// the last reversal. Without an arrival speed, it is the first pressure.
 inline double arrived_from_kpa(double first_kpa, double last_turn_kpa, double arrival_kpa_per_s) {
   const double from_kpa = first_kpa - arrival_kpa_per_s * longest_arrival_s;
   return arrival_kpa_per_s > 0 ? std::clamp(from_kpa, std::min(last_turn_kpa, first_kpa), first_kpa)
                                : std::clamp(from_kpa, first_kpa, std::max(last_turn_kpa, first_kpa));
 }
 
-/// Brings a chain to the start of a record by the reversals in its StartState: from rest at the peak to the
-/// valley, then to the first pressure. There the chain settles, or it arrives at the arrival speed. Without
-/// reversals, the chain is at rest at the first pressure.
+/// Brings a chain to the state at the start of a record, using the reversals in its StartState. The chain
+/// moves from rest at the peak to the valley and then to the first pressure. There it settles, or it arrives
+/// with the arrival speed. Without reversals, the chain is at rest at the first pressure.
 template <class T>
 void start(model::Chain<T>& chain, const Record& record, const T& peak_before_kpa, const StartState& state) {
   const double first_kpa = record.drive_kpa.front();
   const double valley_kpa = state.valley_before_kpa;
   const bool turned = valley_kpa < first_kpa;
-  // A cycle between a valley and the first pressure has its peak there.
+  // In a cycle between a valley and the first pressure, the first pressure is the peak.
   const bool peaked =
       turned ? model::value_of(peak_before_kpa) >= first_kpa : model::value_of(peak_before_kpa) > first_kpa;
   // Blocks that depend on the largest load so far include the load of the earlier records.
@@ -63,14 +63,15 @@ void start(model::Chain<T>& chain, const Record& record, const T& peak_before_kp
   if (from_kpa != first_kpa) chain.step(T((first_kpa - from_kpa) / state.arrival_kpa_per_s), T(first_kpa));
 }
 
-/// Brings a chain to the start of a record without a valley and an arrival speed. The peak is used only if
-/// the start of the record is unknown.
+/// Brings a chain to the state at the start of a record, without a valley and an arrival speed. The peak is
+/// only used if the start of the record is unknown.
 template <class T>
 void start(model::Chain<T>& chain, const Record& record, const T& peak_before_kpa) {
   start(chain, record, record.start_unknown ? peak_before_kpa : T(record.drive_kpa.front()), StartState{});
 }
 
-/// Returns time, temperature and supply pressure at sample `i`. A missing column gives the default value.
+/// Returns time, temperature and supply pressure at sample `i`. If a column is missing, the default value is
+/// returned.
 inline model::Surroundings surroundings_at(const Record& record, std::size_t i) {
   model::Surroundings around;
   around.time_s = record.campaign_time_s + record.time_s[i];
@@ -84,8 +85,8 @@ inline double drive_at_end(const Record& record, std::size_t i) {
   return record.held ? record.drive_kpa[i - 1] : record.drive_kpa[i];
 }
 
-/// Calls sink(i, displacement) for each sample. The displacement does not include the offset and the
-/// unsettled creep.
+/// Simulates a record and calls sink(i, displacement) for each sample. The displacement does not include the
+/// offset and the unsettled creep.
 template <class T, class Sink>
 void walk(const model::Model& model, std::span<const T> values, const Record& record,
           const T& peak_before_kpa, const StartState& state, Sink&& sink) {
