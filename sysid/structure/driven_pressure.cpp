@@ -10,7 +10,7 @@ namespace {
 
 using Segment = model::Segment<double>;
 
-/// Delay, and lag or regulator, if the structure has them.
+/// The delay of a structure and its lag or regulator, if it has them.
 class Valve {
  public:
   Valve(const Record& record, const BaseStructure& structure, const NonlinearNumbers& n, double first_kpa)

@@ -21,10 +21,11 @@ namespace {
 
 using Failure = tl::unexpected<std::string>;
 
-/// A search has reached the best RMSE if its RMSE exceeds the best by at most this share.
+/// A search counts as successful if its RMSE exceeds the smallest one by at most this share.
 constexpr double reached_share = 1e-3;
 constexpr std::size_t fewest_readings = 100;
-/// Maximum averaging time [s] for the choice of a structure. Longer means would hide the lag of a valve.
+/// Maximum averaging time [s] of readings for the choice of a structure. Longer averages would hide the lag
+/// of a valve.
 constexpr double longest_mean_s = 0.02;
 
 StructureEvidence evidence_of(const StructureChoice& choice, const std::vector<WithoutIngredient>& ablation) {
@@ -50,7 +51,8 @@ std::string chosen_by_means(const std::vector<Record>& averaged) {
          " ms, and its parameters were fitted to all samples";
 }
 
-/// Adds the estimates of the free parameters. A parameter that is 0 or at a bound has no interval.
+/// Adds the estimates of the free parameters to the result. A parameter that is 0 or at a bound has no
+/// interval.
 void add_estimates(const StructureTrial& trial, Identification& result) {
   const auto residuals = residuals_for(
       result.records, FitSpace(trial.point.model, result.records, free_numbers(trial.point.model)));
@@ -96,7 +98,7 @@ void join_valve(const std::vector<Log>& logs, const IdentifyOptions& options, Id
   StructureEvidence::Valve valve{
       stage.delay_s,      stage.filling_s,         stage.venting_s,          stage.rmse_kpa,
       stage.rmse_percent, stage.held_out_rmse_kpa, pressure_noise_kpa(logs), {}};
-  // Valve and finger in series. Each log begins at its first measured pressure.
+  // Simulate the valve and the finger in series. Each log begins at its first measured pressure.
   std::vector<Log> driven = logs;
   for (Log& log : driven) log.pressure_kpa = predicted_pressure_kpa(stage, log, options.record.held);
   RecordOptions measured = options.record;

@@ -1,6 +1,6 @@
 #pragma once
-// Identification with a choice of the model structure. If the pressure was measured, valve and finger are
-// identified separately.
+// Identifies a model including its structure. If the pressure was measured, valve and finger are identified
+// separately.
 
 #include <vector>
 
@@ -11,11 +11,11 @@
 
 namespace softgrip::sysid {
 
-/// Chooses a structure and identifies it. With Drive::command and a pressure_kpa column in each log, the
-/// finger is identified from the measured pressure, and the valve from command to measured pressure. The
-/// model contains both; the scores are those of the finger. The members `fixed`, `free`, `start_points`,
-/// `exponents`, `robust` and `profile` of `options` are not used, because they concern a given structure. The
-/// error is a sentence.
+/// Chooses a structure and identifies its parameters. With Drive::command and a pressure_kpa column in each
+/// log, the finger is identified from the measured pressure, and the valve from the command and the measured
+/// pressure. The model then contains both, and the scores are those of the finger. The members `fixed`,
+/// `free`, `start_points`, `exponents`, `robust` and `profile` of `options` are ignored, because they require
+/// a given structure. Returns an error sentence on failure.
 [[nodiscard]] tl::expected<Identification, std::string> identify_structure(
     const std::vector<Log>& logs, StructureQuestion question, const IdentifyOptions& options = {});
 

@@ -1,5 +1,5 @@
 #pragma once
-// Fit of the published element (Bouc-Wen with two Kelvin-Voigt branches) after a delay and a lag.
+// Fits the published element (Bouc-Wen with two Kelvin-Voigt branches), preceded by a delay and a lag.
 
 #include <cstdint>
 #include <vector>
@@ -15,14 +15,15 @@ struct PublishedElement {
   std::vector<double> start_rmse_mm;
 };
 
-/// Fits the element from `starts` starting points. @param drive  Drive::measured: without delay and lag.
+/// Fits the element from `starts` start points.
+/// @param drive  Drive::measured: the element has no delay and no lag.
 [[nodiscard]] PublishedElement fit_published(const std::vector<Record>& records, Drive drive,
                                              std::size_t starts, std::uint64_t seed);
-/// Fits the element from the point `from`, to records with the same samples.
+/// Fits the element to records with the same samples, starting from the point `from`.
 [[nodiscard]] FitPoint refit_published(const std::vector<Record>& records, const FitPoint& from);
 
-/// Returns true if the displacement increases with the pressure in every state: beta times the maximum slope
-/// of the hysteretic state is less than alpha + 1/k0.
+/// Returns true if the displacement increases with the pressure in every state. This is the case if beta
+/// times the maximum slope of the hysteretic state is less than alpha + 1/k0.
 [[nodiscard]] bool rises_everywhere(const model::Model& model);
 
 /// Returns the flat indices of the free parameters: all except the exponent and k0. k0 is fixed, because the

@@ -20,10 +20,10 @@ namespace {
 
 constexpr int periods = 8;
 constexpr std::array damping_ratios{0.1, 0.5};
-/// Shortest period of the search [sampling intervals]. Fewer samples do not determine the amplitude of a
-/// sine.
+/// Shortest period of the search, in sampling intervals. With a shorter period, the samples do not determine
+/// the amplitude of a sine.
 constexpr double shortest_in_intervals = 6;
-/// Longest period of the search, as a share of the longest record.
+/// Longest period of the search, as a share of the longest record and in seconds.
 constexpr double longest_share = 0.1;
 constexpr double longest_s = 10;
 
@@ -33,7 +33,7 @@ void put(FitPoint& point, double period_s, double damping_ratio) {
       model::block_of<model::Inertia>({{"period_s", period_s}, {"damping_ratio", damping_ratio}}));
 }
 
-/// Returns the parameters of the resonance, the delay and the lags.
+/// Returns the flat indices of the parameters of resonance, delay and lags.
 std::vector<std::size_t> latencies(const model::Model& model) {
   constexpr std::array movable{model::block_type<model::TransportDelay>(),
                                model::block_type<model::ValveLag>(),
@@ -71,7 +71,7 @@ ResonantFit with_resonance(const FitPoint& point, const std::vector<Record>& rec
   }
   const double from_s = shortest_in_intervals * interval_s;
   const double to_s = std::clamp(longest_share * length_s, from_s, longest_s);
-  std::array<ResonantFit, damping_ratios.size()> best;  // the best starting point for each damping ratio
+  std::array<ResonantFit, damping_ratios.size()> best;  // best start point for each damping ratio
   for (int i = 0; i < periods; ++i) {
     const double period_s = from_s * std::pow(to_s / from_s, static_cast<double>(i) / (periods - 1));
     for (std::size_t d = 0; d < damping_ratios.size(); ++d) {

@@ -1,6 +1,6 @@
 #pragma once
-// Fit of a second-order mode of mass and spring (model/blocks/inertia.h) after a structure that was fitted
-// without this mode.
+// Fits a second-order mode of mass and spring (model/blocks/inertia.h) that is added to an already fitted
+// structure.
 
 #include <limits>
 #include <vector>
@@ -15,13 +15,13 @@ struct ResonantFit {
   double rmse_mm = std::numeric_limits<double>::infinity();
 };
 
-/// Adds a resonance to a point. The search for period and damping ratio starts from several periods between 6
-/// sampling intervals and 10 % of the longest record (at most 10 s). Dead time and time constants of the
-/// valve are fitted too; all other parameters are fixed.
+/// Adds a resonance to a point and fits it. The search for period and damping ratio starts from several
+/// periods between 6 sampling intervals and 10 % of the longest record (at most 10 s). The dead time and the
+/// time constants of the valve are fitted as well. All other parameters stay fixed.
 [[nodiscard]] ResonantFit with_resonance(const FitPoint& point, const std::vector<Record>& records);
 
-/// Adds the resonance of `resonant` to `point` and fits it to other readings of the same records, starting
-/// from `resonant`.
+/// Adds the resonance of `resonant` to `point` and fits it to other readings of the same records. The fit
+/// starts from the parameters of `resonant`.
 [[nodiscard]] FitPoint with_resonance_of(const FitPoint& resonant, FitPoint point,
                                          const std::vector<Record>& records);
 

@@ -21,13 +21,14 @@ namespace softgrip::sysid {
 namespace {
 
 constexpr std::array ridges{1e-7, 1e-6, 1e-5, 1e-4, 1e-3};
-/// Index of the ridge parameter with which the nonlinear parameters are searched from all starting points.
-/// For the others, the search begins at this result.
+/// Index of the ridge parameter for which the search of the nonlinear parameters starts from all start
+/// points. For the other ridge parameters, the search starts from the result for this one.
 constexpr std::size_t first_ridge = 2;
-/// Maximum number of iterations in a fold, whose nonlinear parameters are close to those of all readings.
+/// Maximum number of iterations in a fold. It is small, because the nonlinear parameters of a fold are close
+/// to those of the fit to all readings.
 constexpr int fold_iterations = 5;
 
-/// yes: the chain of creep branches has an additional time constant between each two neighbours.
+/// yes: the chain of creep branches has an additional time constant between each pair of adjacent ones.
 enum class RungsBetween { no, yes };
 
 std::vector<double> with_rungs_between(const std::vector<double>& ladder_s) {
@@ -58,21 +59,22 @@ class Judge {
     return fit_form(records_, structure, grid_, with(ridge), near);
   }
 
-  /// Evaluates a structure. The fit begins at the nonlinear parameters of a similar structure.
+  /// Evaluates a structure. The fit starts from the nonlinear parameters of a similar structure.
   [[nodiscard]] StructureTrial judge_near(const BaseStructure& structure, double ridge,
                                           const NonlinearNumbers& numbers) const {
     return judge(fit(structure, ridge, &numbers), ridge, fold_iterations);
   }
 
-  /// Evaluates a structure with a regulator instead of the lag. The fit begins at the parameters of the trial
-  /// with the lag.
+  /// Evaluates a structure with a regulator instead of the lag. The fit starts from the parameters of the
+  /// trial with the lag.
   [[nodiscard]] StructureTrial judge_regulated(BaseStructure structure, const StructureTrial& lagging) const {
     structure.regulator = true;
     structure.second_lag = false;
     return judge_near(structure, lagging.ridge, with_usual_regulator(lagging.numbers, grid_));
   }
 
-  /// Evaluates a trial with an additional resonance. The member `numbers` remains that of the trial.
+  /// Evaluates a trial with an additional resonance. The member `numbers` keeps the values of the trial
+  /// without the resonance.
   [[nodiscard]] StructureTrial judge_resonant(const StructureTrial& still) const {
     StructureTrial trial = still;
     trial.structure.resonance = true;
@@ -93,8 +95,9 @@ class Judge {
                                : judge(fit(structure, ridge), ridge, fold_iterations);
   }
 
-  /// Evaluates a fitted structure. @param iterations  maximum number in each fold, starting from the
-  /// parameters of `whole`; 0: the nonlinear parameters remain fixed.
+  /// Evaluates a fitted structure.
+  /// @param iterations  maximum number of iterations in each fold, starting from the parameters of `whole`;
+  /// 0: the nonlinear parameters stay fixed.
   [[nodiscard]] StructureTrial judge(const FittedStructure& whole, double ridge, int iterations) const {
     StructureTrial trial = trial_of(whole.structure);
     trial.ridge = ridge;
@@ -150,7 +153,7 @@ class Judge {
   Division division_;
 };
 
-/// Returns the candidates; the simplest is first.
+/// Returns the candidates, the simplest first.
 std::vector<BaseStructure> candidates(const StructureChoiceOptions& options) {
   const bool delay = options.drive == Drive::command;
   std::vector<BaseStructure> list;
@@ -176,7 +179,8 @@ std::vector<BaseStructure> candidates(const StructureChoiceOptions& options) {
   return list;
 }
 
-/// Returns the structure without the component, or unchanged if it does not have the component.
+/// Returns the structure without the component. If the structure does not have the component, it is returned
+/// unchanged.
 BaseStructure without(BaseStructure s, Ingredient ingredient) {
   switch (ingredient) {
     case Ingredient::hysteresis:
@@ -227,7 +231,7 @@ BaseStructure without(BaseStructure s, Ingredient ingredient) {
 }
 
 bool has(const BaseStructure& s, Ingredient ingredient) {
-  // If the structure has only a delay or only a lag, removing it is a separate entry of the ablation.
+  // If the structure has only one of delay and lag, its removal is already a separate entry of the ablation.
   if (ingredient == Ingredient::latency) return s.delay && s.lag;
   return without(s, ingredient) != s;
 }
@@ -246,7 +250,7 @@ std::size_t best_of(const std::vector<StructureTrial>& trials) {
                                   trials.begin());
 }
 
-/// Returns the first trial, from index `first`, whose loss is within one standard error of the best.
+/// Returns the first trial from index `first` on whose loss is within one standard error of the lowest loss.
 std::size_t simplest_of_the_best(const std::vector<StructureTrial>& trials, std::size_t first = 0) {
   const std::size_t best = best_of(trials);
   for (std::size_t i = first; i < best; ++i) {
@@ -257,7 +261,7 @@ std::size_t simplest_of_the_best(const std::vector<StructureTrial>& trials, std:
   return best;
 }
 
-/// Chooses the trial if its loss is significantly lower than that of the chosen one.
+/// Adds the trial and chooses it if its loss is significantly lower than that of the chosen one.
 void offer(StructureTrial trial, StructureChoice& choice) {
   if (!may_be_chosen(trial) ||
       !is_clearly_less(trial.block_losses_mm2, choice.trials[choice.chosen].block_losses_mm2))
@@ -266,8 +270,9 @@ void offer(StructureTrial trial, StructureChoice& choice) {
   choice.trials.push_back(std::move(trial));
 }
 
-/// Offers the extension of the chosen structure that `judged` fits. Pressure-dependent creep may have
-/// compensated for the missing extension, so the extension without it is tried too.
+/// Offers the chosen structure with the extension that `judged` adds and evaluates. Pressure-dependent creep
+/// may have compensated for the missing extension, so the extended structure without this creep is offered as
+/// well.
 void offer_extended(const std::function<StructureTrial(const BaseStructure&, const StructureTrial&)>& judged,
                     unsigned threads, StructureChoice& choice) {
   const StructureTrial chosen = choice.trials[choice.chosen];
@@ -280,8 +285,9 @@ void offer_extended(const std::function<StructureTrial(const BaseStructure&, con
   offer(std::move(extended[simplest_of_the_best(extended)]), choice);
 }
 
-/// Fits the structure of a trial. @param near  starting point of the nonlinear parameters; nullptr: all usual
-/// ones.
+/// Fits the structure of a trial.
+/// @param near  start point of the nonlinear parameters; nullptr: the search starts from all default start
+/// points.
 FitPoint fit_from(const NonlinearNumbers* near, const StructureTrial& trial,
                   const std::vector<Record>& records, Drive drive, StructureFitOptions options = {}) {
   if (trial.structure.published) return refit_published(records, trial.point);
@@ -405,8 +411,9 @@ std::vector<WithoutIngredient> ablation_of(const std::vector<Record>& records, c
   const Judge judge(records, options);
   const Judge among_more_rungs(records, options, RungsBetween::yes);
   parallel_for(ablation.size(), options.threads, [&](std::size_t i) {
-    // A creep time constant of the finger between two of the chain is represented by both of them. The larger
-    // one may count as slow creep, so slow creep is removed from a chain with intermediate time constants.
+    // Use a chain with intermediate time constants if slow creep is removed. Creep of the finger with a time
+    // constant between two of the chain is represented by both of them, and the larger one may count as slow
+    // creep.
     const Judge& fair = ablation[i].ingredient == Ingredient::slow_creep ? among_more_rungs : judge;
     BaseStructure still = ablation[i].trial.structure;
     const bool rings = std::exchange(still.resonance, false);
@@ -418,7 +425,8 @@ std::vector<WithoutIngredient> ablation_of(const std::vector<Record>& records, c
 }
 
 FitPoint fit_again(const StructureTrial& trial, const std::vector<Record>& records, Drive drive) {
-  // The search for a regulator is expensive, and its parameters do not depend on the finger.
+  // Start from the known parameters if there is a regulator, because the search for them is expensive and
+  // they do not depend on the finger.
   return fit_from(trial.structure.regulator ? &trial.numbers : nullptr, trial, records, drive);
 }
 

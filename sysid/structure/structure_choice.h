@@ -1,5 +1,5 @@
 #pragma once
-// Choice of the model structure of a finger from fixed candidates, by their error on held-out readings.
+// Chooses the model structure of a finger among fixed candidates by their error on held-out readings.
 
 #include <array>
 #include <cstdint>
@@ -14,27 +14,28 @@
 
 namespace softgrip::sysid {
 
-/// The requested structure.
+/// The structure that the caller requests.
 enum class StructureQuestion { automatic, bouc_wen, prandtl_ishlinskii };
 
 struct StructureChoiceOptions {
-  /// The published element is rejected if the held-out error of another structure is less than this share of
-  /// its own, even if the difference is uncertain; 0: never. If a cause is missing, one block may dominate
-  /// the standard error.
+  /// The published element is rejected if another structure has a held-out error of less than this share of
+  /// the element's error, even if the difference is not significant; 0: never. If a cause is missing in all
+  /// structures, one block may dominate the standard error and make the difference insignificant.
   double published_yields_below = 0;
   StructureQuestion question = StructureQuestion::automatic;
-  Drive drive = Drive::command;  ///< Drive::measured: structures without a dead time
-  /// Also try a second lag and a resonance. The diagnosis treats them as causes.
+  Drive drive = Drive::command;  ///< input; Drive::measured: the structures have no dead time
+  /// True: also try a second lag and a resonance. The diagnosis does not need them, because it treats them as
+  /// causes.
   bool dynamics = false;
-  std::size_t starts = 20;  ///< starting points for the published element
-  /// Creep of at least this time constant is slow creep [s]; 0: from a tenth of the longest record on.
+  std::size_t starts = 20;  ///< number of start points for the published element
+  /// Time constant from which creep counts as slow creep [s]; 0: 10 % of the longest record.
   double slow_from_s = 0;
   std::uint64_t seed = 1;
   unsigned threads = 0;
-  std::function<void(const std::string&)> progress;  ///< callback; it can be called from any thread
+  std::function<void(const std::string&)> progress;  ///< receives the progress; may be called from any thread
 };
 
-/// Components that are removed from a structure to measure their contribution.
+/// Components that are removed from a structure in order to measure their contribution.
 enum class Ingredient {
   hysteresis,
   play_operators,  ///< replaced by the Bouc-Wen element
@@ -44,12 +45,12 @@ enum class Ingredient {
   delay,
   lag,
   second_lag,
-  latency,         ///< delay and lag together: each compensates for most of the other
+  latency,         ///< delay and lag together, because one of them can largely replace the other
   regulator,       ///< replaced by a lag
   venting_lag,     ///< replaced by one time constant for both directions
-  characteristic,  ///< together with the envelopes: each compensates for most of the other
+  characteristic,  ///< together with the envelopes, because one of them can largely replace the other
   resonance,
-  envelopes  ///< generalised play operators, replaced by plain ones
+  envelopes  ///< generalised play operators, replaced by ordinary play operators
 };
 inline constexpr std::array all_ingredients{Ingredient::hysteresis,
                                             Ingredient::play_operators,
@@ -67,65 +68,69 @@ inline constexpr std::array all_ingredients{Ingredient::hysteresis,
                                             Ingredient::envelopes};
 [[nodiscard]] std::string_view name_of(Ingredient ingredient);
 
-/// One structure, fitted to all readings. For each fold it is fitted again without the blocks of the fold,
-/// which are then used for its evaluation.
+/// One structure, fitted to all readings. For the held-out error, it is fitted again for each fold without
+/// the blocks of this fold.
 struct StructureTrial {
   BaseStructure structure;
   FitPoint point;
   NonlinearNumbers numbers;  ///< empty for the published element
   double ridge = 0;
-  double rmse_mm = 0;  ///< RMSE over the readings of the fit
+  double rmse_mm = 0;  ///< RMSE over the fitted readings
   bool converged = false;
-  bool bounded = true;     ///< see stays_bounded(); an unbounded trial is not chosen
-  bool invertible = true;  ///< false: the published element has an inverse response; it is not chosen
-  std::vector<double> start_rmse_mm;     ///< RMSE of the search from each starting point
-  std::vector<double> block_losses_mm2;  ///< mean square error of each block while it was held out
+  bool bounded = true;     ///< see stays_bounded(); a trial that is not bounded cannot be chosen
+  bool invertible = true;  ///< false: the published element has an inverse response, so the trial cannot be
+                           ///< chosen
+  std::vector<double> start_rmse_mm;     ///< RMSE of the search from each start point
+  std::vector<double> block_losses_mm2;  ///< mean square error of each block under the fit without it
   double heldout_rmse_mm = 0;            ///< square root of the mean of the block losses
 };
 
 struct StructureChoice {
-  std::vector<StructureTrial> trials;  ///< the simplest structure is first
+  std::vector<StructureTrial> trials;  ///< all trials, the simplest structure first
   std::size_t chosen = 0;
   double ridge = 0;
   std::size_t blocks = 0;
 };
 
-/// The chosen structure without one component, fitted and evaluated by the same method.
+/// The chosen structure without one component, fitted and evaluated in the same way.
 struct WithoutIngredient {
   Ingredient ingredient;
   StructureTrial trial;
 };
 
-/// Returns the records with a start at rest at the first pressure. If unknown starts have a significantly
-/// lower held-out loss, returns the records unchanged. A start that the caller states is kept.
+/// Returns the records with the assumption that each of them starts at rest at its first pressure. Returns
+/// the records unchanged if unknown starts have a significantly lower held-out loss. A start that the caller
+/// specifies is not changed.
 [[nodiscard]] std::vector<Record> with_simplest_start(const std::vector<Record>& records,
                                                       const StructureChoiceOptions& options);
 
-/// Chooses the ridge parameter with the richest structure. Then chooses the simplest structure whose held-out
-/// loss is within one standard error of the best (Breiman et al. 1984, section 3.4.3); the standard error is
-/// that of the paired difference over blocks. Then tries extensions: with Drive::command, a second lag and a
-/// regulator instead of the lags; a resonance. An extension is chosen if its held-out loss is significantly
-/// lower.
+/// Chooses a structure in three steps. First, the ridge parameter is chosen with the richest structure. Then
+/// the simplest structure is chosen whose held-out loss is within one standard error of the lowest one
+/// (Breiman et al. 1984, section 3.4.3). The standard error is that of the paired difference over blocks.
+/// Finally, extensions are tried. With Drive::command, these are a second lag (with `dynamics` only) and a
+/// regulator instead of the lags; with `dynamics`, a resonance is tried as well. An extension is chosen if
+/// its held-out loss is significantly lower.
 [[nodiscard]] StructureChoice choose_structure(const std::vector<Record>& records,
                                                const StructureChoiceOptions& options);
 
 /// Fits a trial that was chosen with averaged records to the original records, starting from its parameters.
-/// The member `numbers` and the held-out losses remain those of the choice.
+/// The member `numbers` and the held-out losses keep the values of the choice.
 [[nodiscard]] StructureTrial fitted_to(StructureTrial trial, const std::vector<Record>& records, Drive drive);
 
 /// Fits and evaluates the chosen structure without each of the given components that it has. Returns an empty
 /// list for the published element.
-/// @param records, options  as for the choice.
+/// @param records, options  the same as for choose_structure().
 [[nodiscard]] std::vector<WithoutIngredient> ablation_of(
     const std::vector<Record>& records, const StructureChoice& choice, const StructureChoiceOptions& options,
     std::span<const Ingredient> ingredients = all_ingredients);
 
-/// Fits the structure of a trial, with its ridge parameter, to other readings of the same records.
-/// @param trial  without a resonance, that is, of a choice without `dynamics`.
+/// Fits the structure of a trial, with the ridge parameter of the trial, to other readings of the same
+/// records.
+/// @param trial  trial without a resonance, that is, from a choice without `dynamics`.
 [[nodiscard]] FitPoint fit_again(const StructureTrial& trial, const std::vector<Record>& records,
                                  Drive drive);
-/// Like fit_again(), but starts only from the trial's parameters. Use it if the readings differ only
-/// slightly.
+/// Fits the structure like fit_again(), but starts only from the parameters of the trial. Use this function
+/// if the readings differ only slightly from those of the trial.
 [[nodiscard]] FitPoint fit_nearby(const StructureTrial& trial, const std::vector<Record>& records,
                                   Drive drive);
 

@@ -16,14 +16,14 @@ using Segment = model::Segment<double>;
 using Weights = model::ExponentialWeights<double>;
 
 /// Returns true if the parameters of delay, lags and regulator are equal, so that the pressure in the finger
-/// is equal.
+/// is also equal.
 bool drive_alike(const NonlinearNumbers& a, const NonlinearNumbers& b) {
   return a.delay_s == b.delay_s && a.filling_s == b.filling_s && a.venting_s == b.venting_s &&
          a.second_s == b.second_s && a.pilot_band_kpa == b.pilot_band_kpa && a.overlap_kpa == b.overlap_kpa &&
          a.integral_s == b.integral_s && a.full_open_kpa == b.full_open_kpa;
 }
 
-/// The creep branches with one input signal, computed in pairs.
+/// Creep branches with a common input signal, computed in pairs.
 class Ladder {
  public:
   Ladder(const std::vector<double>& time_constants_s, double at)
@@ -42,12 +42,12 @@ class Ladder {
 
  private:
   using Pair [[gnu::vector_size(16)]] = double;
-  /// Weights of the end value for two branches, see model::ExponentialWeights.
+  /// Weights of the state at the end of a step for two branches; see model::ExponentialWeights.
   struct PairWeights {
     Pair loss{}, begin{}, rise{}, bend{};
   };
-  /// Weights for one of the last few durations: the sample time, or one of the parts into which a delay
-  /// splits it.
+  /// Weights for a recently used duration, which is the sampling time or one of the parts into which a delay
+  /// divides this time.
   struct Kept {
     double duration_s = 0;
     std::vector<PairWeights> pairs;
@@ -87,7 +87,7 @@ Segment above(const Segment& in, double hinge_kpa) {
   return {in.duration_s, std::max(begin, 0.0), std::max(end, 0.0), high * high / (2 * std::abs(end - begin))};
 }
 
-/// The hysteresis: the Bouc-Wen element, or play operators.
+/// State of the hysteresis: the Bouc-Wen element or the play operators.
 class PressureMemory {
  public:
   PressureMemory(const BaseStructure& structure, const StructureGrid& grid, const NonlinearNumbers& numbers,
@@ -108,7 +108,7 @@ class PressureMemory {
     if (peak_kpa > first_kpa) move(peak_kpa, first_kpa);
   }
 
-  /// Updates the state for a monotone change of the pressure.
+  /// Updates the state for a monotonic change of the pressure.
   void move(double from, double to) {
     if (bouc_wen_) {
       if (to != from) g_ = stepped(g_, to - from, rates_);
@@ -120,7 +120,8 @@ class PressureMemory {
     }
   }
 
-  /// Returns the input of the play operators for a pressure: the value of the envelope function [kPa].
+  /// Returns the input of the play operators for a pressure, that is, the value of the envelope function
+  /// [kPa].
   [[nodiscard]] double seen_kpa(double kpa) const { return envelopes_.value(kpa); }
 
   template <class Row>
@@ -134,7 +135,8 @@ class PressureMemory {
   model::EnvelopeMap<double> envelopes_;
   bool bouc_wen_;
   HysteresisRates rates_;
-  std::vector<double> plays_, untouched_;  ///< current states, and states after the load before the logs
+  std::vector<double> plays_, untouched_;  ///< current states, and states after the largest load before the
+                                           ///< logs
   double g_ = 0;
   double steepest_;  ///< maximum of dg/dp
 };
@@ -197,7 +199,7 @@ StructureColumns::StructureColumns(const std::vector<Record>& records, const Bas
 const Eigen::MatrixXd& StructureColumns::at(const NonlinearNumbers& numbers) {
   const bool driven_alike = !driven_.empty() && drive_alike(numbers_, numbers);
   NonlinearNumbers same = numbers;
-  same.curvature = numbers_.curvature;  // does not affect the columns
+  same.curvature = numbers_.curvature;  // the curvature does not affect the columns
   if (driven_alike && same == numbers_) return columns_;
   numbers_ = numbers;
   driven_.resize(records_.size());

@@ -1,6 +1,6 @@
 #pragma once
-// The regressor matrix of a structure: each column is the response of one operator to the pressure of the
-// records. The weighted sum of the columns is the reading before the characteristic.
+// Computes the regressor matrix of a structure. Each column is the response of one operator to the pressure
+// of the records. The weighted sum of the columns is the displacement before the characteristic is applied.
 
 #include <cstddef>
 #include <vector>
@@ -13,16 +13,16 @@
 
 namespace softgrip::sysid {
 
-/// Column indices of a structure. The weighted sum of the columns before own() is the input of the
-/// characteristic; their weights are not negative. The columns of each record (offset, unsettled creep, drift
-/// of the zero) are added after the characteristic, and their weights may have either sign.
+/// Column indices of a structure. The columns before own() have weights that are not negative, and their
+/// weighted sum is the input of the characteristic. The columns of each record (offset, unsettled creep,
+/// drift of the zero) are added after the characteristic, and their weights may have either sign.
 class ColumnLayout {
  public:
   ColumnLayout(const BaseStructure& structure, const StructureGrid& grid, const std::vector<Record>& records);
 
   [[nodiscard]] static constexpr Eigen::Index elastic() { return 0; }
-  /// The column of play operator i, or the column of the Bouc-Wen element: steepest_state() times the
-  /// pressure, minus the state of the element divided by beta.
+  /// Returns the column of play operator i, or the column of the Bouc-Wen element, which is steepest_state()
+  /// times the pressure minus the state of the element divided by beta.
   [[nodiscard]] static constexpr Eigen::Index hysteresis(std::size_t i) {
     return 1 + static_cast<Eigen::Index>(i);
   }
@@ -33,12 +33,12 @@ class ColumnLayout {
     return creep(branches_) + static_cast<Eigen::Index>(hinge * hinge_branches_ + branch);
   }
   [[nodiscard]] Eigen::Index own() const { return hinged(hinges_, 0); }
-  /// Returns the column of a record's offset; -1: the record has none.
+  /// Returns the column of a record's offset, or -1 if the offset of the record is not fitted.
   [[nodiscard]] Eigen::Index offset(std::size_t record) const { return offset_[record]; }
   [[nodiscard]] Eigen::Index unsettled(std::size_t record) const { return unsettled_[record]; }
-  /// Returns the first of the knots() columns of a piecewise linear drift. The knots are `knot_interval_s`
-  /// apart, beginning at the record's first sample. The first knot has no column, because the drift is 0
-  /// there.
+  /// Returns the first of the knots() columns of a piecewise linear drift. The knots begin at the first
+  /// sample of the record and have a distance of `knot_interval_s`. The first knot has no column, because the
+  /// drift is 0 there.
   [[nodiscard]] Eigen::Index wandering(std::size_t record) const { return wandering_[record]; }
   [[nodiscard]] std::size_t knots(std::size_t record) const { return knots_[record]; }
   static constexpr double knot_interval_s = 20;
@@ -57,30 +57,30 @@ class ColumnLayout {
   Eigen::Index count_ = 0;
 };
 
-/// Returns the largest slope of the normalised Bouc-Wen state over pressure, at the reversal of a saturated
-/// loop: 2 eta/(gamma + eta), at least 1. The element is monotone if its elastic gain is at least beta times
-/// this slope.
+/// Returns the largest slope of the normalised Bouc-Wen state over pressure: 2 eta/(gamma + eta), at least 1.
+/// This slope occurs at the reversal of a saturated loop. The element is monotonic if its elastic gain is at
+/// least beta times this slope.
 [[nodiscard]] double steepest_state(const NonlinearNumbers& numbers);
 
-/// The sample of a row. Each sample with a reading is a row.
+/// Record and sample of a row. Each sample with a reading is a row.
 struct RowPlace {
   std::size_t record = 0;
   std::size_t sample = 0;
 };
 [[nodiscard]] std::vector<RowPlace> rows_of(const std::vector<Record>& records);
 
-/// The regressor matrix: one row per reading, and the columns of ColumnLayout. Columns before own() are in
-/// kPa, as their weights are in mm/kPa. The columns from own() on are dimensionless.
+/// The regressor matrix with one row per reading and the columns of ColumnLayout. The columns before own()
+/// are in kPa, and their weights are in mm/kPa. The columns from own() on are dimensionless.
 class StructureColumns {
  public:
   /// `records`, `structure` and `grid` must outlive the object.
   StructureColumns(const std::vector<Record>& records, const BaseStructure& structure,
                    const StructureGrid& grid);
 
-  /// Returns the matrix for the given nonlinear parameters; parameters that the structure does not have are
-  /// ignored. Columns are computed only if their parameters differ from the last call; those of delay and
-  /// lags are expensive. Idle threads compute the records in parallel. The result is valid until the next
-  /// call.
+  /// Returns the matrix for the given nonlinear parameters. Parameters that the structure does not have are
+  /// ignored. A column is only computed again if its parameters differ from those of the last call. The
+  /// columns that depend on the delay and the lags are expensive. Idle threads process the records in
+  /// parallel. The result is valid until the next call.
   [[nodiscard]] const Eigen::MatrixXd& at(const NonlinearNumbers& numbers);
 
  private:
@@ -94,11 +94,11 @@ class StructureColumns {
   ColumnLayout layout_;
   std::vector<std::size_t> first_row_;  ///< first row of each record
   Eigen::MatrixXd columns_;
-  NonlinearNumbers numbers_;            ///< parameters of columns_
-  std::vector<DrivenPressure> driven_;  ///< pressure of each record; empty: at() was not called yet
+  NonlinearNumbers numbers_;            ///< parameters for which columns_ was computed
+  std::vector<DrivenPressure> driven_;  ///< pressure of each record; empty before the first call of at()
 };
 
-/// Computes the matrix of StructureColumns once.
+/// Returns the matrix of StructureColumns for a single set of parameters.
 [[nodiscard]] Eigen::MatrixXd structure_columns(const std::vector<Record>& records,
                                                 const BaseStructure& structure, const StructureGrid& grid,
                                                 const NonlinearNumbers& numbers);

@@ -17,26 +17,27 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Penalty for a number that deviates by one of its widths, in the logarithm of the mean square.
+/// Penalty for a parameter that differs from its prior value by one prior width, added to the logarithm of
+/// the mean square.
 constexpr double prior = 0.05;
-/// Smallest share of the instantaneous elastic gain in the gain of the finger over all pressures.
+/// Smallest instantaneous elastic gain, as a share of the gain of the finger over the whole pressure range.
 constexpr double least_elastic_share = 0.01;
 /// Largest dead band of a regulator, as a share of the largest pressure. Data sheets state 0.005 to 0.02.
 constexpr double widest_of_a_regulator = 0.03;
-/// Width of the prior for the bend of an envelope. With twice this width, envelopes fit the saturation of a
-/// sensor and hide it (textbook campaign).
+/// Prior width of the bend of an envelope. With twice this width, envelopes would fit the saturation of a
+/// sensor and thereby hide it (textbook campaign).
 constexpr double usual_bend = 0.05;
-/// Ratio of neighbouring time constants of the ladder.
+/// Ratio of consecutive time constants of the creep branches.
 constexpr double ladder_ratio = 3;
 
-/// A nonlinear number in the coordinate t of the search, which is of the order of one.
+/// A nonlinear parameter in the coordinate t of the search, which is of the order of one.
 struct Coordinate {
   std::function<double(const NonlinearNumbers&)> get;
   std::function<void(NonlinearNumbers&, double)> set;
   double centre = 0;
   double lower = -std::numeric_limits<double>::infinity();
   double upper = std::numeric_limits<double>::infinity();
-  bool drives = false;  ///< the pressure in the finger depends on it: its derivative is expensive
+  bool drives = false;  ///< true: the pressure in the finger depends on it, so its derivative is expensive
 };
 
 Coordinate straight(double NonlinearNumbers::*member, double width, double centre, double lower,
@@ -73,7 +74,7 @@ class Search {
   struct State {
     NonlinearNumbers numbers;
     Projection projection;
-    Eigen::VectorXd residual;  ///< errors and penalties
+    Eigen::VectorXd residual;  ///< prediction errors, followed by the penalties
     double value = std::numeric_limits<double>::infinity();
   };
 
@@ -107,7 +108,8 @@ class Search {
     const auto n = static_cast<Eigen::Index>(coordinates_.size());
     Eigen::MatrixXd jacobian(state.residual.size(), n);
     NormalEquations normal;
-    // First the coordinates that leave the pressure in the finger as it was last computed.
+    // Vary the other coordinates first, because they do not change the pressure in the finger that was
+    // computed last.
     for (const bool drives : {false, true}) {
       for (Eigen::Index k = 0; k < n; ++k) {
         const Coordinate& c = coordinates_[static_cast<std::size_t>(k)];
@@ -136,7 +138,7 @@ class Search {
     for (Eigen::Index k = 0; k < n; ++k) {
       const Coordinate& c = coordinates_[static_cast<std::size_t>(k)];
       const double t = c.get(state.numbers);
-      // A logarithm of a bound is not exact.
+      // A bound that was converted to a logarithm and back is not exact.
       bounds.lower(k) = t <= c.lower + 1e-9 ? 0 : c.lower - t;
       bounds.upper(k) = t >= c.upper - 1e-9 ? 0 : c.upper - t;
     }
@@ -178,7 +180,7 @@ class Search {
     }
     if (structure_.lag && structure_.second_lag) add_driving(logarithmic(&N::second_s, 1.5, 0.1, 1e-4, 10));
     if (structure_.lag && structure_.regulator) {
-      // A wider band is not that of a regulator: the search would fit a backlash with it.
+      // A regulator has no wider band. With a wider one, the search would fit a backlash.
       const double widest_kpa = widest_of_a_regulator * grid_.largest_kpa;
       add_driving(straight(&N::pilot_band_kpa, 1, 0, 0, widest_kpa));
       add_driving(straight(&N::overlap_kpa, 1, 0, 0, widest_kpa));
@@ -230,7 +232,7 @@ std::vector<NonlinearNumbers> starts_for(const std::vector<Record>& records, con
                             .trained_kpa = trained * grid.largest_kpa,
                             .peak_before_kpa = peaks};
   };
-  // A fast valve, a dead time instead of a lag, and a slow valve.
+  // These are a fast valve, a valve with a dead time instead of a lag, and a slow valve.
   return {start(0.02, 0.15, 0.15, 2, 0), start(0.15, 0.05, 0.05, 6, 1.2), start(0.1, 0.5, 1.5, 3, 0.5)};
 }
 

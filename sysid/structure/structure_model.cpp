@@ -20,12 +20,12 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Stiffness of a practically rigid spring: the instantaneous gain is then alpha or the elastic play
-/// operator.
+/// Stiffness of a practically rigid spring. With it, the instantaneous gain is alpha or that of the elastic
+/// play operator.
 constexpr double rigid_kpa_per_mm = 1e9;
-/// Compliance of a branch that is kept only for its time constant [mm/kPa].
+/// Compliance of a branch that is included only for its time constant [mm/kPa].
 constexpr double next_to_no_creep = 1e-7;
-/// Damping of such a branch, limited by the upper bound of the block.
+/// Damping of such a branch, which is limited by the upper bound of the block.
 constexpr double largest_dashpot_kpa_s_per_mm = 1e8;
 
 class Builder {

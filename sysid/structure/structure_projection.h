@@ -1,6 +1,6 @@
 #pragma once
-// Optimal weights of a structure with given nonlinear parameters: nonnegative least squares with ridge
-// regularisation.
+// Computes the optimal weights of a structure for given nonlinear parameters by nonnegative least squares
+// with ridge regularisation.
 
 #include <Eigen/Core>
 
@@ -15,21 +15,22 @@ struct ProjectionProblem {
   const ColumnLayout& layout;
   const Eigen::VectorXd& readings_mm;
   double largest_kpa =
-      1;  ///< largest pressure; weight * largest_kpa is the largest motion of an operator [mm]
+      1;  ///< largest pressure, which converts a weight to the largest motion of its operator [mm]
   double least_elastic =
-      0;             ///< lower bound of the elastic weight; if it is above 0, the model has an inverse
-  double ridge = 0;  ///< penalty on the square of weight * largest_kpa, added to the mean square error
+      0;             ///< lower bound of the elastic weight; if it is positive, the model has an inverse
+  double ridge = 0;  ///< penalty factor for the squares of weight * largest_kpa, which are added to the mean
+                     ///< square error
 };
 
 struct Projection {
   Eigen::VectorXd weights;
   Eigen::VectorXd error_mm;    ///< prediction minus reading, for all rows
-  Eigen::VectorXd penalty_mm;  ///< the ridge penalty as additional residuals, scaled like those of a row
+  Eigen::VectorXd penalty_mm;  ///< the ridge penalty as additional residuals with the same scale as error_mm
   double mean_square_mm2 = 0;  ///< mean square error of all rows
 };
 
-/// Computes the optimal weights. With a nonlinear characteristic, Gauss-Newton steps are used. They begin at
-/// `near`, or at the solution for the readings after the inverse characteristic.
+/// Computes the optimal weights. If the characteristic is nonlinear, Gauss-Newton steps are made. They start
+/// at `near` or, without it, at the solution for readings to which the inverse characteristic was applied.
 /// @param near  weights of a similar problem with the same layout, or nullptr.
 [[nodiscard]] Projection project(const ProjectionProblem& problem,
                                  const model::CharacteristicMap<double>& map,

@@ -30,7 +30,7 @@ double first_finite(const std::vector<double>& values) {
   return found == values.end() ? 0 : *found;
 }
 
-/// Ranges of the pressures in the logs.
+/// Ranges of the pressure and the supply in the logs.
 struct Scene {
   double lowest_kpa = std::numeric_limits<double>::infinity();
   double highest_kpa = -lowest_kpa;
@@ -52,9 +52,9 @@ Scene scene_of(const std::vector<Log>& logs) {
   return scene;
 }
 
-/// The coordinates of the search, scaled to about 1. The magnitude of a coordinate is used for the delay [0.1
-/// s], the band [kPa] and the share of the leak. Lags have logarithmic coordinates. The unit of the limit is
-/// 10 % of the highest pressure.
+/// The coordinates of the search, scaled to about 1. Delay [0.1 s], band [kPa] and share of the leak are the
+/// magnitudes of their coordinates. Lags have logarithmic coordinates. The limit is in units of 10 % of the
+/// highest pressure.
 class Coordinates {
  public:
   Coordinates(ValveParts parts, const Scene& scene) : parts_(parts), scene_(scene) {}
@@ -97,7 +97,8 @@ class Coordinates {
   const Scene& scene_;
 };
 
-/// Returns the predicted pressure of a log [kPa]. @param sample_time_s  sample time of the log; 0: irregular.
+/// Returns the predicted pressure of a log [kPa].
+/// @param sample_time_s  sampling time of the log; 0: irregular.
 std::vector<double> predicted(const ValveStage& stage, const Log& log, bool held, double sample_time_s) {
   const std::vector<double>& u = log.pressure_command_kpa;
   model::TransportDelay<double> delay(std::array{stage.delay_s}, {.sample_time_s = sample_time_s});
@@ -106,7 +107,7 @@ std::vector<double> predicted(const ValveStage& stage, const Log& log, bool held
       second(stage.second_s, stage.second_s, 0);
   delay.reset(u.front());
   const double first_kpa = first_finite(log.pressure_kpa);
-  // The first measured pressure determines the state of the dead band.
+  // The state of the dead band follows from the first measured pressure.
   dead_band.reset(first_kpa + stage.band_kpa / 2);
   dead_band.settle(u.front());
   lag.reset(first_kpa);
@@ -147,8 +148,8 @@ std::vector<double> predicted(const ValveStage& stage, const Log& log, bool held
   return p;
 }
 
-/// Residuals: prediction minus measurement for all logs. A missing or excluded measurement has the residual
-/// 0.
+/// Computes the residuals, which are prediction minus measurement, for all logs. The residual of a missing or
+/// excluded measurement is 0.
 class Errors {
  public:
   Errors(const std::vector<Log>& logs, const ValveFit& fit) : logs_(logs), fit_(fit) {
@@ -160,7 +161,8 @@ class Errors {
 
   [[nodiscard]] std::size_t count() const { return count_; }
 
-  /// Computes the residuals. Writes gain and zero of the pressure sensor into the stage if they are fitted.
+  /// Computes the residuals. If gain and zero of the pressure sensor are fitted, they are written to the
+  /// stage.
   void evaluate(ValveStage& stage, std::span<double> out) const {
     const std::vector<std::vector<double>> p = predicted_by(stage);
     if (fit_.sensor != PressureSensorFit::nothing) read_gauge(p, stage);
@@ -173,7 +175,7 @@ class Errors {
     }
   }
 
-  /// Returns the RMSE of the fitted samples, or of the others [kPa].
+  /// Returns the RMSE of the fitted samples or, if `fitted` is false, of all others [kPa].
   [[nodiscard]] double rmse_kpa(const ValveStage& stage, bool fitted) const {
     double sum = 0;
     std::size_t used = 0;
@@ -202,8 +204,8 @@ class Errors {
     return !fit_.is_fitted || fit_.is_fitted(log, sample);
   }
 
-  /// Fits zero and gain of the sensor by linear regression of the measurement on the prediction, or only the
-  /// zero.
+  /// Fits gain and zero of the sensor, or only the zero, by linear regression of the measurement on the
+  /// prediction.
   void read_gauge(const std::vector<std::vector<double>>& predicted, ValveStage& stage) const {
     double n = 0, x = 0, y = 0, xx = 0, xy = 0;
     for (std::size_t k = 0; k < logs_.size(); ++k) {
@@ -222,10 +224,10 @@ class Errors {
   const std::vector<Log>& logs_;
   const ValveFit& fit_;
   std::size_t count_ = 0;
-  std::vector<double> sample_time_s_;  ///< sample time of each log
+  std::vector<double> sample_time_s_;  ///< sampling time of each log
 };
 
-/// Returns the starting points of the search.
+/// Returns the start points of the search.
 std::vector<ValveStage> starts_of(const ValveFit& fit) {
   if (!fit.from.empty()) return fit.from;
   std::vector<ValveStage> starts;

@@ -1,6 +1,6 @@
 #pragma once
-// Model of the valve from command to measured pressure, fitted to the measured pressure: dead time, lags for
-// filling and venting, and further effects.
+// Models the valve from the command to the measured pressure and fits the model to this pressure. The model
+// consists of a dead time, lags for filling and venting, and further effects.
 
 #include <bitset>
 #include <cstdint>
@@ -13,15 +13,15 @@
 
 namespace softgrip::sysid {
 
-/// Possible parts between command and measured pressure, in the order of the signal.
+/// Possible parts of the valve model, in the order in which the signal passes them.
 enum class ValvePart : std::uint8_t {
   delay,
   dead_band,
   lag,
-  two_ways,  ///< separate time constant of the lag for venting
+  two_ways,  ///< a separate time constant of the lag for venting
   supply_sag,
   limit,
-  second_lag,  ///< after the first, with one time constant for both directions
+  second_lag,  ///< a second lag after the first one, with one time constant for both directions
   leak,
 };
 inline constexpr std::size_t valve_part_count = 8;
@@ -30,7 +30,8 @@ using ValveParts = std::bitset<valve_part_count>;
 [[nodiscard]] constexpr std::size_t index_of(ValvePart part) {
   return static_cast<std::size_t>(part);
 }
-/// Returns the parts of every valve: dead time, and a lag with a time constant for each direction.
+/// Returns the parts that every valve model has: a dead time, and a lag with one time constant for each
+/// direction.
 [[nodiscard]] inline ValveParts usual_valve_parts() {
   return ValveParts()
       .set(index_of(ValvePart::delay))
@@ -40,53 +41,54 @@ using ValveParts = std::bitset<valve_part_count>;
 
 struct ValveStage {
   double delay_s = 0;
-  double band_kpa = 0;  ///< change of the command after a reversal that the valve ignores
+  double band_kpa = 0;  ///< change of the command that the valve ignores after a reversal
   double filling_s = 0;
   double venting_s = 0;
   double second_s = 0;            ///< time constant of the second lag
-  double coupling = 0;            ///< relative drop of the pressure per relative drop of the supply
-  double nominal_supply_kpa = 0;  ///< reference of the supply drop; 0: the supply is not recorded
+  double coupling = 0;            ///< relative decrease of the pressure per relative decrease of the supply
+  double nominal_supply_kpa = 0;  ///< supply pressure relative to which the decrease is computed; 0: the
+                                  ///< supply is not recorded
   double limit_kpa = std::numeric_limits<double>::infinity();
-  double leak_share = 0;  ///< share of a small pressure that is lost in the line (model/line_loss.h)
+  double leak_share = 0;  ///< share of a small pressure that a leak in the line loses (model/line_loss.h)
   double gauge_gain = 1;  ///< gain of the pressure sensor
   double gauge_zero_kpa = 0;
   double rmse_kpa = 0;           ///< RMSE of the fitted samples
-  double rmse_percent = 0;       ///< rmse_kpa in percent of the range of the measured pressure
-  double held_out_rmse_kpa = 0;  ///< RMSE of the other samples; 0 if all samples were fitted
+  double rmse_percent = 0;       ///< rmse_kpa in % of the range of the measured pressure
+  double held_out_rmse_kpa = 0;  ///< RMSE of the samples that were not fitted; 0 if all samples were fitted
   bool converged = false;
 
-  /// Returns true if the RMSE exceeds 5 % of the range, so that these parts do not describe the valve.
+  /// Returns true if the RMSE exceeds 5 % of the range, so that the stage does not describe the valve.
   [[nodiscard]] bool is_far_off() const { return rmse_percent > 5; }
 };
 
-/// The fitted parameters of the pressure sensor.
+/// The parameters of the pressure sensor that are fitted.
 enum class PressureSensorFit : std::uint8_t { nothing, zero, gain_and_zero };
 
-/// Parts, samples and starting points of a fit.
+/// Parts, samples and start points of a fit.
 struct ValveFit {
   ValveParts parts = usual_valve_parts();
   PressureSensorFit sensor = PressureSensorFit::nothing;
-  bool held = false;  ///< the command keeps its value until the next sample
-  /// Selects the samples of the fit; empty: all samples.
+  bool held = false;  ///< true: the command keeps its value until the next sample
+  /// Returns true for the samples that are fitted; empty: all samples are fitted.
   std::function<bool(std::size_t log, std::size_t sample)> is_fitted = {};
-  std::vector<ValveStage> from = {};  ///< starting points of the search; empty: three default ones
+  std::vector<ValveStage> from = {};  ///< start points of the search; empty: three default ones
   double tolerance = 1e-12;           ///< relative change of the cost at which the search ends
 };
 
-/// Fits a valve. Each log needs a pressure_kpa column, and a supply_kpa column if the parts include
-/// supply_sag. The simulation of a log begins at its first measured pressure, regardless of the command.
+/// Fits a valve stage. Each log needs a pressure_kpa column, and a supply_kpa column if the parts include
+/// supply_sag. The simulation of a log starts at its first measured pressure, regardless of the command.
 [[nodiscard]] ValveStage fit_valve_stage(const std::vector<Log>& logs, const ValveFit& fit);
-/// Fits the parts of usual_valve_parts() to the first `share` of each log.
+/// Fits the parts of usual_valve_parts() to the given first share of each log.
 [[nodiscard]] ValveStage fit_valve_stage(const std::vector<Log>& logs, double share, bool held);
 
-/// Returns the noise of the measured pressure between successive samples: the largest value over the logs
-/// [kPa].
+/// Returns the noise of the measured pressure between consecutive samples [kPa]. The largest value over the
+/// logs is used.
 [[nodiscard]] double pressure_noise_kpa(const std::vector<Log>& logs);
 
-/// Returns the measured pressure that the stage predicts for a log [kPa].
+/// Returns the prediction of the measured pressure for a log [kPa].
 [[nodiscard]] std::vector<double> predicted_pressure_kpa(const ValveStage& stage, const Log& log, bool held);
 
-/// Returns the model of the actuator with the blocks of the stage before it.
+/// Returns the model of the actuator, preceded by the blocks of the valve stage.
 [[nodiscard]] model::Model with_valve(model::Model actuator, const ValveStage& stage);
 
 }  // namespace softgrip::sysid
