@@ -164,7 +164,7 @@ concept TurnsIntoDisplacement = requires(Block block, const Segment<T>& in, cons
   { block.step(in, around) } -> std::same_as<Segment<T>>;
 };
 
-/// Reading blocks: sample() converts a displacement to a reading.
+/// Blocks that model the sensor: sample() converts a displacement to a reading.
 template <class Block, class T>
 concept Samples = requires(Block block, const T& value, const Surroundings& around) {
   { block.sample(value, value, around) } -> std::same_as<T>;

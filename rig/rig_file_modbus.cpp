@@ -173,7 +173,7 @@ class ModulesReader {
       if (other != address) {
         reader.report(
             "port", "another module at this host and port has different settings of the shared session",
-            "give both modules the same `settle_s`, `repeat_after_s`, `framing` and keys of the framing");
+            "give both modules the same `settle_s`, `repeat_after_s`, `framing` and other framing keys");
       }
       return link;
     }

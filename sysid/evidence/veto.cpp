@@ -25,7 +25,7 @@ std::string_view reason_of(Veto veto) {
     case Veto::none:
       break;
     case Veto::size_uncertain:
-      return "the interval of its size contains zero";
+      return "the confidence interval for the size of the effect contains zero";
     case Veto::size_beyond_range:
       return "its size exceeds the range of the signal";
     case Veto::error_not_reduced:

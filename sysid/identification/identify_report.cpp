@@ -100,7 +100,7 @@ Chart multistart_chart(const Identification& r) {
   Chart chart;
   chart.width = 380;
   chart.height = 240;
-  chart.title = "results of the starts";
+  chart.title = "results of the start points";
   chart.x.label = "start, best first";
   chart.y.label = model::in_unit("RMSE [mm]", r.model.output_unit);
   std::vector<double> sorted = r.multistart.rmse_mm;

@@ -145,7 +145,7 @@ class SOFTGRIP_API Simulator {
   /// Takes over the state. `other` can then only be assigned to or destroyed.
   Simulator& operator=(Simulator&& other) noexcept;
 
-  /// Returns to rest under a command [kPa].
+  /// Resets the model to its state of rest at a constant command [kPa].
   void reset(double pressure_kpa) noexcept;
   /// Simulates a step of `duration_s` [s], >= 0, while the command changes linearly to `pressure_kpa` [kPa].
   /// Returns the reading in the unit of the model. An argument that is not finite, or a negative duration,

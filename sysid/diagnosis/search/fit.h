@@ -1,5 +1,6 @@
 #pragma once
-// Fits a structure to a campaign. A structure is a base structure together with the blocks of some causes.
+// Fits a structure to a campaign. Each structure consists of a base structure and of blocks, each of which
+// models a possible cause.
 
 #include <cstddef>
 #include <vector>
