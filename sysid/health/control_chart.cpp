@@ -9,8 +9,8 @@
 namespace softgrip::sysid::health {
 namespace {
 
-/// A CUSUM beyond this share of its threshold gives the start of the change, because a sudden large shift may
-/// have started earlier.
+/// Share of `pause_learning`. If the CUSUM was beyond it before a single value raises the alarm, the start of
+/// the CUSUM is the start of the change. Otherwise the change starts at that value.
 constexpr double on_its_way_share = 0.6;
 
 /// Returns the limit that a standard normal value exceeds, on either side, once in `once_in` values.

@@ -29,38 +29,40 @@ struct HealthOptions {
 };
 
 struct HealthPoint {
-  std::string label;                                                  ///< "2026-11-22", or the run's name
-  std::size_t grips = 0;                                              ///< runs
-  std::size_t epoch = 0;                                              ///< number of earlier repairs
-  std::array<ChartValues, sysid::health_numbers> values;              ///< medians by recipe
-  std::array<std::optional<double>, sysid::health_numbers> judged{};  ///< standard normal
-  /// Change relative to the peer fingers on the same runs, compared with the reference; absent without peers.
+  std::string label;                                      ///< "2026-11-22", or the run's name
+  std::size_t grips = 0;                                  ///< runs
+  std::size_t epoch = 0;                                  ///< number of earlier maintenance records
+  std::array<ChartValues, sysid::health_numbers> values;  ///< medians by recipe
+  std::array<std::optional<double>, sysid::health_numbers> judged{};  ///< as standard normal values
+  /// Difference from the peer fingers in the same runs, minus the reference of this difference. Absent if the
+  /// finger has no peer fingers.
   std::array<std::optional<double>, sysid::health_numbers> beside{};
-  std::optional<double> temperature_c;  ///< median of its runs
+  std::optional<double> temperature_c;  ///< median temperature of the runs
 };
 
-/// An alarm of one number.
+/// An alarm of one indicator.
 struct HealthAlarm {
   sysid::HealthNumber number = sysid::HealthNumber::gain;
   std::size_t epoch = 0;
-  std::size_t noticed = 0;  ///< index of a point
-  std::size_t since = 0;
-  double change = 0;      ///< in the number's unit
-  std::size_t grips = 0;  ///< from the change to when it was noticed
-  /// Peer fingers, if the alarm is of the difference from them; empty: of the finger's own indicator.
+  std::size_t noticed = 0;  ///< index of the point at which the alarm was raised
+  std::size_t since = 0;    ///< index of the first changed point
+  double change = 0;        ///< in the unit of the indicator
+  std::size_t grips = 0;    ///< number of grips from the change to its detection
+  /// Peer fingers, if the alarm concerns the difference from them; empty if the alarm concerns the finger's
+  /// own values.
   std::vector<std::string> beside;
-  /// Point from which the change of the difference was reported without an assigned finger; `noticed` if
-  /// never.
+  /// Index of the point at which the change of the difference was first reported without an assigned finger.
+  /// Equal to `noticed` if there was no such report.
   std::size_t warned = 0;
 };
 
 /// Reference of an indicator since the last maintenance record.
 struct HealthReference {
-  std::string recipe;  ///< the one with most points
+  std::string recipe;  ///< the recipe with the most points
   double mean = 0;
   double spread = 0;
   std::size_t points = 0;
-  std::optional<TemperatureSlope> slope;  ///< allowed for; absent: none is known
+  std::optional<TemperatureSlope> slope;  ///< absent: no dependence on the temperature is known
 
   /// Returns the expected value of the indicator. @param temperature_c  absent: not recorded
   [[nodiscard]] double at(std::optional<double> temperature_c) const {
@@ -69,7 +71,7 @@ struct HealthReference {
 };
 
 enum class FingerState : std::uint8_t {
-  learning,  ///< too few points to judge any number since the last note
+  learning,  ///< too few points since the last maintenance record to judge any indicator
   steady,
   alarm,
 };
@@ -78,14 +80,14 @@ enum class FingerState : std::uint8_t {
 struct FingerHealth {
   std::string finger;
   FingerState state = FingerState::learning;
-  model::OutputUnit output_unit = model::OutputUnit::mm;  ///< of every number that is called mm
+  model::OutputUnit output_unit = model::OutputUnit::mm;  ///< unit of the indicators that are listed in mm
   std::vector<HealthPoint> points;
   std::vector<HealthAlarm> alarms;  ///< of all epochs, in the order in which they were noticed
   /// Changed differences from the peer fingers since the last maintenance record that are not attributed to a
   /// finger.
   std::vector<HealthAlarm> unclear;
   std::array<std::optional<HealthReference>, sysid::health_numbers> references{};
-  std::vector<std::pair<std::size_t, Note>> notes;  ///< before which point
+  std::vector<std::pair<std::size_t, Note>> notes;  ///< index of the first point after the record
 
   /// Returns the alarms that are still active.
   [[nodiscard]] std::vector<HealthAlarm> standing() const;
@@ -94,8 +96,8 @@ struct FingerHealth {
   [[nodiscard]] std::optional<double> latest(sysid::HealthNumber number) const;
 };
 
-/// Numbers that alarm at all of several fingers in the same direction: what they share comes before what each
-/// of them is. None of a single finger.
+/// Returns the indicators that have an active alarm in the same direction at all fingers, so that a common
+/// cause is likely. The result is empty for fewer than two fingers.
 [[nodiscard]] std::vector<sysid::HealthNumber> shared_changes(
     const std::vector<const FingerHealth*>& fingers);
 

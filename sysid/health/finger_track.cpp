@@ -32,7 +32,7 @@ std::vector<RunGroup> grouped(const std::vector<ScoredRun>& runs, const std::vec
   return groups;
 }
 
-/// Median; NaN of none.
+/// Returns the median of the known temperatures; NaN if no run has one.
 double median_of_known(const std::vector<const ScoredRun*>& runs) {
   std::vector<double> known;
   for (const ScoredRun* run : runs) {

@@ -1,6 +1,6 @@
 #pragma once
-// A finger's runs on the way to its health: in groups that become points, each with its place in the rig's
-// time.
+// Prepares the runs of a finger for the control charts: groups them into points, and orders the points of all
+// fingers of a rig in time.
 
 #include <cstddef>
 #include <map>
@@ -12,15 +12,15 @@
 
 namespace softgrip::sysid::health {
 
-/// Runs in one point.
+/// The runs of one point.
 struct RunGroup {
   std::string label;
   std::size_t epoch = 0;
   std::vector<const ScoredRun*> runs;
-  std::size_t moment = 0;  ///< index of the label among all of the rig, in the order of time
+  std::size_t moment = 0;  ///< index of the label among the labels of all fingers, in order of time
 };
 
-/// A run, and the number of earlier repairs of its finger.
+/// A run, and the number of earlier maintenance records of its finger.
 struct PlacedRun {
   const ScoredRun* run = nullptr;
   std::size_t epoch = 0;
@@ -28,17 +28,18 @@ struct PlacedRun {
 
 /// Working data of a finger for the charts. The runs are stored elsewhere and must outlive it.
 struct FingerTrack {
-  FingerHealth health;  ///< with its points and notes; the judges add the rest
+  FingerHealth health;  ///< points and notes; NumberWatch adds the rest
   ScoreBase base;
-  std::vector<RunGroup> groups;             ///< as many as points
+  std::vector<RunGroup> groups;             ///< one per point
   std::map<std::string, PlacedRun> by_run;  ///< by the run's name
 };
 
-/// @param runs  of one finger, sorted by time; they outlive the track. @param notes  of all fingers.
+/// Groups the runs of a finger into points and assigns the maintenance records.
+/// @param runs  of one finger, sorted by time. They must outlive the track. @param notes  of all fingers.
 [[nodiscard]] FingerTrack track_of(const std::string& finger, const std::vector<ScoredRun>& runs,
                                    const std::vector<Note>& notes, const ScoreBase& base, bool by_day);
 
-/// Gives every group its moment. Returns how many there are.
+/// Sets `moment` of every group. Returns the number of moments.
 std::size_t place_in_time(std::vector<FingerTrack>& tracks);
 
 }  // namespace softgrip::sysid::health

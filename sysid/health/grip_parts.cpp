@@ -31,8 +31,8 @@ Phase after(const RecordedEvent& event, Phase phase) {
   return Phase::lost;
 }
 
-/// In a step that ended in HOLDING without reported contact, the samples may not be free motion. Returns the
-/// time from which this applies.
+/// Returns the start of the step that ended in HOLDING, because its samples may not be free motion if no
+/// contact was reported. If a contact was reported before `holding_s`, returns `holding_s`.
 double unsure_from(const std::vector<RecordedEvent>& events, const std::string& channel, double holding_s) {
   double step_s = 0;
   for (const RecordedEvent& event : events) {
@@ -54,7 +54,8 @@ void note_times(const std::vector<RecordedEvent>& events, const std::string& cha
   }
 }
 
-/// From the place of a touch back to where the finger surely was away from it.
+/// Marks the samples before a contact as `neither`, back to the last sample that was clearly away from the
+/// object.
 void forget_approach(const sysid::Log& log, double contact_s, std::vector<Part>& at) {
   std::size_t i = 0;
   while (i + 1 < log.size() && log.time_s[i] < contact_s) ++i;
@@ -63,13 +64,14 @@ void forget_approach(const sysid::Log& log, double contact_s, std::vector<Part>&
     at[i - 1] = Part::neither;
 }
 
-/// Walks the samples with the events of one channel beside them.
+/// Classifies the samples of one channel in order of time, with the events of this channel.
 class Walk {
  public:
   Walk(const Recording& recording, const sysid::Log& log, double full_kpa)
       : events_(recording.events), log_(log), full_kpa_(full_kpa) {}
 
-  /// `unsure` from the start of a step on, in which nothing is known until HOLDING.
+  /// Returns the part of sample i; must be called for all samples in order. Samples from `unsure_s` to
+  /// `holding_s` are `neither`.
   [[nodiscard]] Part next(std::size_t i, double predicted_mm, double unsure_s, double holding_s) {
     const double t = log_.time_s[i];
     for (; event_ < events_.size() && events_[event_].time_s <= t; ++event_) {

@@ -1,6 +1,6 @@
 #pragma once
-// A recorded grip, divided: at rest, in free motion, held. The numbers of a finger come from free motion,
-// those of its line from the held part; nothing is scored where neither is known.
+// Divides a recorded grip into rest, free motion and holding. Free motion gives the indicators of the finger,
+// and holding gives those of its pressure line. Samples that belong to none of these parts are not scored.
 
 #include <cstddef>
 #include <cstdint>
@@ -12,23 +12,25 @@
 namespace softgrip::sysid::health {
 
 enum class Part : std::uint8_t {
-  neither,  ///< touching but not held, let go but not yet away from the object, after a part was lost or a
-            ///< fault
+  neither,  ///< in contact but not held; released but not yet clear of the object; after the loss of a part
+            ///< or after a fault
   rest,     ///< vented, before the first motion
   free,
-  held,  ///< HOLDING, the command as it was when it became so
+  held,  ///< HOLDING, while the command is the same as at the start of HOLDING
 };
 
 struct GripParts {
-  std::vector<Part> at;  ///< sample by sample
-  /// NaN where the recording does not say it.
+  std::vector<Part> at;  ///< part of each sample
+  /// Times of events [s]; NaN if the recording has no such event.
   double began_s = std::numeric_limits<double>::quiet_NaN();    ///< first step
-  double contact_s = std::numeric_limits<double>::quiet_NaN();  ///< first touch
+  double contact_s = std::numeric_limits<double>::quiet_NaN();  ///< first contact
   double holding_s = std::numeric_limits<double>::quiet_NaN();  ///< first HOLDING
 };
 
-/// @param predicted_mm  what the free finger would do, sample by sample.
-/// @param full_kpa  of the finger, > 0: a hundredth of it is no motion, a fiftieth no change.
+/// Assigns each sample of a channel to a part of the grip.
+/// @param predicted_mm  predicted free motion of each sample.
+/// @param full_kpa  full pressure of the finger, > 0. The finger is at rest until the command has risen by
+/// 0.5 % of it. During HOLDING, a command change by up to 2 % of it is ignored.
 [[nodiscard]] GripParts parts_of(const Recording& recording, std::size_t channel,
                                  const std::vector<double>& predicted_mm, double full_kpa);
 

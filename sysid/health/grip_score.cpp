@@ -18,33 +18,36 @@ namespace {
 
 using sysid::HealthNumber;
 
-/// Less motion than these shares of full pressure's says nothing about gain and lag.
+/// Smallest range [share of the displacement at full pressure] and smallest RMS speed [the same per second]
+/// of a motion from which gain and lag can be computed.
 constexpr double least_motion = 0.1;
 constexpr double least_speed_per_s = 0.02;
-/// Slower than this share per second the finger goes neither up nor down.
+/// Smallest speed that defines a direction of motion [share of the displacement at full pressure per second].
 constexpr double still_per_s = 0.01;
-/// A loop is looked at where the finger is on its way, not where it creeps home.
+/// Smallest speed of a return that gives the loop width [share of the displacement at full pressure per
+/// second]. The limit excludes the slow creep to rest.
 constexpr double returning_per_s = 0.05;
-/// Seconds of samples for a number.
+/// Smallest duration of the samples that give an indicator [s].
 constexpr double least_rest_s = 0.1;
 constexpr double least_motion_s = 0.5;
 constexpr double least_return_s = 0.03;
 constexpr double least_still_s = 0.5;
 constexpr double least_hold_s = 1.0;
+/// The readings within this time after contact [s] give the contact indicator.
 constexpr double touch_window_s = 0.1;
-/// While the command stands still it stays within this share of full pressure.
+/// The command is constant while it changes by at most this share of full pressure.
 constexpr double still_command_share = 0.02;
-/// After the command has come to rest, what the valve still does is no creep.
+/// Time [s] that is excluded after the command has become constant, because the valve is still settling.
 constexpr double settling_s = 0.3;
-/// The loop is looked at between these shares of the free way up.
+/// The loop width is computed between these shares of the predicted free stroke.
 constexpr double loop_lower = 0.15, loop_upper = 0.85;
 
-/// A run beside what the base says of it, sample by sample.
+/// A run and the prediction of the baseline model, for each sample.
 struct Compared {
   const sysid::Log& log;
   std::vector<double> predicted_mm, speed_mm_per_s;
   GripParts parts;
-  std::vector<int> direction;  ///< of the last motion: 1 up, -1 down, 0 none yet
+  std::vector<int> direction;  ///< of the last predicted motion: 1 up, -1 down, 0 none yet
   double interval_s = 0;
 
   [[nodiscard]] bool is_read(std::size_t i) const { return std::isfinite(log.displacement_mm[i]); }
@@ -89,10 +92,10 @@ double zero_of(const Compared& c) {
   return median_or_nan(std::move(zeros), least_rest_s / c.interval_s);
 }
 
-/// The readings of free motion as offset + gain prediction - lag speed.
+/// Least-squares fit of the readings of free motion: offset + gain * prediction - lag * predicted speed.
 struct FreeFit {
   double offset_mm = 0, gain = 1, lag_s = 0;
-  double way_mm = 0;  ///< of the prediction
+  double way_mm = 0;  ///< range of the prediction
   double speed_rms_mm_per_s = 0;
   double seconds = 0;
 
@@ -140,7 +143,7 @@ double loop_of(const Compared& c, const FreeFit& fit, double full_mm) {
   return median_or_nan(std::move(higher), least_return_s / c.interval_s);
 }
 
-/// Samples [first, last) of one part in which the command stands still, the longest; `settling_s` of it gone.
+/// Samples [first, last) of one part of a grip, with a constant command.
 struct Stretch {
   std::size_t first = 0, last = 0;
 };
@@ -149,6 +152,7 @@ double length_s(const Compared& c, const Stretch& stretch) {
   return stretch.last > stretch.first ? c.log.time_s[stretch.last - 1] - c.log.time_s[stretch.first] : 0;
 }
 
+/// Returns the longest segment of a part with a constant command, without its first `settling_s`.
 Stretch longest_still(const Compared& c, Part part, double full_kpa) {
   Stretch best;
   for (std::size_t begin = 0; begin < c.log.size();) {
@@ -169,7 +173,8 @@ Stretch longest_still(const Compared& c, Part part, double full_kpa) {
   return best;
 }
 
-/// From the first fifth to the last, in the direction of the motion before it.
+/// Returns the creep relative to the prediction, from the first to the last fifth of the longest segment with
+/// a constant command. It is positive in the direction of the motion before this segment.
 double creep_of(const Compared& c, const FreeFit& fit, double full_kpa) {
   const Stretch still = longest_still(c, Part::free, full_kpa);
   const double nothing = std::numeric_limits<double>::quiet_NaN();

@@ -1,6 +1,6 @@
 #pragma once
-// health.json: the last state of all fingers, for people's programs, `softgrip status`, `doctor` and
-// Prometheus. docs/how-to/watch-a-finger.md lists the keys.
+// Writes health.json, the last state of all fingers, for programs of users, `softgrip status`, `softgrip
+// doctor` and Prometheus. docs/how-to/watch-a-finger.md lists the keys.
 
 #include <string>
 #include <vector>
@@ -12,10 +12,10 @@
 
 namespace softgrip::sysid::health {
 
-/// Its name in the folder for results.
+/// File name in the output folder.
 inline constexpr const char* health_file = "health.json";
 
-/// One finger's part.
+/// Returns the JSON of one finger.
 [[nodiscard]] nlohmann::ordered_json json_of(const FingerHealth& health, const Suspicion& suspicion);
 /// Returns the JSON of a change that all fingers share.
 [[nodiscard]] nlohmann::ordered_json json_of(const SharedChange& shared);

@@ -17,7 +17,7 @@ constexpr std::size_t most_recipes = 4;
 constexpr sysid::Colour recipe_colours[most_recipes] = {sysid::Colour::measured, sysid::Colour::other,
                                                         sysid::Colour::error, sysid::Colour::muted};
 
-/// Of a label that is a day.
+/// Returns the day that a label states; empty if the label is not a day.
 std::optional<std::chrono::sys_days> day_of(const std::string& label) {
   if (label.size() != 10) return std::nullopt;
   const auto year = to_number(label.substr(0, 4)), month = to_number(label.substr(5, 2)),
@@ -33,7 +33,7 @@ bool has_days(const FingerHealth& health) {
                      [](const HealthPoint& point) { return day_of(point.label).has_value(); });
 }
 
-/// Days since the first point where both are days; else how many points lie between.
+/// Returns the days since the first point if both labels are days, otherwise the index of the point.
 double place_of(const FingerHealth& health, std::size_t point) {
   const auto first = day_of(health.points.front().label), now = day_of(health.points[point].label);
   if (!first || !now) return static_cast<double>(point);
@@ -151,7 +151,7 @@ std::string slope_text(const FingerHealth& health, std::size_t number) {
   return text;
 }
 
-/// Since the last note.
+/// Returns true if a point since the last maintenance record was compared with peer fingers.
 bool has_peers(const FingerHealth& health) {
   return std::any_of(health.points.begin(), health.points.end(), [&](const HealthPoint& point) {
     return point.epoch == health.epoch() && std::any_of(point.beside.begin(), point.beside.end(),

@@ -11,18 +11,18 @@
 
 namespace softgrip::sysid::health {
 
-/// The sources that a page states.
+/// Data that the page of a finger states besides the health of this finger.
 struct HealthSource {
-  std::string baseline;  ///< folder
+  std::string baseline;  ///< folder of the baseline
   ScoreBase base;
   HealthOptions options;
-  std::vector<SharedChange> shared{};  ///< with the other fingers
+  std::vector<SharedChange> shared{};  ///< changes that several fingers of the rig share
 };
 
 [[nodiscard]] sysid::Page health_page(const FingerHealth& health, const Suspicion& suspicion,
                                       const HealthSource& source);
 
-/// Returns the command that confirms a candidate fault without the rig.
+/// Returns the command line that diagnoses a repeated commissioning experiment, to confirm a candidate fault.
 [[nodiscard]] std::string settling_command(const std::string& baseline);
 
 }  // namespace softgrip::sysid::health

@@ -7,7 +7,7 @@
 namespace softgrip::sysid::health {
 namespace {
 
-/// '0' stands for any digit.
+/// Returns true if the text has this shape, in which '0' represents any digit.
 bool looks_like(const std::string& text, std::string_view shape) {
   return text.size() == shape.size() &&
          std::equal(text.begin(), text.end(), shape.begin(), [](char have, char want) {
@@ -15,7 +15,7 @@ bool looks_like(const std::string& text, std::string_view shape) {
          });
 }
 
-/// `mended` is the deprecated name of `action`.
+/// Returns the action of a note, also from the key `mended`, its deprecated name.
 std::string action_of(document::MapReader& reader) {
   const std::optional<std::string> deprecated = reader.optional_text("mended");
   if (!deprecated) return reader.text("action");

@@ -1,5 +1,5 @@
 #pragma once
-// The maintenance records: notes.yaml.
+// Reads the maintenance records from notes.yaml, for example:
 //
 //   notes:
 //     - {date: 2026-11-03, finger: left, action: finger replaced}
@@ -14,12 +14,13 @@
 namespace softgrip::sysid::health {
 
 struct Note {
-  std::string date;    ///< UTC, "2026-11-03" (as the day begins) or "2026-11-03T14:30:00Z"
-  std::string finger;  ///< empty: all
-  std::string action;  ///< in a few words
+  std::string date;    ///< UTC, "2026-11-03" (start of the day) or "2026-11-03T14:30:00Z"
+  std::string finger;  ///< empty: the note applies to all fingers
+  std::string action;  ///< what was done, in a few words
 };
 
-/// In the order of their dates; nothing if there are problems, which are all added.
+/// Returns the notes in order of their dates, or nothing if the text has problems. All problems are added to
+/// `problems`.
 [[nodiscard]] std::optional<std::vector<Note>> read_notes(const std::string& path, std::string text,
                                                           document::Problems& problems);
 

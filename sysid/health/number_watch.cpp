@@ -9,11 +9,12 @@
 namespace softgrip::sysid::health {
 namespace {
 
-/// Odds of 20 to 1 that a change of the difference is this finger's.
+/// Log likelihood ratio from which a change of the difference is attributed to a finger: odds of 20 to 1.
 const double sure = std::log(20.0);
-/// A change is shared if the peer fingers show at least this share of it.
+/// A change is shared if the mean change of the peer fingers is at least this share of it.
 constexpr double alike = 0.5;
-/// Number of a finger's own values around a change: the last ones since, and those before.
+/// Maximum number of values of a finger that are averaged since a change and before it. The latest ones are
+/// used.
 constexpr std::size_t points_since = 3, points_before = 10;
 /// Smallest number of values for an estimate of their correlation; with fewer, averaging has no proven
 /// benefit.
@@ -33,7 +34,7 @@ double mean_of(const std::vector<double>& values) {
   return sum / static_cast<double>(values.size());
 }
 
-/// Numbers in mm and in deg are not comparable.
+/// Returns true if two fingers have the same output unit and at least one common run.
 bool have_a_run_in_common(const FingerTrack& one, const FingerTrack& other) {
   if (one.health.output_unit != other.health.output_unit) return false;
   return std::any_of(one.by_run.begin(), one.by_run.end(),
@@ -156,8 +157,8 @@ ChartValues NumberWatch::difference_at(std::size_t finger, std::size_t point,
   return values;
 }
 
-/// Compares the finger's points since its last maintenance record again, as if the peer fingers had always
-/// been these.
+/// Compares all points of the finger since its last maintenance record again, with `peers` as its peer
+/// fingers.
 void NumberWatch::compare_again(std::size_t finger, PeerFingers peers) {
   note_differences(finger);
   Watched& watched = watched_[finger];
@@ -313,7 +314,7 @@ HealthAlarm NumberWatch::alarm_of(std::size_t finger, bool beside) const {
 void NumberWatch::raise(std::size_t finger, bool beside) {
   Watched& watched = watched_[finger];
   watched.alarm = alarm_of(finger, beside);
-  // The reference of the finger is from before the change.
+  // The reference of the finger must contain only values from before the change.
   const auto first = std::lower_bound(watched.own_at.begin(), watched.own_at.end(), watched.alarm->since);
   watched.own.take_alarm(static_cast<std::size_t>(first - watched.own_at.begin()));
 }
@@ -339,7 +340,7 @@ void NumberWatch::share(std::size_t finger) {
   }
   shared_.back().fingers.push_back(health.finger);
   watched.shared = shared_.size() - 1;
-  // From here on this is what is usual.
+  // The values since the shared change become the new reference.
   watched.own_at.erase(watched.own_at.begin(),
                        watched.own_at.begin() + static_cast<std::ptrdiff_t>(told.since));
   watched.own = new_chart(finger);

@@ -1,5 +1,6 @@
 #pragma once
-// One number of all fingers of a rig through their days: the charts, and whose change it is that they show.
+// Watches one indicator of all fingers of a rig: updates the control charts, and decides which finger has
+// changed.
 
 #include <cstddef>
 #include <map>
@@ -15,25 +16,27 @@ namespace softgrip::sysid::health {
 
 class NumberWatch {
  public:
-  /// @param tracks  placed in time; they outlive this, which adds alarms, references and judgements to them.
+  /// @param number  index of the indicator. @param tracks  after place_in_time(). They must outlive this
+  /// object, which adds alarms, references and standard normal values to them.
   NumberWatch(std::size_t number, std::vector<FingerTrack>& tracks, const HealthOptions& options);
 
-  /// Through all moments, once. Returns what the rig shares.
+  /// Processes all moments and returns the shared changes. Must be called only once.
   [[nodiscard]] std::vector<SharedChange> run(std::size_t moments);
 
  private:
-  /// The peer fingers of a finger: index and number of repairs.
+  /// The peer fingers of a finger: index of each and number of its earlier maintenance records.
   using PeerFingers = std::vector<std::pair<std::size_t, std::size_t>>;
 
   struct Watched {
     ControlChart own, beside;
-    std::vector<std::size_t> own_at{}, beside_at{};  ///< the finger's point of each of the chart's
+    std::vector<std::size_t> own_at{}, beside_at{};  ///< index of each chart point in the finger
     PeerFingers peers{};
     std::size_t epoch = 0;
-    std::size_t next = 0;  ///< point
+    std::size_t next = 0;  ///< index of the next point to be added
     std::optional<HealthAlarm> alarm{};
-    std::optional<std::size_t> shared{};  ///< since the last note; index
-    /// Knowledge since the last maintenance record, also before a shared change: slopes by recipe, spread.
+    std::optional<std::size_t> shared{};  ///< index of the last shared change of this epoch
+    /// Temperature slopes by recipe, and largest standard deviation, since the last maintenance record. A
+    /// shared change does not reset them.
     std::map<std::string, double> per_c{};
     double widest_spread = 0;
   };
@@ -41,12 +44,13 @@ class NumberWatch {
   void add_own(std::size_t finger, std::size_t moment);
   void add_beside(std::size_t finger, std::size_t moment);
   void decide(std::size_t moment);
-  /// The finger whose difference is most surely its own change, where it is sure enough.
+  /// Returns the finger to which a change of the difference is attributed with the highest odds; nothing if
+  /// the odds of all fingers are below 20 to 1.
   [[nodiscard]] std::optional<std::size_t> changed_finger() const;
   [[nodiscard]] bool is_shared(std::size_t finger) const;
   void raise(std::size_t finger, bool beside);
   void share(std::size_t finger);
-  /// An epoch of a finger is over.
+  /// Ends an epoch of a finger: stores its differences and its alarm in the health of the finger.
   void close(std::size_t finger);
   [[nodiscard]] HealthAlarm alarm_of(std::size_t finger, bool beside) const;
 
@@ -54,17 +58,18 @@ class NumberWatch {
   [[nodiscard]] std::vector<std::string> names_of(const PeerFingers& peers) const;
   [[nodiscard]] ChartValues difference_at(std::size_t finger, std::size_t point,
                                           const PeerFingers& peers) const;
-  /// Into the points, as the chart of differences sees them.
+  /// Stores the deviations of the differences from their reference in the points of the finger.
   void note_differences(std::size_t finger);
   void compare_again(std::size_t finger, PeerFingers peers);
 
-  /// By how much the finger's own values moved: the last of them since `from` against those before.
+  /// Returns the change of the finger's own values without the effect of the temperature: the mean of the
+  /// latest values since `from_moment` minus the mean of the last values before.
   [[nodiscard]] std::optional<double> moved(std::size_t finger, std::size_t from_moment) const;
   [[nodiscard]] std::optional<double> peers_moved(std::size_t finger, std::size_t from_moment) const;
-  /// Returns the variance of moved() in control.
+  /// Returns the variance of moved() for a finger that has not changed.
   [[nodiscard]] double usual_variance(std::size_t finger) const;
   [[nodiscard]] std::size_t moment_of(std::size_t finger, std::size_t point) const;
-  /// The finger's points since its last note that have the number, as far as they were looked at.
+  /// Returns the processed points of the finger since its last maintenance record that have the indicator.
   [[nodiscard]] std::vector<std::size_t> points_of(std::size_t finger) const;
   [[nodiscard]] ControlChart new_chart(std::size_t finger) const;
 
@@ -73,7 +78,7 @@ class NumberWatch {
   ChartLimits limits_;
   std::vector<Watched> watched_;
   std::vector<SharedChange> shared_;
-  std::vector<std::vector<std::size_t>> have_runs_in_common_;  ///< by finger
+  std::vector<std::vector<std::size_t>> have_runs_in_common_;  ///< possible peers of each finger
 };
 
 }  // namespace softgrip::sysid::health

@@ -23,17 +23,19 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-/// Scores of another kind than before have another name.
+/// Version of the score computation, as a prefix of the baseline id. A new version makes all earlier scores
+/// obsolete.
 constexpr const char* scoring = "1-";
 constexpr std::size_t id_letters = 12;
 constexpr std::size_t largest_baseline = std::size_t{512} * 1024 * 1024;
 
-/// DIR/FINGER where that is a baseline, else DIR itself.
+/// Reads the baseline of each finger once: from DIR/FINGER if that folder is a baseline, otherwise from DIR.
 class Baselines {
  public:
   explicit Baselines(std::string folder) : folder_(std::move(folder)) {}
 
-  /// Null: it has none. It lives as long as this.
+  /// Returns the baseline of a finger, or null if the finger has none. The pointer is valid as long as this
+  /// object.
   const FingerBase* of(const std::string& finger) {
     const auto [base, is_new] = bases_.try_emplace(finger);
     if (is_new) base->second = read(folder_of(finger));
@@ -43,7 +45,7 @@ class Baselines {
     const fs::path own = fs::path(folder_) / finger;
     return !finger.empty() && is_there(own / "baseline.json") ? own.string() : folder_;
   }
-  /// Baselines that exist and are refused.
+  /// Returns the baselines that exist but are refused.
   [[nodiscard]] const std::vector<RefusedBaseline>& refused() const { return refused_; }
 
  private:
@@ -94,7 +96,7 @@ void judge(const std::vector<ScoredRun>& runs, const HealthQuestion& question, B
   }
 }
 
-/// Numbers that the fingers share a change of.
+/// Returns the indicators that have changed at all fingers, or of which a shared change is active.
 std::vector<HealthNumber> shared_numbers(const RecordedHealth& rig) {
   std::vector<const FingerHealth*> all;
   for (const JudgedFinger& finger : rig.fingers) all.push_back(&finger.health);

@@ -1,5 +1,6 @@
 #pragma once
-// The answer of `softgrip health`: scores recordings by the baselines of their fingers and judges all scores.
+// Computes the result of `softgrip health`: scores recordings relative to the baselines of their fingers, and
+// judges all scores.
 
 #include <functional>
 #include <string>
@@ -17,7 +18,8 @@ namespace softgrip::sysid::health {
 
 struct HealthQuestion {
   std::vector<std::string> recordings;  ///< recordings, or folders of recordings
-  /// Folder of `softgrip baseline`. If it has a baseline in a folder FINGER, that finger has its own.
+  /// Folder that `softgrip baseline` wrote. If it contains a folder FINGER with a baseline, that baseline is
+  /// used for the finger.
   std::string baseline;
   std::vector<Note> notes;
   HealthOptions options;
@@ -25,7 +27,7 @@ struct HealthQuestion {
   std::function<void(const std::string&)> progress = {};  ///< text about the present recording; may be empty
 };
 
-/// A finger of the rig, judged.
+/// The result for one finger of the rig.
 struct JudgedFinger {
   FingerHealth health;
   Suspicion suspicion;
@@ -38,7 +40,7 @@ struct RecordedHealth {
   std::vector<JudgedFinger> fingers;  ///< by name; empty: no recording can be compared with the baseline
   std::vector<SharedChange> shared;
   std::vector<SkippedRun> skipped;
-  std::string scores;  ///< those of the question and those of the new recordings
+  std::string scores;  ///< text of the earlier scores and of the scores of the new recordings
 
   /// Returns true if an alarm of a finger is active.
   [[nodiscard]] bool alarm() const;
@@ -47,21 +49,21 @@ struct RecordedHealth {
 /// Reason why a baseline is refused.
 struct RefusedBaseline {
   std::string why;              ///< a sentence; empty: the problems state the reason
-  document::Problems problems;  ///< of its model or its logs
+  document::Problems problems;  ///< problems of its model or its logs
   bool unreadable = false;      ///< a file cannot be opened
 };
 
-/// Scores the recordings that `scores` does not have, and judges all fingers. The error has at least one
-/// refused baseline.
+/// Scores the recordings that are not in `question.scores`, and judges all fingers. The error contains at
+/// least one refused baseline.
 [[nodiscard]] tl::expected<RecordedHealth, std::vector<RefusedBaseline>> recorded_health(
     const HealthQuestion& question);
 
-/// Returns facts that are no alarm of a finger but should be known.
+/// Returns warnings about shared changes and about changes that are not attributed to a finger.
 [[nodiscard]] std::vector<std::string> warnings_of(const RecordedHealth& health);
 
-/// Returns the content of health.json. @param now  time that it states as that of its making.
+/// Returns the content of health.json. @param now  creation time that the file states.
 [[nodiscard]] nlohmann::ordered_json json_of(const RecordedHealth& health, Nanoseconds now);
-/// The text of health.json, without the last line break.
+/// Returns the text of health.json, without a line break at the end.
 [[nodiscard]] std::string health_json_text(const nlohmann::ordered_json& json);
 
 }  // namespace softgrip::sysid::health

@@ -49,7 +49,8 @@ void score_one(const std::string& path, const BaseOf& base_of, RunScores& scores
     scores.skipped.push_back({name, "it is not finished"});
     return;
   }
-  // Of a fault, or of a day and a night: nothing in it can be compared with another one.
+  // A recording of a fault or of a whole day belongs to no sequence, so no other recording is comparable with
+  // it.
   if (recording->recipe.empty() && !recording->software_version.empty()) {
     scores.skipped.push_back({name,
                               "it does not belong to a sequence (with `mode: sequences`, the recorder writes "

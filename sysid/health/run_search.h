@@ -1,5 +1,5 @@
 #pragma once
-// Which recordings are meant, and their numbers.
+// Finds the recordings that the arguments select and computes their indicators.
 
 #include <functional>
 #include <optional>
@@ -10,7 +10,8 @@
 
 namespace softgrip::sysid::health {
 
-/// A folder with a run.csv, or a log, stands for itself; any other folder for the recordings in it, by name.
+/// Returns the recordings that the paths select. A folder with a run.csv is a recording, and so is a file.
+/// Any other folder selects the recordings in it, sorted by name.
 [[nodiscard]] std::vector<std::string> find_runs(const std::vector<std::string>& paths);
 
 /// The baseline of a finger, and its id in the scores.
@@ -18,14 +19,14 @@ struct FingerBase {
   ScoreBase base;
   std::string id;
 };
-/// Null: the finger has no baseline.
+/// Returns the baseline of a finger; null if the finger has no baseline.
 using BaseOf = std::function<const FingerBase*(const std::string& finger)>;
 
 struct SkippedRun {
   std::string run, why;
 };
 
-/// Called before each recording that is read: its index from 1, and their number.
+/// Called before each recording is read, with its index (from 1) and the number of recordings to read.
 using OnRecording = std::function<void(std::size_t index, std::size_t count)>;
 
 struct RunScores {
@@ -33,13 +34,13 @@ struct RunScores {
   std::vector<SkippedRun> skipped;
 };
 
-/// Scores the recordings that `known` does not have by today's baselines. One that cannot be used, or is not
-/// finished, is skipped and named; the others count. A cancelled computation ends with the next recording.
+/// Scores the recordings that have no scores by the current baselines in `known`. A recording that cannot be
+/// used or is not finished is added to `skipped`. A cancelled computation ends before the next recording.
 /// @param on_recording  may be empty
 [[nodiscard]] RunScores score_runs(const std::vector<std::string>& paths, const BaseOf& base_of,
                                    const std::vector<ScoredRun>& known, const OnRecording& on_recording = {});
 
-/// Of each run and finger the last line that was scored by today's baseline.
+/// Returns for each run and finger the last score that was computed with the current baseline.
 [[nodiscard]] std::vector<ScoredRun> current(const std::vector<ScoredRun>& runs, const BaseOf& base_of);
 
 }  // namespace softgrip::sysid::health

@@ -6,16 +6,18 @@
 namespace softgrip::sysid::health {
 namespace {
 
-/// Of fewer values a change that is not noticed at once would pass for persistence.
+/// Smallest number of values for an estimate of the persistence. With fewer values, a change that is not yet
+/// detected would appear as persistence.
 constexpr double least_for_persistence = 15;
-/// The estimate is reduced by this number of standard errors.
+/// The estimate of the persistence is reduced by this number of standard errors.
 constexpr double surely = 0.5;
 constexpr double most_persistence = 0.95;
-/// Fewer values, or values at nearly one temperature, determine no slope.
+/// Smallest number of values, and smallest standard deviation of their temperatures, that determine a slope.
 constexpr double least_for_slope = 6;
 constexpr double least_temperature_spread_c = 0.3;
 constexpr double slope_significance = 3;
-/// Share of what the line adds beyond the temperatures seen that may be wrong, as a standard deviation.
+/// Standard deviation of the extrapolated part of the line outside the temperatures of the earlier values, as
+/// a share of this part.
 constexpr double extrapolation_uncertainty = 0.5;
 
 double persistence_of(const SerialSums& sums, double slope) {
@@ -73,7 +75,8 @@ double SerialSums::left(double slope) const {
 double SerialSums::correlation(double slope) const {
   const double squares = left(slope);
   if (!(squares > 0)) return 0;
-  // The sum of products of neighbours, each less its mean; the first of all is 0.
+  // Returns the sum of the products of neighbouring values, each minus its mean. The first value is 0: see
+  // add().
   const auto together = [&](double products, double now, double before, double last_before) {
     return products - now * (before - last_before) / n_ - before * now / n_ +
            (n_ - 1) * now * before / n_ / n_;

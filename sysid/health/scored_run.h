@@ -1,6 +1,6 @@
 #pragma once
-// One finger's numbers of one recorded run, and where they are kept: a line each in a file that only grows,
-// so that the numbers outlive the recordings and no recording is read twice.
+// Stores the indicators of each finger in each recorded run as one line of a file. Lines are only added. The
+// indicators therefore remain available after a recording has been deleted, and no recording is read twice.
 
 #include <limits>
 #include <string>
@@ -17,18 +17,18 @@ struct ScoredRun {
   std::string run;         ///< name of the recording's folder
   std::string finger;      ///< name of the channel
   std::string started_at;  ///< UTC; empty: not known
-  std::string recipe;      ///< only runs of the same one are compared
-  std::string baseline;    ///< by what it was scored
+  std::string recipe;      ///< only runs of the same recipe are compared
+  std::string baseline;    ///< id of the baseline that the scores refer to
   GripScore score;
-  double temperature_c = std::numeric_limits<double>::quiet_NaN();  ///< its median; NaN: not recorded
+  double temperature_c = std::numeric_limits<double>::quiet_NaN();  ///< median of the run; NaN: not recorded
 };
 
-/// The file's name in the folder for results.
+/// File name in the output folder.
 inline constexpr const char* scores_file = "health-scores.jsonl";
 
-/// Returns the lines of such a file. An incomplete line, for example after a power failure, is skipped.
+/// Reads the lines of this file. An incomplete line, for example after a power failure, is skipped.
 [[nodiscard]] std::vector<ScoredRun> read_scores(std::string_view text);
-/// One line, with its end.
+/// Returns the line of a run, with its line break.
 [[nodiscard]] std::string line_of(const ScoredRun& run);
 
 }  // namespace softgrip::sysid::health

@@ -15,13 +15,13 @@ using sysid::HealthNumber;
 using sysid::HealthSign;
 using sysid::Moves;
 
-/// The weight against a cause of a sign that is missing, and of an alarm that the cause does not explain, in
-/// signs.
+/// Penalties in the score of a cause, relative to 1 for a sign that is present: for a missing sign, and for
+/// an alarm that the cause does not explain.
 constexpr double missing_sign = 0.25;
 constexpr double unexplained_alarm = 0.75;
-/// The weight against a cause if the recordings of grips lack the column that is needed to judge it.
+/// Penalty of a cause that requires an additional column, because recordings of grips may lack this column.
 constexpr double lacks_column = 0.05;
-/// Causes that are so near explain as much.
+/// Largest difference from the best score at which a cause is still a candidate.
 constexpr double as_much = 0.1;
 constexpr std::size_t most_suspects = 4;
 
@@ -30,8 +30,8 @@ bool agrees(Moves moves, double change) {
   return moves == (change > 0 ? Moves::up : Moves::down);
 }
 
-/// Returns the alarms by number. The time to the grip is used only if no other number alarms, because every
-/// change affects it.
+/// Returns the changes of the indicators in alarm, with the shared changes that started no later. The time to
+/// grip is included only if no other indicator has changed, because every change affects it.
 std::map<HealthNumber, double> changes_of(const FingerHealth& health,
                                           const std::vector<SharedChange>& shared) {
   std::map<HealthNumber, double> changes;
@@ -47,7 +47,8 @@ std::map<HealthNumber, double> changes_of(const FingerHealth& health,
   return changes;
 }
 
-/// How much of the alarms a cause with these signs explains; 0: nothing.
+/// Returns the score of a cause with these signs: the number of present signs minus the penalties; 0 if no
+/// sign is present.
 double explained(const sysid::HealthSigns& signs, const std::map<HealthNumber, double>& changes,
                  const FingerHealth& health) {
   double worth = 0;
@@ -64,7 +65,7 @@ double explained(const sysid::HealthSigns& signs, const std::map<HealthNumber, d
   return hits == 0 ? 0 : worth - unexplained_alarm * unexplained;
 }
 
-/// Returns true if a number in alarm is compared at the temperature of the day.
+/// Returns true if the reference of an indicator in alarm depends on the temperature.
 bool allows_for_temperature(const FingerHealth& health) {
   const std::vector<HealthAlarm> alarms = health.standing();
   return std::any_of(alarms.begin(), alarms.end(), [&](const HealthAlarm& alarm) {

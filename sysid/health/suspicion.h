@@ -1,6 +1,6 @@
 #pragma once
-// Candidate causes of an alarm: the causes whose signs, as their own files state them, match it best, and the
-// steps that would confirm one of them.
+// Finds the candidate causes of an alarm, whose signs (sysid/diagnosis/causes/) match the alarm best, and the
+// steps that confirm one of them.
 
 #include <string>
 #include <string_view>
@@ -12,23 +12,24 @@
 namespace softgrip::sysid::health {
 
 struct Suspect {
-  std::string id;                       ///< of the vocabulary of causes
+  std::string id;                       ///< id of the cause
   std::string words;                    ///< "the pressure falls while it should be constant"
-  std::vector<std::string> next_steps;  ///< what a person can do, the quicker first
+  std::vector<std::string> next_steps;  ///< checks for the operator, the quicker one first
 };
 
 struct Suspicion {
-  std::vector<Suspect> suspects;    ///< the first explains most; others explain as much
-  std::vector<std::string> advice;  ///< how to distinguish them
+  std::vector<Suspect> suspects;    ///< the best one first; the others are about equally good
+  std::vector<std::string> advice;  ///< how to distinguish the candidates
 };
 
-/// Returns the candidate causes of the open alarms. The list is empty if there are none, or if no cause has
-/// these signs.
-/// @param shared  changes that the rig shares. One that came before an alarm or with it is a sign, too.
+/// Returns the candidate causes of the active alarms. The list is empty if there is no alarm, or if no cause
+/// has signs that match.
+/// @param shared  shared changes of the rig. Those that started no later than the latest alarm also count as
+/// signs.
 [[nodiscard]] Suspicion suspicion_of(const FingerHealth& health,
                                      const std::vector<SharedChange>& shared = {});
 
-/// The finger's state in one sentence that a technician understands.
+/// Returns the state of the finger and the candidate causes as text for a technician.
 [[nodiscard]] std::string health_sentence(const FingerHealth& health, const Suspicion& suspicion);
 
 }  // namespace softgrip::sysid::health
