@@ -1,4 +1,4 @@
-// softgrip health: what the ordinary recordings of a working day say of the fingers.
+// softgrip health: reports from the recordings of ordinary work which fingers have changed.
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
@@ -105,7 +105,7 @@ ExitCode run(HealthOptions options) {
   if (!options.out.empty()) {
     if (const auto ready = prepare_folder(options.out); !ready) return fail(ExitCode::io, ready.error());
     const std::string path = (fs::path(options.out) / health::scores_file).string();
-    // A file that exists and cannot be read holds the scores of earlier days: it must not be replaced.
+    // An existing file that cannot be read holds the scores of earlier days, so it must not be replaced.
     auto earlier = is_there(path) ? read_file(path, largest_file) : std::string();
     if (!earlier) return fail(ExitCode::io, earlier.error());
     question.scores = *std::move(earlier);
