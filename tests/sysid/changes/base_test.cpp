@@ -20,7 +20,8 @@ Base base_of(const std::vector<Log>& healthy) {
   return fit_base(make_records(healthy, {}), Judged::displacement, Drive::command, {});
 }
 
-/// Returns the RMS [mm] of the residual of the base on other logs, after removing the mean of each log.
+/// Returns the RMS [mm] of the residual of the baseline model on other logs, after removing the mean of each
+/// log.
 double left_of_mm(const Base& base, const std::vector<Log>& logs) {
   const std::vector<Record> records = make_records(logs, {});
   const std::vector<std::vector<double>> left = residuals_of(base, records);
@@ -35,8 +36,8 @@ double left_of_mm(const Base& base, const std::vector<Log>& logs) {
   return std::sqrt(sum / count);
 }
 
-/// A zero that drifts does not follow the command. The filter bank must not fit it from the neighbouring
-/// blocks.
+/// A drift of the sensor zero does not depend on the command. The filter bank must not fit the drift of a
+/// held-out block from the neighbouring blocks.
 TEST(Base, LeavesOfAnotherDayWhatItLeavesOfHealthyLogsHeldOut) {
   const test::Finger wandering{.wander_mm = 0.1};
   const Base base = base_of(test::logs_of(wandering, 1));
@@ -105,7 +106,7 @@ TEST(Base, OfAPressureThatFollowsAtOnceADelayOfHalfASampleIsTheMeanOfTwo) {
   for (std::size_t i = 1; i < p.size(); ++i) ASSERT_NEAR(p[i], expected[i], 1e-6) << i;
 }
 
-/// A base whose filter bank is a large part of its prediction.
+/// Returns a baseline model whose filter bank contributes a large part of the prediction.
 Base with_a_large_filter_part() {
   Base base = base_of(test::logs_of({}, 1));
   const Record& record = base.records.front();

@@ -34,8 +34,8 @@ TEST(Bins, AThinnedRecordThatEndsSoonerGoesOnWithItsLastValue) {
 
 constexpr double innovation = 0.5;
 
-/// Two runs of a first-order autoregressive process about the mean `zero`. The standard deviation of each
-/// step is `innovation`.
+/// Returns two runs of a first-order autoregressive process with the mean `zero`. The standard deviation of
+/// its innovations is `innovation`.
 Binned autoregression(double weight, double zero, unsigned seed) {
   std::mt19937 random(seed);
   std::normal_distribution<double> normal(0, innovation);

@@ -27,7 +27,7 @@ double width(const std::optional<Interval>& interval) {
   return interval ? interval->upper - interval->lower : 0;
 }
 
-// The interval is compared with the scatter of the estimate over other inputs and other noise.
+// Compares the width of the interval with the scatter of the estimates over different inputs and noise.
 TEST_F(ChangeIntervals, AreAsWideAsTheNumberScattersAndHoldIt) {
   constexpr double delay_s = 0.06;
   constexpr int draws = 30;
@@ -62,7 +62,8 @@ TEST_F(ChangeIntervals, AreWiderWhereHealthyUnitsDifferInTheSameNumber) {
   };
   const double alone = width(intervals_of(later, {delay}, {})[0].numbers.at(0));
   const double between = width(intervals_of(later, {delay}, {unit(0.01, 1), unit(0.02, 1)})[0].numbers.at(0));
-  // The mean square of 0.01 and 0.02 s, times 1.5: the difference between one run and the mean of two.
+  // The mean square of 0.01 and 0.02 s, times 1.5, is the variance of the difference between one run and the
+  // mean of two.
   const double expected = 2 * 1.96 * std::sqrt(0.00025 * 1.5);
   EXPECT_NEAR(between, std::hypot(alone, expected), 1e-3 * between);
   // A healthy fit that does not reduce the error contains no information about the differences between runs.

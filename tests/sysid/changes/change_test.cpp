@@ -217,8 +217,8 @@ TEST(Change, ASensorThatEndsJustBelowTheLargestReadingIsFound) {
   for (const Log& log : logs_of({}, 5))
     largest_mm =
         std::max(largest_mm, *std::max_element(log.displacement_mm.begin(), log.displacement_mm.end()));
-  // This limit is so close that the first start value of the search, which is estimated from the error, is
-  // above all readings.
+  // This limit is so close to the largest reading that the first start value of the search, which is
+  // estimated from the error, is above all readings.
   const double end_mm = largest_mm - 0.25;
   const ChangeDiagnosis d = changed({.stop_mm = end_mm});
   ASSERT_FALSE(d.causes.empty()) << change_sentence(d);
@@ -389,8 +389,9 @@ TEST(Change, TooLittleIsRefused) {
   EXPECT_FALSE(diagnose_change({}, logs_of({}, 5)));
 }
 
-/// A lag of 0.01 s has a larger error than each healthy run, but a smaller one than another healthy run may
-/// have. This rejects a change only if the healthy runs start like the later run.
+/// A lag of 0.01 s causes a larger error than any of the healthy runs has, but a smaller error than a further
+/// healthy run may have. The change is found if the later run starts like the healthy runs, but not if it
+/// starts under pressure.
 TEST(Change, AnotherStartNeedsALargerError) {
   const std::vector<Log> healthy{log_of({}, 1), log_of({}, 2), log_of({}, 3)};
   const Log at_rest = log_of({.valve_lag_s = 0.01}, 5);

@@ -70,8 +70,8 @@ TEST(Downstream, IsWhatTheWholeChainShowsBitForBit) {
   }
 }
 
-// For every block of the catalogue that reports that it can be applied to samples, the result is that of the
-// whole model.
+// Some blocks of the catalogue report that they can be applied to samples. For each of them, the result must
+// equal that of the whole model.
 TEST(Downstream, HoldsForEveryBlockThatSaysSo) {
   const Record record = waving();
   const std::vector<double> plain = walked(base(), record);

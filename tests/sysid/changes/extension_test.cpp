@@ -104,7 +104,7 @@ TEST(FilterBank, ColumnsKnowTheSupplyWhereItIsRecorded) {
 TEST(FilterBank, OfACommandHoldsWhatAFingerAndWhatAValveMayDo) {
   const Record r = record();
   const auto columns = [&](FilterKind kind) { return filter_columns(r, r.drive_kpa, kind, 60).cols(); };
-  // Only a measured pressure has the columns that follow at once.
+  // Only the filter bank of a valve has the columns without a delay.
   const auto at_once = columns(FilterKind::valve) / 9;
   EXPECT_EQ(columns(FilterKind::valve_and_finger),
             columns(FilterKind::valve) - at_once + columns(FilterKind::finger));

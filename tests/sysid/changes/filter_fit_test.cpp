@@ -27,8 +27,8 @@ Record waving() {
   return record;
 }
 
-/// The residual of a model: a share of the command behind a lag of 0.5 s, plus a part that does not follow
-/// the command.
+/// Returns a residual that is the sum of a share of the command behind a lag of 0.5 s and of a part that is
+/// independent of the command.
 Binned left_of(const Record& record, double share) {
   const std::vector<double> drive = binned(record, lagged(record, record.drive_kpa, 0.5), bin_s);
   Binned left{{}};

@@ -1,5 +1,5 @@
 #pragma once
-// A base of the pressure that consists of its filter bank only, so that it is fitted quickly.
+// A baseline model of the pressure that consists of a filter bank only, so that the fit is quick.
 
 #include <gtest/gtest.h>
 

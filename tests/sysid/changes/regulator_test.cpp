@@ -15,7 +15,7 @@ namespace {
 using test::record_of;
 using test::rms;
 
-/// A step up after 0.5 s.
+/// Returns a record with an upward step of the command after 0.5 s.
 Record step_record() {
   std::vector<double> command(600, 50.0);
   std::fill(command.begin(), command.begin() + 50, 0.0);
@@ -75,7 +75,7 @@ TEST(Regulator, AnswersForALeakWhereItsPortsOpen) {
   const std::vector<double> tight = regulated(regulator, record, record.drive_kpa);
   regulator.leak_per_s = 0.1;
   const std::vector<double> leaking = regulated(regulator, record, record.drive_kpa);
-  EXPECT_NEAR(leaking.back(), tight.back(), 0.3);  // although it loses 13 kPa/s
+  EXPECT_NEAR(leaking.back(), tight.back(), 0.3);  // although the leak loses 13 kPa/s
   EXPECT_LT(leaking[70], tight[70] - 0.2);
 }
 

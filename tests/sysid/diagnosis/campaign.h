@@ -1,5 +1,5 @@
 #pragma once
-// A campaign with known commands, and residuals of a known kind for it.
+// Records with known commands, and residuals with known properties for these records.
 
 #include <cmath>
 #include <limits>

@@ -14,7 +14,7 @@ struct Signals {
   std::vector<double> command, reading;
 };
 
-/// A PI controller keeps the flow behind a valve at 0.
+/// Returns the signals of a PI controller that keeps the flow behind a valve at 0.
 /// @param band  change of the command at which the valve breaks free and jumps.
 /// @param wave  amplitude of a disturbance of the flow.
 Signals loop(double band, double wave, double proportional, double integral, unsigned seed) {
@@ -35,7 +35,7 @@ Signals loop(double band, double wave, double proportional, double integral, uns
   return signals;
 }
 
-/// A planned command, and a finger that follows it with a lag.
+/// Returns the signals of a planned command and of a finger that follows the command with a lag.
 Signals planned(double lag_share, unsigned seed) {
   std::mt19937 random(seed);
   std::normal_distribution<double> noise(0, 0.01);

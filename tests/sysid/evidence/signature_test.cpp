@@ -7,7 +7,7 @@
 namespace softgrip::sysid::signature_test {
 namespace {
 
-/// Rest, rise, hold at 50 kPa, fall, rest.
+/// Returns the operating points of a grip: rest, rise, hold at 50 kPa, fall, rest.
 std::vector<OperatingPoint> grip() {
   return {{0, 0, 0}, {1, 0, 0}, {20, 30, 4}, {40, 30, 8}, {50, 0, 10}, {50, 0, 10}, {20, 30, 5}, {0, 0, 1}};
 }

@@ -29,7 +29,7 @@ TEST(Tolerance, AnotherRunOfTheSameKindExceedsItInOneOfTwenty) {
   std::normal_distribution<double> normal(0, 1);
   using Run = std::array<double, 3>;
   const auto run = [&] { return Run{normal(random), normal(random), normal(random)}; };
-  // The squared error of a run that is predicted by the mean of the others.
+  // Returns the squared error if the mean of the other runs predicts a run.
   const auto improvement = [](const Run& predicted, const std::vector<Run>& runs, std::size_t left_out) {
     const auto others = static_cast<double>(runs.size() - (left_out < runs.size() ? 1 : 0));
     double sum = 0;

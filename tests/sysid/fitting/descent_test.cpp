@@ -94,7 +94,8 @@ TEST(Descent, CountsStepsAndTrials) {
   const auto end = descend(problem, Eigen::Vector2d(-1.2, 1), {.most_steps = 3});
   EXPECT_EQ(end.steps, 3);
   EXPECT_FALSE(end.converged);
-  // From the minimum no trial is better: one loss of the start, and one for each trial.
+  // At the minimum no trial reduces the loss, so the loss is computed once for the start and once for each
+  // trial.
   Rosenbrock again;
   const auto none = descend(again, Eigen::Vector2d(1, 1), {.most_trials = 5});
   EXPECT_EQ(none.steps, 0);

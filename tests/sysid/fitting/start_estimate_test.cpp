@@ -25,7 +25,7 @@ using model::SignalName;
 
 constexpr double noise_mm = 0.05, rate_hz = 50;
 
-/// Play operators, creep over two decades, and a dead time.
+/// Returns a finger of play operators, with creep over two decades of time constants and a dead time.
 model::Model play_finger() {
   model::Model m;
   m.name = "play_finger";
@@ -55,8 +55,8 @@ double error_mm(const model::Model& finger, const Record& record, const StartSta
   return rms(residual(record, predict(finger, record, start)));
 }
 
-/// Returns ten sample numbers at equal distances, and each at which the pressure has returned to 0. At least
-/// 3 s follow.
+/// Returns ten sample indices at equal distances, and the index of each sample at which the pressure has
+/// returned to 0. At least 3 s of the record follow each of them.
 std::vector<std::size_t> moments_to_cut(const Record& record) {
   constexpr std::size_t cuts = 10;
   std::vector<std::size_t> moments;

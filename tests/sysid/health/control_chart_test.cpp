@@ -268,7 +268,7 @@ TEST(ControlChart, ARecipeIsComparedWithItselfAlone) {
     chart.add({{far > 0 ? "hand_over" : recipe, far + healthy()}});
   }
   EXPECT_FALSE(chart.alarm());
-  // A new recipe far from all others starts its own reference.
+  // A new recipe with values far from those of all other recipes starts its own reference.
   for (int i = 0; i < 10; ++i) chart.add({{"new", 7 + healthy()}});
   EXPECT_FALSE(chart.alarm());
 }

@@ -73,7 +73,7 @@ FingerHealth judged(const Life& life, const std::vector<Note>& notes = {}) {
   return judge_finger("left", life.runs(), notes, base, {});
 }
 
-// The stated rate is one alarm of any of the 9 charts in 3650 points, or 6.6 alarms in 400 lives of 60 days.
+// The stated rate is one alarm of any of the 9 charts in 3650 points: 6.6 alarms of 400 fingers in 60 days.
 TEST(FingerHealth, OfAHealthyFingerAlarmsNoMoreOftenThanStated) {
   int alarms = 0;
   for (unsigned seed = 1; seed <= 400; ++seed) {

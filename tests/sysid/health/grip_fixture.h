@@ -1,6 +1,5 @@
 #pragma once
-// A grip like a recorded one, simulated without the daemon: rest, closing until contact, hold, release,
-// vented.
+// Simulates a recorded grip without the daemon: rest, closing until contact, hold, release, vented finger.
 
 #include <cstdint>
 

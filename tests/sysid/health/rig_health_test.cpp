@@ -33,7 +33,7 @@ struct Rig {
   bool thermometer = false;
   double uneven = 1;  ///< factor by which the last finger follows the weather
   std::vector<std::string> names{"left", "right"};
-  /// Returns the change of a number on a day, in the unit of the number.
+  /// Returns the change of an indicator on a day, in the unit of the indicator.
   std::function<double(const std::string& finger, HealthNumber number, int day)> becomes =
       [](const std::string&, HealthNumber, int) { return 0.0; };
 
@@ -70,7 +70,7 @@ struct Rig {
   }
 };
 
-/// A rig whose left finger changes its gain by `by` [mm] per day from day `from`.
+/// Returns a rig whose left finger changes its gain by `by` [mm] per day from day `from`.
 Rig softening(unsigned seed, double by, int from) {
   Rig rig;
   rig.seed = seed;
@@ -86,8 +86,8 @@ std::size_t alarms_of(const RigHealth& rig) {
   return alarms;
 }
 
-// The stated rate is 4.4 alarms: 200 fingers have 16,000 points. A finger that is judged alone attributes
-// weather to a change more often.
+// The stated rate gives 4.4 alarms, because 200 fingers have 16,000 points. Without peer fingers, weather
+// causes more alarms.
 TEST(RigHealth, WeatherIsNoAlarmOfAFinger) {
   std::size_t together = 0, alone = 0, warm = 0;
   for (unsigned seed = 0; seed < 100; ++seed) {
@@ -289,8 +289,8 @@ TEST(RigHealth, ThePageSaysWhatCouldNotBeAllowedFor) {
 }
 
 TEST(RigHealth, ADifferenceThatHasNoOwnerYetIsNoAlarm) {
-  // The weather is much larger than the change, so the numbers of one finger alone cannot attribute the
-  // change.
+  // The effect of the weather is much larger than the change, so the values of one finger do not suffice to
+  // attribute the change.
   int unclear = 0;
   for (unsigned seed = 0; seed < 20; ++seed) {
     Rig rig;

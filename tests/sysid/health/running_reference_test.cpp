@@ -10,7 +10,8 @@ namespace {
 
 constexpr double least = 1e-9;
 
-/// A number that follows the temperature with a slope of 0.1 per °C and has a standard deviation of 0.05.
+/// Generates values that depend on the temperature with a slope of 0.1 per °C and have a standard deviation
+/// of 0.05.
 class Warm {
  public:
   explicit Warm(unsigned seed) : random_(seed) {}
@@ -83,7 +84,7 @@ TEST(RunningReference, ASlopeThatMayBeChanceIsNone) {
     for (int i = 0; i < 30; ++i) reference.learn(30 + 0.05 * normal(random), 20 + 2 * normal(random));
     found += reference.slope() ? 1 : 0;
   }
-  EXPECT_LE(found, 12);  // the stated rate is 2.7
+  EXPECT_LE(found, 12);  // the stated rate gives 2.7
 }
 
 TEST(RunningReference, TemperaturesThatHardlyDifferTellNoSlope) {

@@ -200,7 +200,7 @@ TEST_F(Command, APredictionThatDivergesIsNotAcceptable) {
       << read("out.txt");
 }
 
-/// 9999 exceeds every displacement in mm, but the reason is not the unit.
+/// The reading 9999 is larger than any displacement in mm, but not because of a wrong unit.
 TEST_F(Command, ALargeCodeIsNoUnit) {
   Log log = simulated(loaded("zhang2025"), model::SignalName::tp1, 20, 0.05, 7);
   log.displacement_mm[30] = log.displacement_mm[50] = 9999;

@@ -277,7 +277,7 @@ TEST(Identify, WhatIsHeldOutIsNotFitted) {
   ASSERT_TRUE(result);
   EXPECT_NEAR(result->rmse_mm, 0.05, 0.02 * 0.05);
   ASSERT_EQ(result->held_out.size(), 2U);
-  // Within the last 30 % of the log, the last 25 % have an error of 4 mm.
+  // The last 30 % of the log are held out, and the last 25 % of the log have an error of 4 mm.
   EXPECT_NEAR(result->held_out[0].rmse_mm, 4 * std::sqrt(25.0 / 30), 0.1);
 }
 

@@ -12,7 +12,7 @@
 namespace softgrip::sysid::conversion_test {
 namespace {
 
-/// A table of 200 samples in which the command rises and falls twice. `row` writes one line.
+/// Returns a table of 200 samples in which the command rises and falls twice. `row` writes one line.
 template <class Row>
 std::string text_of(const std::string& header, Row row) {
   std::string text = header + "\n";
@@ -258,7 +258,8 @@ TEST(Convert, LinesThatAreLeftOutHaveAFateBesideTwoTimes) {
   EXPECT_EQ(result->account.left_out[static_cast<std::size_t>(LeftOut::bad_line)], 3U);
 }
 
-/// @param broken  number of the row with a cell that is not a number, or -1.
+/// Returns the note of the import about a clock that overflows.
+/// @param broken  index of a row with a cell that is not a number, or -1.
 std::string note_of_overflow(int broken) {
   const std::string text = text_of("t_ms,set_kpa,tip_mm", [broken](int i, double p, double y) {
     return std::to_string((i * 10 + 65000) % 65536) + "," + shortest(p) + "," +

@@ -73,7 +73,7 @@ struct Generated {
   std::map<std::int64_t, double> readings;  ///< by time [ms], where the log must have a reading
   std::map<std::int64_t, double> commands;  ///< by time [ms], where the file has a command
   std::vector<std::string> unused;
-  std::vector<std::string> second_times;  ///< those of them that look like a time
+  std::vector<std::string> second_times;  ///< those of the unused columns that look like a time
   std::vector<std::string> idle;
 };
 

@@ -11,8 +11,9 @@ namespace {
 
 constexpr double interval_s = 0.02;
 
-/// The command steps from `idle_kpa` to 60 kPa two samples before the log begins. It is held for 4 s, and a
-/// slow cosine follows. The pressure follows with a lag of 0.3 s, and its reading is `offset_kpa` too high.
+/// Returns a log whose command steps from `idle_kpa` to 60 kPa two samples before the log begins. The command
+/// is held for 4 s and then follows a slow cosine. The pressure follows the command with a lag of 0.3 s, and
+/// its reading is `offset_kpa` too high.
 Log begun_at_a_step(double idle_kpa, double offset_kpa = 0) {
   Log log;
   double pressure_kpa = idle_kpa;

@@ -11,7 +11,7 @@ namespace {
 
 using Missing = std::vector<Excitation>;
 
-/// A log with this command at 50 Hz for 40 s.
+/// Returns a log of 40 s at 50 Hz with this command.
 template <class Command>
 Log commanded(Command kpa_at) {
   Log log;
@@ -24,7 +24,7 @@ Log commanded(Command kpa_at) {
   return log;
 }
 
-/// Rises to `peak_kpa` and falls within 8 s, then rests for 2 s.
+/// Returns a command that rises to `peak_kpa` and falls within 8 s, and then rests for 2 s.
 double triangle(double t, double peak_kpa) {
   return peak_kpa * std::max(0.0, 1 - std::abs(std::fmod(t, 10) / 4 - 1));
 }

@@ -18,7 +18,7 @@ namespace {
 
 using document::Problems;
 
-/// A valid log: 100 samples of one slow triangle, with enough hysteresis to be a plausible finger.
+/// Returns a valid log: 100 samples of one slow triangle, with enough hysteresis to be a plausible finger.
 Log good_log() {
   Log log;
   for (int i = 0; i < 100; ++i) {

@@ -11,7 +11,7 @@
 namespace softgrip::sysid::resampled_record_test {
 namespace {
 
-/// A parabola in time with noise: 4 s at 1 kHz.
+/// Returns a record of 4 s at 1 kHz whose readings are a parabola in time with noise.
 Record parabola(double noise_mm) {
   std::mt19937_64 random(20261122);
   std::normal_distribution<double> noise(0, 1);
@@ -29,7 +29,7 @@ Record parabola(double noise_mm) {
   return record;
 }
 
-/// A record with this command at 100 Hz and without readings.
+/// Returns a record with this command at 100 Hz and without readings.
 Record commanded(const std::vector<double>& drive_kpa) {
   Record record;
   for (std::size_t i = 0; i < drive_kpa.size(); ++i) {
@@ -138,7 +138,7 @@ TEST(StridedRecord, LeavesOutReadingsButTellsMotionsApartLikeTheLog) {
       << "a mean would smooth a faster signal";
 }
 
-/// A ramp: 4 s at 1 kHz.
+/// Returns a record of a ramp: 4 s at 1 kHz.
 Record ramp() {
   Record record;
   for (int i = 0; i <= 4000; ++i) {

@@ -10,7 +10,7 @@
 namespace softgrip::sysid::bounded_answer_test {
 namespace {
 
-/// One cycle from 0 to 60 kPa and back, with the readings that `model` predicts.
+/// Returns one cycle from 0 to 60 kPa and back, with the readings that `model` predicts.
 Record stroke(const model::Model& model) {
   Log log;
   log.name = "stroke";

@@ -21,7 +21,7 @@ model::Model ringing_finger(double period_s) {
   return model::with_block(finger(0.06), {model::block_type<model::Inertia>(), {period_s, 0.2}});
 }
 
-/// Steps between 0 and 60 kPa of 4 s each, with the readings that the model predicts.
+/// Returns steps between 0 and 60 kPa of 4 s each, with the readings that the model predicts.
 Record steps(const model::Model& model) {
   Log log;
   log.name = "steps";

@@ -33,8 +33,8 @@ namespace {
 
 using model::SignalName;
 
-/// A finger of play operators, creep over three decades and a nonlinear gain, behind a valve that vents
-/// slowly. Its thresholds and time constants are not on the grid of the fit.
+/// Returns a finger of play operators, creep over three decades of time constants and a nonlinear gain,
+/// behind a valve that vents slowly. Its thresholds and time constants are not on the grid of the fit.
 model::Model play_finger() {
   model::Model m;
   m.name = "play_finger";
@@ -155,7 +155,8 @@ TEST(WithoutWandering, TakesADriftAwayAndLeavesWhatTheFingerDoes) {
     return moved;
   };
   const std::vector<double> of_steady = moved_mm(steady), of_drifting = moved_mm(drifting);
-  // Slow creep and a drift are similar in part. Except for this part, only the drift must be removed.
+  // Slow creep and a drift are similar in part, so a small part of the creep is removed, too. Otherwise
+  // exactly the drift must be removed.
   EXPECT_LT(rms(of_steady), 0.3 * drift_mm);
   std::vector<double> missed(of_drifting.size());
   for (std::size_t i = 0; i < missed.size(); ++i) {
@@ -259,7 +260,7 @@ TEST(IdentifyStructure, FindsThatAFingerWasLoadedBefore) {
   EXPECT_LT(found->rmse_mm, 1.4 * 0.03);
   const auto block = model::position_of<model::PrandtlIshlinskii>(found->model);
   ASSERT_TRUE(block);
-  // Beyond twice the largest threshold all operators are dragged along, so a larger earlier pressure has the
+  // A pressure above twice the largest threshold moves all operators, so a larger earlier pressure has the
   // same effect.
   EXPECT_GT(found->model.blocks[*block].values.front(), 30);
 }
@@ -286,7 +287,8 @@ TEST(IdentifyStructure, FindsTheRegulatorBehindTheCommand) {
   }
 }
 
-/// A finger with one more lag than play_finger(), for which FindsAFingerOfPlays finds no such lag.
+/// The finger has one more lag than play_finger(). The test FindsAFingerOfPlays checks that no second lag is
+/// found without this lag.
 TEST(IdentifyStructure, FindsASecondLag) {
   const model::Model slower =
       model::with_block(play_finger(), {model::block_type<model::ValveLag>(), {0.12}});

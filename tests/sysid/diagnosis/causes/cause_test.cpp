@@ -94,7 +94,7 @@ TEST_P(Causes, StartWithinWhatAFitMayDo) {
   });
 }
 
-// A form with more than three free numbers can fit almost any curve, so it must be marked as a free form.
+// A form with more than three free parameters can fit almost any curve, so it must be marked as a free form.
 TEST_P(Causes, MoveFewNumbers) {
   each_start([&](const CauseForm& form, const model::BlockSpec& start) {
     std::size_t fitted = 0;

@@ -43,8 +43,8 @@ TEST(Indistinguishable, AreNoneWhereMemoryStandsBetweenThem) {
     EXPECT_TRUE(indistinguishable_from(cause("stiffening"), with(loaded("bench_twin"), id))) << id;
 }
 
-/// A finger that stiffens more sharply than the catalogue's form, so that a nonlinear sensor fits the data
-/// better.
+/// A finger that stiffens more sharply than the form of the catalogue allows, so that a nonlinear sensor fits
+/// the data better.
 class BentRig : public ::testing::Test {
  protected:
   static Selection select() {

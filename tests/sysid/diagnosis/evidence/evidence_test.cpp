@@ -29,7 +29,7 @@ const ConditionEvidence& of(const ResidualEvidence& evidence, const std::string&
 }
 
 struct FalseAlarms {
-  std::map<std::string, int> below_5_percent;  ///< number per condition, with unadjusted p-values
+  std::map<std::string, int> below_5_percent;  ///< cases per condition with unadjusted p < 5 %
   double mean_p = 0;
   int any_clear = 0;
   int line = 0;

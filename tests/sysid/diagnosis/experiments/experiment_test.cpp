@@ -48,7 +48,8 @@ void fill(Record& record, const model::Model& truth, std::uint64_t seed) {
   record.readings = record.size();
 }
 
-/// Two loads, the second larger, without a repetition: softening and creep have a similar effect.
+/// Returns a command with two loads, the second larger, and without a repetition, so that softening and creep
+/// have a similar effect.
 std::vector<double> poor_command() {
   const Waveform waveform{"poor", "", {{0, 0}, {1, 0}, {4, 30}, {7, 0}, {9, 0}, {13, 55}, {17, 0}, {20, 0}}};
   return sampled_kpa(waveform, interval_s);

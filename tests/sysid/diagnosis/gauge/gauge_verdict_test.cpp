@@ -129,7 +129,8 @@ TEST(GaugeVerdict, TheNamedCauseGivesItsPlaceToTheOneThatIsLeft) {
   expect_found(diagnosed(bent_scale, gauge_of(alike)), "stiffening");
   expect_found(diagnosed(alike, gauge_of(bent_scale)), "sensor_nonlinearity");
 
-  // A finger that stiffens more sharply than the catalogue's form: a nonlinear sensor fits the logs better.
+  // The finger stiffens more sharply than the form of the catalogue allows, so a nonlinear sensor fits the
+  // logs better.
   std::vector<Log> logs;
   for (const model::SignalName signal : {model::SignalName::tp1, model::SignalName::sp2}) {
     Log& log = logs.emplace_back(simulated(loaded("bench_twin"), signal, 25, 0, 1));

@@ -45,7 +45,7 @@ NamedCause named(const char* id, double gain_mm2) {
   return cause;
 }
 
-/// Returns a diagnosis of bench_twin with the published model that names a lag.
+/// Returns a diagnosis that names a lag. @param given  model whose extension is bench_twin.
 Diagnosis a_diagnosis(const model::Model& given) {
   Diagnosis d;
   d.verdict = Verdict::ambiguous;

@@ -9,7 +9,7 @@
 namespace softgrip::sysid::noise_test {
 namespace {
 
-/// A slow motion with noise of 0.02 mm. Only every `every`-th sample has a reading.
+/// Returns a record of a slow motion with noise of 0.02 mm. Only every `every`-th sample has a reading.
 Record record_read_every(int every) {
   std::mt19937 random(7);
   std::normal_distribution<double> noise(0, 0.02);

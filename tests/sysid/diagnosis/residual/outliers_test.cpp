@@ -66,7 +66,7 @@ TEST(Outliers, NoiseHasNone) {
 }
 
 // A systematic residual is no outlier, however large: an oscillation of any frequency, impacts, or a
-// sawtooth. By chance, one in a thousand of its corners may be isolated.
+// sawtooth. By chance, one in a thousand corners of the sawtooth may be isolated.
 TEST(Outliers, StructureIsNone) {
   const ByRecord noise = noise_for(known_campaign(2), noise_mm, 0, 7);
   const std::vector<std::pair<const char*, double (*)(double)>> structures{

@@ -16,7 +16,8 @@ struct Campaign {
   std::vector<std::vector<double>> residual_mm;
 };
 
-/// Two records of 60 s with noise and an oscillation that continues from the first to the second.
+/// Returns two records of 60 s with noise and an oscillation that continues from the first record to the
+/// second.
 Campaign campaign(double frequency_hz, double amplitude_mm, double jitter_s) {
   Campaign c;
   std::mt19937_64 random(4);
@@ -48,7 +49,7 @@ TEST(SpectrumPeaks, FindsAWeakOscillationToAThirdOfWhatTheCampaignResolves) {
 }
 
 TEST(SpectrumPeaks, TheLineIsAStartNearTheLeastSquares) {
-  // Subtracting the line from the residual removes most of the oscillation.
+  // Subtracting the spectral line from the residual removes most of the oscillation.
   Campaign c = campaign(3.21, 0.2, 0);
   const Line line = spectrum_peaks(c.records, c.residual_mm, 1).front();
   double before = 0, after = 0;

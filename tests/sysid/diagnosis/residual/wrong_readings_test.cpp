@@ -11,8 +11,8 @@
 namespace softgrip::sysid::wrong_readings_test {
 namespace {
 
-/// A finger with 0.5 mm/kPa, a command of triangles up to 40 kPa, noise of 0.02 mm, and a reading at every
-/// `every`-th sample.
+/// Returns the log of a finger with a gain of 0.5 mm/kPa, a command of triangles up to 40 kPa, noise of 0.02
+/// mm, and a reading at every `every`-th sample.
 Log moving(int every = 1) {
   Log log;
   log.name = "moving";

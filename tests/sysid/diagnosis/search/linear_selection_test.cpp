@@ -44,7 +44,7 @@ model::Model softening() {
   return model::with_block(finger(), model::block_of<model::StressSoftening>({{"softening_per_kpa", 0.001}}));
 }
 
-/// Reference: refitting for every block.
+/// The reference is a refit for every block.
 TEST(LinearHoldout, SaysWhatRefittingSays) {
   const Campaign c = campaign_of(softening());
   const BlockLosses refitted = held_out_losses(c.data.records, c.division, c.base);
@@ -54,7 +54,7 @@ TEST(LinearHoldout, SaysWhatRefittingSays) {
     EXPECT_NEAR(linear[b], refitted[b], 0.1 * refitted[b]) << "block " << b;
 }
 
-/// Reference: the search that varies all numbers of the base.
+/// The reference is the search that varies all parameters of the base structure.
 TEST(LinearSelection, FindsWhatTheFullSearchFinds) {
   const std::vector<model::BlockSpec> effects{
       model::block_of<model::Backlash>({{"gap_mm", 0.4}}),
@@ -94,7 +94,8 @@ TEST(LinearSelection, FindsBothOfTwo) {
   EXPECT_TRUE(position_of(found.extended.point.model, *find_cause("sensor_lag")));
 }
 
-/// If the form of the loop differs from the base by less than the noise, the difference is no cause.
+/// If the form of the loop differs from that of the base structure by less than the noise, the difference is
+/// no cause.
 TEST(LinearSelection, ARestOfTheLoopsFormIsNoCause) {
   for (const bool clear : {false, true}) {
     const Campaign c = campaign_of(model::with_block(
@@ -120,8 +121,8 @@ TEST(Weigh, IsTheGainOverTheStructureWithoutTheCause) {
   EXPECT_NEAR(alone.gain_mm2.value, 1, 1e-12);
 }
 
-/// The measured pressure excludes the error of the valve, so a cause that explains little is found if it
-/// explains it everywhere.
+/// If the measured pressure is the input, the residual contains no error of the valve. A cause that explains
+/// a small error in most blocks is then found; the limits for the command as input reject this cause.
 TEST(LinearSelection, FromTheMeasuredPressureLessIsEnough) {
   const Campaign c =
       campaign_of(model::with_block(finger(), model::block_of<model::Backlash>({{"gap_mm", 0.1}})));

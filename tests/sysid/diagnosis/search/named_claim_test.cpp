@@ -1,4 +1,5 @@
-// Tests the conditions of a name one by one: for each there is a case that violates only this condition.
+// Tests the conditions under which a cause may be named. For each condition, a case violates only this
+// condition.
 
 #include "sysid/diagnosis/search/named_claim.h"
 

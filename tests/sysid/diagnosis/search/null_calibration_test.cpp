@@ -1,5 +1,5 @@
-// Tests the search on campaigns without a cause: false alarms are rare, and a true error reduction exceeds
-// theirs.
+// Tests the search on campaigns without a cause: false alarms are rare, and the error reductions are smaller
+// than that of a true cause.
 
 #include "sysid/diagnosis/search/null_calibration.h"
 

@@ -58,7 +58,7 @@ TEST_F(Scanned, ASizeThatIsALittleOffIsMadeUpFor) {
 }
 
 TEST_F(Scanned, WhatTheBaseAbsorbsLinearlyCountsForNothing) {
-  // A larger alpha is a change of the base, so the remaining error must not depend on it.
+  // A larger alpha is a change of the base structure, so the remaining error must not depend on alpha.
   const model::Model base = loaded("zhang2025");
   model::Model moved = base;
   moved.blocks[0].values[0] *= 1.001;
@@ -86,8 +86,8 @@ TEST(BestStarts, TheLatencyNearTheHiddenOneComesFirst) {
   EXPECT_NEAR(points.front().model.blocks[*at].values[0], 0.1, 1e-12);
 }
 
-// A form with more numbers promises a lower error from every point. Every form, and every point, must still
-// be tried.
+// A form with more parameters has a lower predicted error at every start point. Nevertheless, every form and
+// every start point must be tried.
 TEST(BestStarts, ShowEveryFormOfACauseAndEveryPlace) {
   const model::Model given = loaded("zhang2025");
   const SearchData data = make_search_data(records_of(model::with_block(given, block("ageing", {4}))), given);

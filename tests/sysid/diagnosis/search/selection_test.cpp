@@ -1,5 +1,5 @@
-// The number of named causes: the form error of a cause is no further cause, but a small effect of another
-// kind is.
+// Tests how many causes are named: the form error of a cause is not named as a further cause, but a small
+// effect of a different kind is.
 
 #include "sysid/diagnosis/search/selection.h"
 
@@ -67,7 +67,7 @@ TEST(Selection, ASmallEffectThatExplainsTheRestIsNamed) {
     return y_mm * (1 + 0.15 * t_s / 120) + 0.09 * std::sin(2 * std::numbers::pi * 3.1 * t_s);
   });
   EXPECT_EQ(names(selection), (std::vector<std::string>{"ageing", "periodic_disturbance"}));
-  // It explains less of the error than the form error of a large cause may be.
+  // The disturbance explains a smaller part of the error than the allowed form error of a large cause.
   const double excess = selection.base_unexplained.excess_mm;
   EXPECT_LT(0.09 * 0.09 / 2, 0.05 * excess * excess);
 }

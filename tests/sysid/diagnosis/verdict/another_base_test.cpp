@@ -25,9 +25,9 @@ TEST(MayLackABase, NotWhereOneCauseLeavesNothingThatMatters) {
 }
 
 TEST(MayLackABase, NotWhereItsFormIsALittleOffWhatThereWas) {
-  // 0.009 of the mean square remains, as for softening in the simulated cases of the first family.
+  // 0.9 % of the mean square remains, as for softening in simulated test cases.
   EXPECT_FALSE(may_lack_a_base(left_of(0.3 * noise_mm, 0.3 * noise_mm / std::sqrt(0.009)), noise_mm));
-  // 0.1 remains, as for a loop of another shape that another cause fits in part.
+  // 10 % of the mean square remains, as for a loop of a different shape that a wrong cause fits in part.
   EXPECT_TRUE(may_lack_a_base(left_of(0.3 * noise_mm, 0.3 * noise_mm / std::sqrt(0.1)), noise_mm));
 }
 

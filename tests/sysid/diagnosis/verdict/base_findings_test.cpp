@@ -27,13 +27,13 @@ using model::SignalName;
 
 constexpr double noise_mm = 0.03;
 
-/// The base structure without a valve.
+/// Returns the base structure without a valve.
 model::Model published() {
   return model::only(loaded("bench_twin"),
                      [](const model::BlockInfo& info) { return info.station != model::Station::valve; });
 }
 
-/// A finger of play operators, whose loops no Bouc-Wen element can follow.
+/// Returns a finger of play operators, whose loops no Bouc-Wen element can fit.
 model::Model plays() {
   model::Model m = model::without_block(published(), model::block_type<model::BoucWen>());
   return model::with_block(std::move(m), {model::block_type<model::PrandtlIshlinskii>(),
@@ -80,8 +80,8 @@ TEST(BaseFindings, LoopsOfAnotherFormAreNamed) {
   EXPECT_TRUE(has_lower_loss(*found.base, found.plain, noise_mm, true));
 }
 
-/// Play operators without an elastic one do not move after a reversal, which is like a backlash. With an
-/// elastic one they move.
+/// A set of play operators without an elastic operator does not move directly after a reversal, like a
+/// backlash. A set with an elastic operator moves.
 TEST(BaseIngredients, ABacklashMayBeWhatOperatorsWithoutAnElasticOneMakeUpFor) {
   const auto has_backlash = [](const Found& found) {
     const auto shape = std::find_if(found.base->named.begin(), found.base->named.end(),
@@ -99,8 +99,8 @@ TEST(BaseIngredients, ABacklashMayBeWhatOperatorsWithoutAnElasticOneMakeUpFor) {
                                    << elastic_share(slack.base->fit.point.model);
 }
 
-/// A selection with a large unexplained error gives no name, so a slightly smaller loss of the other base
-/// suffices.
+/// If the given structure leaves a large unexplained error, no cause is named. A slightly smaller loss of the
+/// alternative structure then suffices.
 TEST(BaseFindings, WhatSaysNothingIsOutdoneByWhatLeavesALittleLess) {
   Found found = found_in(plays());
   ASSERT_TRUE(found.base);
@@ -114,8 +114,8 @@ TEST(BaseFindings, WhatSaysNothingIsOutdoneByWhatLeavesALittleLess) {
   EXPECT_FALSE(has_lower_loss(*found.base, plain, noise_mm, false));
 }
 
-/// The given base needs two causes. The other base needs only one of them, because its loops explain the
-/// rest.
+/// The given structure needs two causes. The alternative structure needs only one of them, because its
+/// hysteresis loops explain the rest.
 TEST(BaseFindings, TheOtherBaseThatNeedsFewerOfTheSameCausesMayLeaveALittleMore) {
   Found found = found_in(plays());
   ASSERT_TRUE(found.base);
@@ -135,8 +135,8 @@ TEST(BaseFindings, TheOtherBaseThatNeedsFewerOfTheSameCausesMayLeaveALittleMore)
   EXPECT_FALSE(has_lower_loss(*found.base, plain, noise_mm, true)) << "its unexplained error is much larger";
 }
 
-/// At slow commands a delay and a lag are equivalent: if one of them is missing, the other replaces it. If
-/// both are missing, the model is early.
+/// At slow commands a delay and a lag are equivalent: if the model lacks one of them, the other replaces it.
+/// If the model lacks both, its response is too early.
 TEST(BaseFindings, ALatencyIsNamedThoughNobodyCanSayOfWhichKind) {
   const model::Model late =
       model::with_block(plays(), model::block_of<model::ValveLag>({{"time_constant_s", 0.08}}));
@@ -157,7 +157,7 @@ TEST(BaseFindings, ALatencyIsNamedThoughNobodyCanSayOfWhichKind) {
   EXPECT_GE(latency->inclusion, 0.95);
 }
 
-/// Causes are still distinguished if the base is not the given one.
+/// Causes are still distinguished if the selected structure is not the given one.
 TEST(BaseFindings, ACauseUponAnotherBaseIsNamed) {
   model::Model finger = plays();
   finger =

@@ -29,8 +29,8 @@ model::Model without_valve() {
                      [](const model::BlockInfo& info) { return info.station != model::Station::valve; });
 }
 
-// The first cause explains nearly all of the error. Its small form error must not start the search for
-// another base.
+// The first cause explains nearly all of the error. Its small form error must not start the search for an
+// alternative structure.
 TEST(Diagnosis, LittleLeftByTheFirstCauseIsNoQuestionForAnotherBase) {
   const model::Model given = without_valve();
   const model::Model truth =
@@ -81,7 +81,8 @@ TEST(Diagnosis, AsGivenEstimatesTheOffsetAndTheStart) {
   EXPECT_LT(as_given_mm(in_motion, 5), of_30_mm);
 }
 
-// A cause that was found before another base was fitted is kept in the result with the other base.
+// A cause that was found before an alternative structure was fitted is kept in the result with this
+// structure.
 TEST(Diagnosis, WrongSamplesKeepTheirNameWhereAnotherBaseHolds) {
   const model::Model given = without_valve();
   model::Model plays = model::without_block(given, model::block_type<model::BoucWen>());
@@ -106,7 +107,7 @@ TEST(Diagnosis, WrongSamplesKeepTheirNameWhereAnotherBaseHolds) {
   EXPECT_NEAR(static_cast<double>(diagnosis->outliers.count), static_cast<double>(wrong), 2);
 }
 
-/// Two logs in which the reading of sample i is that of sample `sample(i)`.
+/// Returns two logs in which the reading of sample i is that of sample `sample(i)`.
 std::vector<Log> read_at(const model::Model& truth, const std::function<std::size_t(std::size_t)>& sample) {
   std::vector<Log> logs;
   for (const model::SignalName signal : {model::SignalName::tp1, model::SignalName::sp2}) {
@@ -145,7 +146,7 @@ TEST(Diagnosis, AReadingThatLeadsItsCommandIsAClockOffset) {
   EXPECT_GT(diagnosis->recalibrated_rmse_mm, 1.2 * diagnosis->extended_rmse_mm);
 }
 
-/// A log of a finger that was under pressure before the recording began.
+/// Returns a log of a finger that was under pressure before the recording began.
 Log begun_unsettled(const model::Model& truth, model::SignalName signal, double pulse_kpa,
                     std::uint64_t seed) {
   constexpr double rate_hz = 25;

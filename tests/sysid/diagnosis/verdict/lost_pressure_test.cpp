@@ -12,7 +12,7 @@ namespace {
 
 constexpr double sample_s = 0.01, noise_kpa = 0.05;
 
-/// Logs of a valve without dynamics: the pressure is a function of the command.
+/// Returns logs of a valve without dynamics, whose pressure is a function of the command.
 std::vector<Log> logs_of(const std::function<double(double)>& pressure_kpa) {
   std::mt19937 random(7);
   std::normal_distribution<double> normal;

@@ -13,7 +13,8 @@ namespace {
 constexpr double sample_s = 0.01, gain = 1.05, zero_kpa = 2.0, noise_kpa = 0.2;
 constexpr std::size_t block_samples = 800;  // 8 s
 
-// A valve without dynamics and a gauge: the pressure is a linear function of the command.
+// Returns the log of a valve without dynamics and of a gauge: the pressure is a linear function of the
+// command.
 Log straight_log(std::size_t blocks, double offset_kpa, std::uint32_t seed) {
   std::mt19937 random(seed);
   std::normal_distribution<double> normal;
@@ -31,8 +32,8 @@ Log straight_log(std::size_t blocks, double offset_kpa, std::uint32_t seed) {
   return log;
 }
 
-/// Returns the block of a sample. The last block is one sample short of its length, so it belongs to the
-/// block before.
+/// Returns the index of the block that contains a sample. The last block would be one sample too short, so
+/// its samples belong to the block before it.
 std::size_t block_of(const Log& log, std::size_t sample) {
   return std::min(sample / block_samples, log.size() / block_samples - 2);
 }
@@ -83,7 +84,8 @@ TEST(MeasuredValve, StandardErrorsOfAGaugeAreThoseOfAStraightLine) {
   const double of_zero = noise_kpa * std::sqrt(suu / (n * about_mean));
   EXPECT_NEAR(stage.gauge_gain, gain, 4 * of_gain);
   EXPECT_NEAR(stage.gauge_zero_kpa, zero_kpa, 4 * of_zero);
-  // Never below the standard error for white noise. The sum over 40 blocks has an uncertainty of about 10 %.
+  // A standard error must not be smaller than that for white noise. The sum over 40 blocks has an uncertainty
+  // of about 10 %.
   EXPECT_GT(errors[0], 0.97 * of_gain);
   EXPECT_LT(errors[0], 1.4 * of_gain);
   EXPECT_GT(errors[1], 0.97 * of_zero);

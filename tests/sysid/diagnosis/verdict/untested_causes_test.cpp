@@ -30,8 +30,8 @@ std::vector<std::string> ids(const std::vector<NamedCause>& causes) {
   return list;
 }
 
-/// Logs with a command that oscillates about 20 kPa. @param rest_s  duration of the rest without pressure at
-/// the start.
+/// Returns logs with a command that oscillates about 20 kPa. @param rest_s  duration of the rest without
+/// pressure at the start.
 std::vector<Log> planned(double rest_s) {
   Log log;
   log.name = "planned";
@@ -44,8 +44,8 @@ std::vector<Log> planned(double rest_s) {
   return {log};
 }
 
-/// Logs of a flow that a controller holds constant with a valve. @param band  change of the command that the
-/// valve ignores. @param wave  amplitude of a disturbance.
+/// Returns logs of a flow that a controller holds constant with a valve. @param band  change of the command
+/// that the valve ignores. @param wave  amplitude of a disturbance.
 std::vector<Log> loop(double band, double wave) {
   std::mt19937 random(4);
   std::normal_distribution<double> noise(0, 0.01);

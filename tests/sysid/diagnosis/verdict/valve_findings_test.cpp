@@ -184,7 +184,8 @@ bool names(const ValveFindings& found, std::string_view cause) {
 
 TEST(FindInValve, NamesALeakAndThatAScaleMayPassForOne) {
   const ValveFindings found = found_in(own_logs({.leak = 0.2}, 91), without_a_valve());
-  // The share is 0.2 squared. The tolerance covers the other critical pressure ratio.
+  // The share is 0.2 squared. The tolerance covers the difference between the critical pressure ratios of the
+  // simulation and of the model.
   const CauseParameter* const share = find(found, "leak", "share");
   ASSERT_NE(share, nullptr);
   EXPECT_NEAR(share->value, 0.04, 0.008);
