@@ -11,7 +11,7 @@
 namespace softgrip::tools::commissioning_run_test {
 namespace {
 
-/// The shipped rig with nothing between the fingers.
+/// Returns the shipped rig without an object between the fingers.
 ExperimentRig free_rig() {
   document::Problems problems;
   rig::RigFile file = rig::load_rig(SOFTGRIP_SOURCE_DIR "/config/rig.yaml", problems).value();

@@ -16,11 +16,11 @@ using Json = nlohmann::ordered_json;
 class EventQueryTest : public ::testing::Test {
  protected:
   EventQueryTest() {
-    ::setenv("TZ", "UTC-1", 1);  // an hour east
+    ::setenv("TZ", "UTC-1", 1);  // UTC + 1 h
     ::tzset();
   }
   static std::string since(const std::string& text) {
-    constexpr Nanoseconds now = 1'763'610'372 * ns_per_s;  // 2025-11-20 03:46:12 UTC, 04:46:12 here
+    constexpr Nanoseconds now = 1'763'610'372 * ns_per_s;  // 2025-11-20 03:46:12 UTC, 04:46 local
     const auto parsed = parse_since(text, now);
     return !parsed ? "refused" : parsed->at.empty() ? std::to_string(parsed->id) : parsed->at;
   }

@@ -5,7 +5,8 @@
 namespace softgrip::tools::key_dialogue_test {
 namespace {
 
-/// Returns the request that is sent to the daemon, "leave" if the dialogue ends, or "" if neither happens.
+/// Returns the request that is sent to the daemon, "leave" if the dialogue ends, or "" if no request is sent
+/// and the dialogue continues.
 std::string asked(const KeyDialogue::Outcome& outcome) {
   if (outcome.leave) return "leave";
   return outcome.request ? outcome.request->dump() : "";

@@ -102,8 +102,8 @@ TEST(ReplyCheck, RefusesWhatNestsTooDeepBeforeItIsParsed) {
       << "brackets inside a string are text";
 }
 
-/// Replaces every value of every kind of line by every other kind of value. The check refuses the line, or
-/// every reader accepts it.
+/// Replaces every value of every kind of line by every other kind of value. Either the check must refuse the
+/// changed line, or every reader must accept it.
 TEST(ReplyCheck, WhatPassesBreaksNoReader) {
   std::size_t refused = 0;
   std::size_t passed = 0;

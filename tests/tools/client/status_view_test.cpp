@@ -83,7 +83,8 @@ TEST(StatusView, ALimitThatBindsIsALine) {
       << text;
 }
 
-/// Columns that a line occupies: an escape sequence occupies none, a UTF-8 character one.
+/// Returns the number of columns that a line occupies. An escape sequence occupies no column, and a UTF-8
+/// character one.
 std::size_t columns_of(const std::string& line) {
   std::size_t columns = 0;
   for (std::size_t i = 0; i < line.size(); ++i) {

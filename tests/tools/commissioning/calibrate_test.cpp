@@ -24,7 +24,7 @@
 namespace softgrip::tools::calibrate::calibrate_test {
 namespace {
 
-/// Four visits to two places of y = 3 - 2 x.
+/// Returns four visits to two places on the line y = 3 - 2 x.
 std::vector<Visit> visits() {
   std::vector<Visit> list;
   for (const double off : {0.001, -0.001}) {

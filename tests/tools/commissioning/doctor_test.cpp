@@ -58,7 +58,7 @@ class NotingBoard final : public tools::testing::PassingBoard {
   std::array<double, 2> highest_kpa{};
 };
 
-/// A board with a watchdog and other Modbus clients; it counts them.
+/// A board with a watchdog. It reports the number of its Modbus clients.
 class SharedBoard final : public tools::testing::PassingBoard {
  public:
   using PassingBoard::PassingBoard;
@@ -179,7 +179,7 @@ TEST_F(DoctorTest, AWatchdogThatIsMissing) {
   expect("watchdog", Verdict::warn, "the outputs keep their last pressure");
 }
 
-/// Requests of any client keep this board from venting. The board may count its clients.
+/// A request of any client resets the watchdog of this board. The board may count its clients.
 TEST_F(DoctorTest, AWatchdogThatReadersFeedIsWarnedOfAndOtherClientsAreFound) {
   rig_.settings.safety.board_vents_when_silent = true;
   board_ = std::make_unique<simulation::SimulatedBoard>(simulated(), time_.clock);
@@ -216,7 +216,7 @@ TEST_F(DoctorTest, ASensorThatSeesNothing) {
   expect("sensor left", Verdict::fail, "out_of_range");
 }
 
-/// A finger without a valid reading could exceed its limits unnoticed: only the other fingers move.
+/// A finger without a valid reading could exceed its limits unnoticed, so only the other fingers move.
 TEST_F(DoctorTest, ASensorThatSeesNothingIsOneFailureAndItsFingerIsNotMoved) {
   Event blind;
   blind.kind = Event::Kind::sensor_fault;

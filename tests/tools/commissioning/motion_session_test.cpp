@@ -95,7 +95,7 @@ class VentingBoard final : public drivers::Board {
   BusStatus next_connect = BusStatus::ok;
   std::function<void()> on_exchange;  ///< called before a request arrives at the board
   Nanoseconds lost_from = never;      ///< exchanges fail from this time
-  Nanoseconds lost_until = never;     ///< and until this time
+  Nanoseconds lost_until = never;     ///< exchanges succeed again from this time
   BusStatus how = BusStatus::timed_out;
   bool request_arrives = false;  ///< true: failed exchanges lose only the response
   model::Validity validity = model::Validity::valid;
@@ -191,7 +191,7 @@ TEST_F(MotionSessionTest, APauseOverAVacuumEndsTheMotionAtRest) {
   EXPECT_EQ(board_.outputs_kpa[0], 0);
 }
 
-/// Tries pauses at many times of the motion, each of at least the watchdog's time.
+/// Tries pauses at many times of the motion. Each pause lasts at least as long as the watchdog time.
 TEST_F(MotionSessionTest, APauseAsLongAsTheWatchdogEndsTheMotionAndNothingRisesBehindIt) {
   const Nanoseconds begin = clock_.now();
   for (const Nanoseconds pause : {500 * ms, 501 * ms, 800 * ms, 1200 * ms, 60'000 * ms}) {
@@ -233,8 +233,8 @@ TEST_F(MotionSessionTest, AShorterPauseIsRiddenThroughWithoutALargerStep) {
   }
 }
 
-/// No program can detect a pause between its last reading of the clock and its write. The write is reversed
-/// at once.
+/// No program can detect a pause between its last reading of the clock and its write. The session must
+/// therefore undo this write at once.
 TEST_F(MotionSessionTest, APauseInTheMiddleOfAnExchangeIsFoundOutAfterItAndEndsTheMotion) {
   MotionSession session(rig_, board_, clock_, stop());
   ASSERT_TRUE(session.connect());
@@ -275,7 +275,8 @@ TEST_F(MotionSessionTest, RequestsThatAreLostForLongerThanTheWatchdogEndTheMotio
   }
 }
 
-/// The requests arrive, so the board holds its outputs, but the session cannot know this.
+/// The requests arrive, so the board holds its outputs. The session cannot know this, because the responses
+/// are lost.
 TEST_F(MotionSessionTest, RepliesThatAreLostForLongerThanTheWatchdogEndTheMotion) {
   board_.lost_from = clock_.now() + 1500 * ms;
   board_.lost_until = board_.lost_from + 700 * ms;

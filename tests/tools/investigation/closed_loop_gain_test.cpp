@@ -1,4 +1,4 @@
-// The improvement of closed-loop control by the extended model.
+// Tests the improvement of closed-loop control by the extended model.
 
 #include "tools/investigation/closed_loop_gain.h"
 
@@ -57,8 +57,8 @@ TEST(ClosedLoopGain, AModelWithoutAnInverseIsPlannedForInstead) {
   EXPECT_NE(json["closed_loop"]["notes"].dump().find("is planned before the run"), std::string::npos);
 }
 
-/// Friction that relaxes within a few ticks has no inverse, and a planned feedforward is too coarse for it.
-/// The remaining blocks of the model still predict most of the motion.
+/// Friction that relaxes within a few ticks has no inverse, and a planned feedforward is too coarse to
+/// compensate it. The remaining blocks of the model still predict most of the motion.
 TEST(ClosedLoopGain, WhatOfAModelCanBeUndoneIsItsFeedforward) {
   model::Model finger = model::with_block({}, {model::block_type<model::PrandtlIshlinskii>(),
                                                {0, 0, 0, 0, 0, 0.06, 4, 0.084, 7.3, 0.105, 11.2, 0.108}});
@@ -98,7 +98,7 @@ TEST(ClosedLoopGain, AModelThatMovesNothingIsLeftToThePid) {
 TEST(ClosedLoopGain, TheSameQuestionGivesTheSameNumbersAndEqualModelsGainNothing) {
   ClosedLoopQuestion question;
   question.recalibrated = question.extended = loaded("bench_twin");
-  question.span_mm = 11;  // half of what 13 ± 7 mm needs
+  question.span_mm = 11;  // half of the span that 13 ± 7 mm needs
   const ClosedLoopGain one = measure_closed_loop(question);
   const ClosedLoopGain two = measure_closed_loop(question);
   EXPECT_EQ(one.extended.rmse_mm, two.extended.rmse_mm);

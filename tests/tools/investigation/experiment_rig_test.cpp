@@ -1,4 +1,4 @@
-// The ending of an experiment's daemon and the resulting exit code of the command.
+// Tests how the daemon of an experiment ends, and the resulting exit code of the command.
 
 #include "tools/investigation/experiment_rig.h"
 

@@ -1,5 +1,5 @@
-// The loop of `softgrip investigate` on a finger with stress softening whose first log cannot separate the
-// causes.
+// Tests the iterations of `softgrip investigate` on a finger with stress softening. Its first log does not
+// separate the possible causes.
 
 #include "tools/investigation/investigation.h"
 
@@ -30,18 +30,18 @@ model::Model loaded(const std::string& name) {
   return model::load_model(SOFTGRIP_SOURCE_DIR "/config/models/" + name + ".yaml", problems).value();
 }
 
-/// Returns the investigated finger: softer than the given model after its largest load.
+/// Returns the investigated finger, which becomes softer than the given model after its largest load.
 model::Model finger() {
   return model::with_block(loaded("bench_twin"),
                            {sysid::find_cause("stress_softening")->forms.front().type, {0.006, 0}});
 }
 
-/// Two loads without a repetition; the second is larger.
+/// A command with two loads without a repetition. The second load is larger.
 const sysid::Waveform first_load{
     "first", "", {{0, 0}, {1, 0}, {4, 30}, {7, 0}, {9, 0}, {13, 55}, {17, 0}, {20, 0}}};
 
-/// Returns the response of the finger to the waveform, optionally after the first load and a long rest: the
-/// finger retains the softening by that load.
+/// Returns the response of the finger to the waveform, optionally after the first load and a long rest,
+/// because the finger retains the softening by that load.
 sysid::Log played(const sysid::Waveform& waveform, bool after_first, std::uint64_t seed) {
   sysid::Log log;
   log.name = log.path = waveform.name;

@@ -23,7 +23,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// A gateway with its masters and a daemon that gives the answers that the test chooses.
+/// A gateway with its masters and a daemon whose answers the test chooses.
 class GatewayTest : public ::testing::Test {
  protected:
   static Settings shipped() {
@@ -174,7 +174,7 @@ TEST_F(GatewayTest, AStartThatIsOlderThanARefusedVentIsNotExecuted) {
   const Masters::Id second = come();
   put(plc_, 0, CommandCode::none);
   put(second, 0, CommandCode::none);
-  put(second, 2, CommandCode::vent);  // the start with the previous counter has not arrived yet
+  put(second, 2, CommandCode::vent);  // the start with counter 1 has not arrived yet
   EXPECT_EQ(end_of(second), std::pair(Outcome::refused, Reason::not_next));
   put(plc_, 1, CommandCode::start);
   EXPECT_TRUE(sent().empty());
@@ -216,7 +216,7 @@ TEST_F(GatewayTest, TellsAMasterThatBeatsFromOneThatFellSilent) {
   put(plc_, 1, CommandCode::start);
   EXPECT_EQ(end_of(plc_), std::pair(Outcome::refused, Reason::master_silent));
   write(Name::master_heartbeat, 6);
-  EXPECT_EQ(read(Name::master), 2);  // until the daemon has confirmed the stop
+  EXPECT_EQ(read(Name::master), 2);  // silent until the daemon has confirmed the stop
   accept();
   EXPECT_EQ(read(Name::master), 1);
   put(plc_, 2, CommandCode::start);
@@ -254,7 +254,7 @@ TEST_F(GatewayTest, KeepsTheReactionUntilADaemonHasConfirmedIt) {
   refuse({{"code", "busy"}});
   pass(0.1);
   EXPECT_EQ(sent(), std::vector<std::string>{"stop"});
-  refuse({{"code", "refused"}, {"refusal", {{"code", "R07"}}}});  // "nothing to stop" is an answer
+  refuse({{"code", "refused"}, {"refusal", {{"code", "R07"}}}});  // "nothing to stop" confirms the stop, too
   pass(1);
   EXPECT_TRUE(sent().empty());
   EXPECT_FALSE(gateway_.watch().owes());
@@ -345,7 +345,7 @@ TEST_F(GatewayTest, WhatWaitedForTheCommandBeforeItIsSentAfterIt) {
   EXPECT_EQ(sent(), std::vector<std::string>{"start"});
 }
 
-/// The control loop may still execute the command, so the command is not reported as refused.
+/// The control loop may still execute the command, so the gateway must not report the command as refused.
 TEST_F(GatewayTest, ACommandThatTheLoopDidNotAnswerHasAnUnknownEnd) {
   daemon_comes();
   put(plc_, 0, CommandCode::none);

@@ -1,6 +1,6 @@
 // Searches breadth first through every order of the actions of two masters, the gateway and the daemon, until
-// no new state appears. Each of them can repeat an action, delay it, send half a request, or die. The gateway
-// is the real one, from the bytes of a request to the line for the daemon. Masters and daemon are the
+// no new state appears. Each participant can repeat or delay an action, send half a request, or die. The
+// gateway is the real one, from the bytes of a request to the line for the daemon. Masters and daemon are the
 // smallest programs that follow their protocols.
 
 #include <gtest/gtest.h>
@@ -25,8 +25,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Time passes in steps of this duration. After two steps a master counts as silent, after one step a
-/// connection as idle and the daemon as silent.
+/// Time passes in steps of this duration. A master counts as silent after two steps. A connection counts as
+/// idle, and the daemon as silent, after one step.
 constexpr Nanoseconds step = ns_per_s * 3 / 2;
 constexpr int silent_steps = 2;
 constexpr std::size_t plcs = 2;
@@ -348,8 +348,8 @@ struct World {
   }
 
   [[nodiscard]] std::string key() const;
-  /// Returns a lasting defect that remains without further failures, or "": the reaction to a silence is
-  /// lost, or the first master is locked out.
+  /// Returns the defect that remains even if no further failure occurs: the reaction to a silence is lost, or
+  /// the first master is locked out. Returns "" if there is no such defect.
   [[nodiscard]] std::string lost_for_good() const;
 };
 
@@ -371,8 +371,8 @@ class Key {
   std::string text_;
 };
 
-/// Returns everything that decides the possible further actions. Times are counted in steps back from now;
-/// ids are replaced by their rank.
+/// Returns the part of the state that determines the further actions as text. Times are given in steps before
+/// now, and ids are replaced by their rank.
 std::string World::key() const {
   Key key;
   const Handshake& handshake = gateway->handshake();

@@ -101,7 +101,8 @@ TEST(Handshake, OfTwoMastersThatCountToTheSameNumberTheSecondIsRefused) {
   EXPECT_FALSE(handshake.write(first, {0, none}));
   EXPECT_FALSE(handshake.write(second, {0, none}));
   EXPECT_TRUE(handshake.write(first, {1, start}));
-  EXPECT_FALSE(handshake.write(second, {1, vent}));  // it must not read that its vent was accepted
+  EXPECT_FALSE(
+      handshake.write(second, {1, vent}));  // this connection must not read that its vent was accepted
   EXPECT_TRUE(second.refused);
   handshake.finish(1, Outcome::accepted);
   EXPECT_FALSE(handshake.write(second, {1, vent}));

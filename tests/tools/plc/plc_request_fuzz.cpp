@@ -1,4 +1,5 @@
-// Fuzz target: the bytes that a master may send to softgrip-plc, in pieces of any size, without a daemon.
+// Fuzz target: takes the bytes as those that a master sends to softgrip-plc, in pieces of any size, without a
+// daemon.
 //
 //   cmake --preset fuzz && cmake --build --preset fuzz --target plc_request_fuzz
 //   build/fuzz/tests/plc_request_fuzz -max_total_time=660 -max_len=1024 NEW_CORPUS

@@ -89,8 +89,8 @@ TEST_F(Verification, ACallThatWouldWriteElsewhereIsNotMade) {
   EXPECT_NE(verified(3)["missing"][0].get<std::string>().find("key `call`"), std::string::npos);
 }
 
-/// A report of another program or of an attacker: every malformed report gives an error message and exit
-/// code 3.
+/// A report may come from another program or from an attacker. Every malformed report must give an error
+/// message and exit code 3.
 TEST_F(Verification, AMalformedReportIsRefusedWithASentence) {
   const std::string good = read("report/identify.json");
   const auto spoilt = [&](const char* pointer, const nlohmann::ordered_json& value) {

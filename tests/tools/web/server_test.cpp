@@ -1,4 +1,4 @@
-// The server on a real socket, without a daemon.
+// Tests the server on a real socket, without a daemon.
 
 #include "tools/web/server.h"
 

@@ -1,4 +1,4 @@
-// The site as a function from requests to responses.
+// Tests the site as a function that maps a request to a response.
 
 #include "tools/web/site.h"
 
