@@ -18,7 +18,7 @@ class ChangeIntervals : public test::PressureBase {
     for (const Effect& effect : effects_for(base_, readings.records(), {}, true)) {
       if (effect.id == id) return fit_effect(readings, effect, others, readings.white(others)).fitted;
     }
-    ADD_FAILURE() << "no " << id;
+    ADD_FAILURE() << "no effect " << id;
     return {};
   }
 };
@@ -45,7 +45,8 @@ TEST_F(ChangeIntervals, AreAsWideAsTheNumberScattersAndHoldIt) {
   }
   const double scatter = std::sqrt((squares - sum * sum / draws) / (draws - 1));
   RecordProperty("held", held);
-  EXPECT_GE(held, 25) << "of " << draws;  // with 95 % coverage, fewer than 25 occur once in 5000
+  EXPECT_GE(held, 25) << "number of intervals that contain the true delay, of "
+                      << draws;  // with 95 % coverage, fewer than 25 occur once in 5000
   EXPECT_GT(widths, 0.6 * 2 * 1.96 * scatter);
   EXPECT_LT(widths, 2.5 * 2 * 1.96 * scatter);
 }

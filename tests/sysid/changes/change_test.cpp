@@ -362,9 +362,9 @@ TEST(Change, TheJsonHasTheKeysOfEveryDiagnosis) {
   EXPECT_LT(json["heldout_rmse_mm"]["extended"], json["heldout_rmse_mm"]["as_given"]);
   const auto& reading = json["readings"][0];
   EXPECT_GT(reading["whitened_loss"]["before"], reading["whitened_loss"]["left"]);
-  EXPECT_EQ(reading["misfit"], reading["whitened_loss"]) << "deprecated";
+  EXPECT_EQ(reading["misfit"], reading["whitened_loss"]) << "misfit is the deprecated name";
   EXPECT_TRUE(reading["unexplained"].is_boolean());
-  EXPECT_EQ(reading["structure_left"], reading["unexplained"]) << "deprecated";
+  EXPECT_EQ(reading["structure_left"], reading["unexplained"]) << "structure_left is the deprecated name";
 }
 
 TEST(Change, ThePageSaysWhatToDoAndShowsTheMisfit) {

@@ -60,7 +60,7 @@ TEST_F(ChangeCommand, ABaselineThatIsThereIsLookedAtAgain) {
   ASSERT_EQ(run("baseline --data h1.csv --check later1.csv --model " + model + " --out drifted"), 6);
   EXPECT_EQ(run("baseline --check drifted"), 6);
   ASSERT_EQ(run("baseline --data h1.csv --model " + model + " --out once"), 0);
-  EXPECT_EQ(run("baseline --check once"), 3) << "no second run";
+  EXPECT_EQ(run("baseline --check once"), 3) << "the baseline has no second run";
 }
 
 TEST_F(ChangeCommand, ABaselineThatSomebodyChangedIsRefused) {

@@ -65,7 +65,8 @@ TEST(Regulator, SlowSamplesNeedNoFinerSteps) {
     const std::vector<double> fine_kpa = regulated(regulator, fine, fine.drive_kpa);
     std::vector<double> fine_at_samples_kpa;
     for (std::size_t i = 0; i < slow.size(); ++i) fine_at_samples_kpa.push_back(fine_kpa[i * parts]);
-    EXPECT_LT(rms(coarse_kpa, fine_at_samples_kpa), 0.005 * slow.largest_kpa) << "the resolution of a valve";
+    EXPECT_LT(rms(coarse_kpa, fine_at_samples_kpa), 0.005 * slow.largest_kpa)
+        << "the difference must be below the resolution of a valve";
   }
 }
 

@@ -96,7 +96,7 @@ TEST(Units, AreHeldOutAsAWholeInBlocks) {
           EXPECT_EQ(rest[r].readings, own);
         }
       }
-      EXPECT_GT(left_out, 0U) << unit << " of " << runs << " runs";
+      EXPECT_GT(left_out, 0U) << "unit " << unit << ", " << runs << " runs";
     }
   }
 }

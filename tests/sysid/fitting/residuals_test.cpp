@@ -128,7 +128,7 @@ TEST_P(BothWays, ValuesAndDerivativesAgree) {
   // When a lag reverses within a sample, the chain uses two parabolas for the creep, but the closed form uses
   // one.
   const bool lagged = model::position_of(world.model, "valve_lag").has_value();
-  EXPECT_LT(worst, lagged ? 1e-6 : 1e-9) << "mm";
+  EXPECT_LT(worst, lagged ? 1e-6 : 1e-9) << "largest difference [mm]";
   for (std::size_t c = 0; c < z.size(); ++c) {
     double largest = 0;
     double difference = 0;

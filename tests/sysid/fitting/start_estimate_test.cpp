@@ -91,7 +91,8 @@ TEST(EstimatedStart, UsesNoReadingBehindTheFirst) {
           other.reading_mm[i] = i % 3 == 0 ? std::nan("") : 100 - 3 * record.reading_mm[i];
         EXPECT_EQ(estimated_start(finger, other), start) << finger.name << ' ' << first;
         other.reading_mm[samples_for_start(record) - 1] += 1;
-        EXPECT_NE(estimated_start(finger, other), start) << "the last of the first readings counts";
+        EXPECT_NE(estimated_start(finger, other), start)
+            << "the estimate must use the last of the first readings";
       }
     }
   }

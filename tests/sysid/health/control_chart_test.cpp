@@ -84,7 +84,7 @@ TEST(ControlChart, AlarmsAsOftenAsStatedWhereNothingIsWrong) {
     // The mean of nearly geometric run lengths has a standard error of 2.6 %. The rest of the tolerance
     // covers Siegmund's and Wallace's approximations and the small correlation that is estimated from
     // independent values.
-    EXPECT_NEAR(total / runs / stated, 1.1, 0.17) << "stated " << stated;
+    EXPECT_NEAR(total / runs / stated, 1.1, 0.17) << "stated run length " << stated;
   }
 }
 

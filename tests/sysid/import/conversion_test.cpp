@@ -282,7 +282,8 @@ std::string note_of_overflow(int broken) {
 
 TEST(Convert, TheLineOfAnOverflowIsThatOfTheFile) {
   EXPECT_NE(note_of_overflow(-1).find("line 56"), std::string::npos) << note_of_overflow(-1);
-  EXPECT_EQ(note_of_overflow(10), note_of_overflow(-1)) << "a row before it was left out";
+  EXPECT_EQ(note_of_overflow(10), note_of_overflow(-1))
+      << "a skipped row before the overflow must not change the line number";
 }
 
 }  // namespace

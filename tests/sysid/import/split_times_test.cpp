@@ -22,7 +22,7 @@ std::vector<double> combined(const TableColumn& seconds, const TableColumn& rest
   is_one_time = columns[0].is_part_of_time;
   EXPECT_EQ(notes.size(), is_one_time ? 1U : 0U);
   EXPECT_EQ(columns[1].unit, is_one_time ? "s" : "");
-  EXPECT_EQ(columns[1].name, seconds.name) << "options name the columns of the file";
+  EXPECT_EQ(columns[1].name, seconds.name) << "the column keeps its name, because options refer to this name";
   return columns[1].values;
 }
 

@@ -39,7 +39,7 @@ TEST(CommandBefore, IsWhereTheMeasuredPressureStillWas) {
   EXPECT_EQ(*before_kpa, log.pressure_kpa.front());
   const auto vented = pressure_before_kpa(begun_at_a_step(90));
   ASSERT_TRUE(vented);
-  EXPECT_GT(*vented, 75) << "also if the command was lowered";
+  EXPECT_GT(*vented, 75) << "the earlier pressure must also be found if the command was lowered";
 }
 
 TEST(CommandBefore, IsACommandThatTheLogContains) {
@@ -48,12 +48,13 @@ TEST(CommandBefore, IsACommandThatTheLogContains) {
   const auto before_kpa = pressure_before_kpa(log);
   ASSERT_TRUE(before_kpa);
   EXPECT_GT(log.pressure_kpa.front(), 5);
-  EXPECT_EQ(*before_kpa, 0) << "the log does not show the response to a command between its two";
+  EXPECT_EQ(*before_kpa, 0) << "the log contains only the commands 0 and 60 kPa after the first hold";
 }
 
 TEST(CommandBefore, ALogThatBeginsAtRestHasNone) {
   EXPECT_FALSE(pressure_before_kpa(begun_at_a_step(60)));
-  EXPECT_FALSE(pressure_before_kpa(begun_at_a_step(58))) << "a regulator's error";
+  EXPECT_FALSE(pressure_before_kpa(begun_at_a_step(58)))
+      << "a difference of 2 kPa may be an error of the regulator";
   Log unread = begun_at_a_step(7);
   unread.pressure_kpa.front() = std::nan("");
   EXPECT_FALSE(pressure_before_kpa(unread));
@@ -81,11 +82,12 @@ TEST(CommandBefore, WithoutMeasuredPressureTheDisplacementShowsFromWhichEndItCam
 }
 
 TEST(CommandBefore, WithoutMeasuredPressureALogThatShowsNoStepHasNone) {
-  EXPECT_FALSE(pressure_before_kpa(unmeasured(begun_at_a_step(60)))) << "at rest";
+  EXPECT_FALSE(pressure_before_kpa(unmeasured(begun_at_a_step(60))))
+      << "the finger is at rest when the log begins";
   Log creeping = unmeasured(begun_at_a_step(60));
   for (std::size_t i = 0; i < creeping.size(); ++i)
     creeping.displacement_mm[i] -= 1.5 * std::exp(-interval_s * static_cast<double>(i));
-  EXPECT_FALSE(pressure_before_kpa(creeping)) << "12 % of the span";
+  EXPECT_FALSE(pressure_before_kpa(creeping)) << "creep of 12 % of the span is no step";
   Log brief = unmeasured(begun_at_a_step(7));
   for (std::size_t i = 19; i < brief.size(); ++i) brief.pressure_command_kpa[i] = 20;
   EXPECT_FALSE(pressure_before_kpa(brief)) << "the command is held for 19 samples only";

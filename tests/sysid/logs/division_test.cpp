@@ -57,7 +57,8 @@ TEST(Division, HoldsEverySampleOutOnce) {
     }
     for (std::size_t r = 0; r < records.size(); ++r) {
       EXPECT_GE(hidden[r], records[r].readings);
-      EXPECT_LE(hidden[r], records[r].readings * 5 / 4) << "a tenth of a block on either side besides";
+      EXPECT_LE(hidden[r], records[r].readings * 5 / 4)
+          << "a margin of a tenth of a block on each side is also hidden";
     }
   }
 }

@@ -97,7 +97,8 @@ TEST(InputSmoothing, HasNoDelay) {
     if (phase > 1 && phase < 3) up += smooth[i] - s.truth[i], ++ups;
     if (phase > 7 && phase < 9) down += smooth[i] - s.truth[i], ++downs;
   }
-  EXPECT_NEAR(up / ups - down / downs, 0, 0.02) << "10 kPa/s: 1 ms is 0.02 kPa between the branches";
+  EXPECT_NEAR(up / ups - down / downs, 0, 0.02)
+      << "at 10 kPa/s a delay of 1 ms would separate the branches by 0.02 kPa";
 }
 
 TEST(InputSmoothing, AnswersDoNotDependOnTheUnit) {

@@ -72,7 +72,8 @@ TEST(PlausibilityWarnings, AUnitThatIsFarFromKpaIsNamed) {
     EXPECT_NE(warnings(sign * 8.7, sign * 20).find("moves by 2.3 mm per kPa: psi in a column"),
               std::string::npos)
         << warnings(sign * 8.7, sign * 20);
-    EXPECT_EQ(warnings(sign * 8.7, sign * 4), "") << "a part of the range, with a typical finger";
+    EXPECT_EQ(warnings(sign * 8.7, sign * 4), "")
+        << "8.7 kPa is a part of the range, and the displacement per kPa is typical";
     EXPECT_NE(warnings(sign * 60, sign * 0.02).find("metres"), std::string::npos) << sign;
     EXPECT_NE(warnings(sign * 60, sign * 20e3).find("micrometres"), std::string::npos) << sign;
   }

@@ -65,7 +65,7 @@ TEST(StridedRecord, AStepComesNeitherEarlyNorLateWhereverItIs) {
       EXPECT_NEAR(integral_kpa_s(thin), integral_kpa_s(record), 1e-9) << step << (held ? " held" : "");
       for (std::size_t i = 0; i < thin.size(); ++i) {
         EXPECT_GE(thin.drive_kpa[i], 0)
-            << "a higher value than the command would remain in the memory of a finger";
+            << "a value outside the range of the command would have a lasting effect on a finger with memory";
         EXPECT_LE(thin.drive_kpa[i], 80);
       }
     }
@@ -125,11 +125,13 @@ TEST(AveragedRecord, ThatIsSparseEnoughStaysAsItIs) {
 
 TEST(AveragedRecord, ACampaignKeepsAboutAsManyReadingsAsWanted) {
   const std::vector<Record> campaign{parabola(0), parabola(0)};  // each has 4001 readings
-  EXPECT_EQ(averaged_to_count(campaign, 8002, 1).front().size(), 4001U) << "few enough";
+  EXPECT_EQ(averaged_to_count(campaign, 8002, 1).front().size(), 4001U)
+      << "the records have no more readings than wanted";
   const std::vector<Record> averaged = averaged_to_count(campaign, 800, 1);
   ASSERT_EQ(averaged.size(), 2U);
-  for (const Record& record : averaged) EXPECT_EQ(record.size(), 364U) << "each 11th";
-  EXPECT_EQ(averaged_to_count(campaign, 800, 0.005).front().size(), 801U) << "no mean over more than 5 ms";
+  for (const Record& record : averaged) EXPECT_EQ(record.size(), 364U) << "means over 11 samples";
+  EXPECT_EQ(averaged_to_count(campaign, 800, 0.005).front().size(), 801U)
+      << "a mean must not cover more than 5 ms";
 }
 
 TEST(StridedRecord, LeavesOutReadingsButTellsMotionsApartLikeTheLog) {
@@ -158,8 +160,8 @@ TEST(CentredRecord, KeepsTheFirstSampleAndTheMiddleOfEveryInterval) {
   const Record thin = thinned_to_centres(ramp(), 0.011);
   ASSERT_GE(thin.size(), 364U);
   EXPECT_EQ(thin.time_s[0], 0);
-  EXPECT_EQ(thin.sample_time_s, 0) << "the first step differs";
-  EXPECT_NEAR(thin.finest_interval_s, 0.011, 1e-4) << "a sample represents those around it";
+  EXPECT_EQ(thin.sample_time_s, 0) << "the first step differs from the others";
+  EXPECT_NEAR(thin.finest_interval_s, 0.011, 1e-4) << "each sample represents the samples around it";
   for (std::size_t i = 1; i + 1 < thin.size(); ++i) {
     EXPECT_NEAR(thin.time_s[i], 0.011 * (static_cast<double>(i) - 0.5), 0.51e-3);
     EXPECT_NEAR(thin.duration_s[i], thin.time_s[i] - thin.time_s[i - 1], 1e-9);
@@ -167,7 +169,7 @@ TEST(CentredRecord, KeepsTheFirstSampleAndTheMiddleOfEveryInterval) {
     EXPECT_NEAR(thin.reading_mm[i], 2 * thin.time_s[i], 1e-9);
     EXPECT_NEAR(thin.temperature_c[i], 20 + thin.time_s[i], 1e-9);
   }
-  EXPECT_EQ(thin.duration_s[5], thin.duration_s[6]) << "equal steps share their coefficients";
+  EXPECT_EQ(thin.duration_s[5], thin.duration_s[6]) << "equal steps use the same coefficients";
   EXPECT_TRUE(thin.supply_kpa.empty());
 }
 

@@ -35,9 +35,9 @@ class RecordingTest : public ::testing::Test {
 };
 
 TEST_F(RecordingTest, WhatIsNoRecordingIsRefused) {
-  EXPECT_NE(read().error().find("run.csv"), std::string::npos) << "no run.csv";
+  EXPECT_NE(read().error().find("run.csv"), std::string::npos) << "the error must name run.csv";
   write("run.csv", "hello\n");
-  EXPECT_EQ(read().error(), "") << "the problems say why";
+  EXPECT_EQ(read().error(), "") << "the problems state the reason";
 }
 
 TEST_F(RecordingTest, APipeInsteadOfAFileIsNotWaitedFor) {

@@ -198,11 +198,12 @@ TEST(IdentifyStructure, IsChosenByMeansOfADenseLogAndFittedToAllItsSamples) {
   ASSERT_TRUE(found) << found.error();
   ASSERT_EQ(found->warnings.size(), 1U);
   EXPECT_NE(found->warnings.front().find("means over 2 ms"), std::string::npos) << found->warnings.front();
-  EXPECT_NEAR(found->rmse_mm, noise_mm, 0.02 * noise_mm) << "of all samples; a mean of two has less noise";
+  EXPECT_NEAR(found->rmse_mm, noise_mm, 0.02 * noise_mm)
+      << "the error must be that of single samples, because means of two samples have less noise";
   const auto chosen = std::find_if(found->structure->candidates.begin(), found->structure->candidates.end(),
                                    [](const auto& c) { return c.chosen; });
   EXPECT_NEAR(chosen->heldout_rmse_mm, noise_mm, 0.05 * noise_mm)
-      << "two samples have no mean around the second";
+      << "a mean of two samples is not centred on the second sample";
   for (const Estimate& e : found->parameters) {
     if (e.name != "transport_delay.delay_s") continue;
     ASSERT_TRUE(e.ci95);
@@ -220,9 +221,10 @@ TEST(IdentifyStructure, FindsAFingerOfPlays) {
                                    [](const auto& c) { return c.chosen; });
   EXPECT_EQ(chosen->structure, "prandtl_ishlinskii");
   EXPECT_LT(found->rmse_mm, 1.4 * 0.03);
-  EXPECT_LT(continuation_rmse_mm(play_finger(), found->model, SignalName::tp2, 0), 3 * 0.03) << "another log";
-  EXPECT_FALSE(model::position_of<model::ValveLag>(found->model)) << "no second lag";
-  EXPECT_FALSE(model::position_of<model::Inertia>(found->model)) << "no resonance";
+  EXPECT_LT(continuation_rmse_mm(play_finger(), found->model, SignalName::tp2, 0), 3 * 0.03)
+      << "error on a log that was not fitted";
+  EXPECT_FALSE(model::position_of<model::ValveLag>(found->model)) << "the finger has no second lag";
+  EXPECT_FALSE(model::position_of<model::Inertia>(found->model)) << "the finger has no resonance";
   ASSERT_FALSE(found->structure->ablation.empty());
   for (const auto& without : found->structure->ablation) {
     if (without.without != "hysteresis" && without.without != "creep") continue;
@@ -309,7 +311,7 @@ TEST(IdentifyStructure, FindsAResonance) {
   const auto found = identify_structure({simulated(ringing, SignalName::steps, 100, 0.03, 15)},
                                         StructureQuestion::prandtl_ishlinskii);
   ASSERT_TRUE(found) << found.error();
-  EXPECT_LT(found->rmse_mm, 2 * 0.03) << "weights and creep are fitted without it";
+  EXPECT_LT(found->rmse_mm, 2 * 0.03) << "weights and creep are fitted without the resonance";
   const auto position = model::position_of<model::Inertia>(found->model);
   ASSERT_TRUE(position);
   EXPECT_NEAR(found->model.blocks[*position].values[0], 0.5, 0.03);
@@ -342,7 +344,7 @@ TEST(IdentifyStructure, OneStrokeFromAnIdlePressureIsNoUnsettledCreep) {
   const auto found = identify_structure({log}, StructureQuestion::automatic, options);
   ASSERT_TRUE(found) << found.error();
   EXPECT_FALSE(found->records[0].start_unknown);
-  EXPECT_LT(found->held_out[0].rmse_mm, 0.05 * span_mm(log)) << "the second stroke";
+  EXPECT_LT(found->held_out[0].rmse_mm, 0.05 * span_mm(log)) << "error in the second stroke";
 }
 
 TEST(SimplestStart, WhatTheCallerStatesAndWhatRestDoesNotExplainStays) {
@@ -360,7 +362,8 @@ TEST(SimplestStart, WhatTheCallerStatesAndWhatRestDoesNotExplainStays) {
       << "with a start at rest the error is clearly larger";
   RecordOptions stated;
   stated.start = Start::unknown;
-  EXPECT_TRUE(with_simplest_start(make_records({whole}, stated), {})[0].start_unknown) << "as stated";
+  EXPECT_TRUE(with_simplest_start(make_records({whole}, stated), {})[0].start_unknown)
+      << "the caller states that the start is unknown";
 }
 
 TEST(IdentifyStructure, TheAnswerDoesNotDependOnTheUnit) {

@@ -117,7 +117,7 @@ TEST(GaugeCheck, TooMuchNoiseDecidesNothing) {
   for (const Sensor& sensor : {Sensor(straight), bent(0.1)}) {
     const GaugeCheck check = check_gauge(read(sensor, 0.4), {{}, bend_of_logs(0.1)}, scales);
     EXPECT_EQ(check.outcome, GaugeOutcome::undecided);
-    EXPECT_GT(check.noise_mm, 0.25) << "the scatter of the readings at one position counts";
+    EXPECT_GT(check.noise_mm, 0.25) << "the noise must include the scatter of the readings at one position";
   }
 }
 

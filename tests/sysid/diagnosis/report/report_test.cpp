@@ -111,7 +111,7 @@ class ReportTest : public ::testing::Test {
 
 TEST_F(ReportTest, TheBudgetAddsUpToWhatRecalibrationLeaves) {
   const std::vector<BudgetPart> parts = budget_parts(diagnosis);
-  ASSERT_EQ(parts.size(), 3U) << "explained by the lag, unexplained, noise";
+  ASSERT_EQ(parts.size(), 3U) << "expected parts: explained by the lag, unexplained, noise";
   double sum = 0;
   for (const BudgetPart& part : parts) sum += part.mm2;
   EXPECT_NEAR(sum, 0.09, 1e-12);
@@ -172,7 +172,7 @@ TEST_F(ReportTest, APartThatMayBeNothingIsNotInTheForest) {
 
 TEST_F(ReportTest, TheChainMarksWhatTheGivenModelLacks) {
   const Figure chain = chain_figure(diagnosis.extended_model, given);
-  EXPECT_EQ(count(chain.drawing->markup, ", added<"), 2U) << "delay and lag";
+  EXPECT_EQ(count(chain.drawing->markup, ", added<"), 2U) << "added blocks: delay and lag";
   EXPECT_NE(chain.drawing->markup.find("time constant = 0.044 s"), std::string::npos);
   EXPECT_NE(chain.drawing->markup.find("alpha = 0.211 mm/kPa"), std::string::npos);
   EXPECT_NE(chain.drawing->markup.find("gamma = 0.0163 1/kPa"), std::string::npos);
@@ -230,7 +230,7 @@ TEST_F(ReportTest, LoopsAreDrawnOfALogThatHasSome) {
   for (Record& record : diagnosis.records) {
     for (std::size_t i = 0; i < record.size(); ++i) record.drive_kpa[i] = i < record.size() / 2 ? 0 : 40;
   }
-  EXPECT_FALSE(has_loops(diagnosis.records.front())) << "a step";
+  EXPECT_FALSE(has_loops(diagnosis.records.front())) << "a step has no loops";
   EXPECT_EQ(page().to_html().find("\"loops log_"), std::string::npos);
 }
 
@@ -264,10 +264,11 @@ TEST_F(ReportTest, TheClosedLoopIsDrawnOverTime) {
   curves.schemes = {{"PID alone", 1.5, {12, 18, 14}}, {"extended model", 0.02, {13, 20, 13.01}}};
   const Figure figure = closed_loop_figure(curves);
   ASSERT_EQ(figure.charts.size(), 2U);
-  EXPECT_EQ(figure.charts[1].front().series.front().y[1], -2) << "displacement minus reference";
+  EXPECT_EQ(figure.charts[1].front().series.front().y[1], -2) << "the error is displacement minus reference";
   EXPECT_NE(figure.caption.find("PID alone 1.5 mm, extended model 0.02 mm"), std::string::npos);
   const std::vector<Series>& drawn = figure.charts[0].front().series;
-  EXPECT_EQ(drawn[1].colour, Colour::other) << "not that of the recalibrated model, which is missing";
+  EXPECT_EQ(drawn[1].colour, Colour::other)
+      << "the colour of the recalibrated model is not used, because this model is missing";
   EXPECT_EQ(drawn[1].dash, Dash::dotted);
   EXPECT_EQ(drawn[2].colour, Colour::good);
 }

@@ -48,12 +48,15 @@ TEST(AnotherShape, WillDoWhereItsBaseLeavesAboutAsLittleWithoutAnAsymmetricLoop)
   base.losses.assign(10, 1.15 * 0.04);
   EXPECT_TRUE(another_shape_will_do(base, selected));
   base.losses.assign(10, 1.3 * 0.04);
-  EXPECT_FALSE(another_shape_will_do(base, selected)) << "its unexplained error is clearly larger";
+  EXPECT_FALSE(another_shape_will_do(base, selected))
+      << "the unexplained error of the alternative structure is clearly larger";
   base.losses = selected;
   base.named.push_back(named("asymmetric_hysteresis"));
-  EXPECT_FALSE(another_shape_will_do(base, selected)) << "the base needs the loop as well";
+  EXPECT_FALSE(another_shape_will_do(base, selected))
+      << "the alternative structure needs the asymmetric loop as well";
   base.named = {named("slow_creep")};
-  EXPECT_FALSE(another_shape_will_do(base, selected)) << "its loops are those of the given base";
+  EXPECT_FALSE(another_shape_will_do(base, selected))
+      << "the loops of the alternative structure are those of the given structure";
 }
 
 TEST(AnotherShape, IsAnAlternativeOfTheAsymmetricLoopAloneAndOnce) {

@@ -124,7 +124,8 @@ TEST(BaseFindings, TheOtherBaseThatNeedsFewerOfTheSameCausesMayLeaveALittleMore)
   for (double& loss : plain.extended_losses) loss /= 1.2;
   plain.extended.causes = {*find_cause("contact"), *find_cause("sensor_lag")};
   plain.left.excess_mm = 1.5 * noise_mm;
-  EXPECT_FALSE(has_lower_loss(*found.base, plain, noise_mm, true)) << "the other base has none of the causes";
+  EXPECT_FALSE(has_lower_loss(*found.base, plain, noise_mm, true))
+      << "the alternative structure has none of the causes";
   found.base->fit.causes = {*find_cause("contact")};
   EXPECT_TRUE(has_lower_loss(*found.base, plain, noise_mm, true));
   plain.left.excess_mm = 0.5 * noise_mm;
@@ -132,7 +133,8 @@ TEST(BaseFindings, TheOtherBaseThatNeedsFewerOfTheSameCausesMayLeaveALittleMore)
       << "the two causes leave no unexplained error";
   plain.left.excess_mm = 1.5 * noise_mm;
   for (double& loss : plain.extended_losses) loss /= 1.6;
-  EXPECT_FALSE(has_lower_loss(*found.base, plain, noise_mm, true)) << "its unexplained error is much larger";
+  EXPECT_FALSE(has_lower_loss(*found.base, plain, noise_mm, true))
+      << "the unexplained error of the alternative structure is much larger";
 }
 
 /// At slow commands a delay and a lag are equivalent: if the model lacks one of them, the other replaces it.

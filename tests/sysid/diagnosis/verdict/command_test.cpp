@@ -124,7 +124,7 @@ TEST_F(DiagnoseCommand, FilledInPositionsTellTheFingerFromTheSensor) {
   EXPECT_EQ(json["gauge"]["outcome"], "decided");
   EXPECT_EQ(json["gauge"]["ruled_out"], Json({"sensor_nonlinearity"}));
   EXPECT_TRUE(json["gauge_check"].is_null());
-  EXPECT_EQ(read("result/gauge_positions.csv"), filled) << "what was filled in stays";
+  EXPECT_EQ(read("result/gauge_positions.csv"), filled) << "the entered readings must remain";
   EXPECT_NE(read("out.txt").find("The gauge check shows a linear sensor"), std::string::npos);
   EXPECT_NE(read("result/report.html").find("Gauge check of the sensor"), std::string::npos);
 }

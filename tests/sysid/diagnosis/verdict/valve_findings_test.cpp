@@ -262,7 +262,7 @@ TEST(FindInValve, NeedsTheMeasuredPressureOfEveryLog) {
   EXPECT_FALSE(find_in_valve(logs, {given, false, noise_mm, 1}));
   logs = own_logs({});
   for (Log& log : logs) std::fill(log.pressure_kpa.begin(), log.pressure_kpa.end(), 7);
-  EXPECT_FALSE(find_in_valve(logs, {given, false, noise_mm, 1})) << "a pressure that never moves";
+  EXPECT_FALSE(find_in_valve(logs, {given, false, noise_mm, 1})) << "the measured pressure is constant";
 }
 
 /// Returns the displacement that the model predicts from the measured pressure of a log.
