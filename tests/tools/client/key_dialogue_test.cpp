@@ -85,7 +85,7 @@ TEST_F(KeyDialogueTest, AStopIsHeardInThePlaceOfAnAnswer) {
   EXPECT_EQ(type("s"), R"({"command":"stop"})");
   EXPECT_TRUE(dialogue_.question().empty());
   type("g");
-  EXPECT_EQ(type("s"), "") << "the key is a letter of the name";
+  EXPECT_EQ(type("s"), "") << "the key is part of the name of the sequence";
   EXPECT_EQ(type("\x1b"), "") << "Escape ends the question";
   EXPECT_TRUE(dialogue_.question().empty());
 }

@@ -47,7 +47,7 @@ TEST(ProgressLine, WhereThereIsNoTerminalALineNowAndThenSaysHowFarItIs) {
   const std::string text = text_of(file.get());
   EXPECT_NE(text.find("start 2 of 4000, about "), std::string::npos) << text;
   EXPECT_NE(text.find("start 4000 of 4000\n"), std::string::npos)
-      << "it must not state that 0 s remain: " << text;
+      << "the line must not state that 0 s remain: " << text;
   EXPECT_EQ(text.find('\033'), std::string::npos);
 }
 

@@ -207,7 +207,7 @@ TEST_F(DoctorTest, WithoutAWatchdogAPartThatMayBeHeldIsNotDropped) {
   rig_.settings.safety.board_vents_when_silent = false;
   examine(false);
   expect("sensors", Verdict::warn, "a part may still be held");
-  EXPECT_TRUE(time_.clock.now() < 2'000'000'000) << "no exchange";
+  EXPECT_TRUE(time_.clock.now() < 2'000'000'000) << "no exchange with the board may take place";
 }
 
 TEST_F(DoctorTest, ASensorThatSeesNothing) {
@@ -491,7 +491,7 @@ TEST(ExamineDaemon, AnUnpluggedSensorIsOneFailureAndAFaultWhoseCauseIsGoneIsOne)
   Findings findings;
   examine_daemon(status, healthy_statistics(), "bench", findings);
   EXPECT_EQ(findings.count(Verdict::fail), 1U);
-  EXPECT_EQ(findings.count(Verdict::not_judged), 2U) << "fault and model are not checked";
+  EXPECT_EQ(findings.count(Verdict::not_judged), 2U) << "the fault and the model are not checked";
   status["channels"][0]["validity"] = "valid";
   status["fault"]["present"] = nullptr;
   status["fault"]["next"] = "The cause is gone.";

@@ -251,7 +251,8 @@ TEST_F(MotionSessionTest, APauseInTheMiddleOfAnExchangeIsFoundOutAfterItAndEndsT
   EXPECT_NE(moved.error().text.find("no good exchange for 1.20"), std::string::npos) << moved.error().text;
   EXPECT_TRUE(session.leave());
   EXPECT_EQ(board_.outputs_kpa[0], 0);
-  EXPECT_LE(board_.highest_after_vent_kpa, before_kpa + step_kpa()) << "only one further step";
+  EXPECT_LE(board_.highest_after_vent_kpa, before_kpa + step_kpa())
+      << "only one further step of the command may follow";
 }
 
 TEST_F(MotionSessionTest, RequestsThatAreLostForLongerThanTheWatchdogEndTheMotionAndNothingRises) {
@@ -314,8 +315,8 @@ TEST_F(MotionSessionTest, ABoardWithoutAWatchdogThatIsSilentForTooLongEndsTheMot
   ASSERT_FALSE(moved);
   EXPECT_EQ(moved.error().text, "scripted");
   const Nanoseconds before = clock_.now();
-  EXPECT_FALSE(session.leave()) << "the board did not confirm it";
-  EXPECT_LT(clock_.now() - before, 3 * ns_per_s) << "the command ends in time";
+  EXPECT_FALSE(session.leave()) << "the board did not confirm the rest pressure";
+  EXPECT_LT(clock_.now() - before, 3 * ns_per_s) << "the session must end in time";
 }
 
 TEST_F(MotionSessionTest, APauseOnABoardWithoutAWatchdogMakesNoLargerStep) {

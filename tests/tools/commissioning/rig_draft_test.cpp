@@ -80,7 +80,7 @@ TEST_F(RigDraftTest, ABoardInTheNetwork) {
   EXPECT_EQ(rig.wiring[1].pressure->input, 5U);
   const auto& board = std::get<drivers::ModbusSettings>(rig.board);
   EXPECT_EQ(std::get<drivers::TcpAddress>(board.links[0]), (drivers::TcpAddress{"192.168.1.20", 1502}));
-  EXPECT_LT(rig.settings.rate_hz, 50) << "limited by the network";
+  EXPECT_LT(rig.settings.rate_hz, 50) << "the network limits the cycle rate";
   EXPECT_NE(text_.find("map: boards/adam-6024.yaml\n"), std::string::npos)
       << "the path is relative to the rig file";
   EXPECT_NE(text_.find("channel_defaults:"), std::string::npos);

@@ -161,12 +161,13 @@ TEST(ExperimentRig, KeepsWithinTheChannelsLimitsAndItsDisplacementRange) {
   EXPECT_EQ(rig.limits(0, 0).pressure_max_kpa, 60);
   EXPECT_EQ(rig.limits(0, 0).slew_kpa_per_s, 300);
   EXPECT_EQ(rig.limits(0.5, 30).pressure_max_kpa, 0.85 * 35 / 0.5)
-      << "beyond the range of the logs, a margin applies";
-  EXPECT_EQ(rig.limits(0.7, 45).pressure_max_kpa, 45) << "the range of the logs";
-  EXPECT_EQ(rig.limits(1, 35).pressure_max_kpa, 0.95 * 35) << "never up to the end of the sensor's range";
+      << "a margin applies beyond the pressures of the logs";
+  EXPECT_EQ(rig.limits(0.7, 45).pressure_max_kpa, 45) << "the limit is the highest pressure of the logs";
+  EXPECT_EQ(rig.limits(1, 35).pressure_max_kpa, 0.95 * 35)
+      << "a margin to the end of the sensor range must remain";
   document::Problems problems;
   auto file = rig::load_rig(SOFTGRIP_SOURCE_DIR "/config/rig.yaml", problems);
-  EXPECT_FALSE(experiment_rig(*file, "")) << "with two channels one must be named";
+  EXPECT_FALSE(experiment_rig(*file, "")) << "the rig has two channels, so a channel must be named";
   EXPECT_FALSE(experiment_rig(*file, "middle"));
 }
 

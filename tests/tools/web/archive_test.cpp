@@ -106,7 +106,8 @@ TEST_F(ArchiveTest, EndsWithQuestionsOpen) {
     Archive other(folder_);
     for (int i = 0; i < 100; ++i) open = other.ask({.kind = DiskRequest::Kind::listing});
   }
-  EXPECT_EQ(open->request().kind, DiskRequest::Kind::listing) << "the answer may be missing";
+  EXPECT_EQ(open->request().kind, DiskRequest::Kind::listing)
+      << "the task must remain valid, but it may have no answer";
 }
 
 }  // namespace

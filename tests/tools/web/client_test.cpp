@@ -86,7 +86,8 @@ TEST_F(ClientTest, AFileIsSentInPieces) {
   EXPECT_FALSE(client_.has_to_send());
   EXPECT_TRUE(client_.add("-one"));
   EXPECT_TRUE(client_.send_on(0));
-  EXPECT_TRUE(client_.late(Client::longest_pause + 1)) << "the limit includes a disk that does not respond";
+  EXPECT_TRUE(client_.late(Client::longest_pause + 1))
+      << "the time limit includes the wait for a disk that does not respond";
   EXPECT_TRUE(client_.add("-two"));
   client_.finish();
   EXPECT_FALSE(client_.send_on(0));
@@ -114,7 +115,8 @@ TEST_F(ClientTest, WhoIsSlowIsLate) {
   EXPECT_TRUE(client_.late(Client::longest_question + 1));
   client_.wait();
   EXPECT_EQ(client_.phase(), Phase::waiting);
-  EXPECT_FALSE(client_.late(100 * ns_per_s)) << "the daemon's time does not count for the client";
+  EXPECT_FALSE(client_.late(100 * ns_per_s))
+      << "the time in which the client waits for the daemon must not count";
   client_.answer(std::string(1U << 22U, 'x'), Phase::answering, 0);
   EXPECT_TRUE(client_.send_on(0));
   EXPECT_TRUE(client_.has_to_send());
@@ -129,7 +131,8 @@ TEST_F(ClientTest, WhoTakesATrickleIsLateInTheEnd) {
     std::string little(100'000, '\0');
     EXPECT_GT(::recv(other_.get(), little.data(), little.size(), 0), 0);
   }
-  EXPECT_GT(now, Client::longest_pause) << "the client reads some data";
+  EXPECT_GT(now, Client::longest_pause)
+      << "the client reads some data, so the limit for a pause must not apply";
   EXPECT_LE(now, Client::longest_answer + 2 * ns_per_s);
 }
 
@@ -140,7 +143,7 @@ TEST_F(ClientTest, AStreamThatIsNotReadHasABound) {
   const std::string message(10000, 'm');
   int kept = 0;
   for (; kept < 1000 && client_.add(message); ++kept) EXPECT_TRUE(client_.send_on(0));
-  EXPECT_LT(kept, 200) << "at most the socket's buffer and 1 MB";
+  EXPECT_LT(kept, 200) << "the client must not keep more than the buffer of the socket and 1 MB";
   EXPECT_TRUE(client_.late(Client::longest_pause + 1));
 }
 

@@ -102,7 +102,7 @@ TEST_F(RecordingsTest, OfVeryManyFoldersTheNewestAreSeen) {
   for (std::size_t i = 0; i < 2 * Recordings::most_considered + 10; ++i)
     fs::create_directory(folder_ / ("run-" + std::to_string(100'000 + i)));
   add("run-0", "run.csv");
-  EXPECT_EQ(list(), "[]") << "it is older than all listed recordings";
+  EXPECT_EQ(list(), "[]") << "run-0 is older than all folders that are considered";
   EXPECT_EQ(recordings_.folders_read(), 1 + Recordings::most_considered);
   add("run-999999", "run.csv");
   EXPECT_EQ(list(), R"([{"name":"run-999999","files":["run.csv"]}])");

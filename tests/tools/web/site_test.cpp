@@ -100,7 +100,7 @@ TEST_F(SiteTest, ThePageIsThereForEverybodyAndWhatItShowsIsNot) {
 
 TEST_F(SiteTest, WhoLooksSeesAndWhoOperatesMoves) {
   EXPECT_EQ(get("/metrics", look).status, 200);
-  EXPECT_EQ(get("/api/status", look).status, 503) << "no daemon";
+  EXPECT_EQ(get("/api/status", look).status, 503) << "no daemon has sent a status";
   state_.take_status({{"time_s", 1.0}, {"state", "idle"}});
   EXPECT_EQ(get("/api/status", look).status, 200);
   const Outcome refused = ask("POST", "/api/command", look, R"({"command":"stop"})");
