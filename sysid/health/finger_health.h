@@ -2,9 +2,9 @@
 // Describes the health of a finger: its recorded grips as points in time, the reference of every indicator,
 // and the significant changes. judge_rig() (rig_health.h) computes it.
 //
-// A point is a day of a finger (UTC): the median of its runs of a recipe. Thus changes within a day, mainly
-// of the temperature, do not count as random variation between grips. Each run without a known time is its
-// own point. A repair restarts all charts of the finger.
+// A point is one day (UTC) of a finger and holds the median of the runs of each recipe. Changes within a day,
+// mainly of the temperature, therefore do not count as random variation between grips. A run without a known
+// time is a point of its own. A repair restarts all charts of the finger.
 
 #include <array>
 #include <cstddef>

@@ -89,7 +89,7 @@ FingerTrack track_of(const std::string& finger, const std::vector<ScoredRun>& ru
 }
 
 std::size_t place_in_time(std::vector<FingerTrack>& tracks) {
-  std::map<std::string, std::pair<std::string, std::size_t>> begins;  // label: time, order
+  std::map<std::string, std::pair<std::string, std::size_t>> begins;  // by label: start time, order
   std::size_t order = 0;
   for (const FingerTrack& track : tracks) {
     for (const RunGroup& group : track.groups) {

@@ -9,8 +9,8 @@ namespace {
 constexpr double moving_share = 0.005;
 constexpr double same_command_share = 0.02;
 /// Contact is reported only after the object has held the finger back for a while. A released finger leaves
-/// the object at an unknown point. It is clear of the object if its reading is this much below the reading at
-/// contact.
+/// the object at an unknown point. The finger is clear of the object if its reading is this much below the
+/// reading at contact.
 constexpr double away_mm = 1.0;
 constexpr double away_share = 0.1;
 

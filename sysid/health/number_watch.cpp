@@ -16,8 +16,8 @@ constexpr double alike = 0.5;
 /// Maximum number of values of a finger that are averaged since a change and before it. The latest ones are
 /// used.
 constexpr std::size_t points_since = 3, points_before = 10;
-/// Smallest number of values for an estimate of their correlation; with fewer, averaging has no proven
-/// benefit.
+/// Smallest number of values for an estimate of their correlation. With fewer values, the variance of a mean
+/// is taken as that of a single value.
 constexpr std::size_t least_for_averaging = 15;
 
 const RunningReference* longest(const ControlChart& chart) {
@@ -177,7 +177,7 @@ void NumberWatch::add_beside(std::size_t finger, std::size_t moment) {
   Watched& watched = watched_[finger];
   PeerFingers peers = peers_of(finger);
   if (peers != watched.peers) {
-    // The data of an alarm do not change afterwards.
+    // The comparison that raised an alarm must not change afterwards.
     if (!watched.alarm) compare_again(finger, std::move(peers));
     return;
   }

@@ -24,7 +24,7 @@ struct HealthQuestion {
   std::vector<Note> notes;
   HealthOptions options;
   std::string scores;  ///< text of earlier scores; their recordings are not read again
-  std::function<void(const std::string&)> progress = {};  ///< text about the present recording; may be empty
+  std::function<void(const std::string&)> progress = {};  ///< called with the progress as text; may be empty
 };
 
 /// The result for one finger of the rig.

@@ -27,8 +27,8 @@ bool is_run(const fs::path& path) {
   return !fs::is_directory(path, ignored) || fs::exists(path / "run.csv", ignored);
 }
 
-/// Returns the temperature of the whole run: a finger follows the room temperature more slowly than a grip
-/// lasts.
+/// Returns the median temperature of a run. One value suffices, because the temperature of a finger hardly
+/// changes during a grip.
 double temperature_of(const sysid::Log& log) {
   std::vector<double> known;
   for (const double temperature_c : log.temperature_c) {
