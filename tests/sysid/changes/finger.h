@@ -55,7 +55,7 @@ inline double lagged_kpa(double lagged_kpa, double from_kpa, double to_kpa, doub
   return to_kpa - behind_kpa + (lagged_kpa - from_kpa + behind_kpa) * std::exp(-step_s / lag_s);
 }
 
-/// @param samples  number of samples at 50 Hz.
+/// Returns the log of a finger at 50 Hz. @param samples  number of samples.
 inline Log log_of(const Finger& finger, unsigned seed, bool with_pressure = false,
                   std::size_t samples = 2000) {
   constexpr double rate_hz = 50;

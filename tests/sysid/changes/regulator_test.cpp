@@ -111,7 +111,8 @@ TEST(Regulator, AChamberBeforeTheTubeIsFilledFirst) {
   EXPECT_NEAR(soon(0) / soon(1), 2, 0.1);
 }
 
-/// Reference: the valve of tests/blind/textbook, which implements the same standard, in small explicit steps.
+/// Returns the reference pressure: that of the valve of tests/blind/textbook, which implements the same
+/// standard, in small explicit steps.
 std::vector<double> textbook_pressure(const textbook::ValveNumbers& numbers, const Record& record) {
   constexpr double step_s = 0.00025;
   textbook::Valve valve(numbers);

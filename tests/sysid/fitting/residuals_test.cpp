@@ -43,7 +43,7 @@ Model three_branches() {
   kv.insert(kv.end(), {5.0, 0.5});
   return model;
 }
-/// gamma > eta: the hysteretic state saturates faster than it returns, and crosses zero with a steep slope.
+/// Returns a model with a negative gamma: while the hysteretic state shrinks, its slope dh/dp exceeds beta.
 Model odd_hysteresis() {
   Model model = loaded("zhang2025");
   model.blocks[0].values[2] = -0.01;

@@ -241,7 +241,7 @@ void check_rows(const Generated& file, const ImportedLog& result) {
   EXPECT_EQ(sum, file.rows);
 }
 
-/// Every value of the file that is not counted as left out must be in the log at its own time.
+/// Checks that every value of the file that is not counted as left out is in the log at its own time.
 void check_values(const Generated& file, const Log& log) {
   std::size_t readings = 0;
   double held = 0;

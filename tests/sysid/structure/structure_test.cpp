@@ -124,7 +124,7 @@ TEST(PublishedElement, RefittedWithoutABlockItStaysWhereItWas) {
 }
 
 TEST(StructureProjection, WeightsAreNeverNegative) {
-  // A reading that falls while a play would rise: the best weight of each play is 0.
+  // The reading falls while the output of a play would rise, so the best weight of each play is 0.
   std::vector<Record> records = make_records({simulated(play_finger(), SignalName::tp1, 50, 0.03, 3)}, {});
   for (double& y : records[0].reading_mm) y = -y;
   const BaseStructure structure{.characteristic = false};

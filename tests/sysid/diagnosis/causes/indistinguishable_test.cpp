@@ -66,7 +66,7 @@ class BentRig : public ::testing::Test {
     return select_causes(data, std::move(base), 0.03, divide(data.records, 8), one);
   }
 
-  /// The selection is computed once for all tests.
+  /// Returns the selection, which is computed once for all tests.
   static const Selection& selected() {
     static const Selection selection = select();
     return selection;

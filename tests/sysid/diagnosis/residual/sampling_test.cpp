@@ -67,7 +67,7 @@ TEST(HideRepeated, KeepsTheFirstOfEachSlowReading) {
 }
 
 TEST(HideRepeated, TakesTheClockOfTheSensorAsItComes) {
-  // A sensor with its own clock: a new reading after every 11 to 13 samples.
+  // The sensor has its own clock and gives a new reading after every 11 to 13 samples.
   std::vector<Record> records = read_at(noisy_campaign(), [](std::size_t i) {
     return static_cast<std::size_t>(std::floor(std::floor(static_cast<double>(i) / 11.7) * 11.7));
   });

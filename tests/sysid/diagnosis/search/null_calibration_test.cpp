@@ -21,7 +21,7 @@ struct Searched {
   Division division;
 };
 
-/// Two logs of zhang2025 with a backlash of this size, prepared for the search.
+/// Returns two logs of zhang2025 with a backlash of this size, prepared for the search.
 Searched searched(double backlash_mm) {
   const model::Model given = loaded("zhang2025");
   model::Model truth = given;

@@ -49,8 +49,8 @@ std::vector<std::string> names(const Selection& selection) {
   return ids;
 }
 
-/// A nonlinearity that is not a polynomial, so that the form of the cause leaves a few percent of it
-/// unexplained.
+/// Returns a reading with a nonlinearity that is not a polynomial, so that the form of the cause leaves a few
+/// percent of the nonlinearity unexplained.
 double bent(double y_mm) {
   return y_mm + 1.2 * std::sin(1.3 * std::numbers::pi * y_mm / 20);
 }

@@ -19,7 +19,7 @@ namespace {
 constexpr double noise_mm = 0.03;
 constexpr int substeps = 50;
 
-// A gain with one Kelvin-Voigt branch, which is a sufficient model of the finger behind the valve.
+// Returns a gain with one Kelvin-Voigt branch, which is a sufficient model of the finger behind the valve.
 model::Model plain_model() {
   model::Model model;
   model.name = "plain";

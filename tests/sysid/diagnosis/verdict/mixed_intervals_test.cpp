@@ -20,7 +20,7 @@ struct Named {
   std::vector<std::string> sentences;
 };
 
-/// bench_twin has a delay and a lag. Here only the delay is chosen.
+/// Returns the delay as the only named cause, although bench_twin has a delay and a lag.
 Named delay_of(SignalName signal, const model::Model& twin) {
   const model::Model without_valve =
       model::only(twin, [](const model::BlockInfo& info) { return info.station != model::Station::valve; });
