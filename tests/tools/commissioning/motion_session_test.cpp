@@ -139,7 +139,7 @@ class MotionSessionTest : public ::testing::Test {
     if (auto there = session.sample(1); !there) return tl::unexpected(there.error());
     return session.ramp(0, 0, speed_kpa_per_s);
   }
-  /// The largest step that the limits and the requested speed allow in one cycle.
+  /// Returns the largest step that the limits and the requested speed allow in one cycle.
   [[nodiscard]] double step_kpa() const { return speed_kpa_per_s / rig_.settings.rate_hz + equal_kpa; }
 
   rig::RigFile rig_ = daemon::testing::example_rig("rig.yaml");

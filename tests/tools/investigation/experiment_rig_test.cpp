@@ -20,7 +20,7 @@ namespace {
 using control::SequenceEnd;
 using daemon::Ending;
 
-/// A rig whose daemon reports a fault and ends with the given outcome.
+/// Returns a rig whose daemon reports a fault and ends with the given outcome.
 ExperimentRig rig_that_ends(const daemon::Outcome& outcome) {
   document::Problems problems;
   rig::RigFile file = rig::load_rig(SOFTGRIP_SOURCE_DIR "/config/rig.yaml", problems).value();

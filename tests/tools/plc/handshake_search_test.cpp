@@ -270,7 +270,8 @@ struct World {
     check(!asked.executed || asked.over, "a command is reported as refused that was executed");
     asked.reported_refused = true;
   }
-  /// If two masters request the same command with the same counter, both receive the same outcome.
+  /// Checks that an accepted command has been executed. If two masters request the same command with the same
+  /// counter, both receive the same outcome.
   void judge_accepted(const Plc& master) {
     const bool executed = std::any_of(commands.begin(), commands.end(), [&](const Command& asked) {
       return asked.executed && asked.counter == master.counter && asked.code == master.code;
@@ -329,7 +330,8 @@ struct World {
     for (Command& command : commands) command.over = command.over || command.executed;
     wires.clear();
     waiting.reset();
-    // The lines of the dead gateway reach the daemon before those of the new one; its answers are lost.
+    // The lines of the dead gateway reach the daemon before those of the new gateway. The answers to the dead
+    // gateway are lost.
     answers.clear();
     for (Plc& master : masters) master.heard = 0;
     watched = owed = stopped_since_beat = false;

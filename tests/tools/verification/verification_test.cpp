@@ -132,7 +132,7 @@ TEST_F(Verification, AMalformedReportIsRefusedWithASentence) {
     run("report --verify report --json");
     EXPECT_TRUE(nlohmann::json::accept(read("out.txt"))) << read("out.txt").substr(0, 200);
   }
-  // The value has another type, but the verification does not need this key.
+  // The value has a wrong type, but the verification does not need this key.
   write("report/identify.json", spoilt("/software", {1}));
   EXPECT_EQ(verified(0)["reported_by"], "");
 }
