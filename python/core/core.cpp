@@ -7,7 +7,9 @@
 
 #include <softgrip/softgrip.h>
 
+#include "python/core/control.h"
 #include "python/core/interruptible.h"
+#include "python/core/words.h"
 
 namespace py = pybind11;
 
@@ -39,18 +41,6 @@ Unit unit_named(const std::string& name) {
   if (name == "mm") return Unit::mm;
   if (name == "deg") return Unit::deg;
   throw InvalidArgument("unit", "'" + name + "' is not 'mm' or 'deg'");
-}
-
-/// Converts a word of an argument to its value. Throws InvalidArgument for an unknown word.
-template <class Value>
-Value chosen(const char* argument, const std::string& word,
-             std::initializer_list<std::pair<const char*, Value>> words) {
-  std::string all;
-  for (const auto& [name, value] : words) {
-    if (word == name) return value;
-    all += std::string(all.empty() ? "'" : ", '") + name + "'";
-  }
-  throw InvalidArgument(argument, "'" + word + "' is not one of " + all);
 }
 
 Log log_of(const py::dict& columns) {
@@ -429,4 +419,5 @@ PYBIND11_MODULE(_core, module) {
   module.def("diagnose", diagnosed);
   module.def("diagnose_change", changed);
   module.def("health", judged);
+  add_control(module);
 }

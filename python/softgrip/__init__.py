@@ -1,8 +1,8 @@
 """Client of softgripd, the controller of soft pneumatic grippers; also reads its files and computes models.
 
 `Gripper` blocks, and `AsyncGripper` is for asyncio. Both use version 1 of the daemon's socket API and need only Python.
-`Recording` and the `read_*` functions need NumPy. `Model`, `Log`, `identify()`, `validate()`, `diagnose()` and `health()` need
-NumPy and the shared library. They are loaded at their first use.
+`Recording` and the `read_*` functions need NumPy. Models, logs, `identify()`, `validate()`, `diagnose()`, `health()`, the
+controller and the simulated board need NumPy and the shared library. They are loaded at their first use.
 """
 
 from __future__ import annotations
@@ -12,19 +12,24 @@ from typing import TYPE_CHECKING, Any
 
 from .aio import AsyncGripper
 from .client import Gripper
-from .errors import (ConnectionLost, GripFailed, InvalidArgument, MalformedFile, NoDaemon, NoResult, NotAnswered, Owned,
-                     ProtocolError, Refused, SequenceRefused, SoftgripError, StopNotConfirmed)
+from .errors import (BusError, ConnectionLost, GripFailed, InvalidArgument, MalformedFile, NoDaemon, NoResult, NotAnswered,
+                     Owned, ProtocolError, Refused, SequenceRefused, SoftgripError, StopNotConfirmed)
 from .messages import (Channel, Checked, Event, Fault, Grip, Hello, Parameter, Problem, Result, Sequence, SequenceEnd,
                        SequenceState, State, Status)
 
 if TYPE_CHECKING:
     from .analysis import diagnose, health, identify, validate
+    from .control import (Board, Controller, ControlOutput, LimitedCommand, Limits, Pid, PidSettings, Reading, Reference,
+                          SimulatedBoard, SimulatedFinger, SimulatedObject, limit)
     from .models import Inverse, Log, Model, Parameter as ModelParameter
     from .results import (Cause, Change, Diagnosis, Estimate, FingerHealth, Health, HealthAlarm, HealthIndicator,
                           Identification, Prediction, Suspect, Validation)
 
 # Names that are loaded at their first use: the module of each, and its name in this module.
 _ON_USE = {name: ("analysis", name) for name in ("diagnose", "health", "identify", "validate")}
+_ON_USE |= {name: ("control", name) for name in
+            ("Board", "ControlOutput", "Controller", "LimitedCommand", "Limits", "Pid", "PidSettings", "Reading", "Reference",
+             "SimulatedBoard", "SimulatedFinger", "SimulatedObject", "limit")}
 _ON_USE |= {name: ("models", name) for name in ("Inverse", "Log", "Model")}
 _ON_USE |= {"ModelParameter": ("models", "Parameter")}
 _ON_USE |= {name: ("results", name) for name in
@@ -52,10 +57,12 @@ def __dir__() -> list[str]:
 
 
 __all__ = [
-    "AsyncGripper", "Cause", "Change", "Channel", "Checked", "ConnectionLost", "Diagnosis", "Estimate", "Event", "Fault",
-    "FingerHealth", "Grip", "GripFailed", "Gripper", "Health", "HealthAlarm", "HealthIndicator", "Hello",
-    "Identification", "InvalidArgument", "Inverse", "Log", "MalformedFile", "Model", "ModelParameter", "NoDaemon",
-    "NoResult", "NotAnswered", "Owned", "Parameter", "Prediction", "Problem", "ProtocolError", "Refused", "Result",
-    "Sequence", "SequenceEnd", "SequenceRefused", "SequenceState", "SoftgripError", "State", "Status", "StopNotConfirmed",
-    "Suspect", "Validation", "diagnose", "health", "identify", "validate",
+    "AsyncGripper", "Board", "BusError", "Cause", "Change", "Channel", "Checked", "ConnectionLost", "ControlOutput",
+    "Controller", "Diagnosis", "Estimate", "Event", "Fault", "FingerHealth", "Grip", "GripFailed", "Gripper", "Health",
+    "HealthAlarm", "HealthIndicator", "Hello", "Identification", "InvalidArgument", "Inverse", "LimitedCommand", "Limits",
+    "Log", "MalformedFile", "Model", "ModelParameter", "NoDaemon", "NoResult", "NotAnswered", "Owned", "Parameter", "Pid",
+    "PidSettings", "Prediction", "Problem", "ProtocolError", "Reading", "Reference", "Refused", "Result", "Sequence",
+    "SequenceEnd", "SequenceRefused", "SequenceState", "SimulatedBoard", "SimulatedFinger", "SimulatedObject",
+    "SoftgripError", "State", "Status", "StopNotConfirmed", "Suspect", "Validation", "diagnose", "health", "identify",
+    "limit", "validate",
 ]

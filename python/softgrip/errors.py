@@ -78,7 +78,9 @@ class MalformedFile(SoftgripError, ValueError):
 _ARGUMENTS = {"time_s": "t", "pressure_kpa": "pressure", "pressure_command_kpa": "command", "supply_kpa": "supply",
               "temperature_c": "temperature", "pressure_min_kpa": "pressure_min", "pressure_max_kpa": "pressure_max",
               "slew_up_kpa_per_s": "slew_up", "slew_down_kpa_per_s": "slew_down", "start_kpa": "start",
-              "parameter": "name"}
+              "parameter": "name", "rest_kpa": "rest", "kp_kpa_per_mm": "kp", "ki_kpa_per_mm_s": "ki",
+              "kd_kpa_s_per_mm": "kd", "derivative_filter_s": "derivative_filter", "tracking_time_s": "tracking_time",
+              "tick_s": "tick", "extra_latency_s": "extra_latency", "reading_max_age_s": "reading_max_age"}
 
 
 class InvalidArgument(SoftgripError, ValueError):
@@ -92,6 +94,18 @@ class InvalidArgument(SoftgripError, ValueError):
 
     def __reduce__(self) -> tuple[type[InvalidArgument], tuple[str, str]]:
         return type(self), (self.argument, str(self))
+
+
+class BusError(SoftgripError):
+    """An exchange with a board failed. `status` is the kind of failure, such as "timed_out" or "disconnected"."""
+
+    def __init__(self, status: str, detail: str = "") -> None:
+        super().__init__(f"{status}: {detail}" if detail else status)
+        self.status = status
+        self.detail = detail
+
+    def __reduce__(self) -> tuple[type[BusError], tuple[str, str]]:
+        return type(self), (self.status, self.detail)
 
 
 class NoResult(SoftgripError):

@@ -197,7 +197,7 @@ class Objects(unittest.TestCase):
         os.chdir(SOURCE)
         try:
             attempted = 0
-            for name in ("models", "analysis", "results"):
+            for name in ("models", "analysis", "control", "results"):
                 module = __import__(f"softgrip.{name}", fromlist=["x"])
                 failed, tried = doctest.testmod(module)
                 attempted += tried

@@ -41,6 +41,8 @@ class Examples(unittest.TestCase):
             self.assertIn("parameters differ", self.run_example("compare_fingers.py", at / "one.csv", at / "two.csv"))
             lines = self.run_example("many_logs.py", at / "one.csv", at / "two.csv", at / "none.csv").splitlines()
             self.assertEqual([": RMSE 0.0" in line for line in lines], [True, True, False])
+            self.assertRegex(self.run_example("closed_loop.py", MODEL), r"RMSE of the last cycle: 0\.0\d+ mm")
+            self.assertIn("20.0 kPa: valid, 4.0 mm", self.run_example("board_driver.py"))
         self.assertEqual(self.ran, {path.name for path in EXAMPLES.glob("*.py")})
 
     def test_lines(self):

@@ -1,0 +1,362 @@
+"""Limits, PID, controller and boards. They are those of the daemon, for one finger at a time.
+
+Times are in s, pressures in kPa, displacements in the unit of the model. An object belongs to one thread at a time.
+"""
+
+from __future__ import annotations
+
+import abc
+import dataclasses
+import math
+from collections.abc import Sequence
+from typing import Any, Optional
+
+from . import _core
+from .arguments import text_of
+from .errors import BusError, InvalidArgument
+from .models import Model, _number, _vector, _whole
+
+_NAN = math.nan
+_MOST_SEQUENCE = 2**32 - 1
+
+
+def _finite(argument: str, value: float, unit: str = "") -> float:
+    number = _number(argument, value, unit)
+    if not math.isfinite(number):
+        raise InvalidArgument(argument, f"{argument}: {number} is not a finite number{' in ' + unit if unit else ''}")
+    return number
+
+
+def _instance(argument: str, value: Any, kind: type) -> Any:
+    if not isinstance(value, kind):
+        raise InvalidArgument(argument, f"{argument}: {type(value).__name__} is no {kind.__name__}")
+    return value
+
+
+@dataclasses.dataclass(frozen=True)
+class Limits:
+    """Limits of one finger: pressures [kPa], slew rates [kPa/s], displacements in the unit of the model. `rest` is the command
+    at rest [kPa]."""
+
+    pressure_min: float = 0
+    pressure_max: float = 0
+    slew_up: float = 300
+    slew_down: float = 300
+    displacement_min: float = -1e6
+    displacement_max: float = 1e6
+    rest: float = 0
+
+    def __post_init__(self) -> None:
+        for name, unit in (("pressure_min", "kPa"), ("pressure_max", "kPa"), ("slew_up", "kPa/s"), ("slew_down", "kPa/s"),
+                           ("displacement_min", ""), ("displacement_max", ""), ("rest", "kPa")):
+            object.__setattr__(self, name, _finite(name, getattr(self, name), unit))
+        for name, lower, upper in (("pressure_max", self.pressure_min, self.pressure_max),
+                                   ("displacement_max", self.displacement_min, self.displacement_max),
+                                   ("slew_up", 0, self.slew_up), ("slew_down", 0, self.slew_down)):
+            if not upper > lower:
+                raise InvalidArgument(name, f"{name}: {upper} is not above {lower}")
+
+    def _values(self) -> tuple[float, float, float, float, float, float, float]:
+        return (self.pressure_min, self.pressure_max, self.slew_up, self.slew_down, self.displacement_min,
+                self.displacement_max, self.rest)
+
+
+@dataclasses.dataclass(frozen=True)
+class LimitedCommand:
+    """A command [kPa] within the limits, and the reasons for which it differs from the request."""
+
+    command: float
+    saturated: bool  # the request is outside the pressure range
+    slewing: bool  # the request is further away than the slew limits allow
+    invalid: bool  # the request is not a number; the last command is held
+
+
+def limit(limits: Limits, wanted: float, last: float, elapsed: float) -> LimitedCommand:
+    """The command for a request.
+
+    wanted: the request [kPa]; NaN holds the last command. last: last command [kPa]. elapsed: time since the last command [s].
+
+    >>> limit(Limits(pressure_max=60, slew_up=100), wanted=50, last=0, elapsed=0.1)
+    LimitedCommand(command=10.0, saturated=False, slewing=True, invalid=False)
+    """
+    elapsed = _finite("elapsed", elapsed, "s")
+    if elapsed < 0:
+        raise InvalidArgument("elapsed", f"elapsed: {elapsed} s is below 0 s")
+    return LimitedCommand(*_core.limit(_instance("limits", limits, Limits)._values(), _number("wanted", wanted, "kPa"),
+                                       _finite("last", last, "kPa"), elapsed))
+
+
+@dataclasses.dataclass(frozen=True)
+class PidSettings:
+    """Gains of a PID: kp [kPa per unit], ki [kPa per unit and s], kd [kPa s per unit].
+
+    derivative_filter: time constant [s]. setpoint_weight: share of the reference in the proportional part, 0 to 1. anti_windup:
+    "back_calculation" (within tracking_time [s]), "conditional" or "none".
+    """
+
+    kp: float = 0
+    ki: float = 0
+    kd: float = 0
+    derivative_filter: float = 0.02
+    setpoint_weight: float = 1
+    anti_windup: str = "back_calculation"
+    tracking_time: float = 0.5
+
+    def _values(self) -> tuple[float, float, float, float, float, str, float]:
+        return (_number("kp", self.kp), _number("ki", self.ki), _number("kd", self.kd),
+                _number("derivative_filter", self.derivative_filter, "s"), _number("setpoint_weight", self.setpoint_weight),
+                text_of("anti_windup", self.anti_windup), _number("tracking_time", self.tracking_time, "s"))
+
+
+class Pid:
+    """PID with two degrees of freedom. In a period: `step()`, `limit()` of the sum with the feedforward, `sent()`.
+
+    >>> pid = Pid(PidSettings(kp=2), tick=0.01)
+    >>> pid.step(reference=5, measurement=4)
+    2.0
+    """
+
+    def __init__(self, settings: PidSettings, tick: float) -> None:
+        """tick: period of `step()` [s]."""
+        self._core = _core.Pid(_instance("settings", settings, PidSettings)._values(), _number("tick", tick, "s"))
+
+    def align(self, command: float) -> None:
+        """Makes the next `step()` continue at a command [kPa]."""
+        self._core.align(_finite("command", command, "kPa"))
+
+    def step(self, reference: float, measurement: float, feedforward: float = 0) -> float:
+        """The feedback [kPa]. The request is the sum of it and the feedforward [kPa]."""
+        return self._core.step(_finite("reference", reference), _finite("measurement", measurement),
+                               _finite("feedforward", feedforward, "kPa"))
+
+    def hold(self, feedforward: float = 0) -> float:
+        """The feedback [kPa] of a period without a usable measurement: integrator and derivative pause."""
+        return self._core.hold(_finite("feedforward", feedforward, "kPa"))
+
+    def sent(self, command: float) -> None:
+        """Reports the command [kPa] that was sent after the limits, for the anti-windup."""
+        self._core.sent(_finite("command", command, "kPa"))
+
+
+class Reference:
+    """A reference that is known in advance: up to 8 segments with continuous value, rate and acceleration.
+
+    >>> reference = Reference(0).ramp_to(6, duration=2).hold_for(1)
+    >>> reference.at(1), reference.end
+    (3.0, 3.0)
+    """
+
+    def __init__(self, value: float = 0, *, start: float = 0) -> None:
+        """Holds a value from the time `start` [s] on."""
+        self._core = _core.Reference(_finite("value", value))
+        self._core.start(_finite("start", start, "s"), _finite("value", value))
+
+    def ramp_to(self, value: float, duration: float) -> Reference:
+        """Appends a minimum-jerk ramp of a duration [s]."""
+        self._core.ramp_to(_number("value", value), _number("duration", duration, "s"))
+        return self
+
+    def hold_for(self, duration: float) -> Reference:
+        """Appends a hold of a duration [s]."""
+        self._core.hold_for(_number("duration", duration, "s"))
+        return self
+
+    def sine(self, mean: float, amplitude: float, frequency: float, cycles: float) -> Reference:
+        """Appends mean - amplitude cos(2 pi f t) at a frequency [Hz]. A ramp to mean - amplitude should precede it."""
+        self._core.sine(_number("mean", mean), _number("amplitude", amplitude), _number("frequency", frequency, "Hz"),
+                        _number("cycles", cycles))
+        return self
+
+    def at(self, time: float) -> float:
+        """The value at a time [s]."""
+        return self._core.at(_finite("time", time, "s"))
+
+    @property
+    def end(self) -> float:
+        """The time at which the last segment ends [s]."""
+        return self._core.end()
+
+
+@dataclasses.dataclass(frozen=True)
+class Reading:
+    """Reading of one channel. `pressure` [kPa] and `temperature` [degrees Celsius] are NaN without a sensor. `sampled_at` [s] is
+    on the clock of the program, and `sequence` counts the responses. `validity`: "valid", "none_yet", "out_of_range",
+    "sensor_error", "jumped", "frozen" or "stale"."""
+
+    displacement: float
+    pressure: float = _NAN
+    temperature: float = _NAN
+    sampled_at: float = 0
+    sequence: int = 0
+    validity: str = "valid"
+
+    def _values(self) -> tuple[float, float, float, float, int, str]:
+        return (_number("displacement", self.displacement), _number("pressure", self.pressure, "kPa"),
+                _number("temperature", self.temperature), _number("sampled_at", self.sampled_at, "s"),
+                _whole("sequence", self.sequence, _MOST_SEQUENCE), text_of("validity", self.validity))
+
+
+class Board(abc.ABC):
+    """An I/O board with one output and one set of inputs per channel. Derive from it to write a driver."""
+
+    @property
+    @abc.abstractmethod
+    def channels(self) -> int:
+        """The number of channels."""
+
+    @abc.abstractmethod
+    def exchange(self, commands: Sequence[float], deadline: float) -> Sequence[Reading]:
+        """Writes one pressure [kPa] per channel and reads all channels, within a deadline [s]. Raises `BusError`."""
+
+    def connect(self, deadline: float) -> None:
+        """Opens or reopens the session, within a deadline [s]. The outputs keep their values. Raises `BusError`."""
+
+    def describe(self) -> str:
+        """One line for people: product, address."""
+        return type(self).__name__
+
+
+@dataclasses.dataclass(frozen=True)
+class SimulatedObject:
+    """An object in the way of a finger: the displacement at contact, and the share of the free motion beyond it (0: rigid)."""
+
+    position: float
+    yielding: float = 0.1
+
+    def _values(self) -> tuple[float, float]:
+        return _finite("position", self.position), _finite("yielding", self.yielding)
+
+
+@dataclasses.dataclass(frozen=True)
+class SimulatedFinger:
+    """One channel of a `SimulatedBoard`: its model, an object in its way, the standard deviation of a reading, the range of the
+    output [kPa], and the seed of all noise."""
+
+    model: Model
+    object: Optional[SimulatedObject] = None
+    noise: float = 0
+    pressure_min: float = 0
+    pressure_max: float = 100
+    seed: int = 1
+
+    def _values(self) -> tuple[Any, ...]:
+        return (_instance("model", self.model, Model)._core, _object_values(self.object), _number("noise", self.noise),
+                _number("pressure_min", self.pressure_min, "kPa"), _number("pressure_max", self.pressure_max, "kPa"),
+                _whole("seed", self.seed))
+
+
+def _object_values(value: Optional[SimulatedObject]) -> Optional[tuple[float, float]]:
+    return None if value is None else _instance("object", value, SimulatedObject)._values()
+
+
+class SimulatedBoard(Board):
+    """A board in memory whose fingers are models: the simulated board of the daemon. Its clock stands still until `advance()`.
+
+    >>> board = SimulatedBoard([SimulatedFinger(Model.load("config/models/bench_twin.yaml"))])
+    >>> board.connect()
+    >>> for _ in range(400):
+    ...     reading, = board.exchange([20])
+    ...     board.advance(0.005)
+    >>> round(reading.displacement)
+    9
+    """
+
+    def __init__(self, fingers: Sequence[SimulatedFinger], tick: float = 0.005) -> None:
+        """fingers: one per channel, 1 to 16. tick: usual period of `exchange()` [s]."""
+        try:
+            values = [_instance("fingers", one, SimulatedFinger)._values() for one in fingers]
+        except TypeError as error:
+            raise InvalidArgument("fingers", "fingers: a list of SimulatedFinger is required") from error
+        self._core = _core.SimulatedBoard(values, _number("tick", tick, "s"))
+
+    @property
+    def channels(self) -> int:
+        return self._core.channels()
+
+    def connect(self, deadline: float = 1) -> None:
+        status, detail = self._core.connect(_number("deadline", deadline, "s"))
+        if status != "ok":
+            raise BusError(status, detail)
+
+    def exchange(self, commands: Sequence[float], deadline: float = 1) -> tuple[Reading, ...]:
+        values = _vector("commands", commands, "kPa").tolist()
+        status, detail, readings = self._core.exchange(values, _number("deadline", deadline, "s"))
+        if status != "ok":
+            raise BusError(status, detail)
+        return tuple(Reading(*one) for one in readings)
+
+    def describe(self) -> str:
+        return self._core.describe()
+
+    @property
+    def now(self) -> float:
+        """The time of the board's clock [s], which begins at 1 s."""
+        return self._core.now()
+
+    def advance(self, duration: float) -> None:
+        """Moves the clock on by a duration [s]."""
+        self._core.advance(_number("duration", duration, "s"))
+
+    def set_object(self, channel: int, value: Optional[SimulatedObject]) -> None:
+        """Places an object, or removes it."""
+        self._core.set_object(_whole("channel", channel), _object_values(value))
+
+    def displacement(self, channel: int = 0) -> float:
+        """The displacement of a finger without the errors of its sensor."""
+        return self._core.displacement(_whole("channel", channel))
+
+
+@dataclasses.dataclass(frozen=True)
+class ControlOutput:
+    """Result of `Controller.tick()`. NaN: not available."""
+
+    command: float  # for the board [kPa], within the limits
+    reference: float  # for now; NaN while no reference is followed
+    displacement: float  # last valid reading
+    feedforward: float  # part of the command [kPa]
+    feedback: float  # part of the command [kPa]
+    residual: float  # reading minus model
+    validity: str  # of the reading, after the plausibility check
+    saturated: bool
+    slewing: bool
+    out_of_reach: bool  # the feedforward cannot reach the reference
+
+
+class Controller:
+    """Controller of one finger: feedforward plus PID through the limits, and the plausibility check of the readings."""
+
+    def __init__(self, model: Model, limits: Limits, pid: PidSettings = PidSettings(), *, feedforward: str = "full_model",
+                 extra_latency: float = 0, tick: float = 0.005, sensor_noise: float = 0.05,
+                 reading_max_age: float = 0.05) -> None:
+        """feedforward: "full_model", "bouc_wen" or "none". extra_latency: from a command to the output of the board [s]. tick:
+        period of `tick()` [s]. sensor_noise: standard deviation of a reading. reading_max_age: an older reading is not used [s].
+        """
+        self._core = _core.Controller(
+            _instance("model", model, Model)._core, _instance("limits", limits, Limits)._values(),
+            _instance("pid", pid, PidSettings)._values(), text_of("feedforward", feedforward),
+            _number("extra_latency", extra_latency, "s"), _number("tick", tick, "s"), _number("sensor_noise", sensor_noise),
+            _number("reading_max_age", reading_max_age, "s"))
+
+    def start(self, command: float) -> None:
+        """Starts from rest under a command [kPa]."""
+        self._core.start(_finite("command", command, "kPa"))
+
+    def follow(self, reference: Reference) -> None:
+        """From the next tick on, follows a reference whose time 0 is the time 0 of `tick()`."""
+        self._core.follow(_instance("reference", reference, Reference)._core)
+
+    def hold(self) -> None:
+        """From the next tick on, holds the command."""
+        self._core.hold()
+
+    def vent(self) -> None:
+        """From the next tick on, goes to the rest pressure with the slew limits."""
+        self._core.vent()
+
+    def pressure(self, pressure: float) -> None:
+        """From the next tick on, goes to a pressure [kPa] with the slew limits, without feedback."""
+        self._core.pressure(_finite("pressure", pressure, "kPa"))
+
+    def tick(self, now: float, reading: Reading) -> ControlOutput:
+        """Runs one period. now: its time on the clock of the readings [s]."""
+        return ControlOutput(*self._core.tick(_number("now", now, "s"), _instance("reading", reading, Reading)._values()))
