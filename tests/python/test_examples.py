@@ -2,9 +2,11 @@
 
 import os
 import pathlib
+import shutil
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
@@ -16,10 +18,10 @@ MODEL = SOURCE / "config/models/bench_twin.yaml"
 class Examples(unittest.TestCase):
     ran = {"nightly_health.py"}  # in test_health.py
 
-    def run_example(self, name, *arguments):
+    def run_example(self, name, *arguments, expect=0):
         done = subprocess.run([sys.executable, EXAMPLES / name, *map(str, arguments)], capture_output=True, text=True,
                               env={**os.environ, "PYTHONPATH": str(BUILD / "python")})
-        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(done.returncode, expect, done.stdout + done.stderr)
         self.ran.add(name)
         return done.stdout
 
@@ -41,9 +43,43 @@ class Examples(unittest.TestCase):
             self.assertIn("parameters differ", self.run_example("compare_fingers.py", at / "one.csv", at / "two.csv"))
             lines = self.run_example("many_logs.py", at / "one.csv", at / "two.csv", at / "none.csv").splitlines()
             self.assertEqual([": RMSE 0.0" in line for line in lines], [True, True, False])
+            self.check_workflow(at)
             self.assertRegex(self.run_example("closed_loop.py", MODEL), r"RMSE of the last cycle: 0\.0\d+ mm")
             self.assertIn("20.0 kPa: valid, 4.0 mm", self.run_example("board_driver.py"))
+            self.check_grip(at)
         self.assertEqual(self.ran, {path.name for path in EXAMPLES.glob("*.py")})
+
+    def check_workflow(self, at):
+        if not shutil.which("snakemake"):
+            self.ran.add("logs_on_slurm.py")
+            return
+        said = self.run_example("logs_on_slurm.py", at / "rows", at / "one.csv", at / "none.csv", "--local", expect=6)
+        self.assertRegex(said, r"0000-one: RMSE 0\.0\d+ mm, \d+ parameters")
+        self.assertRegex(said, r"0001-none: .*none\.csv")
+
+    def check_grip(self, at):
+        """With a daemon whose board is simulated in its process."""
+        text = (SOURCE / "config/rig.yaml").read_text()
+        for before, after in (("/tmp/softgrip.sock", f"{at}/socket"), ("/tmp/softgrip-runs", f"{at}/runs"),
+                              ("models/bench_twin.yaml", str(MODEL)),
+                              ("sequence_directory: sequences", f"sequence_directory: {SOURCE}/config/sequences")):
+            self.assertIn(before, text)
+            text = text.replace(before, after)
+        (at / "rig.yaml").write_text(text)
+        with (at / "daemon.log").open("w") as log, subprocess.Popen(
+                [BUILD / "daemon/softgripd", "--config", at / "rig.yaml"], stdout=log, stderr=log) as daemon:
+            try:
+                end = time.monotonic() + 30
+                while not (at / "socket").exists() and time.monotonic() < end:
+                    time.sleep(0.05)
+                said = self.run_example("grip_and_wait.py", at / "socket")
+                self.assertIn("result: HOLDING", said)
+                self.assertIn("end: done", said)
+                self.assertIn("did you mean", subprocess.run(
+                    [sys.executable, EXAMPLES / "grip_and_wait.py", at / "socket", "pick_stome"], capture_output=True, text=True,
+                    env={**os.environ, "PYTHONPATH": str(SOURCE / "python")}).stderr)
+            finally:
+                daemon.terminate()
 
     def test_lines(self):
         for path in EXAMPLES.glob("*.py"):

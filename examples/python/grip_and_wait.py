@@ -1,0 +1,31 @@
+"""Grips and waits for the result: grip_and_wait.py [SOCKET] [SEQUENCE]. Exit code 1: nothing is held."""
+
+import sys
+from typing import Optional
+
+import softgrip
+
+
+def main(socket: Optional[str] = None, sequence: str = "pick_stone") -> int:
+    # Leaving the block stops the sequence if it still runs, for each reason to leave.
+    with softgrip.Gripper(socket, name="grip_and_wait") as gripper:
+        gripper.check(sequence)  # all checks of a start; nothing moves
+        gripper.start(sequence)
+        try:
+            result = gripper.wait_until(softgrip.Result.HOLDING, timeout_s=60)
+        except softgrip.GripFailed as failed:
+            print(failed)
+            return 1
+        print(f"result: {result.value}")
+        for channel in gripper.status().channels:
+            print(f"{channel.name}: {channel.result.value} at {channel.displacement_mm:.2f} mm")
+        gripper.release()
+        print(f"end: {gripper.wait(timeout_s=60).value}")
+    return 0
+
+
+if __name__ == "__main__":
+    try:
+        sys.exit(main(*sys.argv[1:]))
+    except softgrip.SoftgripError as error:
+        sys.exit(f"grip_and_wait: {error}")
