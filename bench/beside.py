@@ -3,7 +3,7 @@
 
     bench/beside.py [--build build/release] [--page docs/results/beside-octave-and-scipy.md] [--runs 3]
 
-Needs Debian's octave, octave-optim, liboctave-dev, python3-scipy and python3-pandas (scripts/packages.sh tests readers benchmarks).
+Needs Debian's octave, octave-optim, octave-dev, python3-scipy and python3-pandas (scripts/packages.sh tests readers benchmarks).
 The programs for Octave and SciPy are in bench/beside; both use the same simulator, which is compiled C. Every number of the
 page is measured by this run. Exit codes: 0: the page is written; 1: a program failed, or a reader did not get the exported
 values.

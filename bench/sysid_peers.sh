@@ -4,7 +4,7 @@
 #
 #   bench/sysid_peers.sh [BUILD_FOLDER [STARTS [PEER_STARTS [SAMPLES]]]]
 #
-# Needs the packages python3-scipy, octave, octave-optim, liboctave-dev (scripts/packages.txt, section bench).
+# Needs the packages python3-scipy, octave, octave-optim, octave-dev (scripts/packages.txt, section bench).
 # The other programs take minutes for twenty starts. They use only the first PEER_STARTS starts if this number is given.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
@@ -23,5 +23,5 @@ if command -v mkoctfile > /dev/null; then
   (cd "$folder" && mkoctfile -O2 --mex -o simulate.mex sysid_peer_mex.c sysid_peer_simulator.c > /dev/null 2>&1 \
     && OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 octave --no-gui --quiet --no-history --eval "sysid_peers('$folder', $peer_starts)")
 else
-  echo "Octave: mkoctfile is missing (liboctave-dev); left out"
+  echo "Octave: mkoctfile is missing (octave-dev); left out"
 fi

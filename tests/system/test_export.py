@@ -9,6 +9,7 @@ import pathlib
 import shutil
 import struct
 import subprocess
+import unittest
 
 import bench
 import foreign_files
@@ -289,7 +290,8 @@ def wave_kpa(t):
     return 0.0 if t > 55 else 30.0
 
 
-class CModel(bench.BenchTest):
+class ExportedC(bench.BenchTest):
+    """How an exported model is compiled and run, and what `softgrip simulate` gives for the same commands."""
 
     def compiled(self, driver, model, *arguments):
         """The program of an exported model; the compiler gives no warning with any option."""
@@ -312,14 +314,29 @@ class CModel(bench.BenchTest):
         self.softgrip("simulate", "--model", model, "--input", "command.csv", "--out", "simulated.csv", timeout_s=100)
         return columns_of(self.folder / "simulated.csv")["displacement_mm"]
 
-    def compare(self, model):
-        commands = [wave_kpa(i / RATE_HZ) for i in range(RATE_HZ * SECONDS + 1)]
-        told = self.compiled(DRIVER, model)
-        ours = self.simulated(model, commands)
-        theirs = [row[0] for row in self.run_driver(commands)]
+    @staticmethod
+    def commands():
+        return [wave_kpa(i / RATE_HZ) for i in range(RATE_HZ * SECONDS + 1)]
+
+    @staticmethod
+    def wanted():
+        """Out in two seconds, then to and fro within what creep lets be reached above 0 kPa."""
+        return [min(2.5 * t, 5.0) + (2 * (1 - math.cos(2 * math.pi * 0.3 * (t - 2))) if t > 2 else 0.0)
+                for t in (i / RATE_HZ for i in range(1, 20 * RATE_HZ))]
+
+    def assert_equal_motions(self, ours, theirs):
         self.assertEqual(len(ours), len(theirs))
         self.assertGreater(max(ours) - min(ours), 5)
         self.assertLess(max(abs(a - b) for a, b in zip(ours, theirs)), 1e-9)
+
+
+class CModel(ExportedC):
+
+    def compare(self, model):
+        commands = self.commands()
+        told = self.compiled(DRIVER, model)
+        ours = self.simulated(model, commands)
+        self.assert_equal_motions(ours, [row[0] for row in self.run_driver(commands)])
         return told
 
     def test_the_bench_twin_is_simulate_to_a_picometre(self):
@@ -336,13 +353,6 @@ class CModel(bench.BenchTest):
 
     def test_every_block_that_has_c(self):
         self.compare(self.write("every.yaml", EVERYTHING))
-
-    @staticmethod
-    def wanted():
-        """Moves out in two seconds, then back and forth within the range in which creep can be compensated above 0
-        kPa."""
-        return [min(2.5 * t, 5.0) + (2 * (1 - math.cos(2 * math.pi * 0.3 * (t - 2))) if t > 2 else 0.0)
-                for t in (i / RATE_HZ for i in range(1, 20 * RATE_HZ))]
 
     def test_the_inverse_undoes_the_body_exactly(self):
         for text in ((self.folder / MODEL).read_text(), EVERYTHING):
@@ -369,6 +379,82 @@ class CModel(bench.BenchTest):
         self.assertFalse((self.folder / "x.c").exists())
         self.softgrip("export", MODEL, "--out", "x.c", expect=2)
         self.softgrip("export", MODEL, "--out", "x.c", "--rate-hz", "nan", expect=2)
+
+
+CALLS = """
+u = load("commands.txt");
+y = NAME(u);
+assert(size(NAME(u')), fliplr(size(y)))
+assert(NAME(u), y)  % the state of a call ends with it
+save_numbers("simulated.txt", y);
+if with_inverse
+  save_numbers("inverted.txt", NAME(load("wanted.txt"), 0, 0, 200));
+end
+refused("NAME()", "the calls are");
+refused("NAME([1 NaN])", "u .kPa.: value 2 is not finite");
+refused("NAME('text')", "a vector of real doubles is required");
+refused("NAME(ones(2, 2))", "a vector of real doubles is required");
+refused("NAME([])", "a vector of real doubles is required");
+if with_inverse
+  refused("NAME(1, 0, 200, 0)", "low .kPa.: a value below high is required");
+  refused("NAME(1, [0 1], 0, 200)", "start .kPa.: 1 number is required");
+else
+  refused("NAME(1, 0, 0, 200)", "NAME.c has no inverse");
+end
+"""
+OCTAVE = """1;
+function save_numbers(file, numbers)
+  to = fopen(file, "w");
+  fprintf(to, "%.17g\\n", numbers);
+  fclose(to);
+end
+function refused(call, text)
+  said = "no error";
+  try
+    eval([call ";"]);
+  catch problem
+    said = problem.message;
+  end
+  assert(! isempty(regexp(said, text)), [call ": " said]);
+end
+"""
+
+
+@unittest.skipUnless(shutil.which("mkoctfile"), "mkoctfile is missing: Debian's octave-dev")
+class CModelInOctave(ExportedC):
+    """examples/matlab/softgrip_mex.c, compiled as docs/how-to/export.md states."""
+
+    def octave(self, model):
+        """Exports, compiles and calls a model; returns True if it has an inverse."""
+        page = (bench.SOURCE / "docs/how-to/export.md").read_text(encoding="utf-8")
+        command = next(line.partition("#")[0] for line in page.splitlines() if line.startswith("mkoctfile"))
+        shutil.copy(bench.SOURCE / "examples/matlab/softgrip_mex.c", self.folder)
+        done = self.softgrip("export", model, "--out", "model.c", "--rate-hz", RATE_HZ, "--json")
+        told = json.loads(done.stdout)
+        name = told["function"].removesuffix("_step")
+        (self.folder / "model.c").rename(self.folder / f"{name}.c")
+        subprocess.run(command.replace("bench_twin", name).split(), cwd=self.folder, check=True, timeout=150)
+        for file, numbers in (("commands.txt", self.commands()), ("wanted.txt", self.wanted())):
+            self.write(file, "\n".join(map(repr, numbers)) + "\n")
+        inverse = "true" if told["inverse"] else "false"
+        self.write("calls.m", f"{OCTAVE}with_inverse = {inverse};{CALLS.replace('NAME', name)}")
+        done = subprocess.run(["octave", "--no-gui", "--norc", "--quiet", "calls.m"], cwd=self.folder, capture_output=True,
+                              text=True, timeout=150)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assert_equal_motions(self.simulated(model, self.commands()), self.numbers("simulated.txt"))
+        return told["inverse"]
+
+    def numbers(self, file):
+        return list(map(float, (self.folder / file).read_text().split()))
+
+    def test_its_mex_function_is_simulate(self):
+        self.assertTrue(self.octave(MODEL))
+        reached = self.simulated(MODEL, [0.0, *self.numbers("inverted.txt")])
+        late = round(0.13 * RATE_HZ)
+        self.assertLess(max(abs(a - b) for a, b in zip(reached[1 + late:], self.wanted())), 0.02)
+
+    def test_its_mex_function_without_an_inverse_says_so(self):
+        self.assertFalse(self.octave("config/models/zhang2025.yaml"))
 
 
 if __name__ == "__main__":

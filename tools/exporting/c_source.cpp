@@ -142,6 +142,7 @@ class Generator {
 
   std::string run(bool with_inverse) {
     text_ += "#define TICK_S " + shortest(tick_s_) + "\n";
+    if (with_inverse) text_ += "#define HAS_INVERSE\n";
     add_values();
     add_fragments();
     add_body();
