@@ -2,6 +2,9 @@
 # sources are the room `library`.
 add_library(libsoftgrip SHARED $<TARGET_OBJECTS:softgrip_library>)
 target_link_libraries(libsoftgrip PRIVATE softgrip_library)
+# scripts/abi.sh reads the types of the interface from the debug information, which precompiled headers do not have.
+target_compile_options(softgrip_library PRIVATE $<$<CONFIG:RelWithDebInfo>:-g2>)
+set_target_properties(softgrip_library PROPERTIES DISABLE_PRECOMPILE_HEADERS ON)
 add_library(softgrip::softgrip ALIAS libsoftgrip)
 target_compile_features(libsoftgrip INTERFACE cxx_std_20)
 target_include_directories(libsoftgrip INTERFACE $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/library/include>

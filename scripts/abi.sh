@@ -1,0 +1,54 @@
+#!/usr/bin/env bash
+# Compares the binary interface (ABI) of libsoftgrip.so with the stored one, library/libsoftgrip.abi:
+#   scripts/abi.sh [BUILD]            exit 1: an incompatible change without a new SONAME, or a new SONAME that is not stored
+#   scripts/abi.sh [BUILD] --renew    stores the interface of the build; refused for an incompatible change without a new SONAME
+#   scripts/abi.sh [BUILD] --renew --unreleased    stores it anyway: for a SONAME of which no package has been released
+# BUILD: default build/release. Exit 77: abidiff is missing, or the processor is not the one of the stored interface. Added
+# functions and types are compatible. A new field of a result is not: compiled programs have its old size. A new SONAME is
+# SOVERSION in cmake/library.cmake, the name in library/exported.map, and the names of the packages in packaging/deb.
+set -euo pipefail
+here=$(cd "$(dirname "$0")/.." && pwd)
+build=$here/build/release renew=false unreleased=false
+for argument in "$@"; do
+  case $argument in
+    --renew) renew=true ;;
+    --unreleased) unreleased=true ;;
+    -*) sed -n '2,9s/^# \{0,1\}//p' "$0" >&2; exit 2 ;;
+    *) build=$(realpath "$argument") ;;
+  esac
+done
+stored=$here/library/libsoftgrip.abi library=$build/library/libsoftgrip.so
+command -v abidiff abidw >/dev/null || { echo "abi.sh: abidiff is missing: Debian's abigail-tools" >&2; exit 77; }
+
+describe() {
+  abidw --suppr "$here/library/libsoftgrip.abignore" --exported-interfaces-only --no-corpus-path --no-comp-dir-path \
+    --no-show-locs --no-elf-needed --no-parameter-names --type-id-style hash "$library" |
+    sed -E "s#(<abi-instr .*path=')[^']*/(library/[^']*')#\1\2#"  # the same text for a source in any folder
+}
+soname_of() { sed -n "s/^<abi-corpus .*soname='\([^']*\)'.*/\1/p" "$1"; }
+architecture_of() { sed -n "s/^<abi-corpus .*architecture='\([^']*\)'.*/\1/p" "$1"; }
+
+work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT
+describe >"$work/present.abi"
+[ -n "$(soname_of "$work/present.abi")" ] || { echo "abi.sh: $library has no SONAME" >&2; exit 1; }
+compatible=true
+if [ -e "$stored" ] && [ "$(architecture_of "$stored")" != "$(architecture_of "$work/present.abi")" ]; then
+  echo "abi.sh: $stored is of another processor" >&2
+  exit 77
+fi
+if [ ! -e "$stored" ] || [ "$(soname_of "$stored")" != "$(soname_of "$work/present.abi")" ]; then
+  $renew || { echo "abi.sh: $(soname_of "$work/present.abi") is new: scripts/abi.sh --renew stores its interface" >&2; exit 1; }
+else
+  abidiff --no-added-syms "$stored" "$work/present.abi" >"$work/difference.txt" || compatible=false
+fi
+if ! $compatible && ! { $renew && $unreleased; }; then
+  head -n 60 "$work/difference.txt" >&2
+  echo "abi.sh: the interface is incompatible with $stored. Give the library a new SONAME, or keep the interface" >&2
+  exit 1
+fi
+if $renew; then
+  cp "$work/present.abi" "$stored"
+  echo "$(soname_of "$stored"): stored as $stored"
+else
+  echo "$(soname_of "$stored"): compatible with the stored interface"
+fi
