@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Builds a clean clone of HEAD and runs its quick tests in a minimal chroot of a Debian release, as on a new computer:
 #   scripts/chroot_test.sh bookworm|trixie [COMMAND ...]     default: bash scripts/test.sh --quick
+# The packages that scripts/package.sh built, if any, are copied to build/ of the clone: tests/library/installed_examples.sh.
 # build/chroot keeps the bare chroot, the downloaded packages and the folder of the last run (RELEASE.root). Packages
 # come from the archive of this computer's apt. Needs root. Mounts and processes end with the script.
 set -euo pipefail
@@ -8,7 +9,7 @@ cd "$(dirname "$(realpath "$0")")/.."
 release=${1:-}
 case $release in
   bookworm | trixie) shift ;;
-  *) sed -n '2,5s/^# \{0,1\}//p' "$0" >&2; exit 2 ;;
+  *) sed -n '2,6s/^# \{0,1\}//p' "$0" >&2; exit 2 ;;
 esac
 [ $# -gt 0 ] || set -- bash scripts/test.sh --quick
 [ "$(id -u)" -eq 0 ] || { echo "chroot_test.sh: run as root" >&2; exit 1; }
@@ -39,6 +40,8 @@ rm -rf "$root" && mkdir "$root"
 tar -xf "$store/$release.tar" -C "$root" --exclude='./dev/*'
 git clone -q --no-hardlinks . "$root/softgrip"
 git -C "$root/softgrip" remote remove origin
+mkdir -p "$root/softgrip/build"
+find build -maxdepth 1 -name '*.deb' -exec cp {} "$root/softgrip/build" \;
 cp -L /etc/resolv.conf /etc/hosts "$root/etc/"
 # Keep the packages that apt downloads for the next run.
 echo 'Binary::apt::APT::Keep-Downloaded-Packages "true"; APT::Keep-Downloaded-Packages "true";' \

@@ -3,21 +3,9 @@
 # with pkg-config, and runs them: examples.sh BUILD
 set -euo pipefail
 build=$(realpath "$1")
-source=$(realpath "$(dirname "$0")/../..")
-softgrip=$build/tools/softgrip
-daemon=
-work=$(mktemp -d)
-trap '[ -z "$daemon" ] || kill "$daemon" 2>/dev/null || true; rm -rf "$work"' EXIT
+. "$(dirname "$0")/example_runs.sh"
+work=$(mktemp -d) && trap 'end_daemon; rm -rf "$work"' EXIT
 cd "$work"
-
-fail() { echo "examples.sh: $*" >&2; exit 1; }
-# says TEXT COMMAND...  runs the command; its output must contain the text
-says() {
-  local text=$1
-  shift
-  "$@" >output.txt 2>&1 || { cat output.txt >&2; fail "failed: $*"; }
-  grep -qF -- "$text" output.txt || { cat output.txt >&2; fail "'$text' is not in the output of: $*"; }
-}
 
 cmake --install "$build" --component library --prefix "$work/first" >install.log
 mv first installed
@@ -29,22 +17,7 @@ done
 cmake -S "$source/examples/cpp" -B examples -DCMAKE_PREFIX_PATH="$work/installed" -DCMAKE_BUILD_TYPE=Release \
   -DCMAKE_CXX_FLAGS="-Wall -Wextra -Wpedantic -Werror" >configure.log || { cat configure.log; fail "find_package"; }
 cmake --build examples -j 2 >build.log 2>&1 || { cat build.log; fail "build"; }
-
-model=$source/config/models/bench_twin.yaml
-says "19.99," examples/simulate_finger "$model"
-says "largest error" examples/invert_finger "$model"
-grep -Eq 'largest error [0-9.]+e-[0-9]+ mm' output.txt || { cat output.txt; fail "the inverse is not exact"; }
-says "RMSE of the last cycle: 0.0" examples/closed_loop "$model"
-says "20.0 kPa: ok, 4.0 mm" examples/board_driver
-
-"$softgrip" simulate --model "$model" --input tp1 --rate-hz 20 --noise-mm 0.05 --out one.csv >/dev/null
-"$softgrip" simulate --model "$model" --input tp2 --rate-hz 20 --noise-mm 0.05 --seed 2 --out other.csv >/dev/null
-# A file of another program: other column names, bar, semicolons.
-awk -F, 'BEGIN {print "Time [s];Pressure setpoint [bar];Displacement [mm]"}
-  NR > 1 {printf "%s;%.8f;%s\n", $1, $2 / 100, $3}' one.csv >external.csv
-says "transport_delay" examples/diagnose_csv external.csv report.html
-grep -q "<html" report.html || fail "no report"
-says "parameters differ" examples/compare_fingers one.csv other.csv
+run_examples examples "$build/tools/softgrip" "$build/daemon/softgripd"
 
 "$softgrip" baseline --data one.csv --model "$model" --out baseline >/dev/null
 mkdir recordings && cp one.csv recordings/

@@ -1,0 +1,29 @@
+#!/usr/bin/env bash
+# Installs the packages of scripts/package.sh, builds the C++ examples with the commands of docs/how-to/library-cpp.md, and runs
+# them and the Python examples. For a machine that has nothing else of softgrip, such as a chroot:
+#   scripts/chroot_test.sh bookworm bash tests/library/installed_examples.sh
+set -euo pipefail
+. "$(dirname "$0")/example_runs.sh"
+work=$(mktemp -d) && trap 'end_daemon; rm -rf "$work"' EXIT
+
+packages=(cmake make g++ python3-numpy)
+for name in softgrip libsoftgrip0 libsoftgrip-dev python3-softgrip; do
+  file=$(ls -t "$source/build/${name}"_*.deb 2>/dev/null | head -n 1)
+  [ -n "$file" ] || fail "no package $name in build; scripts/package.sh builds it"
+  packages+=("$file")
+done
+export DEBIAN_FRONTEND=noninteractive
+apt-get -q update >"$work/apt.log"
+apt-get -q install -y --no-install-recommends "${packages[@]}" >>"$work/apt.log" 2>&1 || { cat "$work/apt.log" >&2; fail "apt-get"; }
+
+cd "$work"
+# The block of the page that begins with the copy of the examples.
+sed -n '/^ *cp -r \/usr\/share\/doc\/libsoftgrip-dev/,/```/p' "$source/docs/how-to/library-cpp.md" | grep -v '```' >lines.sh
+[ "$(wc -l <lines.sh)" -eq 3 ] || fail "docs/how-to/library-cpp.md has no 3 lines that build the examples"
+bash -eu lines.sh >build.log 2>&1 || { cat build.log >&2; fail "build"; }
+run_examples build-examples softgrip "$(command -v softgripd)"
+
+mkdir -p installed/tools
+ln -s "$(command -v softgrip)" installed/tools/softgrip
+(cd "$source/tests/python" && SOFTGRIP_BUILD=$work/installed /usr/bin/python3 -m unittest test_examples)
+echo "the examples of C++ and Python ran with the installed packages"
