@@ -11,7 +11,7 @@ bash scripts/packages.sh build package
 cmake --preset release -DSOFTGRIP_PACKAGE_RELEASE="$revision" \
   -DCMAKE_INSTALL_LIBDIR="lib/$(dpkg-architecture -qDEB_HOST_MULTIARCH)" >/dev/null
 . scripts/build.sh
-build release softgripd softgrip softgrip-rig softgrip-plc softgrip-web libsoftgrip softgrip_python man_pages
+build release softgripd softgrip softgrip-rig softgrip-plc softgrip-web libsoftgrip softgrip_python man_pages completions
 mkdir -p "$out"
 log=$(mktemp) && trap 'rm -f "$log"' EXIT
 (cd build/release && cpack -B "$out" >"$log" 2>&1) || { cat "$log" >&2; exit 1; }
