@@ -100,8 +100,8 @@ const TickOutput& SimulatedRig::tick() {
   return output_;
 }
 
-/// Checks in every tick that each command is inside its pressure range and its slew limits, and moves away
-/// from rest only while a sequence may move it.
+/// Checks in every tick that each command is inside its pressure range and its slew limits, and that it moves
+/// away from the rest pressure only while a sequence may move the finger.
 void SimulatedRig::check_commands(const TickOutput& before) {
   constexpr double rounding = 1e-9;
   for (std::size_t i = 0; i < settings_.channels.size(); ++i) {

@@ -1,6 +1,6 @@
 #pragma once
-// A simulated rig for tests: two fingers of bench_twin behind a board without delay, an optional stone
-// between them, and all faults that the tests inject.
+// A simulated rig for tests: two fingers of the model bench_twin on a board without delay, an optional stone
+// between the fingers, and all faults that the tests inject.
 
 #include <array>
 #include <cstddef>
@@ -28,7 +28,7 @@ class SimulatedRig {
   /// Puts a stone at `position_mm`, which stops both fingers. With nullopt, the stone is pulled out at the
   /// speed of a hand.
   void stone(std::optional<double> position_mm);
-  bool stone_only_left = false;  ///< the right finger closes past it
+  bool stone_only_left = false;  ///< the stone stops only the left finger
   double yields = 0.1;           ///< the share of the free motion that remains beyond the stone
 
   // Faults. Each remains until the test resets it.
@@ -51,12 +51,13 @@ class SimulatedRig {
   };
   std::array<OfChannel, 2> fault;
 
-  /// Called with true immediately before and with false immediately after every RigController::tick.
+  /// Called with `begins` = true immediately before every RigController::tick and with false immediately
+  /// after it.
   void (*around_tick)(bool begins) = [](bool) {};
 
-  /// Sends a request for the next tick only.
+  /// Sends a request overrun cycles that the next tick reports.
   void request(Request::Kind kind, const PreparedSequence* sequence = nullptr);
-  /// Sends a request with the number that it contains.
+  /// Sends this request, with its own number, in the next tick.
   void request(const Request& request) { request_ = request; }
   /// Pauses the whole process for this duration.
   void pause(double seconds) { now_ += static_cast<Nanoseconds>(std::llround(seconds * 1e9)); }

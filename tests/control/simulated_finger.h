@@ -1,6 +1,6 @@
 #pragma once
-// A simulated finger with its own model. The model has a smaller time step than the controller, and the
-// finger is read and written like a board.
+// A simulated finger with its own model, which has a smaller time step than the controller. The finger is
+// read and written like a board.
 
 #include <cmath>
 #include <cstdint>

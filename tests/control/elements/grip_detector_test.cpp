@@ -37,7 +37,7 @@ TEST(EvidenceWindow, NeedsTheWholeWindow) {
   double verified_at = -1;
   for (int i = 0; verified_at < 0 && i < 1000; ++i) {
     const double t = i * tick_s;
-    const bool evidence = t > 0.5 || (i % 10 != 0);  // one gap every 50 ms at first
+    const bool evidence = t > 0.5 || (i % 10 != 0);  // for the first 0.5 s the evidence has a gap every 50 ms
     if (window.observe(t, true, evidence) == EvidenceWindow::Verdict::verified) {
       verified_at = t;
     }
@@ -108,7 +108,7 @@ model::Model perturbed(double share, std::uint64_t seed) {
   model::Model model = twin();
   for (model::BlockSpec& block : model.blocks) {
     for (double& value : block.values) {
-      value *= std::round(value) == value && value < 10 ? 1 : off(random);  // except the exponent
+      value *= std::round(value) == value && value < 10 ? 1 : off(random);  // the exponent remains unchanged
     }
   }
   return model;
@@ -131,7 +131,7 @@ double free_rmse_mm(const RigSettings& settings, const model::Model& truth) {
   return std::sqrt(sum / count);
 }
 
-/// With a margin of three times the RMSE of the model, as the rule requires, an inaccurate model causes no
+/// With the required detection margin of three times the RMSE of the model, an inaccurate model causes no
 /// wrong grip result.
 TEST(GripDetection, AMarginOfThreeTimesTheRmseIsEnoughForModelsThatAreOff) {
   double worst_mm = 0;

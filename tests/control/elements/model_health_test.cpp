@@ -107,7 +107,7 @@ TEST(ModelHealth, WhitenerGivesIndependentStandardNormalInnovations) {
 // correlated.
 TEST(ModelHealth, FalseAlarmsComeAtTheStatedRate) {
   ModelHealthSettings settings = short_intervals();
-  settings.false_alarm_interval_s = 100;  // 200 intervals: short, so that the test can count alarms
+  settings.false_alarm_interval_s = 100;  // 200 intervals, so that alarms are frequent enough to count
   settings.unfit_mm = 1e9;
   double seconds = 0;
   constexpr int runs = 1000;

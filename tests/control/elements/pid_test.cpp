@@ -20,8 +20,9 @@ struct Finger {
   void step(double command_kpa) { y_mm += (0.4 * command_kpa - y_mm) * -std::expm1(-tick_s / 0.3); }
 };
 
-// Returns the time [s] until the finger stays within 0.3 mm of a reachable reference. Before, the reference
-// is unreachable for `saturated_s`. The feedforward commands its share of both references.
+// Returns the time [s] that the finger needs to stay within 0.3 mm of a reachable reference after an
+// unreachable reference of the duration `saturated_s`. The feedforward commands `feedforward_share` of the
+// settled pressure of either reference.
 double recovery_s(AntiWindup anti_windup, double feedforward_share, double saturated_s,
                   const LimitSettings& limits) {
   PidSettings settings = typical;

@@ -85,8 +85,8 @@ TEST(ActuatorInverse, FollowedByTheChainItIsTheIdentity) {
   EXPECT_GT(highest, 15) << "the reference is too easy";
 }
 
-// Solves for all exponents and branch counts, from random states, upwards and downwards, with small and large
-// steps.
+// Solves for the pressure with all exponents and branch counts, from random states, in both directions, with
+// small and large steps.
 TEST(ActuatorInverse, SolvesFromRandomStates) {
   const unsigned seed = 99;
   SCOPED_TRACE(::testing::Message() << "seed " << seed);
@@ -114,8 +114,8 @@ TEST(ActuatorInverse, SolvesFromRandomStates) {
   }
 }
 
-// Stops and nonlinear gains, at which a step along the slope overshoots: a stop, a curvature of either sign,
-// and a soft section between them.
+// Tests fingers on which a step along the slope overshoots the solution: a stop, a curvature of either sign,
+// and a soft section.
 TEST(ActuatorInverse, SolvesAcrossKinksFromRandomStates) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> pressure(0, 60), curvature(-4, 4), place(0, 12);

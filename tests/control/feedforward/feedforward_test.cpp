@@ -104,7 +104,7 @@ TEST(FullModelFeedforward, WithoutALagTheHoldsHalfSampleIsCompensated) {
   EXPECT_LT(run.worst_mm, 0.02);
 }
 
-// Filling and venting have different lags, before and behind the pressure sensor.
+// Filling and venting have different lags upstream and downstream of the pressure sensor.
 TEST(FullModelFeedforward, TracksThroughLagsThatDifferByDirection) {
   model::Model model = model::without_block(model_named("bench_twin"), *model::find_block("valve_lag"));
   model =
@@ -135,7 +135,8 @@ TEST(FullModelFeedforward, TracksThroughADeadBandAndARegulator) {
   EXPECT_LT(run.worst_mm, 0.01);
 }
 
-// The openings, the integral and the dead band start in the state in which the earlier commands left them.
+// The valve openings, the integral of the regulator and the dead band start in the state that the earlier
+// commands have produced.
 TEST(FullModelFeedforward, TakesOverARegulatorAndADeadBandAsTheyStand) {
   const model::Model model = regulated_twin();
   RunningModel running(model, tick_s, 0, 0.1);
@@ -327,7 +328,7 @@ struct Follower {
 };
 
 // If one part of the finger follows the pressure at once and another part creeps, the part that needs less
-// pressure performs the jump. Without creep, the elastic part performs it.
+// pressure performs the jump. In a finger without creep, the elastic part performs the jump.
 TEST(FullModelFeedforward, AJumpTakesAsLongAsTheEasierWayThere) {
   const model::Model twin = model_named("bench_twin");
   struct Case {
@@ -349,7 +350,8 @@ TEST(FullModelFeedforward, AJumpTakesAsLongAsTheEasierWayThere) {
   }
 }
 
-// The finger continues its motion and turns to the new reference from there.
+// After a displacement of the finger during a motion, the command has no kick. The finger continues its
+// motion and turns from it towards the reference.
 TEST(FullModelFeedforward, AJumpInMotionDoesNotKick) {
   Reference reference;
   reference.start(0, 0);

@@ -70,7 +70,7 @@ TEST(Invertibility, PlaysAreAcceptedAsAWholeAlone) {
       "the inverse of the complete chain");
 }
 
-// Within their thresholds, plays do not move. Only creep moves the finger there.
+// A play does not move while the input stays within its threshold. There, only creep moves the finger.
 TEST(Invertibility, PlaysWithoutAnElasticPartAreRefused) {
   const model::Model creep =
       model::with_block({}, {model::block_type<model::KelvinVoigt>(), {1e9, 40, 20, 40, 200}});

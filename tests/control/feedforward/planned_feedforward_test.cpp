@@ -1,5 +1,5 @@
-// Tests the feedforward that follows a plan: on the plan, off the plan, without a plan, and at each change
-// between them.
+// Tests the planned feedforward: with the finger on its plan, with the finger off its plan, without a plan,
+// and at each change between these cases.
 
 #include <gtest/gtest.h>
 
@@ -43,12 +43,13 @@ class PlannedFeedforwardTest : public testing::Test {
     query_.time_s += tick_s;
     return result;
   }
-  /// Returns the step after `duration_s` more.
+  /// Runs ticks for `duration_s` and returns the step of the last tick.
   FeedforwardStep step_for(double duration_s) {
     for (int i = 0; i + 1 < std::lround(duration_s / tick_s); ++i) (void)step();
     return step();
   }
-  /// Returns the planned command for now: the plan's value the dead time plus half a tick ahead.
+  /// Returns the planned command for the present time, which is the plan's value after the dead time plus
+  /// half a tick.
   [[nodiscard]] double on_plan(const PressurePlan& plan) const {
     return plan.at(query_.time_s - query_.plan_origin_s + plan_ahead_s(model_, planned, tick_s));
   }
@@ -122,8 +123,8 @@ TEST_F(PlannedFeedforwardTest, NoChangeOfItsSourceIsAStep) {
   }
 }
 
-// At a jump of the reference, a rounding error of the time may place one clock behind the jump and the other
-// before it.
+// Near a jump of the reference, a rounding error of the time may place the time of the plan and the time of
+// the sequence on different sides of the jump.
 TEST_F(PlannedFeedforwardTest, ClocksThatDifferByARoundingFollowTheSamePlan) {
   for (const double rounding_s : {-1e-9, 0.0, 1e-9}) {
     SCOPED_TRACE(rounding_s);

@@ -61,7 +61,7 @@ TEST(RegulatorInverse, AsksForNoMoreThanAPortOpens) {
   EXPECT_NEAR(held(valve, 100), reached_kpa, 1e-9) << "no command moves the pressure further";
 }
 
-// If the pressure need not change, a command that jumps from one edge of the overlap to the other is only
+// While the pressure stays constant, a command that jumps between the edges of the overlap would be useless
 // noise.
 TEST(RegulatorInverse, APressureThatStandsDoesNotHaveTheOverlapPassed) {
   const RegulatorInverse inverse(model::RegulatedPressure<double>(usual), tick_s);

@@ -18,7 +18,7 @@ double smooth_kpa(int tick) {
   return 15 - 15 * std::cos(1.3 * tick * tick_s);
 }
 
-// The command rises at a usual slew limit, then changes smoothly.
+// Returns a command that rises at a usual slew limit and then changes smoothly.
 double slewed_kpa(int tick) {
   const double t = tick * tick_s;
   if (t < 1.5) return std::clamp(400 * (t - 0.5), 0.0, 30.0);

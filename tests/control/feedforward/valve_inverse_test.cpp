@@ -30,7 +30,7 @@ const model::BlockSpec regulator =
 
 model::Model valve_with(std::initializer_list<model::BlockSpec> blocks) {
   model::Model model;
-  model.blocks = blocks;  // in this order
+  model.blocks = blocks;  // the order of the blocks is part of the test
   return model;
 }
 

@@ -73,9 +73,8 @@ TEST(Planner, FollowsThePublishedModelWhichHasNone) {
   EXPECT_LT(worst_mm(published, plan, reference, 0.5), 0.1);
 }
 
-// The reference is between 11 and 19 mm. On a sine down to 6 mm the search ends with errors of up to 1.8 mm,
-// in part because even a full vent passes below the reference. If the plays are replaced by an elastic gain,
-// it does not.
+// The reference stays between 11 and 19 mm. For a sine that goes down to 6 mm the search ends with errors of
+// up to 1.8 mm, but not if the plays are replaced by an elastic gain.
 TEST(Planner, FollowsAMeasuredArmOfPlaysWhereItUnloadsLittle) {
   LimitSettings wide = limits;
   wide.pressure_max_kpa = 110;
@@ -104,8 +103,8 @@ TEST(Planner, DoesNotComeToRestAtACorner) {
 }
 
 /// The settled gain includes creep that takes hours and is three times the gain within a motion. A command in
-/// proportion to the settled gain is therefore a third of the required command. From there the search did not
-/// converge at the corners of this friction.
+/// proportion to the settled gain is therefore a third of the required command. A search that started from
+/// this command did not converge at the corners that this friction causes.
 TEST(Planner, IsNotMisledByTheGainOfCreepThatTakesHours) {
   model::Model finger = model::with_block({}, {*model::find_block("asymmetric_valve_lag"), {0.0374, 0.0374}});
   finger = model::with_block(std::move(finger), {*model::find_block("prandtl_ishlinskii"),
@@ -140,8 +139,8 @@ TEST(Planner, StaysWithinPressureAndSlew) {
   }
 }
 
-// The reference is out of reach for a while. This must not disturb the plan after it, and the plan must
-// prepare for it in advance.
+// The reference is out of reach for some time. The plan must prepare for this section in advance, and the
+// section must not disturb the rest of the plan.
 TEST(Planner, UsesItsForesightWhereTheSlewIsShort) {
   LimitSettings slow = limits;
   slow.slew_up_kpa_per_s = 30;
@@ -220,7 +219,7 @@ double processor_time_s(const std::function<void()>& work) {
 
 // The duration is counted in simulations of the model over the same motion at 1 ms, measured in the same run.
 // So the speed and the load of the machine do not matter. Today's counts are 350, 1,650 and 3,350. If a step
-// of the last model takes 29 ns, planning it takes one second per ten seconds of motion.
+// of the third model takes 29 ns, planning for this model takes 1 s per 10 s of motion.
 TEST(Planner, TakesLessThanFourThousandSimulationsOfTheMotion) {
   LimitSettings narrow = limits;
   narrow.pressure_max_kpa = 30;

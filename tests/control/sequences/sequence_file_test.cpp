@@ -20,7 +20,7 @@ std::optional<Sequence> read(const std::string& text, document::Problems& proble
   return read_sequence(document, problems);
 }
 
-/// A sequence of one step, given as flow text.
+/// Returns a sequence of one step, which is given as YAML flow text.
 std::string with_step(const std::string& step) {
   return "name: x\nsteps:\n  - " + step + "\n";
 }
@@ -115,7 +115,7 @@ steps:
   EXPECT_EQ(sequence->steps[5].profile.cycles, 2U);
 }
 
-/// A pressure step of `count` points, 1 s apart.
+/// Returns a pressure step of `count` points at intervals of 1 s.
 std::string with_points(int count) {
   std::string points;
   for (int i = 0; i < count; ++i) {

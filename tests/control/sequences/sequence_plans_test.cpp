@@ -1,5 +1,5 @@
-// Tests planned feedforward from the sequence to the control loop: the plans of a prepared sequence, and how
-// the rig follows them with and without disturbances.
+// Tests the planned feedforward from the sequence to the control loop: checks the plans of a prepared
+// sequence and the motion of the rig along them, with and without disturbances.
 
 #include "control/sequences/sequence_plans.h"
 #include "control/sequences/prepare_sequence.h"
@@ -268,7 +268,8 @@ TEST(SequencePlans, EveryGripHasItsAnswer) {
   }
 }
 
-/// The largest change of a command between two ticks while `running`, and the largest error at the end.
+/// The largest change of a command between two ticks while the sequence runs, and the largest error at its
+/// end.
 struct Motion {
   double jump_kpa = 0;
   double worst_mm = 0;  ///< largest |reference - finger|
@@ -293,8 +294,8 @@ steps:
   - move: {displacement_mm: 15, duration_s: 3, settle_s: 3}
 )";
 
-// The zero of the sensor is off by 1.5 mm. The plan assumes no offset, so the feedforward must correct it
-// by 1.5 mm.
+// The zero of the sensor is off by 1.5 mm. The plan assumes a sensor without offset, so the feedforward must
+// correct the planned motion by 1.5 mm.
 TEST(SequencePlans, AFingerThatStandsOffItsModelArrivesAllTheSame) {
   for (const char* model : {"zhang2025", "bench_twin"}) {
     SCOPED_TRACE(model);
@@ -312,7 +313,7 @@ TEST(SequencePlans, AFingerThatStandsOffItsModelArrivesAllTheSame) {
   }
 }
 
-/// Stops a sequence half way, which leaves the finger inflated, and starts the next sequence from there.
+/// Stops a sequence half way, which leaves the finger inflated, and starts the next sequence from this state.
 Motion from_half_way(RigSettings settings, const char* truth) {
   settings.safety.safe_action.fill(SafeAction::hold);
   const PreparedSequence move = sequence_of(slow_move, settings);

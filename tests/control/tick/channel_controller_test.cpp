@@ -28,7 +28,7 @@ class Rig {
     exchange();
   }
 
-  /// Runs one tick with the current demand; the exchange follows at once, as on a rig.
+  /// Runs one tick with the current demand. The exchange follows immediately, as on a rig.
   ChannelOutput tick() {
     now += tick_ns;
     input.now = now;

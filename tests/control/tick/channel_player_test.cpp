@@ -1,4 +1,5 @@
-// The demand of one channel in the tick in which a step begins, before any of the step has been played.
+// Tests the demand of one channel in the tick in which a step begins, when no part of the step has been
+// played.
 
 #include "control/tick/channel_player.h"
 
@@ -22,7 +23,7 @@ Step step_of(StepKind kind) {
   return step;
 }
 
-/// The output of a channel whose finger has a displacement shortfall of `shortfall_mm` from its free motion.
+/// Returns the output of a channel whose finger is `shortfall_mm` behind its free motion.
 ChannelOutput short_by(double shortfall_mm) {
   ChannelOutput seen;
   seen.validity = model::Validity::valid;
@@ -31,7 +32,7 @@ ChannelOutput short_by(double shortfall_mm) {
   return seen;
 }
 
-/// A player whose finger touches a part and has no grip result yet.
+/// Returns a player whose finger touches a part and has no grip result yet.
 ChannelPlayer touching(const Step& closing) {
   ChannelPlayer player(traits);
   player.reset();
@@ -54,8 +55,8 @@ TEST(ChannelPlayer, AProfileBeginsWithItsFirstPressure) {
   EXPECT_EQ(player.demand(7.25).pressure_kpa, 21);
 }
 
-// Integral feedback against a part would increase the gripping pressure, so it is held. If no part is to be
-// gripped or held, it must continue.
+// Integral feedback against a part would increase the gripping pressure, so the integral is held. In steps
+// that neither grip nor hold a part, the feedback must continue.
 TEST(ChannelPlayer, FeedbackIsHeldByATouchOnlyWhileSomethingIsGrippedOrHeld) {
   const Step grip = step_of(StepKind::grip);
   for (const StepKind kind : {StepKind::move, StepKind::grip, StepKind::hold, StepKind::release,
@@ -78,7 +79,7 @@ TEST(ChannelPlayer, FeedbackIsHeldByATouchOnlyWhileSomethingIsGrippedOrHeld) {
   }
 }
 
-/// The output of a channel whose finger touches a part under this command.
+/// Returns the output of a channel whose finger touches a part under this command.
 ChannelOutput touching_under(double command_kpa, double free_kpa) {
   ChannelOutput seen = short_by(2);
   seen.command_kpa = command_kpa;

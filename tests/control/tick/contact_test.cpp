@@ -1,4 +1,4 @@
-// Gentle grips: how a finger behaves in contact. Its gripping pressure never exceeds the limit of its step.
+// Tests how a finger behaves in contact. Its gripping pressure never exceeds the limit of the step.
 
 #include <gtest/gtest.h>
 
@@ -147,7 +147,8 @@ TEST_F(ContactTest, AMoveMayPressOnAndIsBoundedByItsPressure) {
   EXPECT_GE(rig.count(Event::Kind::limit_binds), 1U) << "the limit is active for a longer time";
 }
 
-// One line for each limit of the rig file and of a step. Each is reported if it lasts.
+// Each limit of the rig file and of a step is reported as an event if it is active for a longer time. The
+// table has one row per limit.
 TEST_F(ContactTest, EveryLimitThatLastsIsAnEvent) {
   const auto told = [](const SimulatedRig& rig) {
     std::set<std::string> names;

@@ -1,5 +1,5 @@
-// Injects every fault in every phase. Each latches within its bound, the outputs take the configured action,
-// and no motion restarts by itself.
+// Injects every fault in every phase. Each fault must latch within its time limit, the outputs must take the
+// configured safe action, and no motion may restart by itself.
 
 #include <gtest/gtest.h>
 
@@ -91,7 +91,7 @@ const std::vector<PhaseCase> phase_cases{{"idle", Phase::idle, -1, 0.5},
                                          {"holding", Phase::holding, 2, 1.0},
                                          {"releasing", Phase::releasing, 3, 0.2}};
 
-/// Below its rest pressure the rig plays vacuum_grip, which has no approach phase.
+/// The phases of the sequence vacuum_grip, which moves below the rest pressure and has no approach phase.
 const std::vector<PhaseCase> vacuum_phases{{"idle", Phase::idle, -1, 0.5},
                                            {"evacuating", Phase::closing, 0, 0.4},
                                            {"gripping", Phase::closing, 0, 1.2},
@@ -248,7 +248,8 @@ TEST_F(SingleFault, AFrozenReadingIsFoundWhileTheCommandMoves) {
 }
 
 TEST_F(SingleFault, ABurstLineIsNoPart) {
-  // The finger is stopped as by a part. Without the check of the pressure, the result would be HOLDING.
+  // The reading stops as if the finger had met a part. If the pressure were not checked, the result would be
+  // HOLDING.
   SimulatedRig rig(settings);
   const PreparedSequence pick = example_sequence("pick_stone", settings);
   start(rig, pick);

@@ -1,4 +1,5 @@
-// The outputs can differ from the commands, and readings from before a gap are out of date.
+// Tests two cases: the outputs of the board differ from the commands, and a gap in the communication makes
+// the readings out of date.
 
 #include <gtest/gtest.h>
 

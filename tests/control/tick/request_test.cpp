@@ -1,5 +1,5 @@
-// Sends every request in every state: checks its effect, its refusals, and that it is answered in the same
-// tick.
+// Sends every request in every state and checks its effect, its refusals, and that the controller answers in
+// the same tick.
 
 #include <gtest/gtest.h>
 

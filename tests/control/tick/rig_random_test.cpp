@@ -1,5 +1,5 @@
-// The promises hold for random requests and faults. A failure prints its seed; set SOFTGRIP_SEED to this seed
-// to repeat it.
+// Tests that the invariants of the rig hold for random requests and faults. A failure prints its seed. To
+// repeat the failure, set SOFTGRIP_SEED to this seed.
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// The behaviour of a sequence if its steps fail, end at different times, or are many and short.
+// Tests sequences whose steps fail, end at different times for the fingers, or are many and short.
 
 #include "control/tick/sequence_player.h"
 

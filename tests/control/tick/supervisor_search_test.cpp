@@ -1,4 +1,4 @@
-// Visits every state of the supervisor, by all combinations of inputs of a tick.
+// Visits every reachable state of the supervisor by applying all combinations of the inputs of a tick.
 
 #include "control/tick/supervisor.h"
 
@@ -29,7 +29,7 @@ struct Tick {
   Phase phase = Phase::idle;
   Rest rest = Rest::pending;
   bool sequence_ends = false;  // after the tick, if a sequence runs
-  std::uint32_t of_start = 0;  // the start that a stop names
+  std::uint32_t of_start = 0;  // number of the start to which a stop request refers
 };
 
 constexpr std::uint32_t own_start = 2;

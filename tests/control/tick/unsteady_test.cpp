@@ -1,5 +1,5 @@
-// A sensor whose reading jumps back and forth is reported. It is a fault if the rig file requests this. A
-// sliding part is not reported.
+// Tests that a reading that jumps back and forth is reported, and that the rig file can make it a fault. A
+// sliding part must not be reported.
 
 #include <gtest/gtest.h>
 

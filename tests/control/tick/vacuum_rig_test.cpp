@@ -201,7 +201,8 @@ TEST_F(VacuumRig, ABoundBelowRestIsRefused) {
   EXPECT_EQ(bounded_by("0"), "");
 }
 
-/// The steps of the published sequence are above rest. A ceiling of a step must not evacuate a finger.
+/// The steps of the published sequence are above the rest pressure. The upper pressure limit of a step must
+/// not evacuate a finger.
 TEST_F(VacuumRig, StepsAboveRestWorkAsOnARigWithoutVacuum) {
   const PreparedSequence pick = example_sequence("pick_stone", settings);
   SimulatedRig rig(settings);

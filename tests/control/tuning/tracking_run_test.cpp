@@ -108,7 +108,7 @@ TEST(TrackingRun, OneSeedOneResult) {
   EXPECT_NE(first.rmse_mm, track(run).rmse_mm);
 }
 
-// The share of models with this scatter that are not called healthy. Compared with the rate that
+// Compares the share of models with this scatter that are not judged healthy with the rate that
 // model_health.h states.
 TEST(TrackingRun, ModelHealthToleratesAFewPercentAndNotTwenty) {
   const auto not_healthy = [](double scatter) {
@@ -131,8 +131,8 @@ TEST(TrackingRun, ModelHealthToleratesAFewPercentAndNotTwenty) {
   EXPECT_EQ(not_healthy(0.20), 23);
 }
 
-// For a plant 1/(c s) with a dead time and the gain K, |L| = 1 at K/c, where the phase is -90 degrees minus
-// that of the dead time.
+// For a plant 1/(c s) with a dead time and the controller gain K, |L| = 1 at the angular frequency K/c. The
+// phase there is -90 degrees minus the phase of the dead time.
 TEST(LoopMargins, AgreeWithAnIntegratorByHand) {
   model::Model model = model::without_block(model_named("bench_twin"), *model::find_block("bouc_wen"));
   model = model::without_block(model, *model::find_block("valve_lag"));

@@ -65,8 +65,8 @@ TEST(Tune, LessSensitivityCostsError) {
   EXPECT_GT(careful.rmse_mm, bold.rmse_mm);
 }
 
-// The text names the bound of the gains and the largest part of the error. Both must follow from the numbers
-// of the case.
+// The result text names what limits the gains and the largest part of the error. Both must agree with the
+// numbers of the case.
 TEST(Tune, SaysWhatLimitsItAndWhatTheErrorIs) {
   struct Case {
     const char* name;
