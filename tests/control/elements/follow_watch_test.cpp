@@ -20,9 +20,9 @@ bool held_after(double expected_mm, double share) {
 
 TEST(FollowWatch, WhatStaysIsHeldAndWhatGoesOnHasChanged) {
   EXPECT_TRUE(held_after(5, 0));
-  EXPECT_TRUE(held_after(5, 0.4)) << "a part that yields";
+  EXPECT_TRUE(held_after(5, 0.4)) << "the finger moves by only 40 % of the model's motion";
   EXPECT_FALSE(held_after(5, 0.7));
-  EXPECT_FALSE(held_after(-3, 0.7)) << "also downwards";
+  EXPECT_FALSE(held_after(-3, 0.7)) << "the finger follows enough, also on the way down";
 }
 
 TEST(FollowWatch, BeforeTheModelHasMovedNobodyKnows) {

@@ -72,7 +72,7 @@ TEST(JumpWatch, NoiseAndFastMotionAreNone) {
   Watched finger;
   EXPECT_FALSE(finger.run(
       20, [&](double) { return noise(random); }, [](double t) { return 15 + 15 * std::sin(12 * t); }))
-      << "up to 1.8 mm from one reading to the next, which the model explains";
+      << "successive readings differ by up to 1.8 mm, but the model predicts this motion";
 }
 
 TEST(JumpWatch, AFingerThatIsHeldWhileItsModelMovesDoesNotJump) {
@@ -99,7 +99,7 @@ TEST(JumpWatch, TheThresholdsAreTheSettings) {
     patient.observe(nanoseconds(t), square(t, 0.1), 0);
   }
   EXPECT_FALSE(coarse.unsteady());
-  EXPECT_FALSE(patient.unsteady()) << "ten jumps per second, not twelve";
+  EXPECT_FALSE(patient.unsteady()) << "10 jumps per second are fewer than the 12 that the settings require";
 }
 
 TEST(JumpWatch, ForgetsWhenReset) {

@@ -30,8 +30,9 @@ TEST(Limits, ACeilingIsKeptAndGoneToAtTheSlewLimit) {
   EXPECT_EQ(capped.command_kpa, 25);
   EXPECT_TRUE(capped.capped);
   EXPECT_FALSE(capped.saturated || capped.slewing);
-  EXPECT_DOUBLE_EQ(limit(typical, 30, 30, 0.005, 20).command_kpa, 28) << "down no faster than 400 kPa/s";
-  EXPECT_EQ(limit(typical, 30, 0, 1, -5).command_kpa, 0) << "never below the range";
+  EXPECT_DOUBLE_EQ(limit(typical, 30, 30, 0.005, 20).command_kpa, 28)
+      << "the command falls by at most 400 kPa/s";
+  EXPECT_EQ(limit(typical, 30, 0, 1, -5).command_kpa, 0) << "the command is never below the range";
   EXPECT_FALSE(limit(typical, 24, 20, 0.05, 25).capped);
 }
 
@@ -75,7 +76,7 @@ constexpr LimitSettings vacuum{-40, 60, 200, 400, -30, 25, 0.5, 0};
 TEST(Limits, RestIsZeroOrTheNearestEndOfTheRange) {
   LimitSettings limits = typical;
   EXPECT_EQ(resting_kpa(limits), 0);
-  EXPECT_EQ(resting_kpa(vacuum), 0) << "not full vacuum";
+  EXPECT_EQ(resting_kpa(vacuum), 0) << "the rest pressure is not the full vacuum";
   limits.pressure_min_kpa = 5;
   EXPECT_EQ(resting_kpa(limits), 5);
   limits.pressure_min_kpa = -80;
@@ -103,7 +104,8 @@ TEST(Limits, WithoutAUsableLastCommandItBeginsAtRest) {
 }
 
 TEST(Limits, ACeilingDoesNotEvacuate) {
-  EXPECT_EQ(limit(vacuum, 30, 1, 1, -20).command_kpa, 0) << "falls to rest, but not further";
+  EXPECT_EQ(limit(vacuum, 30, 1, 1, -20).command_kpa, 0)
+      << "the command falls to the rest pressure, but not below it";
   EXPECT_EQ(limit(vacuum, 30, -10, 1, -20).command_kpa, 0) << "the way back to rest is not limited";
   EXPECT_EQ(limit(vacuum, 0, -30, 1, -20).command_kpa, 0);
   EXPECT_FALSE(limit(vacuum, 0, -30, 1, -20).capped);

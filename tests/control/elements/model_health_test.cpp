@@ -142,7 +142,7 @@ TEST(ModelHealth, ACusumOfThePlainResidualWouldAlarmFarMoreOften) {
       ++intervals;
     }
   }
-  EXPECT_LT(intervals / 100, 200) << "the stated rate would give 2000 intervals";
+  EXPECT_LT(intervals / 100, 200) << "at the stated false-alarm rate the mean would be 2000 intervals";
 }
 
 TEST(ModelHealth, FindsAnAgeingFinger) {
@@ -172,7 +172,8 @@ TEST(ModelHealth, ALargeResidualIsUnfitAndSaysSoOnce) {
   EXPECT_EQ(changes, 1);
   EXPECT_NEAR(health.rms_mm(), 4, 1e-9);
   for (int i = 0; i < 1000; ++i) health.observe(2.5);
-  EXPECT_EQ(health.state(), HealthState::unfit) << "healthy again only below 0.7 of the bound";
+  EXPECT_EQ(health.state(), HealthState::unfit)
+      << "the model becomes healthy again only below 0.7 of the bound";
   for (int i = 0; i < 40000; ++i) health.observe(0);
   EXPECT_EQ(health.state(), HealthState::healthy);
 }

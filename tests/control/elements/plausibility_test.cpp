@@ -60,13 +60,13 @@ TEST(Plausibility, AnOldReadingIsStale) {
 TEST(Plausibility, AJumpIsNotBelievedUntilTheFingerCouldHaveMadeIt) {
   Channel channel;
   EXPECT_EQ(channel.next(5), Validity::valid);
-  EXPECT_EQ(channel.next(6.4), Validity::valid) << "200 mm/s for 5 ms plus the margin";
+  EXPECT_EQ(channel.next(6.4), Validity::valid) << "the allowed change is 200 mm/s for 5 ms plus the margin";
   EXPECT_EQ(channel.next(12), Validity::jumped);
   EXPECT_EQ(channel.next(6.4), Validity::valid) << "a single spike is not a fault";
   EXPECT_EQ(channel.next(12), Validity::jumped);
   int ticks = 1;
   while (channel.next(12) == Validity::jumped) ++ticks;
-  EXPECT_EQ(ticks, 5) << "5.1 mm at 200 mm/s take 25.5 ms";
+  EXPECT_EQ(ticks, 5) << "a motion of 5.1 mm at 200 mm/s takes 25.5 ms";
 }
 
 TEST(Plausibility, AFrozenReadingIsFoundOnlyWhileTheCommandMoves) {
@@ -76,7 +76,7 @@ TEST(Plausibility, AFrozenReadingIsFoundOnlyWhileTheCommandMoves) {
   Channel moving;
   int valid = 0;
   for (int i = 0; i < 200; ++i) valid += moving.next(5, 0.2 * i) == Validity::valid;
-  EXPECT_EQ(valid, 100) << "0.5 s in ticks of 5 ms";
+  EXPECT_EQ(valid, 100) << "a frozen reading is valid for 0.5 s, which are 100 ticks of 5 ms";
   EXPECT_EQ(moving.next(5.001, 40), Validity::valid) << "the reading moves again";
 }
 
@@ -90,10 +90,13 @@ TEST(Plausibility, ALivelySensorThatRepeatsItselfStandsStillAndIsFrozenWhereTheF
     for (int i = 0; i < 200; ++i) {
       moved_mm = std::min(3.0, 0.05 * i);
       valid += channel.next(5.005, 20, tick_ns, 5 + moved_mm) == Validity::valid;
-      EXPECT_FALSE(i < 10 && channel.judge.stands_still()) << "before 55 ms";
-      EXPECT_FALSE(i == 30 && channel.judge.stands_still() != lively) << "155 ms";
+      EXPECT_FALSE(i < 10 && channel.judge.stands_still())
+          << "within the first 50 ms no reading stands still";
+      EXPECT_FALSE(i == 30 && channel.judge.stands_still() != lively)
+          << "after 150 ms only the reading of a noisy sensor stands still";
     }
-    EXPECT_EQ(valid, lively ? 100 : 200) << "0.5 s in ticks of 5 ms";
+    EXPECT_EQ(valid, lively ? 100 : 200)
+        << "a frozen reading is valid for 0.5 s, which are 100 ticks of 5 ms";
     (void)channel.next(5.01, 20, tick_ns, 8);
     EXPECT_FALSE(channel.judge.stands_still());
   }

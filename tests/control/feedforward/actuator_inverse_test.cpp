@@ -164,7 +164,8 @@ TEST(ActuatorInverse, OutOfReachIsTheBoundAndNoWindUp) {
     }
     inverse.advance(solution.pressure_kpa);
     if (k >= 3000) {
-      ASSERT_NEAR(inverse.displacement_mm(), 5, 1e-9) << "immediately, from the true state";
+      ASSERT_NEAR(inverse.displacement_mm(), 5, 1e-9)
+          << "the inverse reaches the reference in the first tick because it starts from the true state";
     }
   }
   EXPECT_GT(out_of_reach, 1000);
@@ -193,11 +194,11 @@ TEST(ActuatorInverse, TheExplicitMultiplicativeInverseDiverges) {
   published.step(0.01);
   const double first = published.p_kpa;
   for (int k = 0; k < 5; ++k) published.step(0.01);
-  EXPECT_GT(published.p_kpa, std::pow(2.4, 5) * first) << "a steady reference of 0.01 mm";
+  EXPECT_GT(published.p_kpa, std::pow(2.4, 5) * first) << "the reference is constant at 0.01 mm";
   for (int k = 0; k < 34; ++k) published.step(0.01);
   EXPECT_GT(published.p_kpa, 50);
   for (int k = 0; k < 40; ++k) published.step(0.009);
-  EXPECT_FALSE(std::abs(published.p_kpa) < 1e6) << "1 um less";
+  EXPECT_FALSE(std::abs(published.p_kpa) < 1e6) << "the reference is 1 um lower";
 
   // For bench_twin beta/alpha = 0.81. The iteration converges, but by only a fifth of the remaining distance
   // per tick, so it lags on a ramp.

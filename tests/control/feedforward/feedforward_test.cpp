@@ -83,7 +83,7 @@ TEST(FullModelFeedforward, TracksAFingerThatIsTheModel) {
         run_alone(model_named("bench_twin"), {FeedforwardKind::full_model, 0}, sine_reference(frequency));
     EXPECT_LT(run.worst_mm, 2e-3) << frequency << " Hz";
     EXPECT_EQ(run.out_of_reach, 0) << frequency << " Hz";
-    EXPECT_LT(run.worst_step_kpa, 400 * tick_s) << "the motion that the slew limits allow";
+    EXPECT_LT(run.worst_step_kpa, 400 * tick_s) << "the command changes no faster than the slew limit";
   }
 }
 
@@ -281,7 +281,7 @@ TEST(FullModelFeedforward, AJumpOfTheReferenceDoesNotRing) {
       query.time_s = k * tick_s;
       const double planned = feedforward.step(query).pressure_kpa;
       ASSERT_LE(std::abs(planned - command), slew * tick_s * (1 + 1e-9))
-          << "the motion that the limits allow";
+          << "the command moves no further than the limits allow";
       command = planned;
       finger.step(0, command);
       finger.step(tick_s, command);
@@ -367,7 +367,7 @@ TEST(FullModelFeedforward, AJumpInMotionDoesNotKick) {
     before = last;
     last = command;
   }
-  EXPECT_LT(worst, 0.5) << "kPa: change of the command's step between two ticks";
+  EXPECT_LT(worst, 0.5) << "change [kPa] of the command's step between two ticks";
 }
 
 TEST(BoucWenFeedforward, InvertsTheElementAlone) {

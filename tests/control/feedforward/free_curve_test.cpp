@@ -46,7 +46,7 @@ TEST(FreeCurve, TheSqueezeForADeficitIsEnoughEverywhere) {
   for (double y_mm = 0; y_mm < 30; y_mm += 0.5) {
     EXPECT_LE(curve.command_kpa(y_mm + 1) - curve.command_kpa(y_mm), needed_kpa + 1e-9) << y_mm;
   }
-  EXPECT_LT(needed_kpa, 3) << "not more than required";
+  EXPECT_LT(needed_kpa, 3) << "the gripping pressure is not much larger than required";
 }
 
 TEST(FreeCurve, AModelThatDoesNotMoveNeedsTheLowestCommand) {
@@ -87,7 +87,7 @@ TEST(FreeCurve, WithoutAValveTheCommandIsThePressure) {
   for (double y_mm = 1; y_mm < 25; y_mm += 3) {
     EXPECT_EQ(bare.command_kpa(y_mm), bare.pressure_kpa(y_mm)) << y_mm;
     EXPECT_NEAR(bare.command_kpa(y_mm), valved.command_kpa(y_mm), 0.05)
-        << y_mm << " mm: at rest a lag has settled";
+        << y_mm << " mm: at rest, the lag of the valve has no effect";
   }
 }
 

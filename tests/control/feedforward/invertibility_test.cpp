@@ -174,7 +174,8 @@ TEST(Invertibility, WhatFullModelCannotUndoIsNamedWhereverItStands) {
     return not_undone(blocks) == "`new`";
   };
   for (const model::Inverse inverse : {implicit, lead, preview, play, bound, ignored}) {
-    EXPECT_FALSE(named(model::Station::sensor, inverse)) << "does not move the finger";
+    EXPECT_FALSE(named(model::Station::sensor, inverse))
+        << "a sensor block does not move the finger, so it needs no inverse";
     for (const model::Station station : {model::Station::actuator, model::Station::load}) {
       EXPECT_EQ(named(station, inverse), inverse != implicit && inverse != ignored);
     }

@@ -79,7 +79,7 @@ TEST_F(PlannedFeedforwardTest, GoesFromThePressureThatIsThereOverToItsPlan) {
     EXPECT_FALSE(now.out_of_reach);
     difference = left;
   }
-  EXPECT_NEAR(difference, 0, 1e-9) << "after " << fade_s << " s the command is on the plan";
+  EXPECT_NEAR(difference, 0, 1e-9) << "the command is on the plan after " << fade_s << " s";
 }
 
 TEST_F(PlannedFeedforwardTest, WhatTheFingerShowsMoreThanItsModelIsTakenOffAtTheSettledGain) {
@@ -153,7 +153,7 @@ TEST_F(PlannedFeedforwardTest, SaysWhatIsOutOfReach) {
   std::fill(plan.displacement_mm.begin(), plan.displacement_mm.end(), 5.19);
   EXPECT_FALSE(step().out_of_reach);
   std::fill(plan.displacement_mm.begin(), plan.displacement_mm.end(), 5.21);
-  EXPECT_TRUE(step().out_of_reach) << "the plan states the error of its model";
+  EXPECT_TRUE(step().out_of_reach) << "the error that the plan predicts is above the limit";
   query_.plan = nullptr;
   reference_.start(0, 25);
   query_.offset_mm = -10;

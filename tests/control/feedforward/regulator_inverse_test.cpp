@@ -38,7 +38,8 @@ TEST(RegulatorInverse, BringsThePressureWhereItIsWantedThroughOverlapAndIntegral
     furthest_kpa = std::max(furthest_kpa, std::abs(command_kpa - next_kpa));
   }
   EXPECT_LT(worst_kpa, 5e-3);
-  EXPECT_GT(furthest_kpa, 1) << "of the command that would suffice without lag, overlap and integral";
+  EXPECT_GT(furthest_kpa, 1)
+      << "the command must differ from the pressure to compensate lag, overlap and integral";
 }
 
 TEST(RegulatorInverse, GoesOnFromWhereTheRegulatorStands) {
@@ -58,7 +59,8 @@ TEST(RegulatorInverse, AsksForNoMoreThanAPortOpens) {
   EXPECT_LT(command_kpa, 1.5 * usual.full_open_kpa);
   const double reached_kpa = inverse.advance(command_kpa);
   EXPECT_LT(reached_kpa, 40);
-  EXPECT_NEAR(held(valve, 100), reached_kpa, 1e-9) << "no command moves the pressure further";
+  EXPECT_NEAR(held(valve, 100), reached_kpa, 1e-9)
+      << "even a command of 100 kPa moves the pressure no further in this tick";
 }
 
 // While the pressure stays constant, a command that jumps between the edges of the overlap would be useless

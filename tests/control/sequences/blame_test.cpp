@@ -50,7 +50,7 @@ TEST(Blame, StaysAtTheStepWhereItTakesSeveral) {
   std::vector<Parameter> values = two_parameters();
   document::Problems problems;
   blame_ends(three_lines(), values, judge, problems);
-  EXPECT_TRUE(problems.empty()) << "each end alone is valid: " << problems.format();
+  EXPECT_TRUE(problems.empty()) << "each limit of the range is valid by itself: " << problems.format();
   values[0].value = 9;
   values[1].value = 8;
   blame_values(three_lines(), values, judge, problems);

@@ -135,7 +135,7 @@ TEST(Planner, StaysWithinPressureAndSlew) {
       ASSERT_LE(change, 20 * plan.step_s + 1e-9);
       ASSERT_GE(change, -10 * plan.step_s - 1e-9);
     }
-    EXPECT_GT(plan.rmse_mm, 0.1) << name << " is out of reach";
+    EXPECT_GT(plan.rmse_mm, 0.1) << name << " cannot follow this reference";
   }
 }
 
@@ -152,8 +152,8 @@ TEST(Planner, UsesItsForesightWhereTheSlewIsShort) {
   (void)reference.hold_for(4);
   const PressurePlan plan = Planner(twin, slow, tick_s).plan(reference, 0, reference.end_s());
   const double before = plan.displacement_mm[static_cast<std::size_t>(std::lround(6.0 / plan.step_s))];
-  EXPECT_GT(before, 5.2) << "the plan moves before a step that is too fast for it";
-  EXPECT_LT(plan.miss_mm(9.5), 0.05) << "0.5 % of the step remains after 3.4 s";
+  EXPECT_GT(before, 5.2) << "the plan starts before the step because the slew limit is too low for the step";
+  EXPECT_LT(plan.miss_mm(9.5), 0.05) << "the error 3.4 s after the step is below 0.5 % of the step";
 }
 
 // The reference goes down to 0 mm faster than the creep recovers. No finger can follow it, so the lower
@@ -194,7 +194,7 @@ TEST(Planner, WhereNothingMovesTheFingerItTakesTheCalmerCommand) {
   Planner planner(dead, limits, tick_s);
   planner.drive([](double) { return 10.0; }, 1);
   const PressurePlan plan = planner.plan(reference, 0, 4);
-  ASSERT_NEAR(plan.rmse_mm, 1, 1e-9) << "the finger rests";
+  ASSERT_NEAR(plan.rmse_mm, 1, 1e-9) << "the finger does not move";
   std::vector<double> at_once(plan.pressure_kpa.size(), settled_line(dead, limits).pressure_kpa(1));
   at_once.front() = plan.pressure_kpa.front();
   EXPECT_LT(bend_of(plan.pressure_kpa), 0.9 * bend_of(at_once));

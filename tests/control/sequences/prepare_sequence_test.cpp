@@ -252,7 +252,7 @@ TEST(Prepare, ReleaseGoesForwardOnly) {
   for (std::size_t i = 0; i < 3; ++i) {
     EXPECT_EQ(pick.steps[i].release_step, 3U);
   }
-  EXPECT_EQ(pick.steps[3].release_step, 4U) << "nowhere";
+  EXPECT_EQ(pick.steps[3].release_step, 4U) << "no step follows the release step";
 }
 
 TEST(Prepare, WhatAParameterBreaksIsToldAtTheParameter) {

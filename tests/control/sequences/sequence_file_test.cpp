@@ -68,7 +68,7 @@ steps:
   EXPECT_EQ(steps[4].bounds.squeeze_max_kpa, 3);
   EXPECT_EQ(steps[5].on_contact, OnContact::grip);
   EXPECT_EQ(steps[6].on_contact, OnContact::hold);
-  EXPECT_EQ(steps[7].on_contact, OnContact::ignore) << "experiments continue";
+  EXPECT_EQ(steps[7].on_contact, OnContact::ignore) << "an experiment continues at a contact";
 }
 
 TEST(SequenceFile, EveryKeyArrives) {

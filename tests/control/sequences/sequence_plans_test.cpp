@@ -83,7 +83,7 @@ TEST(SequencePlans, EveryMoveToADisplacementHasOneWithinTheLimits) {
     const PreparedSequence pick = example_sequence("pick_stone", settings);
     ASSERT_EQ(pick.steps.size(), 4U);
     EXPECT_EQ(pick.steps[2].plan_of(0), nullptr) << "a hold continues the plan of the grip";
-    EXPECT_EQ(pick.steps[3].plan_of(0), nullptr) << "a release by pressure";
+    EXPECT_EQ(pick.steps[3].plan_of(0), nullptr) << "a release by pressure has no plan";
     for (const std::size_t k : {0U, 1U}) {
       const PressurePlan* plan = pick.steps[k].plan_of(0);
       ASSERT_NE(plan, nullptr);
@@ -98,7 +98,7 @@ TEST(SequencePlans, EveryMoveToADisplacementHasOneWithinTheLimits) {
     }
     const double grip_to_end_s = pick.steps[1].plan_of(0)->step_s *
                                  static_cast<double>(pick.steps[1].plan_of(0)->pressure_kpa.size() - 1);
-    EXPECT_GT(grip_to_end_s, 5) << "during the hold";
+    EXPECT_GT(grip_to_end_s, 5) << "the plan of the grip lasts until the end of the hold";
   }
 }
 
@@ -307,7 +307,8 @@ TEST(SequencePlans, AFingerThatStandsOffItsModelArrivesAllTheSame) {
     rig.request(Request::Kind::start, &move);
     ASSERT_TRUE(rig.run_until(State::running, 12));
     const Motion motion = watch(rig, 5);
-    EXPECT_LT(motion.jump_kpa, 0.5) << "only noise and motion";
+    EXPECT_LT(motion.jump_kpa, 0.5)
+        << "the command has no larger step than noise and the planned motion cause";
     EXPECT_LT(motion.worst_mm, 1.5 + 0.8);
     EXPECT_NEAR(rig.plant_mm(0) + 1.5, 15, 0.15);
   }
@@ -340,7 +341,8 @@ TEST(SequencePlans, AStartFromAnotherDisplacementIsBumplessAndBetterThanPidAlone
     const PidSettings& gains = model[0] == 'z' ? for_pid_alone : twin_gains;
     const Motion alone = from_half_way(rig_with(model, FeedforwardKind::none, gains), model);
     std::printf("%s: worst %.2f mm, with PID alone %.2f mm\n", model, planned.worst_mm, alone.worst_mm);
-    EXPECT_LT(planned.jump_kpa, 0.5) << "only noise and motion";
+    EXPECT_LT(planned.jump_kpa, 0.5)
+        << "the command has no larger step than noise and the planned motion cause";
     EXPECT_LT(planned.worst_mm, alone.worst_mm);
   }
 }
@@ -372,7 +374,8 @@ TEST(PlannedFeedforward, WithoutAPlanItFollowsAtTheSettledGainFromWhereItIs) {
   (void)reference.ramp_for(15, 2);
   FeedforwardQuery query{&reference, 0, 0, nullptr, 0};
   feedforward.enter(running, query, 30);
-  EXPECT_NEAR(feedforward.step(query).pressure_kpa, 30, 1e-9) << "from its present position";
+  EXPECT_NEAR(feedforward.step(query).pressure_kpa, 30, 1e-9)
+      << "the first command equals the present pressure";
   double last = 30;
   for (int k = 1; k < 1000; ++k) {
     query.time_s = k * sim::tick_s;

@@ -129,7 +129,8 @@ TEST(ChannelController, EveryChangeOfModeIsBumpless) {
   reference.start(rig.time_s(), rig.last.displacement_mm);
   rig.track(reference);
   rig.tick();
-  EXPECT_NEAR(rig.last.command_kpa, before, 1e-9) << "from pressure to displacement while the finger creeps";
+  EXPECT_NEAR(rig.last.command_kpa, before, 1e-9)
+      << "the change from pressure mode to displacement mode causes no step although the finger creeps";
   expect_smooth("after the start of tracking");
   EXPECT_TRUE(reference.ramp_to(15, 10));
   rig.run(0.4);
@@ -143,7 +144,8 @@ TEST(ChannelController, EveryChangeOfModeIsBumpless) {
   reference.start(rig.time_s(), rig.last.displacement_mm);
   rig.track(reference);
   rig.tick();
-  EXPECT_NEAR(rig.last.command_kpa, before, 1e-9) << "from hold to displacement";
+  EXPECT_NEAR(rig.last.command_kpa, before, 1e-9)
+      << "the change from hold to displacement mode causes no step";
   expect_smooth("after hold");
 }
 

@@ -67,12 +67,12 @@ TEST(ChannelPlayer, FeedbackIsHeldByATouchOnlyWhileSomethingIsGrippedOrHeld) {
 
     ChannelPlayer player = touching(grip);
     player.begin(next, nullptr, 1, short_by(2));
-    EXPECT_EQ(player.demand(1).feedback_held, closing) << "touching";
+    EXPECT_EQ(player.demand(1).feedback_held, closing) << "the finger touches a part";
 
     player = touching(grip);
     player.answer_holding(0.02);
     player.begin(next, nullptr, 1, short_by(2));
-    EXPECT_TRUE(player.demand(1).feedback_held) << "holding";
+    EXPECT_TRUE(player.demand(1).feedback_held) << "the finger holds a part";
 
     (void)player.tick(1.01, short_by(0));
     EXPECT_FALSE(player.demand(1.01).feedback_held) << "the contact has ended";
@@ -95,10 +95,10 @@ TEST(ChannelPlayer, ATouchCountsFromRestUpward) {
   player.reset();
   player.begin(move, nullptr, 0, touching_under(-20, -25));
   for (int i = 1; i <= 20; ++i) (void)player.tick(0.01 * i, touching_under(-20 + i, -25));
-  EXPECT_FALSE(player.stopped_by_contact()) << "rising to rest";
+  EXPECT_FALSE(player.stopped_by_contact()) << "the pressure is still below rest";
   EXPECT_EQ(player.take_contact(), std::nullopt);
   for (int i = 21; i <= 24; ++i) (void)player.tick(0.01 * i, touching_under(-20 + i, 1));
-  EXPECT_TRUE(player.stopped_by_contact()) << "above rest";
+  EXPECT_TRUE(player.stopped_by_contact()) << "the pressure is above rest";
   EXPECT_EQ(player.take_contact(), OnContact::hold);
 }
 

@@ -91,7 +91,7 @@ TEST_F(ContactTest, AMoveStaysWithItsFirstTouchUnlessToldOtherwise) {
   EXPECT_EQ(contacts(rig, OnContact::hold), 2U) << "one contact per finger";
   rig.run(3);
   EXPECT_LT(squeeze_kpa(rig), curve.squeeze_for_kpa(settings.detection.margin_mm) + 1.5)
-      << "the excess pressure is taken back";
+      << "the pressure above the contact pressure is removed";
   EXPECT_GT(squeeze_kpa(rig), 0.5) << "the contact remains";
   EXPECT_EQ(rig.count(Event::Kind::fault_latched), 0U);
 }
@@ -144,7 +144,7 @@ TEST_F(ContactTest, AMoveMayPressOnAndIsBoundedByItsPressure) {
   }
   EXPECT_NEAR(most, 25, 1e-9);
   EXPECT_EQ(contacts(rig, OnContact::ignore), 2U);
-  EXPECT_GE(rig.count(Event::Kind::limit_binds), 1U) << "the limit is active for a longer time";
+  EXPECT_GE(rig.count(Event::Kind::limit_binds), 1U) << "the limit is active long enough to be reported";
 }
 
 // Each limit of the rig file and of a step is reported as an event if it is active for a longer time. The
@@ -262,7 +262,8 @@ TEST_F(ContactTest, WhatSlipsAwayIsSearchedForAndNotChased) {
     most_mm = std::max(most_mm, rig.plant_mm(0));
   }
   EXPECT_EQ(rig.result(0), GripResult::no_part);
-  EXPECT_LT(most_mm, pick.steps[1].step.target.value + 1) << "not further than the step requests";
+  EXPECT_LT(most_mm, pick.steps[1].step.target.value + 1)
+      << "the finger moves no further than the step requests";
 }
 
 TEST_F(ContactTest, TheBoundHoldsWhileAHeldPartCreeps) {

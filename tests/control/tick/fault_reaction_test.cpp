@@ -139,7 +139,7 @@ TEST_P(FaultReaction, LatchesActsAndStaysUntilAcknowledged) {
   EXPECT_LE(cycles, fault.bound_cycles);
   EXPECT_EQ(rig.output().first_fault.code, fault.code);
   const double at_latch_kpa = rig.output().channels[0].command_kpa;
-  EXPECT_NEAR(at_latch_kpa, before_kpa, 10) << "at most a few cycles of motion";
+  EXPECT_NEAR(at_latch_kpa, before_kpa, 10) << "the command moved for a few cycles at most";
   if (phase.step >= 0) {
     EXPECT_EQ(rig.result(0), GripResult::error);
   }
@@ -224,7 +224,7 @@ TEST_F(SingleFault, CyclesAreCountedOneByOne) {
   EXPECT_EQ(
       ticks_until_fault([](SimulatedRig& rig) { rig.fault[0].validity = model::Validity::sensor_error; }),
       settings.faults.invalid_reading_cycles + 1)
-      << "a reading after a tick is used in the next tick";
+      << "the tick uses the reading of the previous tick";
 }
 
 // A single correct readback resets the count of deviations to 0.
@@ -270,7 +270,8 @@ TEST_F(SingleFault, AFingerThatStillHasPressureAtTheStartIsGivenTimeToDeflate) {
   rig.run(1);
   EXPECT_EQ(rig.output().state, State::idle);
   rig.run(1);
-  EXPECT_EQ(rig.output().first_fault.code, FaultCode::pressure_not_followed) << "only for a limited time";
+  EXPECT_EQ(rig.output().first_fault.code, FaultCode::pressure_not_followed)
+      << "the time to deflate after the start is limited";
 }
 
 TEST_F(SingleFault, AStutteringWireDoesNotHideABurstLine) {
@@ -350,7 +351,7 @@ TEST_F(SingleFault, TheFirstFaultIsKeptAndLaterOnesAreTold) {
   rig.fault[0].validity = model::Validity::sensor_error;
   ASSERT_TRUE(rig.run_until(State::faulted, 1));
   rig.run(0.5);
-  EXPECT_GT(rig.board_kpa(0), 20) << "held, as the settings state";
+  EXPECT_GT(rig.board_kpa(0), 20) << "the settings require that this fault holds the pressure";
   rig.emergency_stop = true;
   rig.run(1);
   EXPECT_EQ(rig.output().first_fault.code, FaultCode::sensor_error);
@@ -407,7 +408,7 @@ TEST_F(SingleFault, AHoldSurvivesAReconnectionOnlyWhereTheBoardHoldsToo) {
     rig.run(2);
     EXPECT_NEAR(rig.board_kpa(0), at_reconnection_kpa, 1) << "a reconnection moves no finger";
     EXPECT_EQ(rig.count(Event::Kind::fault_latched), 1U)
-        << "old readings after a bus fault are no further fault";
+        << "readings that became old during a bus fault are not a second fault";
   }
 }
 

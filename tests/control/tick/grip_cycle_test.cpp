@@ -272,7 +272,8 @@ steps:
     }
   }
   ASSERT_EQ(begun_s.size(), 2U);
-  EXPECT_GT(begun_s[1] - low_since_s, 0.7) << "settle_s at the start pressure";
+  EXPECT_GT(begun_s[1] - low_since_s, 0.7)
+      << "the finger settles for settle_s at the start pressure before it tries again";
 }
 
 TEST_F(GripCycle, AFingerThatCannotArriveEndsWithErrorAtTheTimeout) {

@@ -74,7 +74,7 @@ TEST_F(HealthInFreeMotionTest, NorDoesOneThatAFaultLeavesThere) {
   rig.request(Request::Kind::acknowledge);
   ASSERT_TRUE(rig.run_until(State::idle, 1));
   ASSERT_GT(rig.output().channels[0].command_kpa, 5) << "the finger is still held";
-  ASSERT_NE(rig.result(0), GripResult::holding) << "although no grip result reports this";
+  ASSERT_NE(rig.result(0), GripResult::holding) << "no grip result reports the held finger";
   rig.run(30);
   EXPECT_FALSE(unfit(rig));
 }

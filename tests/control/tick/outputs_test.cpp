@@ -34,7 +34,7 @@ TEST_F(Outputs, ACommandThatNeverReachedTheBoardIsForgottenWithItsSequence) {
   EXPECT_DOUBLE_EQ(command(rig), last_kpa - 0.5);
   const double fall_kpa = settings.channels[1].limits.slew_down_kpa_per_s / settings.rate_hz;
   EXPECT_GE(rig.output().channels[1].command_kpa, last_kpa - 2 * fall_kpa)
-      << "a command in flight may still be written";
+      << "a command that was already sent may still be written";
   rig.run(1);
   EXPECT_DOUBLE_EQ(command(rig), last_kpa - 0.5);
   EXPECT_DOUBLE_EQ(rig.output().channels[1].command_kpa, 0.5);
@@ -60,7 +60,7 @@ TEST_F(Outputs, WhatTheBusHasTakenBackIsGoneAtOnceAndStaysSo) {
     EXPECT_EQ(rig.output().state, State::faulted);
     EXPECT_EQ(rig.output().first_fault.code, said);
     EXPECT_EQ(command(rig), 0);
-    EXPECT_EQ(rig.output().channels[0].safe_kpa, 0) << "the safe outputs of a silent loop";
+    EXPECT_EQ(rig.output().channels[0].safe_kpa, 0) << "the bus must write 0 kPa if the loop falls silent";
     rig.bus_fault = FaultCode::none;
     rig.outputs_kpa.clear();
     rig.run(0.5);

@@ -154,7 +154,7 @@ TEST_F(Requests, AStopOfOneStartEndsThatOneAlone) {
   ASSERT_TRUE(rig.run_until(State::running, 5));
   rig.request({Request::Kind::stop, 8, nullptr, 6});
   rig.tick();
-  EXPECT_EQ(rig.output().state, State::running) << "the stop named another start";
+  EXPECT_EQ(rig.output().state, State::running) << "the stop request referred to another start";
   const auto refused = std::ranges::find(rig.events, Event::Kind::request_refused, &Event::kind);
   ASSERT_NE(refused, rig.events.end());
   EXPECT_EQ(refused->request, 8U);
@@ -186,7 +186,7 @@ TEST_F(Requests, AStopOfOneStartThatPassesItKeepsItFromBeginning) {
   EXPECT_TRUE(refused(7));
   rig.request({Request::Kind::start, 8, &pick});
   rig.tick();
-  EXPECT_EQ(rig.output().state, State::resynchronising) << "no stop has named this start";
+  EXPECT_EQ(rig.output().state, State::resynchronising) << "no stop request referred to this start";
   EXPECT_FALSE(refused(8));
 }
 

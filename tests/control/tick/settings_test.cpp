@@ -99,7 +99,7 @@ TEST(Settings, AnUnknownRmseOfTheModelIsNoReproach) {
   settings.detection.model_rmse_mm = std::numeric_limits<double>::quiet_NaN();
   EXPECT_TRUE(settings_problems(settings).empty());
   settings.detection.model_rmse_mm = settings.detection.margin_mm / 3;
-  EXPECT_TRUE(settings_problems(settings).empty()) << "exactly three times";
+  EXPECT_TRUE(settings_problems(settings).empty()) << "a margin of exactly three times the RMSE is accepted";
 }
 
 }  // namespace

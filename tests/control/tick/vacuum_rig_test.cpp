@@ -112,9 +112,9 @@ TEST_F(VacuumRig, ACommandBelowRestThatTheBoardDoesNotHaveIsForgotten) {
     rig.request(Request::Kind::stop);
     rig.tick();
     const double rise_kpa = settings.channels[0].limits.slew_up_kpa_per_s / settings.rate_hz;
-    EXPECT_LE(command(rig), -30 + rise_kpa + 1e-9) << "a command in flight may still be written";
+    EXPECT_LE(command(rig), -30 + rise_kpa + 1e-9) << "a command that was already sent may still be written";
     rig.run(1);
-    EXPECT_EQ(command(rig), std::min(outputs_kpa, 0.0)) << "never beyond rest";
+    EXPECT_EQ(command(rig), std::min(outputs_kpa, 0.0)) << "the command never passes the rest pressure";
   }
 }
 
@@ -177,7 +177,7 @@ TEST_F(VacuumRig, TouchAndSqueezeBelowRestAreRefused) {
            {"pressure: {points: [{time_s: 0, pressure_kpa: -20}, {time_s: 1, pressure_kpa: 5}]", 5}}) {
     EXPECT_EQ(below(step + ", on_contact: hold"), highest_kpa < 0) << step;
     EXPECT_FALSE(below(step + ", on_contact: ignore")) << step;
-    EXPECT_FALSE(below(step)) << step << ": it is the default";
+    EXPECT_FALSE(below(step)) << step << ": this value is the default";
   }
 }
 
