@@ -22,11 +22,11 @@ constexpr const char* ends_with_block = "what a block has started ends with it";
 constexpr const char* stops_no_other = "leaving a block stops no other start";
 constexpr std::size_t client_count = 2;
 constexpr std::array block_sequences{"free_stroke", "empty_grip", "pressure_staircase", "hand_over"};
-/// Pause between two reads of a client.
+/// Time between two reads of a client from the daemon.
 constexpr Nanoseconds client_look_pause = ns_per_s / 50;
-/// Longest time for which a client waits for an answer.
+/// Longest time for which a client waits for an answer of the daemon.
 constexpr Nanoseconds block_patience = 5 * ns_per_s;
-/// Longest undisturbed time from the sending of a stop to the end of the sequence.
+/// Longest time from the sending of a stop to the end of the sequence. Time during incidents is not counted.
 constexpr Nanoseconds block_end_bound = 2 * ns_per_s;
 /// Share of the blocks whose program is killed before it sends a stop.
 constexpr double killed_share = 0.1;
@@ -36,12 +36,12 @@ constexpr std::uint64_t stop_line = 2;
 /// A start and the later actions of its client.
 struct Started {
   std::string id;
-  std::uint64_t life = 0;                ///< number of the daemon's life
+  std::uint64_t life = 0;                ///< number of the daemon's run from start to end
   std::optional<std::uint32_t> request;  ///< id of the request that the daemon has accepted
-  bool left = false;                     ///< the client has sent a stop of this start
+  bool left = false;                     ///< the client has sent a request to stop this start
   bool confirmed = false;                ///< the daemon has answered the stop
-  bool halted = false;                   ///< another client has stopped, vented or released since
-  Nanoseconds waited = 0;                ///< undisturbed time since the stop was sent
+  bool halted = false;     ///< another client has sent a stop, a vent or a release since this start
+  Nanoseconds waited = 0;  ///< time since the stop was sent, except during incidents
 };
 
 class BlocksInWorld final : public Guest {

@@ -1,6 +1,6 @@
 #pragma once
-// Clients of the daemon that start a sequence in a block and stop this start when they leave the block. The
-// Python client and `softgrip start` follow the same protocol.
+// Simulates clients that start a sequence at the beginning of a program block and stop it at the end of the
+// block, like a `with` statement of Python. The Python client and `softgrip start` follow the same protocol.
 
 #include <memory>
 

@@ -22,10 +22,12 @@ constexpr const char* reaction_kept = "the reaction to a silent master is not lo
 
 constexpr auto start_code = static_cast<std::uint16_t>(plc::CommandCode::start);
 constexpr auto vent_code = static_cast<std::uint16_t>(plc::CommandCode::vent);
-/// Longest undisturbed time from the beginning of a silence to a daemon's answer to the reaction.
+/// Longest time from the time-out of a master's heartbeat until a daemon answers the stop that the gateway
+/// sends. Time during incidents is not counted.
 constexpr Nanoseconds reaction_bound = 2 * ns_per_s;
 
-/// Returns true if the answer is final: the daemon has stopped, or there was nothing to stop.
+/// Returns true if the answer to a stop is final, because the daemon has stopped or because there was nothing
+/// to stop.
 bool answers_for_good(const Json& line) {
   if (line.value("ok", false)) return true;
   constexpr int starting = static_cast<int>(plc::Reason::refusal) + 6;

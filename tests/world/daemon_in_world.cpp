@@ -19,7 +19,7 @@ constexpr Nanoseconds service_pause = ns_per_s / 50;
 constexpr Nanoseconds heartbeat_patience = ns_per_s / 2;
 /// WatchdogSec of the systemd unit.
 constexpr Nanoseconds manager_patience = 2 * ns_per_s;
-/// Longest time for the rig to become idle before the one-shot run is abandoned.
+/// Longest time for which a one-shot run waits until the rig is idle.
 constexpr Nanoseconds one_shot_patience = 10 * ns_per_s;
 
 daemon::Provenance provenance_of(const rig::RigFile& rig) {
@@ -132,7 +132,7 @@ void DaemonInWorld::serve() {
   service.pump();
   for (auto request = requests_.begin(); request != requests_.end();) {
     const auto id = service.submit(request->kind, request->sequence);
-    if (!id) {  // busy: the client repeats the request
+    if (!id) {  // the service is busy, so the client repeats the request
       ++request;
       continue;
     }

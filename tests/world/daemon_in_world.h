@@ -1,6 +1,6 @@
 #pragma once
-// One life of the daemon: the same loop, bus, service and recorder as on a rig, on the simulated clock. Each
-// of them runs the same thread body as in daemon/service/real_run.cpp.
+// One run of the daemon from start to end on the simulated clock. Loop, bus, service and recorder are those
+// of a real rig; each runs the same thread body as in daemon/service/real_run.cpp.
 
 #include <functional>
 #include <map>
@@ -32,8 +32,8 @@ struct Asked {
   Nanoseconds at = 0;
 };
 
-/// The loop's clock. No two readings are equal, as on a real machine, so the row at shutdown has a time of
-/// its own.
+/// The loop's clock. As on a real machine, no two readings are equal, so the row that is written at shutdown
+/// has a different time from all other rows.
 class LoopClock final : public WorldClock {
  public:
   using WorldClock::WorldClock;
@@ -47,12 +47,13 @@ class LoopClock final : public WorldClock {
   mutable Nanoseconds last_ = 0;
 };
 
-/// The properties in which the lives of daemons differ.
+/// The properties that can differ between two runs of the daemon.
 struct Life {
   std::string folder;         ///< folder of the recordings
-  std::string record_folder;  ///< if not empty, all recordings are written to this folder
-  std::shared_ptr<const daemon::LoadedSequence> sequence;  ///< a one-shot run, which ends the daemon
-  std::shared_ptr<const daemon::SequenceLoader> loader;    ///< if set, the daemon has a socket and clients
+  std::string record_folder;  ///< if not empty: the folder of all recordings
+  std::shared_ptr<const daemon::LoadedSequence>
+      sequence;  ///< the sequence of a one-shot run, after which the daemon ends
+  std::shared_ptr<const daemon::SequenceLoader> loader;  ///< if set, the daemon has a socket and clients
 };
 
 class DaemonInWorld {
@@ -65,7 +66,8 @@ class DaemonInWorld {
   DaemonInWorld& operator=(DaemonInWorld&&) = delete;
   ~DaemonInWorld() = default;
 
-  /// Sends a request as a client does; the service thread takes it in its next turn. `sequence`: for a start.
+  /// Sends a request as a client does. The service thread takes the request in its next turn. `sequence`: the
+  /// sequence of a start request.
   void ask(control::Request::Kind kind, std::shared_ptr<const daemon::LoadedSequence> sequence = nullptr);
   /// Requests the end of the daemon, like SIGTERM.
   void terminate() noexcept { asked_to_end_ = true; }
@@ -78,7 +80,8 @@ class DaemonInWorld {
   [[nodiscard]] bool safe_state_confirmed() const { return shared.safe_state_confirmed.load(); }
   /// Returns the outcome of the one-shot run after its end.
   [[nodiscard]] daemon::Outcome outcome();
-  /// Returns true if the heartbeat has stopped: the service manager then kills the daemon.
+  /// Returns true if the heartbeat to the service manager has stopped, which makes the manager kill the
+  /// daemon.
   [[nodiscard]] bool starved() const noexcept { return starved_; }
   [[nodiscard]] const std::map<std::uint32_t, Asked>& unanswered() const noexcept { return unanswered_; }
 

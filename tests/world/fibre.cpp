@@ -9,7 +9,8 @@ namespace softgrip::world {
 namespace {
 
 constexpr std::size_t stack_bytes = 512 * 1024;
-/// The fibre that is entered for the first time, since makecontext() passes no pointer.
+/// The fibre that is entered for the first time. A global variable is necessary because makecontext() passes
+/// no pointer.
 thread_local Fibre* entered = nullptr;
 
 }  // namespace

@@ -1,5 +1,6 @@
 #pragma once
-// A function with its own stack that runs until it gives control back. All fibres run in one thread.
+// A function with its own stack that runs until it returns control to its caller. All fibres run in one
+// thread.
 
 #include <ucontext.h>
 
@@ -21,9 +22,9 @@ class Fibre {
   Fibre& operator=(Fibre&&) = delete;
   ~Fibre() = default;
 
-  /// Called from outside: continues the body until give_back() or its end.
+  /// Continues the body until it calls give_back() or ends. Called from outside the fibre.
   void resume();
-  /// Called by the body: returns control to resume().
+  /// Returns control to resume(). Called by the body.
   void give_back();
   [[nodiscard]] bool done() const noexcept { return done_; }
 

@@ -1,5 +1,5 @@
 #pragma once
-// A program that uses the daemon of a world, or runs the daemon in its own process.
+// A program in a simulated world that uses the daemon or runs the daemon in its own process.
 
 #include <memory>
 #include <optional>
@@ -27,7 +27,7 @@ class Host {
   [[nodiscard]] virtual DaemonInWorld* daemon() = 0;
   /// Returns the outcome of the last daemon, or nullopt if the daemon was killed.
   [[nodiscard]] virtual const std::optional<daemon::Outcome>& outcome() const = 0;
-  /// Returns true if the board vented while that daemon's sequence was running.
+  /// Returns true if the board vented while the sequence of the last daemon was running.
   [[nodiscard]] virtual bool vented_in_motion() const = 0;
   /// Starts a daemon. Only a guest that runs the daemon may call it, and only while no daemon runs.
   virtual void boot(Life life) = 0;
@@ -48,8 +48,8 @@ class Guest {
   [[nodiscard]] virtual bool runs_the_daemon() const { return false; }
   /// True: the daemon serves clients of the socket.
   [[nodiscard]] virtual bool listens() const { return true; }
-  /// Factor of the mean time between incidents. Commands that take minutes need longer intervals to finish
-  /// sometimes.
+  /// Factor of the mean time between incidents. Commands that take minutes finish only if incidents are
+  /// rarer.
   [[nodiscard]] virtual double calm() const { return 1; }
   /// Called before a daemon starts.
   virtual void prepare(Life& life) { static_cast<void>(life); }

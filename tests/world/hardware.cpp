@@ -120,8 +120,8 @@ void WorldBoard::carry() {
   }
 }
 
-/// Sends the request, repeats it if necessary, and waits for the response. Returns false if none arrived
-/// until `end`.
+/// Sends the request, repeats it if necessary, and waits for the response. Returns false if no response
+/// arrived before `end`.
 bool WorldBoard::ask(Request request, Nanoseconds end, bool lost) {
   for (;; request.again = true) {
     const Nanoseconds sent = scheduler_.now();
@@ -207,7 +207,7 @@ BusStatus WorldBoard::exchange(std::span<const double> commands_kpa, std::span<m
     left_.clear();
     return BusStatus::overwritten;
   }
-  left_.clear();  // known again after the next confirmed exchange
+  left_.clear();  // unknown until the next confirmed exchange
   if (!taken) return BusStatus::watchdog_tripped;
   bool as_written = true;
   for (std::size_t i = 0; i < readings.size(); ++i) {

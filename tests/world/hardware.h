@@ -57,9 +57,10 @@ class Hardware {
   bool tripped_ = false;
 };
 
-/// Habits of a board, and the keys of the rig file and the board map for them. A number of 0 disables one.
+/// Peculiarities of a board, and the values of the rig file and the board map that compensate for them. A
+/// value of 0 disables a peculiarity.
 struct Habits {
-  Nanoseconds deaf = 0;              ///< the time after a connection in which it ignores requests
+  Nanoseconds deaf = 0;              ///< the time after a connection during which the board ignores requests
   Nanoseconds settle = 0;            ///< `settle_s`: the wait after a connection
   Nanoseconds repeat_after = 0;      ///< `repeat_after_s`: a request without a response is sent again
   std::size_t channels_at_once = 0;  ///< `max_registers`: the channels that one request writes
@@ -72,12 +73,12 @@ struct Habits {
 /// State of the line between daemon and board.
 struct Line {
   drivers::BusStatus status = drivers::BusStatus::ok;
-  bool reply_lost = false;  ///< with timed_out: the request arrives, only the reply does not
+  bool reply_lost = false;  ///< with timed_out: the request arrives at the board, but the response is lost
   Nanoseconds latency = 800'000;
 };
 
-/// The board as a daemon sees it. Exchanges wait on the simulated clock. A separate actor carries requests,
-/// so that a sent request arrives even if the daemon is paused.
+/// The driver of the simulated board. Exchanges wait on the simulated clock. A separate actor carries the
+/// requests, so that a sent request arrives even if the daemon is paused.
 class WorldBoard final : public drivers::Board {
  public:
   /// Called before a request takes effect, with the start of the exchange and the written values.
@@ -87,12 +88,13 @@ class WorldBoard final : public drivers::Board {
     OnWrite on_write;
     std::function<void()> on_exchange;  ///< called when an exchange begins
     std::function<void()> on_hindered;  ///< called when a habit of the board has made an exchange fail
-    /// Called when the daemon has read the outputs. The argument counts the earlier writes of another client.
+    /// Called when the daemon has read the outputs. `foreign_writes`: number of earlier writes of another
+    /// client.
     std::function<void(std::uint64_t foreign_writes)> on_read;
   };
   WorldBoard(Hardware& hardware, Habits habits, Line& line, Scheduler& scheduler, Callbacks callbacks);
 
-  /// Called when the connected program is gone: the request under way is lost.
+  /// Called when the connected program has ended, so that its pending request is lost.
   void hang_up() noexcept { request_.reset(); }
 
   [[nodiscard]] std::size_t channels() const noexcept override { return hardware_.channels(); }
@@ -139,7 +141,7 @@ class WorldBoard final : public drivers::Board {
   ActorId carrier_;
   std::optional<Request> request_;
   std::vector<double> found_;  // newest output that differs from the written one, else NaN
-  std::vector<double> left_;   // outputs after the last good exchange of this session
+  std::vector<double> left_;   // outputs after the last successful exchange of this session
   unsigned exchanges_ = 0;
   unsigned connections_ = 0, responses_ = 0, answers_ = 0;
   bool closes_ = false;  // the board closes the present connection at once

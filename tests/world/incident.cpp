@@ -99,7 +99,8 @@ Kind draw_kind(Drawing& drawing, std::span<const Share> of) {
   return of.front().kind;
 }
 
-/// Draws a pause below, at or above the watchdog's time; half of the pauses are close to it.
+/// Draws a pause [s] that is shorter or longer than the watchdog time-out. Half of the pauses are close to
+/// this time.
 double pause_s(Drawing& drawing, Nanoseconds watchdog) {
   const double limit_s = watchdog > 0 ? seconds(watchdog) : 0.5;
   return drawing.uniform() < 0.5 ? limit_s * (0.9 + 0.4 * drawing.uniform()) : drawing.between(0.002, 3);
@@ -177,8 +178,8 @@ void draw_plc(const Draw& draw, std::vector<Incident>& incidents) {
     if (one.at >= draw.length) return;
     one.target = drawing.uniform() < 0.75 ? 0 : 1;
     if (one.kind == Kind::plc_command) {
-      // Most commands are starts; the others are vent, release and acknowledge. Only the reaction to a
-      // silence is a stop.
+      // Most commands are starts; the others are vent, release and acknowledge. A stop is sent only by the
+      // gateway, when a master falls silent.
       constexpr std::array codes{1, 1, 1, 3, 4, 5, 5};
       one.value = codes[drawing.below(codes.size())];
     } else {
@@ -239,7 +240,7 @@ std::string text_of(const Incident& incident) {
 
 std::vector<Incident> draw_incidents(const Draw& draw) {
   Drawing drawing(derived_seed(draw.seed, 1));
-  // Draw worlds from quiet ones, in which sequences finish, to eventful ones.
+  // Some worlds have few incidents, so that sequences finish. Other worlds have many.
   const double mean_pause_s = draw.calm * drawing.between(0.25, 4);
   std::vector<Incident> incidents;
   double at_s = 1 + drawing.uniform();

@@ -1,6 +1,6 @@
 #pragma once
-// Incidents of a rig in a world: a plain list that is drawn from a seed, so that it can be printed and
-// shortened.
+// The incidents of a simulated world. They are a plain list that is drawn from a seed, so that it can be
+// printed and shortened.
 
 #include <cstdint>
 #include <string>
@@ -13,7 +13,7 @@ namespace softgrip::world {
 struct Incident {
   enum class Kind : std::uint8_t {
     start,  ///< a client starts the sequence number `target`
-    hasty,  ///< a start that another client at once stops (`value` 0) or vents
+    hasty,  ///< a start, which another client stops (`value` 0) or vents immediately
     stop,
     vent,
     release,
@@ -37,10 +37,10 @@ struct Incident {
     emergency_stop,  ///< the emergency stop is pressed for `duration`
     disk_full,       ///< no file can grow for `duration`
     // With softgrip-plc; `target`: number of the master.
-    plc_command,     ///< the master sends the command `value` (CommandCode)
-    plc_silent,      ///< its program stops for `duration`, while its last block is repeated
-    plc_cut,         ///< the master connects again; its last block arrives after `duration`
-    plc_half,        ///< like plc_cut, after the first half of the block has arrived
+    plc_command,  ///< the master sends the command `value` (CommandCode)
+    plc_silent,   ///< the program of the master stops for `duration`, while its last block is repeated
+    plc_cut,   ///< the master opens a new connection; its last block arrives on the old one after `duration`
+    plc_half,  ///< like plc_cut, after the first half of the block has arrived
     gateway_paused,  ///< the gateway is paused for `duration`
     gateway_dies,    ///< the gateway is started again one second later
     daemon_and_plc,  ///< the daemon is killed, and the master is silent for `duration`
@@ -56,9 +56,9 @@ struct Incident {
 [[nodiscard]] std::string text_of(const Incident& incident);
 
 /// Parameters of the incidents, which occur after the first second within `length`. `watchdog`: pauses are
-/// drawn below, at and above this time. `late_bus`: the bus thread may also be paused between its last
-/// reading of the clock and its next write, and the clock may stall. Only a board that reports its own
-/// watchdog trip, or has no watchdog, lets a daemon notice this.
+/// drawn below and above this time. `late_bus`: the bus thread may also be paused between its last reading of
+/// the clock and its next write, and the clock may stall. A daemon notices such a delay only if the board
+/// reports its own watchdog trip or has no watchdog.
 struct Draw {
   std::uint64_t seed = 0;
   Nanoseconds length = 0;

@@ -32,7 +32,7 @@ struct Options {
   bool habits = false;
 };
 
-/// With fewer worlds a rare kind of incident may be missing.
+/// Smallest number of worlds for which the check requires every kind of incident.
 constexpr std::uint64_t enough_worlds = 10;
 
 struct Sum {
@@ -85,17 +85,17 @@ void add(Sum& sum, Tool tool, const WorldResult& result) {
   add(sum, one);
 }
 
-/// The tools of consecutive seeds. Experiments take the longest time and occur once.
+/// The tools of consecutive seeds. Experiments take the longest time, so they occur only once in the list.
 constexpr const char* all_tools = "tools";
 constexpr std::array turns{
     Tool::calibrate, Tool::plc,    Tool::doctor,     Tool::run, Tool::blocks, Tool::plc,
     Tool::calibrate, Tool::doctor, Tool::baseline,   Tool::run, Tool::plc,    Tool::blocks,
     Tool::calibrate, Tool::doctor, Tool::experiment, Tool::run, Tool::plc};
 
-/// Factor of --seconds per tool: experiments take minutes.
+/// Factor of the duration --seconds for each tool, because experiments take minutes.
 constexpr std::array<double, tool_count> lives{1, 1, 1, 1, 5, 3, 1, 1};
 
-/// Returns the tool of a seed: the requested tool, or the next one in turn.
+/// Returns the requested tool or, if no tool was requested, the tool in `turns` for this seed.
 Tool tool_of(const Options& options, std::uint64_t seed) {
   const auto found = std::find(tool_names.begin(), tool_names.end(), options.tool);
   if (found != tool_names.end()) return static_cast<Tool>(found - tool_names.begin());
@@ -106,8 +106,8 @@ std::string of_tool(Tool tool) {
   return tool == Tool::none ? "" : fmt::format("{}; ", tool_names[static_cast<std::size_t>(tool)]);
 }
 
-/// Prints what a person needs to understand a violation: the fewest incidents that cause it, and the end of
-/// the trace.
+/// Prints the data for the analysis of a violation: a minimal list of incidents that causes it, and the end
+/// of the trace.
 void explain(const Library& library, std::uint64_t seed, const WorldResult& failed,
              const WorldOptions& options) {
   WorldOptions again = options;

@@ -1,5 +1,6 @@
 #pragma once
-// A master that follows docs/reference/plc-map.md, and its blocks on the way to softgrip-plc.
+// A Modbus master that follows docs/reference/plc-map.md, and the register blocks that it sends to
+// softgrip-plc.
 
 #include <array>
 #include <cstdint>
@@ -17,13 +18,13 @@ namespace softgrip::world {
 struct Block {
   std::array<std::uint16_t, 7> words{};
   bool only_reads = false;
-  int command = -1;         ///< number of the command in the order of requests; -1: no command
+  int command = -1;         ///< index of the command in the order of all commands; -1: no command
   std::uint64_t halts = 0;  ///< stops and vents that had been executed when the block was written
 
   [[nodiscard]] modbus::Bytes bytes() const;
 };
 
-/// The end of a command, as a master reads it after the answer to its block.
+/// The result of a command, which a master reads after the answer to its block.
 struct End {
   std::uint16_t done = 0;
   plc::Outcome outcome = plc::Outcome::none;
@@ -37,7 +38,7 @@ struct Wire {
   modbus::RequestStream stream;
   std::optional<Block> flying;
   Nanoseconds arrives = 0;
-  std::size_t arrived_bytes = 0;  ///< number of bytes of the block under way that have arrived
+  std::size_t arrived_bytes = 0;  ///< number of bytes of the pending block that have arrived
   bool left = false;              ///< the master has opened another connection
   std::optional<End> reply;
   std::optional<std::uint16_t> heartbeat;  ///< the last heartbeat that arrived on this connection
@@ -56,13 +57,13 @@ class MasterInWorld {
     bool accepted = false;
   };
   Read read(const End& end, const Block& of, Nanoseconds now);
-  /// Begins the next queued command, if there is one, and assigns it `number`.
+  /// Begins the next queued command and assigns the index `number` to it. Returns false if no command begins.
   bool next(int number, Nanoseconds now);
   /// Returns the present block of the master.
   [[nodiscard]] Block block(std::uint64_t halts);
 
   bool alive = true;        ///< false: the program has stopped, and its last block is repeated
-  bool beats = true;        ///< true: its heartbeat changes
+  bool beats = true;        ///< true: the heartbeat of the master changes
   std::uint16_t heard = 0;  ///< the heartbeat of this master that arrived last
   [[nodiscard]] std::uint16_t counter() const noexcept { return counter_; }
   [[nodiscard]] std::uint16_t code() const noexcept { return code_; }

@@ -14,7 +14,7 @@ using control::State;
 
 /// Tolerance for pressures that are equal except for rounding [kPa].
 constexpr double equal_kpa = 1e-9;
-/// Longest time from a client's vent request until the commands fall, in addition to the slew time.
+/// Longest time from a client's vent request until the commands are at rest, in addition to the slew time.
 constexpr Nanoseconds vent_bound = ns_per_s / 10;
 /// Longest time from a watchdog trip until it is a latched fault.
 constexpr Nanoseconds trip_bound = ns_per_s / 2;
@@ -147,7 +147,7 @@ void Monitor::watch_grips(Nanoseconds now, const control::TickOutput& output) {
     // The sequence decides on the readings of the previous tick.
     const Seen seen = std::exchange(seen_by_[i], {now, now - nanoseconds(channel.age_s), channel.validity});
     const bool old = now - seen.at > nanoseconds(rig_.channels[i].plausibility.max_age_s);
-    // The result ends its step, so compare with the beginning of this step.
+    // A grip result ends its step, so the time of the reading is compared with the beginning of that step.
     if (new_grip && channel.evidence == control::GripEvidence::displacement &&
         (seen.validity != model::Validity::valid || old || seen.sampled < step_began_[i]))
       violate(now, "HOLDING rests on readings newer than the grip",
@@ -164,7 +164,7 @@ void Monitor::watch_grips(Nanoseconds now, const control::TickOutput& output) {
 void Monitor::write(Nanoseconds began, Nanoseconds now, std::span<const double> outputs_kpa,
                     std::span<const double> commands_kpa, bool safe_outputs) {
   const double period_s = 1 / rig_.rate_hz;
-  // An exchange may write more than once: measure the elapsed time at its first write.
+  // An exchange may write more than once. The elapsed time is measured at its first write.
   if (began != last_began_)
     elapsed_s_ = last_began_ == 0 ? period_s : seconds(began - last_began_) + 2 * period_s;
   if (watch_gap(began, now, commands_kpa)) safe_outputs = true;
@@ -197,8 +197,9 @@ double Monitor::known_kpa(std::size_t channel, double output_kpa) const {
   return foreign_left_[channel] && (unread || holds) ? last_kpa_[channel] : output_kpa;
 }
 
-/// After a gap in which the board has or may have vented, the daemon must write the rest pressures. Returns
-/// true if it does. The daemon reads its clock after it wakes up and before the exchange begins.
+/// Checks that the daemon writes the rest pressures after a gap in which the board has vented or may have
+/// vented. Returns true if the rest pressures were written after such a gap. The daemon reads its clock after
+/// it wakes up and before the exchange begins.
 bool Monitor::watch_gap(Nanoseconds began, Nanoseconds now, std::span<const double> commands_kpa) {
   if (watchdog_ == 0 || last_began_ == 0 || woke_ == 0) return false;
   bool rested = true;
@@ -216,7 +217,8 @@ void Monitor::watch_way(Nanoseconds now, std::size_t channel, double output_kpa,
                         double elapsed_s, bool safe_outputs) {
   const control::LimitSettings& limits = rig_.channels[channel].limits;
   const double rest_kpa = rest_of(rig_, channel);
-  // Start from the last written value: a board that refuses writes does not follow.
+  // The start value is the last written value, because the output of a board that refuses writes does not
+  // follow.
   const double last_kpa = last_kpa_[channel];
   const double slew = command_kpa > last_kpa ? limits.slew_up_kpa_per_s : limits.slew_down_kpa_per_s;
   const bool crosses = (command_kpa - rest_kpa) * (last_kpa - rest_kpa) < 0;

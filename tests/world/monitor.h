@@ -1,6 +1,5 @@
 #pragma once
-// The invariants. Each is stated once and checked wherever it can be violated: at every write that reaches
-// the board and after every tick.
+// Checks the invariants of the daemon at every write that reaches the board and after every tick.
 
 #include <array>
 #include <cstdint>
@@ -22,11 +21,12 @@ struct Violation {
   std::string text;
 };
 
-/// Present disturbances of the daemon and its surroundings. Time limits count only time without them.
+/// Present disturbances of the daemon and its surroundings. Time during a disturbance does not count for time
+/// limits.
 struct Excuse {
-  bool paused = false;                ///< a thread or the whole process is paused
-  bool no_line = false;               ///< line or board hinder exchanges, or none was good since
-  bool line_but_for_foreign = false;  ///< like no_line, but ignoring another client
+  bool paused = false;   ///< a thread or the whole process is paused
+  bool no_line = false;  ///< the line or the board hinders exchanges, or no exchange has succeeded since
+  bool line_but_for_foreign = false;  ///< like no_line, but writes of another client do not count
   bool no_daemon = false;
 };
 
@@ -41,16 +41,16 @@ class Monitor {
   /// exchange.
   void write(Nanoseconds began, Nanoseconds now, std::span<const double> outputs_kpa,
              std::span<const double> commands_kpa, bool safe_outputs);
-  /// Called when an exchange begins at `now`; the daemon has just read its permission to move. `woke`: when
-  /// its bus thread last read the clock and thus measured the gap since the last exchange; 0: unknown.
+  /// Called when an exchange begins at `now`; the daemon has just read its permission to move. `woke`: time
+  /// at which its bus thread last read the clock, with which it measures the gap since the last exchange; 0:
+  /// unknown.
   void exchange_begins(Nanoseconds now = 0, Nanoseconds woke = 0) noexcept {
     armed_at_entry_ = armed_;
     safe_at_entry_ = safe_kpa_;
     before_ = std::exchange(exchange_, now);
     woke_ = woke;
   }
-  /// For a program without a loop: it may move pressures away from rest (true), or may no longer do so
-  /// (false).
+  /// States for a program without a loop whether it may move pressures away from rest.
   void may_rise(bool allowed) noexcept { armed_ = allowed; }
   /// Called when another client has written these outputs. Outputs that the daemon has not read since may
   /// move again, within the slew limits, up to the daemon's own last command. Outputs that it has read may do
@@ -59,8 +59,8 @@ class Monitor {
   void foreign_ended() noexcept { foreign_unseen_.reset(); }
   /// Called when the daemon has read the outputs, after this number of writes of another client.
   void outputs_read(std::uint64_t foreign_writes) noexcept { foreign_read_ = foreign_writes; }
-  /// Called when the board's watchdog has vented. `has_spoken`: the daemon has had a good exchange, so it can
-  /// know.
+  /// Called when the board's watchdog has vented. `has_spoken`: the daemon has had a successful exchange, so
+  /// it can know of the trip.
   void tripped(bool has_spoken);
   void asked(control::Request::Kind kind);
   void submitted(control::Request::Kind kind, std::uint32_t id);
@@ -71,7 +71,8 @@ class Monitor {
   /// Called when the daemon has ended by itself after writing its safe outputs.
   void left(Nanoseconds now, std::span<const double> outputs_kpa);
   void answer_is_late(Nanoseconds now, Nanoseconds asked_at);
-  /// Reports that the board has vented but the user receives another message, `otherwise`.
+  /// Reports a violation: the board has vented, but the user receives the message `otherwise`, which does not
+  /// say so.
   void told_nobody(Nanoseconds now, const char* otherwise) {
     violate(now, "a watchdog that has tripped is a fault", otherwise);
   }
@@ -105,14 +106,15 @@ class Monitor {
   [[nodiscard]] double known_kpa(std::size_t channel, double output_kpa) const;
   bool foreign_ = false;              // another client has written since the daemon's last write
   std::uint64_t foreign_writes_ = 0;  // number of writes by another client
-  std::uint64_t foreign_read_ = 0;    // number of them before the daemon's newest reading of the outputs
-  std::vector<bool> foreign_left_;    // per channel: the output is still the one that another client wrote
-  Nanoseconds last_began_ = 0;        // start of the last exchange that wrote
-  double elapsed_s_ = 0;              // time from the previous writing exchange to this one
-  Nanoseconds exchange_ = 0;          // start of the newest exchange, with or without a write
-  Nanoseconds before_ = 0;            // start of the exchange before it
+  std::uint64_t foreign_read_ =
+      0;  // number of these writes before the daemon's newest reading of the outputs
+  std::vector<bool> foreign_left_;  // per channel: the output is still the one that another client wrote
+  Nanoseconds last_began_ = 0;      // start of the last exchange that wrote
+  double elapsed_s_ = 0;            // time from the previous writing exchange to this one
+  Nanoseconds exchange_ = 0;        // start of the newest exchange, with or without a write
+  Nanoseconds before_ = 0;          // start of the exchange before exchange_
   Nanoseconds woke_ = 0;
-  Nanoseconds last_woke_ = 0;  // value of woke_ for the exchange of last_began_
+  Nanoseconds last_woke_ = 0;  // value of woke_ for the exchange that began at last_began_
   Nanoseconds seen_ = 0;
   std::uint32_t halted_by_ = 0;  // id of the newest stop or vent request
   control::State state_ = control::State::starting;
@@ -128,10 +130,10 @@ class Monitor {
   std::array<control::GripResult, control::max_channels> results_{};
   std::array<std::uint16_t, control::max_channels> steps_{};
   std::array<Nanoseconds, control::max_channels> step_began_{};
-  std::optional<Nanoseconds> vent_waits_;  // undisturbed time since the vent was requested
+  std::optional<Nanoseconds> vent_waits_;  // time since the vent was requested, except during disturbances
   std::optional<Nanoseconds>
-      foreign_unseen_;  // undisturbed time during which another client has changed the outputs
-  std::optional<Nanoseconds> trip_untold_;  // undisturbed time since the board vented
+      foreign_unseen_;  // time since another client has changed the outputs, except during disturbances
+  std::optional<Nanoseconds> trip_untold_;  // time since the board vented, except during disturbances
   std::optional<Nanoseconds> dead_;         // time without a daemon
 };
 

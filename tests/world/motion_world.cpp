@@ -22,11 +22,11 @@ using Kind = Incident::Kind;
 /// Pause between the end of a command and the next one.
 constexpr Nanoseconds call_pause = ns_per_s;
 constexpr double longest_answer_s = 1.5;
-/// Largest number of own writes that replace another client's values. The board compares them in 1 of 8
-/// exchanges.
+/// Largest number of the program's writes that may replace another client's values. The driver reads the
+/// outputs before a write in 1 of 8 exchanges.
 constexpr unsigned most_overwritten = 32;
 
-/// An operator who reads the true values of gauge and manometer after a delay.
+/// A simulated operator who enters the true values of gauge and manometer after a delay.
 class PersonInWorld final : public tools::calibrate::Operator {
  public:
   PersonInWorld(Surroundings& around, std::size_t channel, std::uint64_t seed)
@@ -101,7 +101,7 @@ class MotionWorld {
  private:
   [[nodiscard]] double drawn() { return uniform_at(seed_, ++drawn_); }
 
-  /// Calls the command, and calls it again after its end.
+  /// Calls the command repeatedly.
   void call() {
     actor_ = around_.scheduler.add("tool", [this] {
       for (;;) {
@@ -126,7 +126,7 @@ class MotionWorld {
     around_.monitor.may_rise(true);
   }
 
-  /// Stop request of the command, which calls it before every exchange.
+  /// Returns true if the command must stop. The command calls this function before every exchange.
   [[nodiscard]] bool stops() {
     if (interrupted_) around_.monitor.may_rise(false);
     return interrupted_;
@@ -149,7 +149,7 @@ class MotionWorld {
     if (session.leave()) left();
   }
 
-  /// Runs one of the procedures. Returns the reason for a missing result, or "".
+  /// Runs one of the procedures. Returns the reason why it has no result, or "" if it has one.
   [[nodiscard]] std::string measure(tools::MotionSession& session, PersonInWorld& person,
                                     const tools::calibrate::Settings& settings) {
     const rig::RigFile& rig = around_.shape.rig;
@@ -222,7 +222,8 @@ class MotionWorld {
     }
     if (!begins || !alive_) return;
     const Nanoseconds until = around_.scheduler.now() + incident.duration;
-    // If the board clears a trip with any write, no program can notice a pause at this place.
+    // If any write clears a trip of the board, no program can notice a pause between its reading of the clock
+    // and its write.
     const bool may_be_late = around_.shape.may_pause_late();
     switch (incident.kind) {
       case Kind::stop:
@@ -284,15 +285,16 @@ class MotionWorld {
   Surroundings around_;
   WorldClock clock_;
   ActorId actor_ = 0;
-  bool alive_ = false;             // the command is running
-  bool interrupted_ = false;       // Ctrl-C was pressed
-  bool up_ = false;                // its last write applied pressure
-  bool vented_ = false;            // the board has vented that pressure
-  bool good_ = false;              // no incident has hindered the present exchange
-  bool spoke_ = false;             // it has had a good exchange, so it can know of a gap
-  bool spoke_since_trip_ = false;  // an exchange has begun since the trip, so it can know of the trip
-  std::vector<double> written_;    // its last write that has arrived
-  unsigned overwritten_ = 0;       // number of writes that replaced another client's values
+  bool alive_ = false;        // the command is running
+  bool interrupted_ = false;  // Ctrl-C was pressed
+  bool up_ = false;           // the last write of the command applied pressure
+  bool vented_ = false;       // the board has vented the pressure that the command applied
+  bool good_ = false;         // no incident has hindered the present exchange
+  bool spoke_ = false;        // the command has had a successful exchange, so it can know of a gap
+  bool spoke_since_trip_ =
+      false;                     // an exchange has begun since the trip, so the command can know of the trip
+  std::vector<double> written_;  // last write of the command that has arrived at the board
+  unsigned overwritten_ = 0;     // number of writes that replaced another client's values
   std::uint64_t foreign_writes_ = 0;
   Nanoseconds again_at_ = 0;
 };

@@ -1,6 +1,6 @@
 #pragma once
 // A world in which `softgrip calibrate --move` or `softgrip doctor --move` drives the board without a daemon.
-// A simulated operator reads gauges and presses Ctrl-C.
+// A simulated operator reads gauges and sometimes presses Ctrl-C.
 
 #include "tests/world/world.h"
 

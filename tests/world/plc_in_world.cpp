@@ -117,7 +117,7 @@ class PlcInWorld final : public Guest {
   }
 
  private:
-  // softgrip-plc: the same steps in the same order as in tools/plc/server.cpp.
+  // The functions of softgrip-plc, with the same steps in the same order as in tools/plc/server.cpp.
   void start_gateway() {
     around_.trace("softgrip-plc starts");
     gateway_.emplace(settings_);
@@ -184,7 +184,7 @@ class PlcInWorld final : public Guest {
     if (!gateway_->handshake().waits()) waiting_.reset();
     answered_[wire.id] = block;
     wire.reply = read_end(wire.id, now);
-    // A master with a newer connection closes this one.
+    // A master that has opened a newer connection closes this one.
     if (wire.left) gateway_->masters().leave(wire.id);
   }
 
@@ -198,7 +198,7 @@ class PlcInWorld final : public Guest {
             static_cast<plc::Reason>(modbus::word_at(frame, 13))};
   }
 
-  // The gateway's connection with the daemon.
+  // Functions of the gateway's connection to the daemon.
   void receive(Nanoseconds now) {
     if (!client_ && host_.daemon() != nullptr && (tried_at_ == 0 || now - tried_at_ >= retry_pause)) {
       tried_at_ = now;
@@ -226,7 +226,8 @@ class PlcInWorld final : public Guest {
     watch_.daemon_died();
   }
 
-  /// Sends the lines of the gateway at once. `cause`: the block that made the gateway send them.
+  /// Sends the messages of the gateway immediately. `cause`: the block of a master that led to these
+  /// messages.
   void send(Nanoseconds now, const std::optional<Block>& cause) {
     for (const Json& line : gateway_->lines_to_daemon()) {
       around_.trace("softgrip-plc to the daemon: {}", line.dump());
@@ -238,7 +239,7 @@ class PlcInWorld final : public Guest {
     }
   }
 
-  // The masters and their connections.
+  // Functions of the masters and their connections.
   [[nodiscard]] Wire* wire_of(std::size_t master) {
     const auto found = std::find_if(wires_.begin(), wires_.end(), [master](const Wire& wire) {
       return wire.master == master && !wire.left;
@@ -254,7 +255,7 @@ class PlcInWorld final : public Guest {
     wires_.push_back({master, *id, {}, {}, 0, 0, false, {}, {}});
     return &wires_.back();
   }
-  /// Returns the daemon's clock for an actor that sleeps by the true time.
+  /// Returns the time of the daemon's clock to an actor that sleeps by the true time.
   [[nodiscard]] Nanoseconds clock_seen() const { return around_.scheduler.shown(); }
 
   void cycle(std::size_t index) {
@@ -285,7 +286,8 @@ class PlcInWorld final : public Guest {
     around_.scheduler.wake(actor_);
   }
 
-  /// The master opens another connection. Its last block arrives late on the old connection.
+  /// Opens another connection for the master. The last block of the master arrives late on the old
+  /// connection.
   void cut(const Incident& incident) {
     const std::size_t index = incident.target % master_count;
     Wire* const wire = wire_of(index);

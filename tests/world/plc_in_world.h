@@ -1,5 +1,6 @@
 #pragma once
-// softgrip-plc and the daemon in one world: the gateway, two masters, and their blocks under way.
+// softgrip-plc and the daemon in one simulated world, with the gateway, two masters, and the register blocks
+// that they have sent.
 
 #include <memory>
 

@@ -32,7 +32,8 @@ RecordingsRead check_recordings(const std::string& folder, const std::vector<Nan
     const std::vector<Nanoseconds> times = times_of(entry.path());
     read.rows += times.size();
     if (times.empty()) continue;
-    // Time 0 of the recording is its first row, so only time differences can be compared.
+    // The times of a recording are relative to its first row, so only time differences can be compared with
+    // the ticks.
     bool found = false;
     for (std::size_t first = 0; first < ticks.size() && !found; ++first) {
       bool all = true;

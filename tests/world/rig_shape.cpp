@@ -28,7 +28,8 @@ RigShape draw_shape(const rig::RigFile& example, std::uint64_t seed) {
       one_of(control::SafeAction::hold, control::SafeAction::vent);
   settings.safety.on_emergency_stop =
       one_of(control::SafeAction::vent, control::SafeAction::vent, control::SafeAction::hold);
-  // The longest delay of the bus fault that a rig file allows: it must be below the board's watchdog time.
+  // The longest delay of the bus fault that a rig file may set, because the delay must be shorter than the
+  // time-out of the board's watchdog.
   const double most_cycles = watchdog_s > 0 ? 0.8 * watchdog_s * settings.rate_hz : 200;
   settings.faults.bus_down_cycles =
       static_cast<std::uint32_t>(std::clamp(one_of(2.0, 5.0, 30.0, most_cycles), 1.0, most_cycles));

@@ -47,7 +47,7 @@ class Caller : public Guest {
   [[nodiscard]] bool busy() const override { return calls_; }
 
  protected:
-  /// Runs the command once. Returns true if it ended with a result.
+  /// Runs the command once. Returns true if the command ended with a result.
   virtual bool call() = 0;
   [[nodiscard]] bool ending() const noexcept { return ending_; }
 
@@ -83,14 +83,14 @@ class Caller : public Guest {
 class Run final : public Caller {
  public:
   explicit Run(Host& host) : Caller(host, "softgrip run"), seed_(derived_seed(host.around().shape.seed, 6)) {}
-  /// Every other run is called with --no-socket.
+  /// Every second seed runs the command with --no-socket.
   [[nodiscard]] bool listens() const override { return host_.around().shape.seed % 2 == 0; }
   [[nodiscard]] double calm() const override { return 4; }
 
  private:
   bool call() override {
     const auto& sequences = host_.library().sequences;
-    // Every other run picks the sequence with the present part, so that some runs finish.
+    // About half of the runs use the first sequence, whose part is present, so that some runs finish.
     const double drawn = std::max(0.0, 2 * uniform_at(seed_, met().calls) - 1);
     Life life;
     life.sequence = sequences[static_cast<std::size_t>(drawn * static_cast<double>(sequences.size()))];
@@ -114,7 +114,8 @@ class Experiments : public Caller {
     rig.simulated = false;
     rig.run = [this](const rig::RigFile&,
                      const daemon::DaemonOptions& options) -> tl::expected<daemon::Outcome, std::string> {
-      // No Ctrl-C between two daemons: signals would concern the whole process of the worlds.
+      // Ctrl-C between two daemons is not simulated, because a signal would reach the whole process of the
+      // worlds.
       if (ending()) return tl::unexpected(std::string("the world ends"));
       Life life;
       life.sequence = options.sequence;

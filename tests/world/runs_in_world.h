@@ -1,5 +1,5 @@
 #pragma once
-// Commands that run the daemon in their own process, for one sequence after another.
+// Simulated commands that run the daemon in their own process, once for each sequence.
 
 #include <memory>
 
@@ -9,10 +9,11 @@ namespace softgrip::world {
 
 /// Returns a guest that calls `softgrip run` repeatedly.
 [[nodiscard]] std::unique_ptr<Guest> make_run(Host& host);
-/// Returns a guest that calls `softgrip baseline` with one experiment and without the rests before it.
+/// Returns a guest that calls `softgrip baseline` with one experiment and without the pauses before the
+/// experiment.
 [[nodiscard]] std::unique_ptr<Guest> make_baseline(Host& host);
 /// Returns a guest that plays one experiment after another, as `softgrip investigate` does. The diagnosis
-/// moves no finger and is omitted.
+/// moves no finger, so it is omitted.
 [[nodiscard]] std::unique_ptr<Guest> make_experiment(Host& host);
 
 }  // namespace softgrip::world

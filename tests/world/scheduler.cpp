@@ -8,7 +8,7 @@
 namespace softgrip::world {
 namespace {
 
-/// Upper limit of the delay at the end of a sleep [ns]; most delays are much shorter.
+/// Largest delay with which an actor wakes up after a sleep [ns]. Most delays are much shorter.
 constexpr double latest_wake_ns = 300'000;
 
 }  // namespace

@@ -1,6 +1,6 @@
 #pragma once
-// The threads of a daemon as fibres on one simulated clock. One fibre runs at a time, in an order that
-// depends on the seed alone. A fibre can be paused while it sleeps, or right after it has read the clock.
+// Runs the threads of a daemon as fibres on one simulated clock. One fibre runs at a time, in an order that
+// depends only on the seed. A fibre can be paused while it sleeps, or right after it has read the clock.
 
 #include <cstddef>
 #include <cstdint>
@@ -23,13 +23,13 @@ class Scheduler {
 
   /// Adds a thread that starts now.
   ActorId add(std::string name, std::function<void()> body);
-  /// The actor never runs again.
+  /// Ends the actor, which never runs again.
   void kill(ActorId actor);
   [[nodiscard]] bool done(ActorId actor) const { return actors_[actor].over; }
 
-  /// The actor does not run before `until`.
+  /// Pauses the actor until the time `until`.
   void pause(ActorId actor, Nanoseconds until);
-  /// After its next reading of the clock the actor is paused for `duration`, so that its reading is out of
+  /// Pauses the actor for `duration` after its next reading of the clock, so that this reading is out of
   /// date.
   void pause_after_look(ActorId actor, Nanoseconds duration) { actors_[actor].pause_after_look = duration; }
   [[nodiscard]] bool paused(ActorId actor) const;
@@ -43,17 +43,18 @@ class Scheduler {
 
   [[nodiscard]] Nanoseconds now() const noexcept { return now_; }
 
-  /// The daemon's clock stands still for `duration` and then catches up. Actors that sleep by it continue to
-  /// sleep, and paused actors remain paused. Otherwise a long pause would look short, and a board that clears
-  /// its watchdog trip with any write could not reveal it. A stall during another stall has no effect.
+  /// Stops the daemon's clock for `duration`, after which the clock catches up. Actors that sleep by this
+  /// clock continue to sleep, and paused actors remain paused. Otherwise a long pause would look short to the
+  /// daemon, and a board on which any write clears a watchdog trip could not reveal the pause. A stall during
+  /// another stall has no effect.
   void stall_clock(Nanoseconds duration);
   [[nodiscard]] bool clock_stalled() const noexcept { return now_ < stall_ends_; }
   /// Returns the time that the daemon's clock shows.
   [[nodiscard]] Nanoseconds shown() const noexcept { return clock_stalled() ? stall_shows_ : now_; }
-  /// Called by an actor: sleeps until the daemon's clock shows `due`.
+  /// Sleeps until the daemon's clock shows `due`. Called by an actor.
   void sleep_until_shown(Nanoseconds due);
 
-  /// Called by an actor: sleeps until `due` and a little longer, like a sleep of the kernel.
+  /// Sleeps until `due` and a little longer, like a sleep of the kernel. Called by an actor.
   void sleep_until(Nanoseconds due);
   /// Called by an actor that has just read the clock.
   void looked();
@@ -67,7 +68,7 @@ class Scheduler {
     Nanoseconds due = 0;
     Nanoseconds paused_until = 0;
     Nanoseconds pause_after_look = 0;
-    bool by_clock = false;  // it sleeps by the daemon's clock
+    bool by_clock = false;  // the actor sleeps by the daemon's clock
     bool over = false;
 
     [[nodiscard]] Nanoseconds goes_on() const noexcept { return due > paused_until ? due : paused_until; }
@@ -99,7 +100,7 @@ class WorldClock : public Clock {
     scheduler_.sleep_until_shown(due);
     slept_ = true;
   }
-  /// Returns the first reading after the last sleep.
+  /// Returns the first time that was read after the last sleep.
   [[nodiscard]] Nanoseconds woke() const noexcept { return woke_; }
 
  private:

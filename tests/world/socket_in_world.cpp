@@ -52,7 +52,7 @@ void SocketInWorld::take(const Arrival& arrival, Nanoseconds now) {
 }
 
 void SocketInWorld::serve(Nanoseconds now) {
-  // Send due lines first, so that the number of calls in take() does not matter.
+  // Periodic messages that are due are sent first, so that the number of calls in take() has no effect.
   api_.on_time(now);
   api_.on_time(now);
   while (!arrivals_.empty()) {

@@ -1,5 +1,5 @@
 #pragma once
-// The daemon's socket API without a socket: the test passes lines in and reads lines back.
+// The daemon's socket API without a socket. The test passes lines to it and reads its lines.
 
 #include <deque>
 #include <functional>

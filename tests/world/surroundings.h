@@ -1,6 +1,6 @@
 #pragma once
-// The surroundings of a program that drives a rig: board, line, fingers, a second Modbus client, the clock,
-// and the invariants that are checked there.
+// The simulated surroundings of a program that drives a rig: board, line, fingers, a second Modbus client,
+// the clock, and the monitor that checks the invariants.
 
 #include <functional>
 #include <span>
@@ -37,9 +37,9 @@ class Surroundings {
     return kind == Incident::Kind::clock_stalls ||
            (kind >= Incident::Kind::line && kind <= Incident::Kind::part_gone);
   }
-  /// Called when a write has reached the board, with the outputs before it.
+  /// Records a write that has reached the board, with the outputs before this write.
   void note_write(std::span<const double> outputs_kpa, std::span<const double> commands_kpa);
-  /// Called when a program starts, which has not had a good exchange yet.
+  /// Called when a program starts, because it has had no successful exchange yet.
   void nobody_spoke() noexcept { good_since_ = false; }
   /// Returns the present disturbances by the line and by the second Modbus client.
   [[nodiscard]] Excuse excuse() const noexcept;

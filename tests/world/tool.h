@@ -1,5 +1,6 @@
 #pragma once
-// The programs in a world in addition to the daemon, and the counts of incidents during their use.
+// The programs that run in a simulated world in addition to the daemon, and the number of incidents while
+// they run.
 
 #include <array>
 #include <cstdint>
@@ -20,7 +21,7 @@ inline constexpr std::array tool_names{"daemon",   "calibrate",  "doctor", "run"
                                        "baseline", "experiment", "plc",    "blocks"};
 inline constexpr std::size_t tool_count = tool_names.size();
 
-/// Number of uses of a tool, and of disturbances during them.
+/// Number of calls of a tool, and of disturbances during these calls.
 struct Met {
   std::uint64_t calls = 0;  ///< calls of the command; for plc: commands of masters; for blocks: starts
   std::uint64_t results =

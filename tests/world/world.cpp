@@ -29,17 +29,17 @@ using control::Request;
 /// Pause between the end of a daemon and the next start.
 constexpr Nanoseconds restart_pause = ns_per_s;
 constexpr Nanoseconds longest_answer = 2 * ns_per_s;
-/// Longest time for a guest to end after the request.
+/// Longest time from the request to end until the guest has ended.
 constexpr Nanoseconds longest_end = 60 * ns_per_s;
 /// Longest interval between ticks of an undisturbed loop.
 constexpr Nanoseconds longest_tick_gap = ns_per_s / 20;
 constexpr Nanoseconds memory_looked_at_every = ns_per_s;
-/// Time after which a daemon has allocated its resources.
+/// Time after the start at which a daemon has allocated all its resources.
 constexpr Nanoseconds settling = 5 * ns_per_s;
-/// The event log and a recording each store 10,000 events of 0.5 KiB, from which run.json is built. Nothing
-/// else may grow.
+/// Largest growth of the heap. The event log and a recording each store up to 10,000 events of 0.5 KiB, from
+/// which run.json is built. No other data may grow.
 constexpr std::size_t allowed_growth_bytes = std::size_t{12} << 20;
-/// Descriptors of a recording and of a sequence's file.
+/// Largest number of additional descriptors, for a recording and the file of a sequence.
 constexpr std::size_t allowed_descriptors = 8;
 
 std::size_t open_descriptors() {
@@ -109,7 +109,7 @@ class World final : public Host {
     return std::move(result_);
   }
 
-  // The interface Host.
+  // Implementation of the interface Host.
   [[nodiscard]] const Library& library() const override { return library_; }
   [[nodiscard]] Surroundings& around() override { return around_; }
   [[nodiscard]] DaemonInWorld* daemon() override { return daemon_.get(); }
@@ -196,7 +196,7 @@ class World final : public Host {
     boots_at_ = scheduler_.now() + restart_pause;
   }
 
-  /// Checks everything once per millisecond: time limits, ends and restarts.
+  /// Checks time limits once per millisecond, detects the end of a daemon and restarts it.
   void outside_body() {
     for (;;) {
       scheduler_.sleep_until(scheduler_.now() + ns_per_s / 1000);
@@ -231,13 +231,14 @@ class World final : public Host {
     }
   }
 
-  /// Checks, once per second while a daemon lives, the memory and descriptors that it has acquired since it
-  /// settled.
+  /// Checks the memory and the descriptors that the daemon has acquired since it settled, once per second
+  /// while it runs.
   void look_at_memory(Nanoseconds now) {
     const bool due = now - memory_looked_at_ >= memory_looked_at_every && now - booted_at_ >= settling;
     if (!due || options_.trace) return;
     memory_looked_at_ = now;
-    // Exclude the world's own list of ticks. With a trace the growth is not checked.
+    // The list of ticks belongs to the world, so it is excluded. The growth is not checked if a trace is
+    // recorded.
     const std::size_t bytes = allocated_bytes() - recorded_.capacity() * sizeof(Nanoseconds);
     if (settled_bytes_ == 0) settled_bytes_ = bytes;
     const std::size_t growth = bytes > settled_bytes_ ? bytes - settled_bytes_ : 0;
@@ -291,8 +292,8 @@ class World final : public Host {
   void wrote(Nanoseconds began, std::span<const double> commands) {
     const Nanoseconds now = scheduler_.now();
     const auto outputs = hardware_.outputs_kpa();
-    // No loop shapes a ramp if the loop is stalled. After a failed exchange the outputs are unknown, and the
-    // daemon writes the lower of the possible values.
+    // The slew limits do not apply to the safe outputs of a stalled loop. After a failed exchange the outputs
+    // are unknown, and the daemon writes the lower of the possible values.
     const std::uint64_t failures = daemon_->bus_statistics.failures.value();
     const bool unconfirmed = std::exchange(failures_, failures) != failures;
     const bool safe_outputs = unconfirmed || daemon_->shared.shutdown_requested.load() ||
@@ -318,7 +319,7 @@ class World final : public Host {
   unsigned lives_ = 0;
   std::optional<daemon::Outcome> outcome_;  // outcome of the last daemon, unless it was killed
   bool vented_in_motion_ = false;
-  bool alone_ = true;  // its recordings are in the folder of the rig file
+  bool alone_ = true;  // the recordings of the daemon are in the folder of the rig file
   bool killed_ = false;
   bool disk_full_ = false;
   bool disk_was_full_ = false;
@@ -327,7 +328,7 @@ class World final : public Host {
   Nanoseconds booted_at_ = 0;
   Nanoseconds memory_looked_at_ = 0;
   std::uint64_t ticked_ = 0;
-  std::uint64_t failures_ = 0;  // failures of the bus at its last write
+  std::uint64_t failures_ = 0;  // number of failed exchanges at the last write of the daemon
   Nanoseconds boots_at_ = 0;
   Nanoseconds last_tick_ = 0;
   Nanoseconds last_tick_gap_end_ = 0;

@@ -16,11 +16,11 @@
 
 namespace softgrip::world {
 
-/// The data that all worlds share; read once.
+/// The data that all worlds share. They are read once.
 struct Library {
   rig::RigFile rig;
   std::vector<std::shared_ptr<const daemon::LoadedSequence>> sequences;
-  std::vector<Library> others;  ///< rigs whose pressures go to both sides of their rest pressure
+  std::vector<Library> others;  ///< rigs whose pressure ranges extend to both sides of the rest pressure
 
   /// Returns the library of a seed: one seed in four has a rig of `others`.
   [[nodiscard]] const Library& of(std::uint64_t seed) const {
@@ -35,7 +35,7 @@ struct WorldOptions {
   Nanoseconds length = 60 * ns_per_s;
   /// If set, these incidents replace the incidents that the seed draws.
   std::optional<std::vector<Incident>> incidents;
-  /// Record every incident, every write and every tick with an event as text.
+  /// True: every incident, every write and every tick with an event is recorded as text.
   bool trace = false;
   bool record = true;
   bool always_habits = false;  ///< false: one seed in five has a board with habits
@@ -55,7 +55,7 @@ struct WorldResult {
 
 [[nodiscard]] WorldResult run_world(const Library& library, std::uint64_t seed, const WorldOptions& options);
 
-/// Returns fewer incidents with the same violation.
+/// Returns a shorter list of incidents that causes the same violation.
 [[nodiscard]] std::vector<Incident> shrink(const Library& library, std::uint64_t seed,
                                            const WorldResult& failed, const WorldOptions& options);
 
