@@ -11,7 +11,8 @@ namespace {
 using model::Validity;
 
 /// A 4-20 mA input of a 16-bit board that reads -32768 if nothing is connected. Its sensor resembles a laser
-/// HG-C1100: the current is highest at the near end, and 3.75 mA mean that it cannot measure.
+/// HG-C1100: the current is highest at the near end, and a current of 3.75 mA means that the sensor cannot
+/// measure.
 class JudgedInputTest : public testing::Test {
  protected:
   JudgedInputTest() {
@@ -68,7 +69,7 @@ TEST_F(JudgedInputTest, StatusRegister) {
   EXPECT_EQ(judged(12000, std::uint16_t{1}).validity, Validity::out_of_range);
   EXPECT_EQ(judged(12000, std::uint16_t{2}).validity, Validity::out_of_range);
   EXPECT_EQ(judged(12000, std::uint16_t{3}).validity, Validity::sensor_error);
-  // The status describes the board's range; the sensor's own limits still apply.
+  // The status concerns the range of the board. The limits of the sensor still apply.
   EXPECT_EQ(judged(1000, std::uint16_t{0}).validity, Validity::out_of_range);
   EXPECT_EQ(judged(3750, std::uint16_t{0}).validity, Validity::sensor_error);
   EXPECT_EQ(judged(3750, std::uint16_t{2}).validity, Validity::sensor_error);

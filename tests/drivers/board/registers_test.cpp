@@ -87,7 +87,7 @@ TEST(Scaling, TwoPointsRoundTripForEitherSlope) {
   std::uniform_real_distribution<double> values(-100, 100);
   for (int i = 0; i < 10000; ++i) {
     TwoPoints line{values(random), values(random), values(random), values(random)};
-    // Two nearly equal points amplify rounding without bound; no calibration has such points.
+    // Two nearly equal points amplify the rounding error without bound. No real calibration has such points.
     if (std::abs(line.x1 - line.x0) < 0.1 || std::abs(line.y1 - line.y0) < 0.1) continue;
     const double y = values(random);
     EXPECT_NEAR(line.y_at(line.x_at(y)), y, 1e-9) << "seed " << seed << ", draw " << i;
@@ -122,7 +122,7 @@ TEST(Scaling, ThroughTheRegisterWithinHalfAStep) {
       block.raw_max = one.raw_max;
       block.bits = one.bits;
       const TwoPoints sensor{4, 85, 20, 15};  // the current is highest at the near end
-      // Half a step of the converter, plus half a raw unit if its steps are not whole numbers.
+      // Half a step of the converter, plus half a raw unit if the steps are not whole numbers.
       const double half_step_ma =
           16.0 / (std::exp2(one.bits) - 1) / 2 + 16.0 / (one.raw_max - one.raw_min) / 2;
       for (int i = 0; i < 500; ++i) {
@@ -142,7 +142,7 @@ TEST(Scaling, QuantisedRawHasTheConvertersSteps) {
   block.scaling = {0, 0, 10, 10};
   block.raw_min = 0;
   block.raw_max = 10;
-  block.bits = 2;  // steps 0, 3.33, 6.67, 10
+  block.bits = 2;  // 4 levels: 0, 3.33, 6.67 and 10
   EXPECT_DOUBLE_EQ(quantised_raw(block, 4), 10.0 / 3);
   EXPECT_DOUBLE_EQ(quantised_raw(block, 11), 10);
   EXPECT_DOUBLE_EQ(quantised_raw(block, -1), 0);

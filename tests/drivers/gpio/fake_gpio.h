@@ -1,7 +1,7 @@
 #pragma once
-// GPIO chips without a kernel: the functions of libgpiod that the driver calls, for the API of the installed
-// library (fake_gpio_1.cpp, fake_gpio_2.cpp). They operate on the chips of fake_chips(), and replace the
-// library's own functions when a test program is linked.
+// Simulated GPIO chips. The functions of libgpiod that the driver calls are implemented for the API of the
+// installed library (fake_gpio_1.cpp, fake_gpio_2.cpp). They operate on the chips of fake_chips() and replace
+// the functions of the library when a test program is linked.
 
 #include <cstdint>
 #include <deque>
@@ -20,11 +20,11 @@ struct FakeEdge {
 
 struct FakeLine {
   std::string name;
-  bool used = false;  ///< also true while the driver holds the line
+  bool used = false;  ///< the line is in use, by the driver or by another program
   std::string consumer;
   bool output = false;
   bool high = false;        ///< the physical level
-  bool edges_seen = false;  ///< requested with edge detection
+  bool edges_seen = false;  ///< the line was requested with edge detection
   bool active_low = false;
   FakeBias bias = FakeBias::as_is;
   bool gone = false;  ///< every call fails with EIO
@@ -32,7 +32,7 @@ struct FakeLine {
   std::deque<FakeEdge> edges;
 
   [[nodiscard]] bool active() const { return high != active_low; }
-  /// Changes the level. If edges were requested, the program receives an edge.
+  /// Changes the level. If the line was requested with edge detection, the program receives an edge.
   void change(bool to_high, std::int64_t at_ns);
   /// Requests the line. Returns 0 or an errno.
   int request(const std::string& by, bool as_output, bool with_edges, bool inverted, FakeBias resistor);
@@ -49,10 +49,10 @@ struct FakeChip {
   std::vector<FakeLine> lines;
 };
 
-/// Locks all lines. A test that changes levels in another thread than the driver's holds the lock meanwhile,
-/// as the library's functions do.
+/// Locks all lines. A test that changes levels while the driver runs in another thread must hold the lock, as
+/// the functions of the library do.
 [[nodiscard]] std::unique_lock<std::recursive_mutex> hold_fake_lines();
-/// The machine's chips; the tests clear them.
+/// Returns the chips of the machine. Each test clears the list.
 std::vector<FakeChip>& fake_chips();
 /// Returns the chip at this path, or nullptr with errno set.
 FakeChip* open_fake_chip(const char* path);

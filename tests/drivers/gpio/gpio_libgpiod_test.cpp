@@ -1,4 +1,4 @@
-// The lines of a rig through the API of the installed libgpiod, on chips without a kernel.
+// Tests the digital lines of a rig through the API of the installed libgpiod, on simulated chips.
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -55,7 +55,7 @@ class Libgpiod : public ::testing::Test {
   }
 
   std::filesystem::path devices_;
-  std::filesystem::path sys_;  // empty: no such folder
+  std::filesystem::path sys_;  // empty: the folder does not exist
 };
 
 TEST_F(Libgpiod, RequestsEachLineAsDescribed) {

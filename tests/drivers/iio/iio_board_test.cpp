@@ -1,4 +1,4 @@
-// Converters of this computer, simulated by plain files with the paths that sysfs uses.
+// Tests the converters of this computer, which are simulated by plain files with the paths that sysfs uses.
 
 #include "drivers/iio/iio_board.h"
 
@@ -54,7 +54,7 @@ class IioBoardTest : public testing::Test {
 
   void put(const std::string& file, const std::string& text) const {
     fs::create_directories((root_ / file).parent_path());
-    // Overwrite the file in place, because the board keeps it open like an attribute of sysfs.
+    // Overwrites the file in place, because the board keeps the file open, like an attribute of sysfs.
     std::ofstream(root_ / file) << text << "\n";
   }
   [[nodiscard]] std::string get(const std::string& file) const {
@@ -213,7 +213,7 @@ TEST_F(IioBoardTest, APowerdownThatCannotBeReadOrWrittenIsRefusedBeforeAnythingI
 
 TEST_F(IioBoardTest, APowerdownThatStaysEndsTheSessionAndTheNextIsRefused) {
   const fs::path powerdown = root_ / "iio:device1/out_voltage1_powerdown";
-  // The kernel accepts any number in this file and keeps its own value, which is above 0.
+  // The kernel accepts a write of any number to this file but keeps its own value, which is above 0.
   const std::string keeps_its_number = "/proc/sys/kernel/random/urandom_min_reseed_secs";
   if (::access(keeps_its_number.c_str(), W_OK) != 0) GTEST_SKIP() << "needs root: " << keeps_its_number;
   fs::create_symlink(keeps_its_number, powerdown);
@@ -304,7 +304,7 @@ TEST_F(IioBoardTest, OneChannelUnderTwoWordsIsRefused) {
   EXPECT_NE(refusal().find("both are "), std::string::npos) << refusal();
 }
 
-/// Converters on a bus that disappear and return with the kernel's next device number.
+/// Converters on a bus. They disappear and return with the next device number of the kernel.
 class IioBusTest : public IioBoardTest {
  protected:
   IioBusTest() {

@@ -7,8 +7,8 @@
 namespace softgrip::drivers::exchange_plan_test {
 namespace {
 
-/// A map with 8 inputs from holding register 0, their status from 8, and 4 outputs from 100, read back
-/// from 20.
+/// Returns a map with 8 inputs from holding register 0, their status from register 8, and 4 outputs from
+/// register 100, which are read back from register 20.
 BoardMap plain_map() {
   BoardMap map;
   map.inputs.registers = {.function = 3, .address = 0, .count = 8, .kind = RegisterKind::uint16};
@@ -43,7 +43,8 @@ TEST(ExchangePlan, NeighbouringBlocksAreReadTogether) {
   map.input_status =
       StatusBlock{.registers = {3, 8, 8, RegisterKind::uint16}, .ok = {0}, .over = {}, .under = {}};
   const ExchangePlan plan = plan_exchange(map, test::two_fingers(false));
-  // Inputs 2-7 are between them: they are registers of the board, so they can be read.
+  // Inputs 2-7 lie between the wired inputs and the status. They are registers of the board, so they can be
+  // read in the same request.
   EXPECT_EQ(plan.reads, (std::vector<ReadStep>{{3, 0, 10}}));
   EXPECT_EQ(plan.channels[1].displacement_status, (Slot{0, 9}));
 }

@@ -1,5 +1,5 @@
-// The board's driver against the server of libmodbus, the implementation with which users of most real boards
-// have tried them.
+// Tests the driver with the server of libmodbus, because most users of real boards have tried them with
+// libmodbus.
 
 #include <gtest/gtest.h>
 #include <modbus/modbus.h>

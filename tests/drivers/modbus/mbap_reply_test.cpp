@@ -14,7 +14,7 @@ using State = ModbusReply::State;
 constexpr std::uint16_t transaction = 0x0102;
 constexpr std::uint8_t unit = 17;
 
-/// A request and a correct response; the data are at its end.
+/// A request and a correct response, whose last bytes are the data.
 struct Case {
   ModbusRequest request;
   Bytes pdu;
@@ -95,9 +95,9 @@ TEST(ModbusReply, EveryByteBehindAnAnswerIsADefect) {
   }
 }
 
-// No change of one bit in header, function code, byte count or echo may be accepted. The highest bit of the
-// function code makes the response an exception, but its length does not fit. Only the checksum of TCP
-// protects the data.
+// No change of one bit in header, function code, byte count or echo may be accepted. If the highest bit of
+// the function code changes, the response looks like an exception of the wrong length. The data are protected
+// only by the checksum of TCP.
 TEST(ModbusReply, NoBitOutsideTheDataMayFlip) {
   for (const Case& one : cases()) {
     const Bytes right = frame(one.pdu);

@@ -1,5 +1,4 @@
-// Compares frames with the byte sequences of the examples in the Modbus application protocol V1.1b3,
-// section 6.
+// Compares the frames of requests with the examples in section 6 of the Modbus application protocol V1.1b3.
 
 #include "drivers/modbus/mbap.h"
 

@@ -1,5 +1,6 @@
 #pragma once
-// The board's driver with a server on real sockets, for the tests of exchanges, read-back and watchdog.
+// The driver of a Modbus board and a server on real sockets, for the tests of exchanges, read-back and
+// watchdog.
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// The board's driver against a server on real sockets: correct registers, values and status.
+// Tests the driver with a server on real sockets: registers, values and status must be correct.
 
 #include "drivers/modbus/modbus_board.h"
 
@@ -211,7 +211,7 @@ TEST_F(ModbusBoardTest, ExceptionsAreToldAndTheSessionStands) {
 
 TEST_F(ModbusBoardTest, TheDeadlineSpansTheWholeExchange) {
   connect(shipped("adam-6024.yaml"));
-  server_.delay(30ms);  // each of the four round trips is shorter than the deadline, their sum is longer
+  server_.delay(30ms);  // each of the 4 round trips is shorter than the deadline, but their sum is longer
   const Nanoseconds before = MonotonicClock().now();
   EXPECT_EQ(exchange(10, 10, 50ms), BusStatus::timed_out);
   EXPECT_LT(MonotonicClock().now() - before, 50'000'000 + 400'000'000);

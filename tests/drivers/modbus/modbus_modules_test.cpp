@@ -1,4 +1,4 @@
-// Several Modbus modules that form one board.
+// Tests several Modbus modules that form one board.
 
 #include "drivers/modbus/modbus_board.h"
 

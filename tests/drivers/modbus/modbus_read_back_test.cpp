@@ -1,4 +1,4 @@
-// The conclusions of the board's driver from the outputs that a board reads back.
+// Tests which status the driver concludes from the outputs that it reads back from a board.
 
 #include "drivers/modbus/modbus_board.h"
 
@@ -70,8 +70,8 @@ TEST_F(ModbusBoardTest, WhatSomebodyElseWritesIsNoticedWithinEightExchanges) {
   EXPECT_EQ(exchange(0, 0), BusStatus::ok);
 }
 
-// An output that never accepted a write also differs from it at the next reading, although no other client
-// has written.
+// An output that never accepted a write differs from the written value at the next reading, although no other
+// client has written.
 TEST_F(ModbusBoardTest, AnOutputThatDoesNotFollowIsNotTakenForSomebodyElsesWriting) {
   BoardMap map = shipped("adam-6024.yaml");
   map.read_back->lag_exchanges = 0;
@@ -148,7 +148,8 @@ TEST_F(ModbusBoardTest, AReadBackMayLagAsFarAsTheMapAllows) {
   BoardMap map = shipped("adam-6024.yaml");
   map.read_back->lag_exchanges = 1;
   server_.on_request([](RegisterServer& server, const RegisterServer::Request& request) {
-    if (request.function != 16) return;  // the write is not executed yet: shows the previous one
+    if (request.function != 16)
+      return;  // the write is not executed yet, so the read-back shows the previous value
     server.input_[10] = server.holding_[10];
     server.input_[11] = server.holding_[11];
   });

@@ -1,5 +1,6 @@
-// Fuzz target: takes arbitrary bytes as the response of a board and processes them until a reading results.
-// The first bytes choose the request and the kind of register; the remaining bytes are the response.
+// Fuzz target: takes arbitrary bytes as the response of a board and processes them until a reading is
+// obtained. The first bytes choose the request and the kind of register; the remaining bytes are the
+// response.
 //
 //   cmake --preset fuzz && cmake --build --preset fuzz --target modbus_reply_fuzz
 //   build/fuzz/tests/drivers/modbus_reply_fuzz -max_total_time=660 -max_len=512
@@ -95,8 +96,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::uint8_t unit = choices.byte();
   const std::span<const std::uint8_t> bytes = choices.rest();
 
-  // Parse byte by byte, as a slow board sends them. After a verdict, more bytes can change it only to
-  // "defective".
+  // The bytes are parsed one by one, as a slow board sends them. After the parser has judged the response,
+  // further bytes can change its result only to "defective".
   State last = State::incomplete;
   for (std::size_t have = 0; have <= bytes.size(); ++have) {
     const ModbusReply reply = parse_reply(bytes.first(have), request, transaction, unit);

@@ -1,5 +1,5 @@
-// The serial link against a module with every possible fault. Each case states the expected status and the
-// longest duration. Afterwards a new session must read the correct values.
+// Tests the serial link with a module that shows every possible fault. Each case states the expected status
+// and the longest duration. Afterwards a new session must read the correct values.
 
 #include "drivers/modbus/modbus_rtu_link.h"
 
@@ -25,8 +25,8 @@ using test::Bytes;
 using test::checked;
 using test::ScriptedLine;
 
-// How much later than its deadline a call may return on a loaded machine. This is much less than the duration
-// of a drip-fed or late response in these tests.
+// Longest time after its deadline at which a call may return on a loaded machine. A response that arrives
+// late or byte by byte takes much longer in these tests.
 constexpr Nanoseconds slack = 400'000'000;
 constexpr Nanoseconds deadline = 100'000'000;
 constexpr Nanoseconds generous = 10'000'000'000;
@@ -148,7 +148,7 @@ TEST(ModbusRtuLink, ALateReplyIsNeverTakenForALaterAnswer) {
                  [](ScriptedLine& line, const Bytes& request) {
                    line.wait(110ms);
                    Bytes late = good_reply(request);
-                   late[4] = 9;  // differs from the response to the next request
+                   late[4] = 9;  // the data differ from the response to the next request
                    late.resize(late.size() - 2);
                    line.send(checked(late));
                  },
@@ -193,7 +193,7 @@ TEST(ModbusRtuLink, WhatIsNotTheAnswer) {
              BusStatus::bad_reply, "checksum");
   expect_end(ask_once([](ScriptedLine& line, const Bytes& request) {
                Bytes reply = good_reply(request);
-               reply.resize(reply.size() + 5);  // the length of the shortest response
+               reply.resize(reply.size() + 5);  // this is the length of the shortest response
                line.send(reply);
              }),
              BusStatus::bad_reply, "bytes follow");
@@ -249,7 +249,7 @@ TEST(ModbusRtuLink, ALostRequestIsRepeatedAndASecondAnswerIsNotBelieved) {
   for (const bool lost : {true, false}) {
     ScriptedLine line([lost](ScriptedLine& self, const Bytes& request, std::size_t index) {
       if (index == 0 && lost) return;
-      if (index == 0) self.wait(130ms);  // late; later requests are answered, too
+      if (index == 0) self.wait(130ms);  // this response is late, and later requests are also answered
       const std::size_t one = 8;
       for (std::size_t at = 0; at + one <= request.size(); at += one) {
         const auto first = request.begin() + static_cast<std::ptrdiff_t>(at);
@@ -269,7 +269,7 @@ TEST(ModbusRtuLink, ALostRequestIsRepeatedAndASecondAnswerIsNotBelieved) {
   }
 }
 
-// The greeting of a starting module is not a response.
+// A message that a module sends during its start is not a response to a request.
 TEST(ModbusRtuLink, NothingIsSentBeforeTheSettleTimeIsOver) {
   std::atomic<Nanoseconds> first_request{0};
   ScriptedLine line([&](ScriptedLine& self, const Bytes& request, std::size_t index) {
@@ -376,7 +376,8 @@ TEST(ModbusRtuLink, ALineHasOneMaster) {
   EXPECT_EQ(second.open(now() + generous), BusStatus::ok) << second.detail();
 }
 
-/// The sums of the bus guide: reading and writing one register each takes 31 bytes.
+/// Checks the cost of an exchange that the bus guide calculates. Writing one register and reading one
+/// register take 31 bytes in total.
 TEST(ModbusRtuLink, TheCostAddsUp) {
   const std::vector<TransactionSize> pair{{5, 5}, {5, 4}};  // FC6 and FC3, each for one register
   const auto cost_ms = [&](std::uint32_t baud) {

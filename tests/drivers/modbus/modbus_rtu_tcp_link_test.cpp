@@ -1,6 +1,6 @@
-// RTU frames on a TCP connection to a server that closes connections. Two other tests check the contents of
-// frames: with the emulator (tests/simulation/emulator/board_habits_test.cpp) and on a serial line
-// (modbus_rtu_link_test.cpp).
+// Tests RTU frames on a TCP connection to a server that closes connections. Two other tests check the
+// contents of the frames, one with the emulator (tests/simulation/emulator/board_habits_test.cpp) and one on
+// a serial line (modbus_rtu_link_test.cpp).
 
 #include "drivers/modbus/modbus_rtu_tcp_link.h"
 
@@ -24,7 +24,7 @@ TcpAddress rtu_at(std::uint16_t port) {
 }
 
 TEST(ModbusRtuTcpLink, AConnectionThatIsClosedBeforeItsFirstAnswerIsNamed) {
-  // The server reads the RTU frame as a TCP frame whose length is larger than the request. It waits for more
+  // The server interprets the RTU frame as a TCP frame that is longer than the request, so it waits for more
   // bytes until it is stopped.
   auto server = std::make_unique<test::ScriptedServer>([](test::Peer&, const test::Bytes&, std::size_t) {});
   ModbusRtuTcpLink link(rtu_at(server->port()));

@@ -1,5 +1,5 @@
-// The session against a server with every possible fault. Each case states the expected status and the
-// longest duration.
+// Tests the session with a server that shows every possible fault. Each case states the expected status and
+// the longest duration.
 
 #include "drivers/modbus/modbus_tcp_link.h"
 
@@ -31,8 +31,8 @@ using test::Bytes;
 using test::Peer;
 using test::ScriptedServer;
 
-// How much later than its deadline a call may return on a loaded machine. This is much less than the duration
-// of a drip-fed or late response, so a call that waits for such a response fails the test.
+// Longest time after its deadline at which a call may return on a loaded machine. A response that arrives
+// late or byte by byte takes much longer, so a call that waits for such a response fails the test.
 constexpr Nanoseconds slack = 400'000'000;
 constexpr Nanoseconds deadline = 50'000'000;
 constexpr Nanoseconds generous = 5'000'000'000;
@@ -51,7 +51,7 @@ void answer_well(Peer& peer, const Bytes& request) {
   peer.send(test::registers_reply(request, register_value));
 }
 
-/// Returns success if the session's data are the registers that `request` reads.
+/// Returns success if the data of the session are the contents of the registers that `request` reads.
 testing::AssertionResult is_answer(const ModbusTcpLink& session, const ModbusRequest& request) {
   if (session.data().size() != 2U * request.count) {
     return testing::AssertionFailure() << session.data().size() << " bytes for " << request.count;
@@ -138,7 +138,7 @@ TEST(ModbusTcpLink, DripFedReplyDoesNotExtendTheDeadline) {
   const ModbusRequest large{.function = 3, .address = 0, .count = 125};
   const Outcome outcome = ask_once(
       [](Peer& peer, const Bytes& request) {
-        peer.drip(test::registers_reply(request, register_value), 10ms);  // takes 2.6 s in total
+        peer.drip(test::registers_reply(request, register_value), 10ms);  // the response takes 2.6 s in total
       },
       large);
   expect_poisoned(outcome, BusStatus::timed_out, deadline + slack);
@@ -283,7 +283,7 @@ int listening(int backlog, std::uint16_t& port) {
   return listener;
 }
 
-/// A server that accepts a connection, sends `greeting`, and closes the connection if `closes`.
+/// A server that accepts a connection, sends `greeting`, and closes the connection if `closes` is true.
 class Greeter {
  public:
   Greeter(const std::string& greeting, bool closes) {
@@ -407,8 +407,8 @@ TEST(ModbusTcpLink, WriteConfirmedForAnotherAddress) {
 }
 
 // After one duplicated response a careless client assigns every later response to the wrong request. This
-// server duplicates responses at random, at once or later. Every request reads other registers, so a wrong
-// assignment is detected.
+// server duplicates random responses, immediately or later. Every request reads different registers, so that
+// a wrong assignment is detected.
 TEST(ModbusTcpLink, DuplicatedRepliesNeverMoveTheAnswers) {
   const unsigned seed = 20250411;
   std::mt19937 random(seed);
@@ -483,7 +483,8 @@ TEST(ModbusTcpLink, ConnectingIsBoundedWhenNobodyAnswers) {
 
 TEST(ModbusTcpLink, AHalfOpenSessionTimesOut) {
   ScriptedServer server([](Peer& peer, const Bytes& request, std::size_t index) {
-    if (index == 0) answer_well(peer, request);  // then silent on an open connection
+    if (index == 0)
+      answer_well(peer, request);  // later requests receive no response, and the connection stays open
   });
   ModbusTcpLink session(TcpAddress{"127.0.0.1", server.port()});
   ASSERT_EQ(session.open(now() + generous), BusStatus::ok);
@@ -498,7 +499,7 @@ TcpAddress repeating(std::uint16_t port, bool numbered = true) {
   return {.host = "127.0.0.1", .port = port, .habits = {.repeat_after_s = 0.05}, .numbered = numbered};
 }
 
-// The repetition is an identical frame, so it writes the same output values.
+// A repeated request is an identical frame, so it writes the same output values.
 TEST(ModbusTcpLink, ALostRequestIsRepeatedBeforeTheSessionIsGivenUp) {
   std::vector<Bytes> asked;
   ScriptedServer server([&](Peer& peer, const Bytes& request, std::size_t index) {
@@ -527,7 +528,7 @@ TEST(ModbusTcpLink, RepeatingDoesNotExtendTheDeadline) {
   EXPECT_GE(asked, 2U);
 }
 
-/// A board that is slow once and responds to the request and to each repetition.
+/// Simulates a board that is slow once and responds to the request and to each repetition.
 void answer_late_once(Peer& peer, const Bytes& request, std::size_t index, bool numbered) {
   if (index == 0) peer.wait(130ms);
   Bytes reply = test::registers_reply(request, register_value);
@@ -584,8 +585,8 @@ TEST(ModbusTcpLink, ADeadlineInThePastFailsAtOnce) {
 }
 
 // Descriptors of 1024 and above do not fit into an fd_set, with which libmodbus waits. A link that received a
-// lower descriptor continues to work through any number of sessions, even if the program opens many more
-// files later.
+// lower descriptor continues to work in all later sessions, even if the program opens many files in the
+// meantime.
 TEST(ModbusTcpLink, DescriptorsAboveTheFdSet) {
   rlimit limit{};
   ASSERT_EQ(::getrlimit(RLIMIT_NOFILE, &limit), 0);

@@ -1,5 +1,5 @@
-// The board's driver against an independent Modbus server: pymodbus with the registers of an ADAM-6024. The
-// server's side checks the written and the read values.
+// Tests the driver with an independent Modbus server, which is pymodbus with the registers of an ADAM-6024.
+// The registers of the server confirm the written and the read values.
 
 #include <gtest/gtest.h>
 #include <poll.h>
@@ -25,7 +25,7 @@ using Json = nlohmann::json;
 
 constexpr auto generous = 10s;
 
-/// The Python process of the server, which exchanges lines of JSON with the test.
+/// The server, a Python process that exchanges lines of JSON with the test.
 class PymodbusBoard {
  public:
   /// `how`: nullptr for TCP, or "serial".

@@ -1,6 +1,6 @@
 #pragma once
-// A correct Modbus server on real sockets that records its requests: the board in tests of the board's
-// driver. It does not use any code of drivers/.
+// A correct Modbus server on real sockets that records its requests. It acts as the board in tests of the
+// driver and does not use any code of drivers/.
 
 #include <cstdint>
 #include <map>
@@ -51,7 +51,7 @@ class RegisterServer {
   /// Returns all requests since the last call.
   [[nodiscard]] std::vector<Request> take_requests();
 
-  // Public for hooks, which already hold the lock.
+  // The registers are public for the hooks, which already hold the lock.
   std::map<std::uint16_t, std::uint16_t> holding_;
   std::map<std::uint16_t, std::uint16_t> input_;
   std::map<std::uint16_t, std::uint16_t> coils_;

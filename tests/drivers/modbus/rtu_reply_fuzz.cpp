@@ -1,5 +1,5 @@
-// Fuzz target: arbitrary bytes as the response on a serial line, byte by byte. The parser must not accept a
-// response without a correct checksum and must not read beyond the bytes.
+// Fuzz target: takes arbitrary bytes as the response on a serial line and parses them one by one. The parser
+// must not accept a response without a correct checksum and must not read beyond the last byte.
 
 #include <array>
 #include <cstdint>

@@ -1,6 +1,6 @@
 #pragma once
 // A module on a pseudo-terminal that responds to each request as a test specifies. It does not use any code
-// of drivers/, so that an error there cannot cancel itself out.
+// of drivers/, so that an error in drivers/ cannot hide itself.
 
 #include <atomic>
 #include <chrono>
@@ -19,10 +19,12 @@ using Bytes = std::vector<std::uint8_t>;
 
 class ScriptedLine {
  public:
-  /// `index` counts the requests from 0; `request` contains all bytes until the line was quiet for 3 ms.
+  /// Called for each request. `index`: number of the request, from 0. `request`: all bytes before the line
+  /// was quiet for 3 ms.
   using Handler = std::function<void(ScriptedLine& line, const Bytes& request, std::size_t index)>;
 
-  /// `name` becomes a link to the new pseudo-terminal; if it is empty, no link is created (see device()).
+  /// Opens a pseudo-terminal and creates the link `name` to it. If `name` is empty, no link is created (see
+  /// device()).
   explicit ScriptedLine(Handler handler, std::string name = "");
   ScriptedLine(const ScriptedLine&) = delete;
   ScriptedLine& operator=(const ScriptedLine&) = delete;

@@ -1,6 +1,6 @@
 #pragma once
 // A TCP server that responds to each request as a test specifies, for example with faults. It uses plain
-// sockets and no code of drivers/, so that an error there cannot cancel itself out.
+// sockets and no code of drivers/, so that an error in drivers/ cannot hide itself.
 
 #include <sys/types.h>
 
@@ -18,13 +18,13 @@ namespace softgrip::drivers::test {
 
 using Bytes = std::vector<std::uint8_t>;
 
-/// The server's side of a session.
+/// The end of a session on the side of the server.
 class Peer {
  public:
   Peer(int socket, class ScriptedServer& server) : socket_(socket), server_(server) {}
   void send(const Bytes& bytes);
-  /// Sends one byte every `pause`, until all are sent, the client closes the connection or the server is
-  /// stopped.
+  /// Sends one byte at intervals of `pause`, until all bytes are sent, the client closes the connection or
+  /// the server is stopped.
   void drip(const Bytes& bytes, std::chrono::milliseconds pause);
   /// Waits for `duration`, or until the server is stopped.
   void wait(std::chrono::milliseconds duration);
@@ -42,7 +42,8 @@ class Peer {
 
 class ScriptedServer {
  public:
-  /// `index` counts the requests of all sessions from 0; `request` is one complete frame.
+  /// Called for each request. `index`: number of the request, from 0 across all sessions. `request`: one
+  /// complete frame.
   using Handler = std::function<void(Peer& peer, const Bytes& request, std::size_t index)>;
 
   /// Listens on a free port of 127.0.0.1 and serves one session after another.

@@ -35,7 +35,7 @@ class SerialDevice : public testing::Test {
   void make_folder_of(const std::string& path) const { fs::create_directories(at(path).parent_path()); }
   void place_link(const std::string& path, const std::string& target) const {
     make_folder_of(path);
-    fs::remove(at(path));  // the last device takes over the link, as with udev
+    fs::remove(at(path));  // the device that appeared last owns the link, as with udev
     fs::create_symlink(target, at(path));
   }
 

@@ -37,7 +37,7 @@ class EntranceTest : public ::testing::Test {
     ASSERT_EQ(::connect(socket.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
     clients_.push_back(std::move(socket));
   }
-  /// From now on the process cannot open any further descriptor.
+  /// Prevents the process from opening any further descriptor.
   void take_all_descriptors() {
     rlimit none = usual_;
     none.rlim_cur = 1;  // with 0, poll() refuses to watch any descriptor
