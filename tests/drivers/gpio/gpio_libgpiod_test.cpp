@@ -72,7 +72,7 @@ TEST_F(Libgpiod, RequestsEachLineAsDescribed) {
   EXPECT_EQ(input.consumer, "softgripd");
   const FakeLine& output = chips()[0].lines[3];
   EXPECT_TRUE(output.used && output.output && !output.edges_seen);
-  EXPECT_TRUE(output.high) << "an output starts inactive, which is high where low is active";
+  EXPECT_TRUE(output.high) << "an output starts inactive, so the level of an active-low output is high";
   EXPECT_TRUE((*lines)->sees_edges());
 }
 

@@ -84,10 +84,10 @@ TEST_F(IioBoardTest, WritesRawNumbersAndReadsThem) {
   ASSERT_EQ(board.connect(5s), BusStatus::ok) << board.detail();
   put("iio:device0/in_voltage1_raw", "16000");
   ASSERT_EQ(exchange(board, 50, 25), BusStatus::ok) << board.detail();
-  EXPECT_EQ(get("iio:device1/out_voltage0_raw"), "2000") << "1.6 V of 0.8 mV steps";
+  EXPECT_EQ(get("iio:device1/out_voltage0_raw"), "2000") << "1.6 V are 2000 steps of 0.8 mV";
   EXPECT_EQ(get("iio:device1/out_voltage1_raw"), "1000");
-  EXPECT_DOUBLE_EQ(readings_[0].displacement_mm, 7.5) << "1 V";
-  EXPECT_DOUBLE_EQ(readings_[1].displacement_mm, 20) << "2 V";
+  EXPECT_DOUBLE_EQ(readings_[0].displacement_mm, 7.5) << "the input is 1 V";
+  EXPECT_DOUBLE_EQ(readings_[1].displacement_mm, 20) << "the input is 2 V";
   EXPECT_EQ(readings_[0].validity, Validity::valid);
   EXPECT_TRUE(std::isnan(readings_[0].pressure_kpa));
   EXPECT_EQ(readings_[1].sequence, 1U);
@@ -181,7 +181,8 @@ TEST_F(IioBoardTest, AnOutputThatIsSwitchedOffIsSwitchedOnAfterItsNumberWasWritt
   put("iio:device1/out_voltage0_raw", "1234");
   IioBoard board(settings_);
   ASSERT_EQ(board.connect(5s), BusStatus::ok) << board.detail();
-  EXPECT_EQ(get("iio:device1/out_voltage0_powerdown"), "1") << "the old value must not be output";
+  EXPECT_EQ(get("iio:device1/out_voltage0_powerdown"), "1")
+      << "the output must stay off while it still has its old value";
   EXPECT_EQ(exchange(board, 110, 10), BusStatus::write_refused);
   EXPECT_EQ(get("iio:device1/out_voltage0_powerdown"), "1");
   BusStatus status = BusStatus::disconnected;
@@ -267,7 +268,8 @@ TEST_F(IioBoardTest, APressureIsReadInKilopascals) {
   ASSERT_EQ(board.connect(5s), BusStatus::ok) << board.detail();
   ASSERT_EQ(exchange(board, 50, 25), BusStatus::ok) << board.detail();
   EXPECT_NEAR(readings_[0].pressure_kpa, 20, 1e-9);
-  EXPECT_NEAR(readings_[1].pressure_kpa, 18.7, 1e-9) << "(400 + 80) * 0.25 = 120 kPa";
+  EXPECT_NEAR(readings_[1].pressure_kpa, 18.7, 1e-9)
+      << "the absolute pressure is (400 + 80) * 0.25 kPa = 120 kPa";
 }
 
 TEST_F(IioBoardTest, AHeartbeatChangesWithEveryExchange) {
@@ -290,7 +292,7 @@ TEST_F(IioBoardTest, AHeartbeatChangesWithEveryExchange) {
   EXPECT_EQ(exchange(board, 50, 25), BusStatus::disconnected);
   const std::string last = get("iio:device1/out_voltage2_raw");
   EXPECT_EQ(exchange(board, 50, 25), BusStatus::disconnected);
-  EXPECT_EQ(get("iio:device1/out_voltage2_raw"), last) << "without a session there is no heartbeat";
+  EXPECT_EQ(get("iio:device1/out_voltage2_raw"), last) << "the heartbeat does not change without a session";
   settings_.heartbeat->terminal = settings_.outputs[0];
   EXPECT_NE(refusal().find("both are "), std::string::npos) << "an output of a valve cannot be a heartbeat";
 }
@@ -381,7 +383,7 @@ TEST_F(IioBoardTest, AConverterThatShowsNoNumberEndsTheSession) {
   ASSERT_EQ(board.connect(5s), BusStatus::ok);
   put("iio:device0/in_voltage0_raw", "no");
   EXPECT_EQ(exchange(board, 10, 10), BusStatus::disconnected);
-  EXPECT_EQ(readings_[0].sequence, 0U) << "readings change together or not at all";
+  EXPECT_EQ(readings_[0].sequence, 0U) << "if one reading fails, no reading changes";
   EXPECT_EQ(exchange(board, 10, 10), BusStatus::disconnected);
   put("iio:device0/in_voltage0_raw", "8000");
   ASSERT_EQ(board.connect(5s), BusStatus::ok) << board.detail();

@@ -83,7 +83,7 @@ TEST(ExchangePlan, NoRequestBeyondTheLimitOfTheBoardAndNoNumberTorn) {
   EXPECT_EQ(plan.channels[1].pressure, (Slot{3, 0}));
   map.max_registers = 4;
   EXPECT_EQ(plan_exchange(map, test::two_fingers(true)).reads, (std::vector<ReadStep>{{3, 0, 4}, {3, 8, 4}}))
-      << "registers without a wire are read only if that saves a request";
+      << "registers of inputs without wiring are read only if this saves a request";
 }
 
 TEST(ExchangePlan, FunctionsAreNotMixed) {
@@ -101,13 +101,13 @@ TEST(ExchangePlan, TheCountOfClientsIsReadByWhatWritesTheOutputs) {
   map.watchdog.clients = BoardWatchdog::ClientCount{.function = 3, .address = 2};
   const ExchangePlan beside = plan_exchange(map, test::two_fingers(false));
   EXPECT_EQ(beside.reads, (std::vector<ReadStep>{{3, 0, 3}}))
-      << "next to the inputs, so no further request is needed";
+      << "the register is next to the inputs, so no further request is needed";
   EXPECT_EQ(beside.clients, (Slot{0, 2}));
   map.watchdog.clients = BoardWatchdog::ClientCount{.function = 4, .address = 40};
   EXPECT_EQ(plan_exchange(map, test::two_fingers(false)).reads,
             (std::vector<ReadStep>{{3, 0, 2}, {4, 40, 1}}));
   EXPECT_FALSE(plan_exchange(map, test::two_fingers(false), 1).clients.has_value())
-      << "the count belongs to another module";
+      << "the number of clients belongs to another module";
 }
 
 TEST(ExchangePlan, WritesSplitWhereAnOutputIsNotWired) {

@@ -179,7 +179,7 @@ TEST_F(ModbusBoardTest, ACommandBeyondTheOutputsRangeIsReportedAndItsEndWritten)
   EXPECT_EQ(server_.holding(11), 4095);
   EXPECT_EQ(exchange(-1, 10), BusStatus::write_refused);
   EXPECT_EQ(server_.holding(10), 0);
-  EXPECT_EQ(readings_[0].sequence, 1U) << "readings change only with ok";
+  EXPECT_EQ(readings_[0].sequence, 1U) << "readings change only if the status is ok";
   EXPECT_EQ(exchange(100, 0), BusStatus::ok) << "the limits themselves are allowed: " << board_->detail();
 }
 
@@ -217,7 +217,7 @@ TEST_F(ModbusBoardTest, TheDeadlineSpansTheWholeExchange) {
   EXPECT_LT(MonotonicClock().now() - before, 50'000'000 + 400'000'000);
   EXPECT_EQ(exchange(10, 10), BusStatus::disconnected);
   EXPECT_NE(std::string(board_->detail()).find("deadline"), std::string::npos)
-      << "the reason of the loss must remain: " << board_->detail();
+      << "the message must still state why the connection was lost: " << board_->detail();
   EXPECT_EQ(readings_[0].sequence, 0U);
   server_.delay(0ms);
   ASSERT_EQ(board_->connect(generous), BusStatus::ok) << board_->detail();
@@ -266,7 +266,7 @@ TEST_F(ModbusBoardTest, LaterSessionsBeginWithTheOutputs) {
   (void)server_.take_requests();
   ASSERT_EQ(board_->connect(generous), BusStatus::ok);
   EXPECT_TRUE(server_.take_requests().empty())
-      << "the first request resets the watchdog before the outputs are safe";
+      << "a request during the connection would reset the watchdog before the outputs are safe";
   ASSERT_EQ(exchange(0, 0), BusStatus::ok);
   EXPECT_EQ(server_.take_requests().front().function, 16);
 }
@@ -356,7 +356,7 @@ TEST_F(WatchdogTest, AfterConnectTheFirstCommandsStandBeforeAndAfterTheClearing)
   EXPECT_EQ(requests[3], write);
   EXPECT_EQ(server_.holding(10), 2048);
   trip();
-  EXPECT_EQ(exchange(50, 50), BusStatus::watchdog_tripped) << "a trip is cleared once per session";
+  EXPECT_EQ(exchange(50, 50), BusStatus::watchdog_tripped) << "only the first trip of a session is cleared";
 }
 
 TEST_F(WatchdogTest, AWatchdogThatDidNotTripIsNotCleared) {
@@ -364,7 +364,8 @@ TEST_F(WatchdogTest, AWatchdogThatDidNotTripIsNotCleared) {
   ASSERT_EQ(exchange(10, 10), BusStatus::ok);
   for (const auto& request : server_.take_requests()) EXPECT_NE(request.function, 5);
   trip();
-  EXPECT_EQ(exchange(10, 10), BusStatus::watchdog_tripped) << "and not later in the same session";
+  EXPECT_EQ(exchange(10, 10), BusStatus::watchdog_tripped)
+      << "a trip after the first exchange of a session is not cleared";
 }
 
 TEST_F(WatchdogTest, AFeedingWriteIsSentInEveryExchange) {

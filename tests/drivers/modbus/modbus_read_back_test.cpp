@@ -24,7 +24,7 @@ TEST_F(ModbusBoardTest, AnOutputThatDoesNotFollowIsRefused) {
   connect(map);
   ASSERT_EQ(exchange(10, 10), BusStatus::ok);
   server_.ignore_writes(true);
-  EXPECT_EQ(exchange(10.01, 10), BusStatus::ok) << "within the read-back tolerance";
+  EXPECT_EQ(exchange(10.01, 10), BusStatus::ok) << "the difference is within the read-back tolerance";
   EXPECT_EQ(exchange(50, 10), BusStatus::write_refused);
   EXPECT_NE(std::string(board_->detail()).find("left"), std::string::npos) << board_->detail();
   server_.ignore_writes(false);
@@ -80,7 +80,7 @@ TEST_F(ModbusBoardTest, AnOutputThatDoesNotFollowIsNotTakenForSomebodyElsesWriti
     ASSERT_EQ(exchange(10, 10), BusStatus::ok) << board_->detail();
     server_.ignore_writes(true);
     ASSERT_NE(exchange(50, 10), BusStatus::overwritten)
-        << "an exchange that reads first still finds the correct output";
+        << "an exchange that begins with a reading finds the correct output";
     for (int i = 0; i < 16 + first; ++i) ASSERT_EQ(exchange(50, 10), BusStatus::write_refused) << i;
     server_.ignore_writes(false);
   }
@@ -107,7 +107,8 @@ TEST_F(ModbusBoardTest, SomebodyElseIsToldApartFromARefusedWriteAfterTheFirstGoo
   server_.ignore_writes(false);
   ASSERT_EQ(exchange(50, 70), BusStatus::ok);
   server_.set_holding(11, 0);
-  EXPECT_EQ(exchange(50, 70), BusStatus::overwritten) << "a reading before the write is overdue";
+  EXPECT_EQ(exchange(50, 70), BusStatus::overwritten)
+      << "this exchange must begin with a reading of the outputs";
 }
 
 TEST_F(ModbusBoardTest, AnExchangeThatReadsFirstAsksNoMoreThanTheOthers) {
@@ -163,8 +164,9 @@ TEST_F(ModbusBoardTest, AReadBackMayLagAsFarAsTheMapAllows) {
   ASSERT_EQ(exchange(10, 10), BusStatus::ok);
   ASSERT_EQ(exchange(10, 10), BusStatus::ok);
   server_.ignore_writes(true);
-  ASSERT_EQ(exchange(50, 10), BusStatus::ok) << "it may still show the previous exchange";
-  EXPECT_EQ(exchange(50, 10), BusStatus::write_refused) << "the lag is limited to one exchange";
+  ASSERT_EQ(exchange(50, 10), BusStatus::ok)
+      << "the read-back may still show the command of the previous exchange";
+  EXPECT_EQ(exchange(50, 10), BusStatus::write_refused) << "the read-back may lag by one exchange only";
 }
 
 }  // namespace

@@ -213,7 +213,8 @@ TEST(ModbusRtuLink, StrayBytesAreThrownAway) {
         line.send(bytes);
       });
       EXPECT_EQ(outcome.status, BusStatus::ok)
-          << before << " before, " << behind << " behind, " << int{stray} << ": " << outcome.detail;
+          << before << " bytes before and " << behind << " bytes after the response, value " << int{stray}
+          << ": " << outcome.detail;
       EXPECT_TRUE(outcome.open_after);
     }
   }

@@ -95,7 +95,7 @@ Outcome ask_once(const std::function<void(Peer&, const Bytes&)>& misbehave,
   outcome.detail = session.detail();
   if (!session.is_open()) {
     EXPECT_EQ(session.ask(1, read_four, now() + generous), BusStatus::disconnected)
-        << "a session must not be used after a defect";
+        << "a session must not be used after a defective response";
     EXPECT_EQ(session.open(now() + generous), BusStatus::ok) << session.detail();
   }
   EXPECT_EQ(session.ask(1, read_four, now() + generous), BusStatus::ok) << session.detail();
@@ -266,7 +266,8 @@ TEST(ModbusTcpLink, AnEndBehindAnAnswerIsNoConnectionThatWasClosedAtOnce) {
   ASSERT_EQ(session.ask(1, read_four, now() + generous), BusStatus::ok);
   EXPECT_EQ(session.ask(1, read_four, now() + generous), BusStatus::disconnected);
   ASSERT_EQ(session.open(now() + generous), BusStatus::ok);
-  EXPECT_EQ(session.ask(1, read_four, now() + generous), BusStatus::closed_at_once) << "a new connection";
+  EXPECT_EQ(session.ask(1, read_four, now() + generous), BusStatus::closed_at_once)
+      << "the server closes the new connection";
 }
 
 /// Returns a listening socket on a free port of this machine.
@@ -329,7 +330,7 @@ TEST(ModbusTcpLink, NothingIsSentBeforeTheSettleTimeIsOver) {
   ASSERT_EQ(session.settle(before + generous), BusStatus::ok) << session.detail();
   ASSERT_EQ(session.ask(1, read_four, now() + generous), BusStatus::ok) << session.detail();
   EXPECT_GE(first_request - before, 200'000'000);
-  EXPECT_EQ(session.settle(now() - 1), BusStatus::ok) << "it settles once per session";
+  EXPECT_EQ(session.settle(now() - 1), BusStatus::ok) << "the wait occurs once per session";
 }
 
 TEST(ModbusTcpLink, ASettleTimeDoesNotExtendTheDeadline) {
@@ -433,7 +434,7 @@ TEST(ModbusTcpLink, DuplicatedRepliesNeverMoveTheAnswers) {
     const BusStatus status = session.ask(1, request, now() + generous);
     if (status == BusStatus::ok) {
       ++good;
-      ASSERT_TRUE(is_answer(session, request)) << "question " << i << ", seed " << seed;
+      ASSERT_TRUE(is_answer(session, request)) << "request " << i << ", seed " << seed;
     } else {
       ++bad;
       ASSERT_EQ(status, BusStatus::bad_reply) << session.detail() << ", seed " << seed;
@@ -573,7 +574,7 @@ TEST(ModbusTcpLink, AnswersWithoutTheTransactionIdAreTakenOnlyWhereThatIsAccepte
   }
   std::this_thread::sleep_for(200ms);
   EXPECT_EQ(lenient.ask(1, read_four, now() + generous), BusStatus::bad_reply)
-      << "a second answer has arrived";
+      << "a second response to the request has arrived";
   EXPECT_NE(std::string(lenient.detail()).find("unexpected"), std::string::npos) << lenient.detail();
 }
 

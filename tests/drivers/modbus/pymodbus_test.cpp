@@ -249,7 +249,8 @@ TEST(PymodbusOnALine, TwoModulesAreWrittenAndRead) {
 
   settings.modules[1].unit = 3;
   ModbusBoard stranger(settings);
-  EXPECT_EQ(stranger.connect(500ms), BusStatus::disconnected) << "a serial line has one Modbus client";
+  EXPECT_EQ(stranger.connect(500ms), BusStatus::disconnected)
+      << "a serial line can have only one Modbus client";
 }
 
 TEST(PymodbusOnALine, AUnitThatIsNotThereIsSilent) {
@@ -268,7 +269,7 @@ TEST(PymodbusOnALine, AUnitThatIsNotThereIsSilent) {
   EXPECT_EQ(board.connect(500ms), BusStatus::timed_out) << board.detail();
   settings.modules[0].unit = 1;
   ModbusBoard there(settings);
-  ASSERT_EQ(board.connect(1ms), BusStatus::timed_out) << "the line is released";
+  ASSERT_EQ(board.connect(1ms), BusStatus::timed_out) << "the line is free again";
   ASSERT_EQ(there.connect(generous), BusStatus::ok) << there.detail();
   std::array<Reading, 2> readings;
   ASSERT_EQ(there.exchange(std::array{12.5, 50.0}, readings, generous), BusStatus::ok) << there.detail();

@@ -45,7 +45,7 @@ class SerialDevice : public testing::Test {
 
 TEST_F(SerialDevice, ANameOfTwoAdaptersIsRefusedWithBothAndTheirPorts) {
   plug("ttyUSB0", "c188:0", "pci-0000:00:14.0-usb-0:1:1.0-port0", by_id);
-  EXPECT_FALSE(unclear(by_id)) << "with one adapter the name is clear";
+  EXPECT_FALSE(unclear(by_id)) << "with one adapter the name is unambiguous";
   plug("ttyUSB1", "c188:1", "pci-0000:00:14.0-usb-0:2:1.0-port0", by_id);
   const auto refused = unclear(by_id);
   ASSERT_TRUE(refused);

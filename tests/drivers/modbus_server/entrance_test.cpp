@@ -80,7 +80,7 @@ TEST_F(EntranceTest, RestsWhileNoDescriptorIsFree) {
   EXPECT_FALSE(would_wake(now + Entrance::rest - 1)) << "the client is still in the queue";
   EXPECT_TRUE(would_wake(now + Entrance::rest));
   EXPECT_FALSE(entrance_.accept(now + Entrance::rest));
-  EXPECT_FALSE(would_wake(now + Entrance::rest)) << "the entrance pauses again";
+  EXPECT_FALSE(would_wake(now + Entrance::rest)) << "the entrance accepts no client during the new pause";
   ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &usual_), 0);
   EXPECT_TRUE(entrance_.accept(now + 2 * Entrance::rest));
   EXPECT_FALSE(entrance_.short_of_descriptors());
@@ -94,7 +94,7 @@ TEST_F(EntranceTest, ServesOneClientWithItsSpareDescriptors) {
   EXPECT_TRUE(first);
   EXPECT_TRUE(entrance_.short_of_descriptors());
   const Descriptor needed{::dup(first.get())};
-  EXPECT_TRUE(needed) << "a second descriptor for the request";
+  EXPECT_TRUE(needed) << "the request can use the second spare descriptor";
   EXPECT_FALSE(entrance_.accept(0));
   EXPECT_FALSE(would_wake(0));
   first.reset();

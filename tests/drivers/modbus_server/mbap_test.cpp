@@ -12,11 +12,12 @@ TEST(RequestStream, CutsOneRequestWhateverTheChunks) {
     RequestStream stream;
     std::optional<Request> request;
     for (std::size_t i = 0; i < read_four.size(); i += chunk) {
-      EXPECT_FALSE(request) << "the request is complete too early with chunks of " << chunk;
+      EXPECT_FALSE(request) << "the request is complete too early if it arrives in chunks of " << chunk
+                            << " bytes";
       stream.append(std::span(read_four).subspan(i, std::min(chunk, read_four.size() - i)));
       request = stream.next();
     }
-    ASSERT_TRUE(request) << "chunks of " << chunk;
+    ASSERT_TRUE(request) << "the request arrives in chunks of " << chunk << " bytes";
     EXPECT_EQ(request->transaction, 7);
     EXPECT_EQ(request->unit, 1);
     EXPECT_EQ(request->pdu, (Bytes{0x03, 0x00, 0x00, 0x00, 0x04}));

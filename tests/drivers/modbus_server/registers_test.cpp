@@ -58,7 +58,7 @@ TEST_F(RegistersTest, EitherReadFunctionFindsWhatOnlyOneTableHas) {
   EXPECT_EQ(ask({0x03, 0, 10, 0, 2}), (Bytes{0x03, 4, 0, 7, 0, 8}));
   registers.define_input(0, 0x5555);
   EXPECT_EQ(ask({0x04, 0, 0, 0, 1}), (Bytes{0x04, 2, 0x55, 0x55}))
-      << "both tables have the address, so the function code decides";
+      << "the address exists in both tables, so the function code selects the table";
   EXPECT_EQ(ask({0x03, 0, 0, 0, 1}), (Bytes{0x03, 2, 0x12, 0x34}));
 }
 
