@@ -1,5 +1,5 @@
-// Properties that every block of the catalogue must have. A new block is tested here without a change of this
-// file.
+// Tests properties that every block of the catalogue must have. A new block is tested without a change of
+// this file.
 
 #include <gtest/gtest.h>
 
@@ -29,7 +29,7 @@ void for_every_block(Check&& check) {
   }
 }
 
-/// Returns bench_twin with this block, which has its default values.
+/// Returns the model bench_twin with this block added, with the default values of the block.
 Model twin_with(std::size_t type) {
   const Model twin = preset("bench_twin");
   return position_of(twin, type) ? twin : with_block(twin, default_block(type));
@@ -62,7 +62,8 @@ TEST(EveryBlock, DoesNothingAtItsNeutralValues) {
   });
 }
 
-// The output segments of a block join without a gap, and their duration is that of the input.
+// The output segments of a block join without a gap, and their total duration equals the duration of the
+// input.
 TEST(EveryBlock, KeepsTimeAndContinuity) {
   for (std::size_t type = 0; type < catalogue().size(); ++type) {
     const Model model{"one", "test", {default_block(type)}};
@@ -120,9 +121,10 @@ TEST(EveryBlock, RestsAfterReset) {
 }
 
 // A linear command can be given as one step or as two halves. Blocks that are documented as exact return the
-// same result. For the others the difference after a step of 5 ms must be small.
+// same result. For all other blocks the difference after a step of 5 ms must be small.
 TEST(EveryBlock, StepsInHalvesAsInOne) {
-  // Alone, both lags are exact for a linear input; here another lag precedes them.
+  // These blocks are approximate here. The first two lags are exact for a linear input, but another lag
+  // precedes them in this chain.
   const std::vector<std::size_t> approximate{block_type<AsymmetricValveLag>(),
                                              block_type<ChamberLag>(),
                                              block_type<PressureRegulator>(),
@@ -140,8 +142,8 @@ TEST(EveryBlock, StepsInHalvesAsInOne) {
                                              block_type<Backlash>(),
                                              block_type<SensorLag>()};
   for_every_block([&](std::size_t type) {
-    // A clock offset uses the slope of the last step, so halves differ; the error is tested in
-    // clock_offset_test.cpp.
+    // A clock offset uses the slope of the last step, so two half steps differ from one step.
+    // clock_offset_test.cpp tests this error.
     if (is_random(type) || type == block_type<ClockOffset>()) return;
     const double tolerance_mm = std::ranges::count(approximate, type) == 0 ? 1e-8 : 2e-4;
     Chain<double> whole(twin_with(type)), halves(twin_with(type));
@@ -154,7 +156,7 @@ TEST(EveryBlock, StepsInHalvesAsInOne) {
   });
 }
 
-// Only step() handles a corner of the pressure within the sample.
+// peek() must agree with step(), except that only step() handles a corner of the pressure within the sample.
 TEST(EveryBlock, ForetellsWhatItsStepGives) {
   for_every_block([](std::size_t type) {
     const BlockInfo& info = catalogue()[type].info;

@@ -1,5 +1,5 @@
-// Automatic differentiation of the chain: compares the derivative of the reading with respect to each
-// parameter with central differences, and peek(), which the inverse uses, with step().
+// Tests the automatic differentiation of the chain. The derivative of the reading with respect to each
+// parameter is compared with differences. peek(), which the inverse uses, is compared with step().
 
 #include <ceres/jet.h>
 #include <gtest/gtest.h>
@@ -69,8 +69,8 @@ void expect_derivatives_agree(const Model& model, SignalName signal) {
     down[k] -= h;
     const std::vector<double> y_up = readings(with_values(model, up), signal, 0);
     const std::vector<double> y_down = readings(with_values(model, down), signal, 0);
-    // At a kink (a corner of the signal, or a contact that begins) the two one-sided differences differ, and
-    // the derivative equals one of them.
+    // At a kink (a corner of the signal, or a contact that begins) the two one-sided differences are unequal,
+    // and the derivative equals one of the two.
     double largest = 0;
     double outside = 0;
     for (std::size_t i = 0; i < plain.size(); ++i) {
@@ -129,7 +129,8 @@ TEST(ChainDerivatives, EveryBlockInTheTwin) {
                            SignalName::tp2);
 }
 
-// If the value of an effect is 0, its derivative must still show a fit in which direction to change it.
+// If the parameter of an effect is 0, its derivative must still show a fit in which direction the parameter
+// must change.
 TEST(ChainDerivatives, NeutralValuesHaveThem) {
   const Model twin = preset("bench_twin");
   for (const std::string id : {"supply_sag",
@@ -175,9 +176,9 @@ TEST(ChainDerivatives, NeutralValuesHaveThem) {
 constexpr double derivative_tolerance = 1e-5;
 
 // Returns by how much the derivative of peek() is outside the interval between its two one-sided differences.
-// At a kink (the pressure turns, or a contact begins) these differ, and the derivative equals one of them. A
-// kink may also be close to p, so that neither difference is the slope at p. Then smaller differences are
-// tried.
+// At a kink (the pressure turns, or a contact begins) these differences are unequal, and the derivative
+// equals one of the two. If a kink is close to p, neither difference is the slope at p, so smaller step sizes
+// are tried.
 double outside_of_differences(Chain<double>& chain, double p, const Surroundings& now,
                               const Dual<double>& trial) {
   double outside = 0;
@@ -192,7 +193,8 @@ double outside_of_differences(Chain<double>& chain, double p, const Surroundings
 }
 
 TEST(ChainPeek, IsWhatTheStepWillGive) {
-  // The actuators of the presets alone, with a contact, and with every block that has an implicit inverse.
+  // The models are the actuators of the presets, an actuator with a contact, and an actuator with every block
+  // that has an implicit inverse.
   std::vector<Model> models{preset("zhang2025"), preset("bench_twin"),
                             with_block(preset("zhang2025"), {*find_block("contact"), {9.0, 1.5}})};
   Model smooth = preset("bench_twin");

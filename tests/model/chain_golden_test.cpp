@@ -1,5 +1,5 @@
 // Compares the chain with results that SciPy computed from the continuous equations. golden/make_golden.py
-// states signals and parameters independently, so the test also detects an error in a preset or a signal.
+// contains its own copy of signals and parameters, so the test also detects an error in a preset or a signal.
 
 #include <gtest/gtest.h>
 

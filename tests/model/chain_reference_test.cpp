@@ -1,5 +1,5 @@
-// Compares the chain with CVODE for the same piecewise linear command: the difference is below 1e-6 mm at any
-// sample time.
+// Compares the chain with a solution by CVODE for the same piecewise linear command. The difference must be
+// below 1e-6 mm at any sample time.
 
 #include <gtest/gtest.h>
 
@@ -100,8 +100,8 @@ TEST(ChainReferenceFractionalDelay, AgreesOffTheGrid) {
   }
 }
 
-// A step of 44 kPa up, then down, each within one sample of 10 ms. The displacement is computed with a 100
-// times smaller step.
+// The command rises by 44 kPa and later falls again, each time within one sample of 10 ms. The displacement
+// is computed with a step that is 100 times smaller.
 constexpr double sample_s = 0.01;
 constexpr std::size_t finer = 100, samples = 60;
 

@@ -14,7 +14,7 @@
 namespace softgrip::model::testing::chain_test {
 namespace {
 
-/// Returns bench_twin with every block of the catalogue.
+/// Returns the model bench_twin with every block of the catalogue added.
 Model everything(BlockSpec (*block_of)(std::size_t)) {
   Model model = preset("bench_twin");
   for (std::size_t type = 0; type < catalogue().size(); ++type) {
@@ -90,7 +90,8 @@ TEST(Chain, StationsShowTheirSignals) {
   Chain<double> chain(model);
   for (int i = 1; i <= 1000; ++i) chain.step(5e-3, value_kpa(SignalName::tp1, i * 5e-3));
   EXPECT_EQ(chain.command_kpa(), 60);
-  EXPECT_NEAR(chain.pressure_kpa(), 60 - 12 * 0.174, 0.1);  // delayed by dead time and lag at 12 kPa/s
+  EXPECT_NEAR(chain.pressure_kpa(), 60 - 12 * 0.174,
+              0.1);  // at 12 kPa/s, dead time and lag delay the pressure by 0.174 s
   const double free = chain.after(Station::actuator);
   EXPECT_GT(free, 5);
   EXPECT_NEAR(chain.after(Station::load), 5 + (free - 5) / 3, 1e-12);
@@ -182,7 +183,7 @@ TEST(Chain, FindsItsBlocks) {
   EXPECT_EQ(chain.size(), 4u);
 }
 
-// All values that a model may have give finite readings.
+// The readings are finite for all parameter values that a model may have.
 TEST(Chain, AnyAllowedNumbersGiveFiniteReadings) {
   std::mt19937 generator(2024);
   for (int round = 0; round < 300; ++round) {

@@ -1,5 +1,5 @@
 #pragma once
-// Functions that drive single blocks and whole chains in tests.
+// Functions that apply an input to single blocks and whole chains in tests.
 
 #include <cmath>
 #include <span>
@@ -25,7 +25,7 @@ std::vector<Segment<double>> pass(Block& block, const Segment<double>& in, const
   return out;
 }
 
-/// Drives a pressure or displacement block through `values` along linear segments of length dt; the first
+/// Applies linear segments of length dt between `values` to a pressure or displacement block. The first
 /// segment starts at `from`. Returns the output after each segment.
 template <class Block>
 std::vector<double> drive(Block& block, double from, std::span<const double> values, double dt) {
@@ -38,8 +38,8 @@ std::vector<double> drive(Block& block, double from, std::span<const double> val
   return out;
 }
 
-/// Drives an element along a linear segment from `from` to `to` [kPa] of dt [s]. Sets `from` to `to` and
-/// returns the output.
+/// Applies a linear segment from `from` to `to` [kPa] of duration dt [s] to an element. Sets `from` to `to`
+/// and returns the output.
 template <class Block>
 double move(Block& element, double& from, double to, double dt) {
   element.step(Segment<double>::straight(dt, from, to), {});

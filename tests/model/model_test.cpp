@@ -102,14 +102,15 @@ TEST(Model, BlocksFindTheirPlace) {
   EXPECT_TRUE(validate(model).empty());
   EXPECT_EQ(*position_of(model, "valve_lag"), 0u);
   EXPECT_EQ(*position_of(model, "sensor_noise"), 4u);
-  EXPECT_EQ(*position_of(model, "quantisation"), 5u);  // last in the chain, although it was first in the list
+  EXPECT_EQ(*position_of(model, "quantisation"),
+            5u);  // the block is last in the chain, although it was first in the list
   EXPECT_FALSE(position_of(model, "transport_delay"));
   EXPECT_FALSE(position_of(without_block(model, *find_block("contact")), "contact"));
 }
 
 TEST(Model, SaysWhatIsWrong) {
   const std::size_t lag = *find_block("valve_lag"), bouc_wen = *find_block("bouc_wen");
-  EXPECT_EQ(validate(Model{}).size(), 1u);  // no element
+  EXPECT_EQ(validate(Model{}).size(), 1u);  // one error: the model has no element
   Model model = preset("bench_twin");
   model.blocks.push_back({lag, {0.1}});
   EXPECT_EQ(validate(model).size(), 2u);  // two errors: the block is repeated and in the wrong order

@@ -1,5 +1,5 @@
 #pragma once
-// The preset models, read from their files in the same way as a user's model.
+// Reads the preset models from their files in the same way as a user's model.
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,7 @@
 #pragma once
 // Reference solution: SUNDIALS CVODE integrates the continuous equations, with no formula from model/. It
-// includes valve delay and lag, Bouc-Wen and Kelvin-Voigt, but not the other blocks of the chain.
+// includes the delay and the lag of the valve, the Bouc-Wen element and the Kelvin-Voigt element, but not the
+// other blocks of the chain.
 
 #include <functional>
 #include <vector>

@@ -20,7 +20,8 @@ TEST(Ageing, GainDriftsWithTheTimeOfTheCampaign) {
   EXPECT_NEAR(block.output(), 20, 1e-12);
   Block weaker = make<Block>({-0.5});
   pass(weaker, Segment<double>::straight(1.0, 0, 10), later);
-  EXPECT_NEAR(weaker.output(), 2.5, 1e-12);  // the gain beyond the linear range is -1/(4 x), here at x = -1
+  EXPECT_NEAR(weaker.output(), 2.5,
+              1e-12);  // outside the linear range the gain factor is -1/(4 x), and here x = -1
 }
 
 }  // namespace

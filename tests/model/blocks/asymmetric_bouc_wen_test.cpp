@@ -57,7 +57,7 @@ TEST(AsymmetricBoucWen, SkewsTheChainsBoucWenByItsEquation) {
       const double delta = share * std::min(material[3], material[2] + material[3]);
       Chain<double> chain(skewed(material, delta));
       integrated(material, {delta, 0, 0}, turns, [&](double p, double y) {
-        // The integration of the kink at h = 0 has an error of 2e-5.
+        // At the kink at h = 0 the integration has an error of up to 2e-5.
         ASSERT_NEAR(chain.step(1.0, p), y, 2e-5) << "exponent " << material[4] << " at " << p;
       });
     }
@@ -76,7 +76,8 @@ TEST(AsymmetricBoucWen, LoadingAndUnloadingHaveNumbersOfTheirOwn) {
   }
 }
 
-// For all parameters, a state that has saturated in one direction decreases when the pressure returns.
+// With all parameters, a state that has saturated in one direction must decrease when the pressure changes
+// its direction.
 TEST(AsymmetricBoucWen, NoSkewLetsTheStateGrowOnTheWayBack) {
   for (const std::vector<double>& material : materials) {
     for (const double epsilon : {-5.0, 5.0}) {
@@ -112,7 +113,7 @@ TEST(AsymmetricBoucWen, SkewLeavesNoTraceAtZero) {
   }
 }
 
-// peek(), which the inverse uses, includes the skew.
+// The inverse uses peek(), so peek() must include the skew.
 TEST(AsymmetricBoucWen, PeekKnowsOfTheSkew) {
   for (const std::vector<double>& material : materials) {
     Chain<double> chain(skewed(material, -0.7 * material[3], 0.2 * material[3], -0.1));
@@ -126,7 +127,8 @@ TEST(AsymmetricBoucWen, PeekKnowsOfTheSkew) {
   }
 }
 
-// During the first loading, delta acts like a part of gamma + eta. Only unloading distinguishes them.
+// During the first loading, delta acts like a part of gamma + eta. Only unloading distinguishes delta from
+// gamma + eta.
 TEST(AsymmetricBoucWen, FirstLoadingSeesTheSkewAsPartOfTheSum) {
   const std::vector<double> other{0.35, 0.2, 0.02, 0.04, 1};
   Chain<double> a(skewed({0.35, 0.2, 0.03, 0.05, 1}, -0.02));

@@ -42,7 +42,7 @@ TEST(AsymmetricValveLag, IsTheValveLagWhereBothAreAlike) {
 }
 
 TEST(AsymmetricValveLag, MeetsASmallStepIntegrator) {
-  // Reference: the explicit midpoint method in steps of 10 us, without exponential functions.
+  // The reference is the explicit midpoint method with steps of 10 us, which uses no exponential function.
   std::mt19937_64 random(22);
   std::uniform_real_distribution<double> pressure(0, 60), duration(0.01, 0.2);
   Block block = make<Block>({0.06, 0.3});

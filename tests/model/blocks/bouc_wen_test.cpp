@@ -94,7 +94,7 @@ TEST(BoucWen, StateStaysBounded) {
 }
 
 TEST(BoucWen, ClosedLoopsDissipate) {
-  // The work of the pressure over a settled closed loop is never negative, and is positive if eta is.
+  // The work of the pressure over a settled closed loop is never negative. It is positive if eta is positive.
   for (const auto& v : materials) {
     Block block = make_material(v);
     double from = 0;

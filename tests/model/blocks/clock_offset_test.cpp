@@ -15,7 +15,8 @@ TEST(ClockOffset, AStraightMotionIsReadAheadOfTime) {
   EXPECT_NEAR(block.output(), 3 + 5 * (0.02 * 50 + 0.12), 1e-12);
 }
 
-// The block uses the slope at the middle of the last step, so its error is proportional to the step length.
+// The block uses the slope at the middle of the last step, so the error of its output is proportional to the
+// step length.
 TEST(ClockOffset, AParabolaIsReadWithAnErrorInProportionToTheStep) {
   constexpr double lead_s = 0.12;
   for (const double step_s : {0.02, 0.01, 0.005}) {

@@ -36,7 +36,8 @@ TEST(DuhemHysteresis, NeitherTimeNorStepSizeMatters) {
   }
 }
 
-// Measures how far a settled loop between 10 and 50 kPa deviates from point symmetry; 0 if it is symmetric.
+// Returns the deviation of a settled loop between 10 and 50 kPa from point symmetry, which is 0 for a
+// symmetric loop.
 double asymmetry(double unloading_kpa, double loading_kpa) {
   Block block = make<Block>({0.05, unloading_kpa, loading_kpa});
   double from = 0;

@@ -71,8 +71,8 @@ TEST(KelvinVoigt, StepSizeDoesNotMatter) {
 }
 
 TEST(KelvinVoigt, AnyBranchBetweenSpringAndDashpot) {
-  // A very short time constant makes a branch a part of the spring. A very long one makes it a dashpot: p t /
-  // c. A branch without stiffness is exactly this dashpot.
+  // A branch with a very short time constant acts like a spring. A branch with a very long time constant acts
+  // like a dashpot with the displacement p t / c. A branch without stiffness is exactly this dashpot.
   Block spring = make<Block>({1e9, 5.0, 1e-9});
   double from = 0;
   EXPECT_NEAR(move(spring, from, 30, 0.01), 6.0, 1e-6);

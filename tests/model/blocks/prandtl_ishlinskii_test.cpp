@@ -53,8 +53,8 @@ TEST(PrandtlIshlinskii, ATrainedFingerLoadsAsItWillAgain) {
 }
 
 TEST(PrandtlIshlinskii, ReturnsOnTheSameCurveTwiceAsLarge) {
-  // Masing's rule: from a reversal on, a branch is the initial loading curve scaled by two in both
-  // directions.
+  // Masing's rule: after a reversal, the branch is the initial loading curve, scaled by 2 in pressure and in
+  // displacement.
   Block virgin = fresh();
   Block back = fresh();
   back.step(straight(0, 60), {});
@@ -137,7 +137,8 @@ TEST(PrandtlIshlinskii, GivesNoEnergyAway) {
   }
 }
 
-/// Generalised plays equal ordinary plays whose input is the envelope function of the pressure.
+/// Generalised plays have the same output as ordinary plays whose input is the envelope function of the
+/// pressure.
 TEST(PrandtlIshlinskii, BentEnvelopesAreAPressureOfTheirOwn) {
   const double bend = 0.3, skew = -0.15, end_kpa = 50;
   const auto seen_kpa = [&](double p) {

@@ -16,8 +16,8 @@ namespace {
 
 using Block = PressureRegulator<double>;
 
-/// Reference: integrates the equations in steps of 2 us without exponential functions, with its own code for
-/// the flow of ISO 6358.
+/// The reference solution. It integrates the equations in steps of 2 us without exponential functions and has
+/// its own code for the flow of ISO 6358.
 class SmallSteps {
  public:
   SmallSteps(double filling_s, double venting_s, double overlap, double integral_s, double full)
@@ -53,7 +53,8 @@ class SmallSteps {
   double integral_ = 0;
 };
 
-/// The input consists of held steps, as from a board, and of ramps of up to 600 kPa/s.
+/// Compares the block with the reference for constant inputs, as a board outputs them, and for ramps of up to
+/// 600 kPa/s.
 TEST(PressureRegulator, MeetsASmallStepIntegrator) {
   std::mt19937_64 random(31);
   std::uniform_real_distribution<double> pressure(0, 60), duration(0.1, 0.4);
@@ -68,8 +69,8 @@ TEST(PressureRegulator, MeetsASmallStepIntegrator) {
     worst = std::max(worst, std::abs(block.output() - referee.pressure_));
     at = to;
   }
-  // The largest error, 0.2 % of the largest jump, occurs in steps within which the integral begins to change
-  // again.
+  // The largest error is 0.2 % of the largest jump. It occurs in steps within which the integral begins to
+  // change again.
   EXPECT_LT(worst, 0.002 * 62) << "seed 31";
 }
 
@@ -79,7 +80,7 @@ TEST(PressureRegulator, StandsStillWithinItsOverlapUntilTheIntegralHasGrown) {
   pass(block, Segment<double>::straight(0, 20, 20.4));
   pass(block, Segment<double>::straight(0.05, 20.4, 20.4));
   EXPECT_EQ(block.output(), 20);
-  // The integral 0.4 + 0.4 t / 0.4 s reaches the overlap of 0.5 after 0.1 s.
+  // Error plus integral, 0.4 kPa (1 + t / 0.4 s), reaches the overlap of 0.5 kPa after 0.1 s.
   pass(block, Segment<double>::straight(0.04, 20.4, 20.4));
   EXPECT_EQ(block.output(), 20);
   pass(block, Segment<double>::straight(0.5, 20.4, 20.4));

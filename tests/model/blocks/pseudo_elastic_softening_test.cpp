@@ -18,7 +18,8 @@ TEST(PseudoElasticSoftening, FirstLoadingIsFreeOfIt) {
   EXPECT_EQ(block.largest_kpa(), 40);
 }
 
-// Compares the output with the published formula, which is the inverse and needs no iteration.
+// Compares the output with the published formula. The formula computes the input from the output, so the test
+// needs no iteration.
 TEST(PseudoElasticSoftening, ObeysTheSourcesFormulaBelowTheLargestLoad) {
   Block block = make<Block>({0.01, 10.0});
   drive(block, 0, std::vector<double>{40}, 1.0);
@@ -40,7 +41,8 @@ TEST(PseudoElasticSoftening, GoesTheSameWayBackAndJoinsTheFirstLoading) {
   EXPECT_GT(out[6], out[1]);  // the larger load has softened the finger more
 }
 
-// With these parameters, a factor on the pressure would decrease faster than the pressure rises.
+// With these parameters, a factor on the pressure would decrease faster than the pressure rises, so the
+// output would fall.
 TEST(PseudoElasticSoftening, RisesWithThePressureWhateverItsNumbers) {
   Block block = make<Block>({0.5, 0.5});
   drive(block, 0, std::vector<double>{50}, 1.0);

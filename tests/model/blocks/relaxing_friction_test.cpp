@@ -14,7 +14,7 @@ namespace {
 
 using Block = RelaxingFriction<double>;
 
-// Returns the width of the settled loop of a triangle between 0 and 40 kPa.
+// Returns the width at 20 kPa of the settled loop for a triangular input between 0 and 40 kPa.
 double width(double rate_kpa_per_s) {
   Block block = make<Block>({0.03, 10.0, 1.0});
   double from = 0;
@@ -31,9 +31,11 @@ double width(double rate_kpa_per_s) {
 }
 
 TEST(RelaxingFriction, LoopGrowsWithTheRateUpToItsWidth) {
-  EXPECT_NEAR(width(0.01), 2 * 0.03 * 0.01, 1e-5);  // slow input: viscous, half width gain tau rate
+  EXPECT_NEAR(width(0.01), 2 * 0.03 * 0.01,
+              1e-5);  // for a slow input the friction is viscous, and half the width is gain * tau * rate
   EXPECT_GT(width(10), 2 * width(1.0));
-  // Fast input: dry friction. Over 40 kPa z moves from -turn to turn; at 20 kPa it is `middle`.
+  // For a fast input the friction is dry. The state z moves from -turn to turn over 40 kPa and is `middle` at
+  // 20 kPa.
   const double turn = 10 * std::tanh(2.0);
   const double middle = 10 - (10 + turn) * std::exp(-2.0);
   EXPECT_NEAR(width(1e6), 2 * 0.03 * middle, 1e-5);

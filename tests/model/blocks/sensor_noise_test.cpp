@@ -32,7 +32,8 @@ double rms(const std::vector<double>& x) {
   return std::sqrt(sum / static_cast<double>(x.size()));
 }
 
-// With 100000 draws the standard error is 0.003 for the mean, 0.0022 for the RMS and 0.003 for a correlation.
+// With 100,000 samples the standard error is 0.003 for the mean, 0.0022 for the RMS and 0.003 for a
+// correlation.
 TEST(SensorNoise, HasItsRmsAndIsWhite) {
   const std::vector<double> x = readings({0.05, 0.0}, 7, 100000, 0.001);
   double mean = 0, fourth = 0;

@@ -94,7 +94,7 @@ TEST(TransportDelay, OnTheGridASampleStaysOneSegment) {
 }
 
 TEST(TransportDelay, AHeldOutputArrivesAsJumps) {
-  // With a delay of exactly three samples, the jump appears at the start of the fourth.
+  // With a delay of exactly 3 samples, the jump appears at the start of the fourth sample.
   for (const double sample_time : {0.0, 0.1}) {
     Block block = make<Block>({0.3}, sample_time);
     std::vector<double> after;

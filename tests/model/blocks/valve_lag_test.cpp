@@ -26,7 +26,7 @@ TEST(ValveLag, StepAndRampResponsesAreTheTextbookOnes) {
 }
 
 TEST(ValveLag, MeanIsExact) {
-  // For every input, tau (y1 - y0) = dt (mean(u) - mean(y)).
+  // For every input u and output y, tau (y1 - y0) = dt (mean(u) - mean(y)).
   Block block = make<Block>({0.05});
   double from = 0;
   for (const double to : {5.0, 9.0, 9.0, 2.0, 1.0, 30.0}) {

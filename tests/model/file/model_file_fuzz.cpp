@@ -1,5 +1,5 @@
-// Fuzz target of the model file. All bytes are either refused, or they are a model that is equal after it has
-// been written and read again.
+// Fuzz target: takes arbitrary bytes as a model file. The bytes must be refused, or give a model that is
+// unchanged after it has been written and read again.
 //
 //   scripts/fuzz.sh model_file_fuzz 30
 

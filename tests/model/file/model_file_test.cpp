@@ -26,7 +26,7 @@ Outcome read(const std::string& text) {
   return outcome;
 }
 
-// Returns a random value of any magnitude within the bounds, with all its digits.
+// Returns a random value of any magnitude within the bounds. The value is not rounded.
 double random_value(const ParameterSpec& spec, std::mt19937& generator) {
   if (spec.whole)
     return std::floor(std::uniform_real_distribution<double>(spec.lower, spec.upper + 1)(generator));
@@ -111,7 +111,7 @@ TEST(ModelFile, PresetsHoldTheNumbersOfTheirSources) {
   EXPECT_EQ(number(twin, "kelvin_voigt.c1_kpa_s_per_mm"), 299.8);
 }
 
-/// Reads a model file whose actuator has a spring and that has these blocks at this station.
+/// Reads a model file whose actuator has a spring and whose station `station` has the blocks in `block`.
 Outcome read_with(const std::string& station, const std::string& block) {
   const std::string spring =
       "actuator:\n  - kelvin_voigt: {k0_kpa_per_mm: 5, k1_kpa_per_mm: 5, c1_kpa_s_per_mm: 5}\n";
@@ -120,7 +120,7 @@ Outcome read_with(const std::string& station, const std::string& block) {
   return read("name: old\nsource: before\n" + spring + station + ":\n" + item);
 }
 
-/// Returns the blocks of that file without the spring.
+/// Returns the blocks of the file that read_with() reads, except the spring.
 std::vector<BlockSpec> blocks_of(const std::string& station, const std::string& block) {
   const Outcome outcome = read_with(station, block);
   if (!outcome.model) throw std::runtime_error(block + "\n" + outcome.problems.format());
@@ -141,8 +141,8 @@ struct Earlier {
   std::vector<BlockSpec> means;
 };
 
-// An earlier block was split into several blocks. All of them are at one station, because a file names the
-// earlier block at one station.
+// An earlier block was split into several present blocks. The present blocks must all belong to one station,
+// because a file lists the earlier block at one station.
 TEST(ModelFile, EarlierBlocksBecameBlocksOfOneStation) {
   EXPECT_EQ(find_earlier_block("valve_lag"), nullptr);
   for (const char* id :
@@ -208,7 +208,8 @@ TEST(ModelFile, EarlierBlocksAreReadIntoWhatTheyBecame) {
   for (const Earlier& file : files) EXPECT_EQ(blocks_of(file.station, file.text), file.means) << file.text;
 }
 
-// The gains of these two parts were once added; the present blocks multiply them.
+// Earlier versions added the gains of these two parts of a block. The present blocks multiply the gains, so
+// such a file must be refused.
 TEST(ModelFile, EarlierBlocksThatMeanSomethingElseTogetherAreRefused) {
   const Outcome outcome = read_with("actuator", "ageing: {gain_per_h: 0.1, run_in: 0.2, run_in_time_s: 40}");
   EXPECT_FALSE(outcome.model);
@@ -342,7 +343,8 @@ TEST(ModelFile, AllErrorsAtOnce) {
       "-5}\n"
       "actuator:\n  - bouc_wen: {alpha_mm_per_kpa: x, beta_mm_per_kpa: 0.1, gamma_per_kpa: 0.1, exponent: "
       "9}\n");
-  // nam unknown, name missing, time_constant unknown, time_constant_s missing, limit, alpha, eta, exponent
+  // expected problems: unknown key nam, missing name, unknown time_constant, missing time_constant_s, and
+  // errors of limit, alpha, eta and exponent
   EXPECT_GE(outcome.problems.size(), 6u) << outcome.problems.format();
   EXPECT_FALSE(outcome.model);
 }
