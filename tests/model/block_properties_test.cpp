@@ -115,7 +115,8 @@ TEST(EveryBlock, RestsAfterReset) {
       for (int i = 0; i < 1000; ++i) ASSERT_NEAR(chain.step(tick_s, command_kpa, still), rest_mm, 1e-9) << i;
       chain.step(1.0, 60, still);
       chain.reset(command_kpa);
-      ASSERT_NEAR(chain.step(tick_s, command_kpa, still), rest_mm, 1e-9) << "reset() must forget";
+      ASSERT_NEAR(chain.step(tick_s, command_kpa, still), rest_mm, 1e-9)
+          << "reset() must discard the history of the block";
     }
   });
 }

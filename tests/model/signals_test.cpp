@@ -33,7 +33,7 @@ TEST(Signals, StartAndEndAtZeroAndStayWithinSixtyKilopascal) {
     }
     EXPECT_LE(peak, 60);
     EXPECT_GE(peak, 50);
-    EXPECT_LE(steepest, 61) << "no jumps: " << name_of(signal);
+    EXPECT_LE(steepest, 61) << "the signal must have no jump: " << name_of(signal);
     EXPECT_NEAR(value_kpa(signal, end - 1e-9), 0, 1e-6);
   }
 }
@@ -63,7 +63,7 @@ TEST(Signals, TrianglesAndSinusoidsShareTheirPeaks) {
       last = value;
     }
     EXPECT_EQ(peaks.size(), 10u);
-    EXPECT_EQ(std::set<int>(peaks.begin(), peaks.end()).size(), 5u) << "five amplitudes in a cycle";
+    EXPECT_EQ(std::set<int>(peaks.begin(), peaks.end()).size(), 5u) << "a cycle has 5 different amplitudes";
   }
 }
 

@@ -44,7 +44,7 @@ TEST(PrandtlIshlinskii, ATrainedFingerLoadsAsItWillAgain) {
   loaded_once.step(straight(0, 60), {});
   loaded_once.step(straight(60, 0), {});
   const double zero_mm = loaded_once.output();
-  EXPECT_GT(zero_mm, 0) << "a finger that was never loaded does not return completely";
+  EXPECT_GT(zero_mm, 0) << "after its first load the finger does not return to its initial position";
   for (double p = 0; p < 60; p += 0.5) {
     EXPECT_NEAR(block.output(), loaded_once.output() - zero_mm, 1e-12) << p;
     block.step(straight(p, p + 0.5), {});
