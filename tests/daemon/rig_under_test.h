@@ -12,7 +12,7 @@
 
 namespace softgrip::daemon::testing {
 
-/// Returns the rig config/NAME; if it is refused, the test fails.
+/// Reads the rig file config/NAME. If the file is refused, the test fails.
 [[nodiscard]] inline rig::RigFile example_rig(const std::string& name) {
   document::Problems problems;
   auto rig = rig::load_rig(std::string(SOFTGRIP_SOURCE_DIR "/config/") + name, problems);
@@ -20,7 +20,8 @@ namespace softgrip::daemon::testing {
   return rig ? std::move(*rig) : rig::RigFile{};
 }
 
-/// Returns config/sequences/NAME for a rig; if it is refused, the test fails and the result is nullptr.
+/// Reads the sequence config/sequences/NAME for a rig. If the sequence is refused, the test fails and the
+/// result is nullptr.
 [[nodiscard]] inline std::shared_ptr<const LoadedSequence> example_sequence(const rig::RigFile& rig,
                                                                             const std::string& name) {
   auto sequence = SequenceLoader(rig.settings, "")

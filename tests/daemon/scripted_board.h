@@ -1,5 +1,5 @@
 #pragma once
-// A board that gives scripted responses and stores the values that were written.
+// A board whose responses the test specifies and that stores the written values.
 
 #include <algorithm>
 #include <functional>
@@ -25,8 +25,8 @@ class ScriptedBoard final : public drivers::Board {
   const char* said = "scripted";
   double found = std::numeric_limits<double>::quiet_NaN();  ///< output values after a refused write
   std::function<void()> on_connect;                         ///< called during connect()
-  std::function<void()> on_exchange;                        ///< called before a request arrives at the board
-  std::vector<Nanoseconds> connect_attempts;                ///< times of the calls of connect()
+  std::function<void()> on_exchange;  ///< called before the request of an exchange arrives at the board
+  std::vector<Nanoseconds> connect_attempts;  ///< times of the calls of connect()
 
   [[nodiscard]] std::size_t channels() const noexcept override { return channels_; }
   [[nodiscard]] drivers::BusStatus connect(std::chrono::nanoseconds) noexcept override {

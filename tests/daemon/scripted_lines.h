@@ -17,7 +17,8 @@
 
 namespace softgrip::daemon::testing {
 
-/// The levels at the terminals. They outlive the lines, which the panel owns. Thread-safe.
+/// The levels at the terminals of the lines. The panel owns the lines, which are destroyed before the levels.
+/// Thread-safe.
 class Terminals {
  public:
   /// Sets the logical level of an input. If the level changes and `with_edge` is true, an edge is reported.
@@ -28,7 +29,7 @@ class Terminals {
     level = active;
     changed_.notify_all();
   }
-  /// Removes the chip: all later calls fail.
+  /// Simulates a removed chip, so that all later calls fail.
   void fail() {
     const std::scoped_lock lock(mutex_);
     failed_ = true;

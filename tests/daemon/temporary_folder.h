@@ -1,5 +1,5 @@
 #pragma once
-// A folder of one test; removed at the end of the test.
+// A folder for one test, which is removed at the end of the test.
 
 #include <cstdlib>
 #include <filesystem>

@@ -15,7 +15,7 @@
 namespace softgrip::daemon::broadcast_test {
 namespace {
 
-/// All words are equal unless the copy was interrupted.
+/// An item whose words are all equal. A copy with unequal words was interrupted.
 struct Item {
   std::array<std::uint64_t, 6> words{};
   [[nodiscard]] bool whole() const {
@@ -62,7 +62,8 @@ TEST(Broadcast, WhoLagsLosesTheOldestAndNobodyElseDoes) {
   EXPECT_EQ(eager.lost(), 0U);
 }
 
-/// Runs an action once, in the middle of the next copy, as another thread could do at the worst moment.
+/// Runs an action once, in the middle of the next copy, to simulate another thread that acts at the worst
+/// moment.
 struct AtTheWorstMoment {
   static inline std::function<void()> action;
   static void halfway() noexcept {

@@ -1,5 +1,5 @@
-// The interaction of loop, bus and the board's watchdog: tries every order of the possible steps, up to a
-// given depth.
+// Tests the interaction of the loop, the bus and the board's watchdog by trying every order of the possible
+// steps up to a given depth.
 
 #include <gtest/gtest.h>
 
@@ -21,7 +21,8 @@ using drivers::BusStatus;
 constexpr Nanoseconds period = 5'000'000;
 constexpr Nanoseconds watchdog = 100'000'000;
 
-/// A board with one output and a watchdog trip that any write clears, which is the most difficult kind.
+/// A board with one output, whose watchdog trip is cleared by any write. Such a trip is the most difficult to
+/// detect.
 class OneOutput final : public drivers::Board {
  public:
   explicit OneOutput(const VirtualClock& clock) : clock_(clock) {}
@@ -63,7 +64,7 @@ class OneOutput final : public drivers::Board {
   Nanoseconds fed_at_ = -1;
 };
 
-/// A minimal controller: its command rises while it runs. It stops when the bus reports a fault, does not
+/// A minimal controller, whose command rises while it runs. It stops when the bus reports a fault, does not
 /// repeat values that are no longer at the outputs, and runs again after a start.
 class LeastLoop {
  public:
@@ -115,7 +116,7 @@ enum class Step {
   count
 };
 
-/// Returns the property that the path of steps violates, or an empty text.
+/// Runs the steps of a path and returns the property that the path violates, or an empty text.
 std::string follow(std::span<const Step> path) {
   VirtualClock clock;
   OneOutput board(clock);
@@ -131,7 +132,7 @@ std::string follow(std::span<const Step> path) {
   Bus bus(board, rig, loop, reconnect, clock, shared, statistics);
   LeastLoop controller(shared);
 
-  bool may_rise = true;  // no event since the last start forbids a rise
+  bool may_rise = true;  // true: since the last start no event has occurred that forbids a rise
   const auto exchange = [&]() -> std::string {
     board.look();
     const int trips = board.trips;

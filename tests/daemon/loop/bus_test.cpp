@@ -86,7 +86,9 @@ TEST_F(BusTest, ASilentLoopMeansSafeOutputsUntilATickThatKnowsCommandsNoMoreThan
   command(4, 3, false);  // the loop ended its motion, but for another reason
   step();
   EXPECT_EQ(last_written(), 3);
-  command(4, 3, false, shared_.bus.value().health.inhibit);  // it knows the reason, but would rise
+  command(
+      4, 3, false,
+      shared_.bus.value().health.inhibit);  // the loop knows the reason, but its command is above the outputs
   step();
   EXPECT_EQ(last_written(), 3);
   EXPECT_EQ(fault(), FaultCode::cycles_lost);
@@ -135,7 +137,7 @@ TEST_F(WatchedBusTest, AGapThatReachesTheWatchdogIsAFaultAndNothingRisesBehindIt
   EXPECT_EQ(last_written(), 1);
   EXPECT_EQ(fault(), FaultCode::board_watchdog_tripped);
   EXPECT_EQ(shared_.bus.value().outputs_kpa[1], 1);
-  command(35, 35, false);  // the loop latched another fault and does not know this one
+  command(35, 35, false);  // the loop latched another fault and does not know the watchdog trip
   step(bus);
   EXPECT_EQ(last_written(), 1);
   command(1, 1, false, shared_.bus.value().health.inhibit);
@@ -225,13 +227,13 @@ TEST_F(VacuumBusTest, OutputsLeaveRestOnEitherSideOnlyWhileASequenceRuns) {
   command(-12, 0, true);
   step(bus);
   EXPECT_EQ(last_written(), -12);
-  command(-13, 0, false);  // the command was under way when the sequence ended
+  command(-13, 0, false);  // this command was sent before the sequence ended
   step(bus);
   EXPECT_EQ(last_written(), -12);
   command(-11, 0, false);
   step(bus);
   EXPECT_EQ(last_written(), -11);
-  command(5, 0, false);  // a pressure on the other side is further from rest, too
+  command(5, 0, false);  // a pressure on the other side of rest is also a motion away from rest
   step(bus);
   EXPECT_EQ(last_written(), 0);
 }
@@ -246,7 +248,8 @@ TEST_F(VacuumBusTest, AWatchdogThatHasActedLeavesRestAndNotFullVacuum) {
     step(bus);
     EXPECT_EQ(last_written(), 0);
     EXPECT_EQ(fault(), FaultCode::board_watchdog_tripped);
-    command(-1, -1, false, shared_.bus.value().health.inhibit);  // it knows the reason, but is not at rest
+    command(-1, -1, false,
+            shared_.bus.value().health.inhibit);  // the loop knows the reason, but its command is not at rest
     step(bus);
     EXPECT_EQ(last_written(), 0);
     EXPECT_EQ(fault(), FaultCode::board_watchdog_tripped);
@@ -273,7 +276,7 @@ TEST_F(VacuumBusTest, OutputsThatTheBoardDidNotConfirmAreTheNearerToRest) {
       << "values on both sides of rest: only the rest pressure is safe";
 }
 
-/// A board that fails repeatedly for the same reason must not fill the log.
+/// A board that fails repeatedly for the same reason must not fill the event log.
 TEST_F(BusTest, ThatNoSessionCanBeOpenedAgainIsToldOnceIfItIsForAnotherReason) {
   const auto failures = [this] {
     std::vector<std::string> texts;
@@ -545,7 +548,8 @@ TEST_F(BusTest, OutputsFoundFurtherFromRestOrNotAtAllDoNotRaiseTheCommands) {
   }
 }
 
-// A gateway that repeats an old reading looks the same, and a held part must not be dropped because of it.
+// The driver would read the same values from a gateway that repeats an old reading. A held part must not be
+// dropped in such a case.
 TEST_F(BusTest, AHoldIsNotDroppedForOutputsFoundNearerToRest) {
   command(12, 12, true);
   step();

@@ -1,5 +1,5 @@
-// The loop's thread must not allocate memory, cause page faults or make system calls other than those for
-// clock and sleep.
+// Tests that the loop's thread allocates no memory, causes no page faults and makes no system calls except
+// those for clock and sleep.
 
 #include <gtest/gtest.h>
 #include <linux/filter.h>
@@ -48,9 +48,10 @@ void count_allocation() noexcept {
 
 }  // namespace
 
-// Replaces the functions of the C library by counting ones; operator new calls them, too.
+// The functions of the C library are replaced by functions that count their calls. operator new also calls
+// these functions.
 extern "C" {
-// NOLINTBEGIN(bugprone-reserved-identifier): the C library's names
+// NOLINTBEGIN(bugprone-reserved-identifier): these names are given by the C library
 void* __libc_malloc(size_t);
 void* __libc_calloc(size_t, size_t);
 void* __libc_realloc(void*, size_t);
@@ -103,13 +104,13 @@ std::unique_ptr<DaemonParts> make_parts(bool virtual_time) {
   return std::make_unique<DaemonParts>(std::move(rig), std::move(options));
 }
 
-/// Ticks in virtual time with calls of all other parts in between. Allocations are counted in the loop's tick
-/// only.
+/// Runs the loop in virtual time and all other parts between its ticks. Allocations are counted only during a
+/// tick of the loop.
 class WatchedTicks {
  public:
   explicit WatchedTicks(DaemonParts& parts) : parts_(parts), due_(parts.origin) {}
 
-  /// Ticks until the state is reached or 60 s have passed.
+  /// Runs ticks until the state is reached or 60 s have passed. Returns true if the state was reached.
   bool until(State state) {
     for (const Nanoseconds end = due_ + 60 * ns_per_s; due_ < end;) {
       tick();
@@ -239,7 +240,7 @@ void on_forbidden_call(int, siginfo_t* info, void*) {
   forbidden_call.compare_exchange_strong(expected, info->si_syscall);
 }
 
-/// From now on the calling thread may only sleep, read the clock and return from signal handlers. Any other
+/// Restricts the calling thread to sleeping, reading the clock and returning from signal handlers. Any other
 /// system call is recorded and fails. The filter cannot be removed, so the test runs in its own process.
 void allow_only_clock_and_sleep() {
   const std::array<sock_filter, 8> program{{

@@ -124,8 +124,8 @@ TEST_F(LoopTest, AnExchangeThatHangsIsAFaultAfterTheConfiguredCycles) {
   ASSERT_TRUE(until(State::idle));
   const auto cycles = parts_->rig.settings.faults.bus_down_cycles;
   ASSERT_LT(cycles * parts_->period(), nanoseconds(parts_->rig.settings.channels[0].plausibility.max_age_s));
-  tick();  // this tick still has the report of the last good exchange
-  tick();  // one missing report counts as jitter
+  tick();  // this tick still receives the report of the last successful exchange
+  tick();  // one missing report is tolerated as jitter
   for (std::uint32_t i = 0; i < cycles; ++i) {
     EXPECT_EQ(snapshot().state, State::idle) << i;
     tick();
@@ -201,7 +201,7 @@ TEST(LoopThread, CyclesThatWereSleptThroughAreSlipsAndToldToTheController) {
   rig.settings.faults.overrun_cycles = 10;
   DaemonParts parts(std::move(rig), {});
   parts.bus.open();
-  // The schedule starts in the past: the first tick is very late, all others are on time.
+  // The schedule starts in the past, so the first tick is very late. All other ticks are on time.
   const Nanoseconds now = parts.clock.now();
   std::thread loop([&] { parts.loop.run(PeriodicSchedule(now - 100 * parts.period(), parts.period())); });
   sleep_until(now + 3 * parts.period());

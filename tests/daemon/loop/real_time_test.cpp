@@ -84,7 +84,7 @@ constexpr bool sanitized = true;  // with a sanitizer mlockall() has no effect
 constexpr bool sanitized = false;
 #endif
 
-/// Runs in a process that has given up its rights.
+/// The test runs in a process that has given up its privileges.
 TEST(RealTime, WithoutRightsEveryStepSaysWhichLimitStandsInTheWay) {
   if (sanitized) GTEST_SKIP() << "sanitizers intercept the locking of memory";
   const pid_t child = fork();

@@ -16,7 +16,7 @@ namespace {
 
 using testing::TornValue;
 
-/// A plausible but wrong ring: it announces an item before the item is completely copied.
+/// A plausible but wrong ring, which announces an item before the item is completely copied.
 class AnnouncedTooEarly {
  public:
   explicit AnnouncedTooEarly(std::size_t capacity) : items_(capacity) {}

@@ -1,6 +1,6 @@
 #pragma once
-// A value whose copying can be interrupted half-way, so that tests of lock-free buffers do not depend on
-// chance.
+// A value whose copying can be interrupted half-way, so that tests of lock-free buffers do not depend on the
+// timing of threads.
 
 #include <array>
 #include <cstddef>
@@ -11,10 +11,11 @@
 
 namespace softgrip::daemon::testing {
 
-/// All words are equal unless the copy was interrupted.
+/// A value whose words are all equal. A copy with unequal words was interrupted.
 class TornValue {
  public:
-  /// Called once, in the middle of this thread's next copy: the action of another thread at the worst moment.
+  /// Called once, in the middle of this thread's next copy, to simulate another thread that acts at the worst
+  /// moment.
   static inline thread_local std::function<void()> halfway;
 
   TornValue() = default;

@@ -13,8 +13,8 @@ namespace {
 
 using testing::TornValue;
 
-/// A plausible but wrong buffer with two slots: the reader reads the slot that the writer is not filling now.
-/// If the writer publishes twice while the reader copies, it overwrites the slot that is being read.
+/// A plausible but wrong buffer with two slots, whose reader reads the slot that the writer is not filling.
+/// If the writer publishes twice during one copy of the reader, it overwrites the slot that is being read.
 template <class T>
 class TwoSlots {
  public:
@@ -40,8 +40,8 @@ struct Seen {
   std::uint64_t last_written = 0;
 };
 
-/// One thread writes 1, 2, …, while the other reads until the writer is done. The writer counts `count`
-/// values only after the reader's first reading, because the reader may start late on a busy processor.
+/// Writes 1, 2, … in one thread while another thread reads until the writer has finished. The writer writes
+/// `count` values after the reader's first reading, because the reader may start late on a busy processor.
 template <class Cell>
 Seen race(Cell& cell, std::uint64_t count) {
   std::atomic<bool> reader_began{false};

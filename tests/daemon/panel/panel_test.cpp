@@ -1,4 +1,4 @@
-// The digital lines of a running daemon with a simulated board.
+// Tests the digital lines, first of the panel alone and then of a running daemon with a simulated board.
 
 #include "daemon/panel/panel.h"
 
@@ -60,7 +60,7 @@ class PanelTest : public ::testing::Test {
     settings_ = settings;
     panel_.emplace(terminals_.lines(), settings_, clock_, shared_, statistics_);
   }
-  /// Runs the panel for this duration; `loop_ticks`: the loop ticks meanwhile.
+  /// Runs the panel for this duration. `loop_ticks`: true if the loop ticks during this time.
   void run(double duration_s, bool loop_ticks = true) {
     const Nanoseconds end = clock_.now() + nanoseconds(duration_s);
     while (clock_.now() < end) {
@@ -266,7 +266,8 @@ TEST_F(PanelTest, WhatWasDroppedStaysDropped) {
   EXPECT_FALSE(is_on(GpioRole::ready_lamp));
 }
 
-/// Writes the enable output as a byte into a pipe: the child process crashes, the parent reads the byte.
+/// Writes the enable output as a byte into a pipe, so that the parent can read the byte after the child
+/// process has crashed.
 class PipeLines final : public drivers::GpioLines {
  public:
   explicit PipeLines(int descriptor) : descriptor_(descriptor) {}
@@ -308,7 +309,7 @@ TEST(PanelGuard, ACrashDropsTheEnableAndStillIsACrash) {
   }
 }
 
-/// The whole daemon; the test controls its lines and communicates over its socket.
+/// A complete daemon. The test controls its lines and communicates with it over its socket.
 class PanelOfDaemon : public ::testing::Test {
  protected:
   /// end() sends SIGTERM to this process. Only the daemon may receive it.

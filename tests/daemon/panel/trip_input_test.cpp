@@ -101,15 +101,15 @@ TEST(TripInput, AnEdgeThatTheLevelToldAlreadyChangesNothing) {
 
 TEST(TripInput, AnEdgeWithoutItsPartnerIsSuspect) {
   TripInput input = cleared();
-  input.edge(false, 20 * ms);  // the earlier edge to "pressed" was lost
+  input.edge(false, 20 * ms);  // simulates that the earlier edge to "pressed" was lost
   EXPECT_FALSE(input.tripped());
   input.level(false, 25 * ms);
   EXPECT_FALSE(input.tripped());
   EXPECT_GT(input.due(), 1'000'000 * ms);
 }
 
-/// Checks the guarantees of the header on random contacts. A disturbance below the debounce time that is
-/// followed by quiet never trips. A contact that does not become quiet trips in time.
+/// Checks the guarantees of the header on random contacts. A disturbance that is shorter than the debounce
+/// time and is followed by a quiet contact never trips. A contact that does not become quiet trips in time.
 TEST(TripInput, KeepsItsBoundsOnRandomContacts) {
   constexpr std::uint64_t seed = 20261120;
   std::mt19937_64 random(seed);

@@ -25,7 +25,7 @@ using testing::text_of;
 
 constexpr Nanoseconds period = 10'000'000;
 
-/// A recorder that the test feeds tick by tick.
+/// A recorder to which the test sends the data of each tick.
 class RecorderTest : public ::testing::Test {
  protected:
   RecorderTest() {

@@ -132,7 +132,8 @@ std::function<bool()> a_program_on(const rig::RigFile& rig) {
   };
 }
 
-/// Every user of the machine can do this: listens on the board's lock address as another user.
+/// Returns a function that listens on the board's lock address as another user, which every user of the
+/// machine can do.
 std::function<bool()> another_user_on(const std::string& board, int backlog) {
   return [board, backlog] {
     constexpr uid_t nobody = 65534;

@@ -76,7 +76,8 @@ TEST_F(DaemonAnswers, AnotherProgramIsNoDaemon) {
 TEST_F(DaemonAnswers, WhoAcceptsAndStaysSilentIsNoDaemon) {
   rig::SocketFile file;
   file.path = path_;
-  const auto listener = Listener::open(file);  // the kernel accepts connections for it
+  const auto listener =
+      Listener::open(file);  // the kernel accepts connections although the listener does not
   ASSERT_TRUE(listener);
   EXPECT_FALSE(daemon_answers(path_));
 }

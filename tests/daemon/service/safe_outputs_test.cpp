@@ -10,7 +10,7 @@ namespace {
 using drivers::BusStatus;
 using testing::ScriptedBoard;
 
-/// Refuses a number of calls of connect() and of exchange(), then operates normally.
+/// A board that refuses a number of calls of connect() and of exchange() and then operates normally.
 class RecoveringBoard final : public drivers::Board {
  public:
   RecoveringBoard(ScriptedBoard& inner, int refused_connects, int refused_exchanges)

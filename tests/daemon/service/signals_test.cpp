@@ -11,7 +11,8 @@
 namespace softgrip::daemon::signals_test {
 namespace {
 
-/// Returns the status with which a child process that runs `body` ended. Signals concern the whole process.
+/// Runs `body` in a child process, because signals concern the whole process. Returns the status with which
+/// the child ended.
 int status_of(const std::function<bool()>& body) {
   const pid_t child = ::fork();
   if (child == 0) ::_exit(body() ? 0 : 1);

@@ -1,4 +1,4 @@
-// Sessions of well-behaved and of hostile clients with a running softgripd over its socket.
+// Tests sessions of well-behaved and of hostile clients with a running softgripd over its socket.
 
 #include <gtest/gtest.h>
 #include <sys/socket.h>
@@ -111,8 +111,8 @@ TEST_F(SocketSession, AStartThatAStopHasNamedBeforeItCameDoesNotBegin) {
   EXPECT_EQ(ask({{"command", "stop"}, {"start_id", "late"}})["error"]["refusal"]["code"], "R12");
   const json late = ask({{"command", "start"}, {"sequence", "pick_stone"}, {"start_id", "late"}});
   EXPECT_EQ(late["error"]["code"], "abandoned");
-  // A start and its stop directly after it: the sequence must not run, regardless of how far the start has
-  // come.
+  // A start is followed immediately by its stop. The sequence must not run, regardless of how far the start
+  // has been processed.
   for (int i = 0; i < 20; ++i) {
     const std::string id = "at once " + std::to_string(i);
     client_.send(R"({"id":1,"command":"start","sequence":"pick_stone","start_id":")" + id + "\"}\n");

@@ -1,5 +1,6 @@
 #pragma once
-// softgripd as a separate process, used as a user does: with arguments, signals and its socket.
+// Runs softgripd as a separate process and controls it as a user does, with arguments, signals and its
+// socket.
 
 #include <sys/types.h>
 
@@ -65,8 +66,9 @@ class SoftgripdProcess {
   std::string output_path_;
 };
 
-/// Writes config/rig.yaml for a test, with its socket and recordings in `folder` and without a requested
-/// processor. Each pair of `changes` replaces a text, which must exist. Returns the path of the file.
+/// Writes a copy of config/rig.yaml for a test, with its socket and recordings in `folder` and without the
+/// request for a processor. Each pair of `changes` replaces its first text, which must exist, by its second
+/// text. Returns the path of the file.
 std::string make_rig(const std::string& folder,
                      const std::vector<std::pair<std::string, std::string>>& changes = {});
 

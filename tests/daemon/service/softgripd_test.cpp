@@ -1,5 +1,4 @@
-// softgripd as a process: it runs, gives the same results again, stops, is killed, and runs out of disk
-// space.
+// Tests softgripd as a process: normal and repeated runs, a stop, a kill and a full disk.
 
 #include <gtest/gtest.h>
 #include <sys/mount.h>
@@ -181,7 +180,7 @@ TEST_F(SoftgripdTest, ASecondDaemonOnTheSameSocketIsRefused) {
 }
 
 TEST_F(SoftgripdTest, AFullDiskEndsTheRecordingAndNotTheGrip) {
-  // Uses a real full disk if mounting is allowed, otherwise a limit of the file size.
+  // The test uses a real full disk if mounting is allowed, and a limit of the file size otherwise.
   const std::string disk = folder_.path() + "/disk";
   std::filesystem::create_directory(disk);
   const bool mounted = mount("none", disk.c_str(), "tmpfs", 0, "size=64k") == 0;
@@ -295,7 +294,7 @@ TEST_F(SoftgripdTest, RealTimeThatIsRequiredAndNotThereIsARefusal) {
   EXPECT_NE(process.output().find("confirmed the safe outputs"), std::string::npos);
 }
 
-/// The service manager's side of sd_notify.
+/// A socket that receives the messages of sd_notify like a service manager.
 class NotifySocket {
  public:
   explicit NotifySocket(const std::string& path) : socket_(::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0)) {

@@ -1,4 +1,5 @@
-// Fuzz target of the socket's line parser: any bytes give a request, or a refusal with a message.
+// Fuzz target: takes arbitrary bytes as a line of a client. The parser must return a request, or a refusal
+// with a message.
 //
 //   cmake --preset fuzz && cmake --build --preset fuzz --target client_request_fuzz
 //   build/fuzz/tests/daemon/client_request_fuzz -max_total_time=660 -max_len=1024

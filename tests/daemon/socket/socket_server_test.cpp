@@ -61,7 +61,7 @@ class SocketServerTest : public ::testing::Test {
     }
     return *server_;
   }
-  /// Runs the server `looks` times; the time advances by `step` before each run.
+  /// Runs the server `looks` times. Before each run the time advances by `step`.
   void turn(int looks = 5, Nanoseconds step = 0) {
     for (int i = 0; i < looks; ++i) {
       now_ += step;
@@ -72,7 +72,7 @@ class SocketServerTest : public ::testing::Test {
     ASSERT_EQ(::send(socket.get(), text.data(), text.size(), MSG_NOSIGNAL),
               static_cast<ssize_t>(text.size()));
   }
-  /// Returns the data that have arrived; empty if the peer has closed the connection.
+  /// Returns the data that have arrived, or nullopt if the peer has closed the connection.
   static std::optional<std::string> received(const Descriptor& socket) {
     std::string text(1 << 20, '\0');
     const ssize_t count = ::recv(socket.get(), text.data(), text.size(), 0);
@@ -454,7 +454,7 @@ TEST_F(SocketServerTest, AnUrgentLineOfAClientThatHasGoneIsHeard) {
       send_text(client, "hello\n");
       turn();
       if (unread > 0) server().send(sender, std::string(unread, 'a'), false);
-      // The server does not run meanwhile, like a paused process.
+      // The server does not run during this time, like a paused process.
       send_text(client, "move\nurgent: down\nmove\n");
       lines_.clear();
     }
