@@ -273,7 +273,7 @@ TEST_F(VacuumBusTest, OutputsThatTheBoardDidNotConfirmAreTheNearerToRest) {
   command(3, 0, true);
   step(bus);
   EXPECT_EQ(shared_.bus.value().outputs_kpa[0], 0)
-      << "values on both sides of rest: only the rest pressure is safe";
+      << "the output may be on either side of rest, so only the rest pressure is safe";
 }
 
 /// A board that fails repeatedly for the same reason must not fill the event log.
@@ -308,7 +308,8 @@ TEST_F(BusTest, ThatNoSessionCanBeOpenedAgainIsToldOnceIfItIsForAnotherReason) {
       clock_.advance(60'000'000'000);
       step();
     }
-    EXPECT_EQ(failures(), (std::vector<std::string>{"again: " + refusal})) << "the complete text, once";
+    EXPECT_EQ(failures(), (std::vector<std::string>{"again: " + refusal}))
+        << "the complete text of a new reason is reported once";
     board_.next_exchange = BusStatus::ok;
     board_.next_connect = BusStatus::ok;
     clock_.advance(60'000'000'000);
@@ -339,7 +340,8 @@ TEST_F(BusTest, ASessionIsToldOfOnceTheBoardHasAnsweredInIt) {
     clock_.advance(60 * ns_per_s);
     step();
   }
-  EXPECT_EQ(told(), (Told{{Kind::not_connected, BusStatus::closed_at_once}})) << "once";
+  EXPECT_EQ(told(), (Told{{Kind::not_connected, BusStatus::closed_at_once}}))
+      << "the failed connection is reported once";
   EXPECT_EQ(fault(), FaultCode::bus_down);
   EXPECT_FALSE(shared_.bus.value().health.connected);
   board_.next_exchange = BusStatus::exception;
@@ -361,11 +363,12 @@ TEST_F(BusTest, AnotherClientThatFeedsTheWatchdogIsToldOnceASession) {
   (void)events();
   step();
   EXPECT_EQ(events(), none)
-      << "only writes reset this watchdog, and another client's writes are found at the outputs";
+      << "only writes reset this watchdog, and the driver detects writes of another client at the outputs";
   board_.readers_feed = true;
   board_.counted_clients = 1;
   step();
-  EXPECT_EQ(events(), none) << "requests of any client reset this watchdog";
+  EXPECT_EQ(events(), none)
+      << "no other client is connected, although requests of any client reset this watchdog";
   for (const unsigned clients : {3U, 1U, 2U}) {
     board_.counted_clients = clients;
     step();
@@ -530,7 +533,8 @@ TEST_F(BusTest, OutputsFoundNearerToRestAreNotWrittenBack) {
   EXPECT_EQ(last_written(), 5);
   command(12, 0, false, shared_.bus.value().health.inhibit);
   step();
-  EXPECT_EQ(last_written(), 5) << "the loop knows the fault, but its ramp begins further from rest";
+  EXPECT_EQ(last_written(), 5)
+      << "the loop knows the fault, but its command is further from rest than the output";
   command(4, 0, false, shared_.bus.value().health.inhibit);
   step();
   EXPECT_EQ(last_written(), 4);

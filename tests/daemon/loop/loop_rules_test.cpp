@@ -156,7 +156,7 @@ TEST(LoopRules, NoTickAllocates) {
   ASSERT_TRUE(ticks.until(State::idle));
   parts->service.submit(Request::Kind::start, sequence);
   ASSERT_TRUE(ticks.until(State::running));
-  ASSERT_TRUE(ticks.until(State::idle)) << "the whole sequence";
+  ASSERT_TRUE(ticks.until(State::idle)) << "the sequence runs to its end";
   parts->service.submit(Request::Kind::start, sequence);
   ASSERT_TRUE(ticks.until(State::running));
   parts->service.submit(Request::Kind::vent);

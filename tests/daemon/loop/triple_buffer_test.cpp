@@ -124,7 +124,8 @@ TEST(TripleBuffer, IsWholeHoweverOftenTheWriterPublishesDuringACopy) {
 }
 
 TEST(TripleBuffer, TheSameInterruptionTearsAWrongCell) {
-  EXPECT_TRUE(whole_when_interrupted<TwoSlots<TornValue>>(1)) << "one publish does not reveal the error";
+  EXPECT_TRUE(whole_when_interrupted<TwoSlots<TornValue>>(1))
+      << "the error is visible only if the writer publishes twice during a copy";
   EXPECT_FALSE(whole_when_interrupted<TwoSlots<TornValue>>(2));
 }
 

@@ -96,7 +96,8 @@ TEST_F(PanelTest, StartsPressedAndOpenBeforeAnythingIsRead) {
 TEST_F(PanelTest, IsNotReleasedBeforeTheLoopHasLatchedIt) {
   make(all_lines());
   run(0.05);
-  EXPECT_TRUE(pressed()) << "the line is released, but a loop that never saw it pressed would continue";
+  EXPECT_TRUE(pressed())
+      << "the panel reports the released line only after the loop has latched the emergency stop";
   shared_.state.store(control::State::faulted);
   run(0.02);
   EXPECT_FALSE(pressed());
@@ -119,7 +120,8 @@ TEST_F(PanelTest, PressingIsSeenWithinTheDebounceTimeAndALook) {
   terminals_.set(GpioRole::emergency_stop, true);
   while (!pressed() && clock_.now() - began < ns_per_s) panel_->step();
   EXPECT_GE(clock_.now() - began, nanoseconds(0.005));
-  EXPECT_LT(clock_.now() - began, nanoseconds(0.1)) << "a busy machine may add to the 5 ms";
+  EXPECT_LT(clock_.now() - began, nanoseconds(0.1))
+      << "the debounce time is 5 ms, but a busy machine may need longer";
 }
 
 TEST_F(PanelTest, PressingWithoutAnEdgeIsSeenAllTheSame) {
@@ -149,7 +151,7 @@ TEST_F(PanelTest, EnableAndLampsFollowTheState) {
   EXPECT_TRUE(is_on(GpioRole::fault_lamp));
   shared_.state.store(control::State::starting);
   run(0.02);
-  EXPECT_FALSE(is_on(GpioRole::enable)) << "off until the rig is ready";
+  EXPECT_FALSE(is_on(GpioRole::enable)) << "the enable output stays off until the rig is ready";
   EXPECT_FALSE(is_on(GpioRole::fault_lamp));
   shared_.state.store(control::State::idle);
   run(0.02);
@@ -219,7 +221,8 @@ TEST_F(PanelTest, TheEmergencyStopAlwaysDropsTheEnable) {
   make_ready();
   terminals_.set(GpioRole::emergency_stop, true);
   run(0.03);
-  EXPECT_FALSE(is_on(GpioRole::enable)) << "although the loop still reports idle";
+  EXPECT_FALSE(is_on(GpioRole::enable))
+      << "the enable output must not wait for the loop, which still reports idle";
 }
 
 TEST_F(PanelTest, ALoopThatHangsDropsTheEnableAndMayNotGoOn) {
@@ -231,9 +234,9 @@ TEST_F(PanelTest, ALoopThatHangsDropsTheEnableAndMayNotGoOn) {
   run(0.1, false);
   EXPECT_FALSE(is_on(GpioRole::enable));
   EXPECT_TRUE(is_on(GpioRole::fault_lamp));
-  EXPECT_TRUE(shared_.inputs.lost.load()) << "a loop that continues must find a fault";
+  EXPECT_TRUE(shared_.inputs.lost.load()) << "the loop must find a fault if it continues";
   run(0.02);
-  EXPECT_TRUE(shared_.inputs.lost.load()) << "until the loop has latched the fault";
+  EXPECT_TRUE(shared_.inputs.lost.load()) << "the report must remain until the loop has latched the fault";
   shared_.state.store(control::State::faulted);
   run(0.02);
   EXPECT_FALSE(shared_.inputs.lost.load());

@@ -69,7 +69,8 @@ TEST(TripInput, SeesAPressThatWasOverBeforeAnybodyLooked) {
   TripInput input = cleared();
   input.edge(true, 20 * ms);
   input.edge(false, 26 * ms);
-  EXPECT_TRUE(input.tripped()) << "pressed for 6 ms according to the kernel's times";
+  EXPECT_TRUE(input.tripped())
+      << "according to the kernel's times of the edges the input was pressed for 6 ms";
 }
 
 TEST(TripInput, TripsOnAContactThatOnlyChatters) {

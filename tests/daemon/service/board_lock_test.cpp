@@ -38,8 +38,8 @@ TEST(BoardLock, OneMasterPerBoardUnderWhateverSpelling) {
   ASSERT_FALSE(second);
   EXPECT_NE(second.error().find("modbus ::1 port 40502 unit 1"), std::string::npos) << second.error();
   EXPECT_NE(second.error().find("process " + std::to_string(getpid())), std::string::npos) << second.error();
-  EXPECT_TRUE(BoardLock::take(rig_at("::1", 40503))) << "another port";
-  EXPECT_TRUE(BoardLock::take(rig_at("::1", 40502, 2))) << "another unit behind a gateway";
+  EXPECT_TRUE(BoardLock::take(rig_at("::1", 40503))) << "a board at another port has its own lock";
+  EXPECT_TRUE(BoardLock::take(rig_at("::1", 40502, 2))) << "another unit behind a gateway has its own lock";
   *first = BoardLock();
   EXPECT_TRUE(BoardLock::take(rig_at("::1", 40502))) << "the lock was released";
 }
@@ -158,7 +158,7 @@ TEST(BoardLock, AnotherUsersClaimDoesNotCountAndIsSaid) {
     ASSERT_TRUE(lock) << lock.error();
     ASSERT_EQ(lock->remarks().size(), 1U);
     EXPECT_NE(lock->remarks()[0].find("may not control the board"), std::string::npos) << lock->remarks()[0];
-    EXPECT_FALSE(BoardLock::take(rig)) << "nevertheless the lock separates programs of softgrip";
+    EXPECT_FALSE(BoardLock::take(rig)) << "the lock must still exclude a second program of softgrip";
     EXPECT_FALSE(BoardLock::take(rig, LockPurpose::vent));
   }
 }
@@ -197,7 +197,8 @@ TEST(BoardLock, SafeOutputsYieldToAProgramThatRunsAndNotToOneThatStandsStill) {
   const Holder holder(a_program_on(rig));
   EXPECT_FALSE(BoardLock::take(rig, LockPurpose::vent));
   holder.stop();
-  EXPECT_FALSE(BoardLock::take(rig)) << "a program that drives the board must wait for its end";
+  EXPECT_FALSE(BoardLock::take(rig))
+      << "a program that drives the board must wait until the stopped program has ended";
   const auto lock = BoardLock::take(rig, LockPurpose::vent);
   ASSERT_TRUE(lock) << lock.error();
   ASSERT_FALSE(lock->remarks().empty());

@@ -70,7 +70,7 @@ TEST_F(DaemonAnswers, AnotherProgramIsNoDaemon) {
   EXPECT_FALSE(with_reply("HTTP/1.1 400 Bad Request\r\n"));
   EXPECT_FALSE(with_reply("{}\n"));
   EXPECT_FALSE(with_reply("[\"ok\"]\n"));
-  EXPECT_FALSE(with_reply("{\"ok\": tr")) << "half a line, then the end of the connection";
+  EXPECT_FALSE(with_reply("{\"ok\": tr")) << "the connection ended after half a line";
 }
 
 TEST_F(DaemonAnswers, WhoAcceptsAndStaysSilentIsNoDaemon) {

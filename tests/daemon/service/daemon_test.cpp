@@ -103,7 +103,8 @@ TEST(Daemon, EveryEndingHasItsExitCode) {
     return exit_code_of(outcome);
   };
   EXPECT_EQ(code(Ending::asked), ExitCode::done);
-  EXPECT_EQ(code(Ending::interrupted), ExitCode::not_acceptable) << "the requested sequence has not finished";
+  EXPECT_EQ(code(Ending::interrupted), ExitCode::not_acceptable)
+      << "the daemon was interrupted before the requested sequence finished";
   EXPECT_EQ(code(Ending::sequence_refused), ExitCode::state_refused);
   EXPECT_EQ(code(Ending::not_idle), ExitCode::state_refused);
   EXPECT_EQ(code(Ending::real_time_refused), ExitCode::failed);
@@ -120,7 +121,8 @@ TEST(Daemon, EveryEndingHasItsExitCode) {
   }
   outcome.safe_state_confirmed = false;
   outcome.sequence_end = SequenceEnd::done;
-  EXPECT_EQ(code(Ending::sequence_ended), ExitCode::failed) << "unconfirmed safe outputs are a failure";
+  EXPECT_EQ(code(Ending::sequence_ended), ExitCode::failed)
+      << "if the safe outputs are not confirmed, the exit code is a failure";
   EXPECT_EQ(code(Ending::asked), ExitCode::failed);
   EXPECT_EQ(code(Ending::interrupted), ExitCode::failed);
 }

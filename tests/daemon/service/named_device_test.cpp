@@ -25,7 +25,7 @@ TEST(NamedDevice, AChipThatTheRigNamesAndNoOther) {
   EXPECT_TRUE(named_device(rig, "gpiochip1"));
   EXPECT_FALSE(named_device(rig, "gpiochip0"));
   EXPECT_FALSE(named_device(rig, "gpiochip11"));
-  EXPECT_FALSE(named_device(rig::RigFile{}, "gpiochip1")) << "a rig without digital lines";
+  EXPECT_FALSE(named_device(rig::RigFile{}, "gpiochip1")) << "a rig without digital lines uses no chip";
 }
 
 TEST(NamedDevice, AConverterByItsNameOrItsFolderAndOnlyTheOutputsThatAreWritten) {
@@ -48,7 +48,7 @@ TEST(NamedDevice, AConverterByItsNameOrItsFolderAndOnlyTheOutputsThatAreWritten)
             (std::vector<std::string>{"out_voltage2_raw", "out_voltage0_raw", "out_voltage0_powerdown"}));
   const auto inputs = named_device(rig, "iio:device0");
   ASSERT_TRUE(inputs);
-  EXPECT_TRUE(inputs->written.empty()) << "inputs are read, which every user may do";
+  EXPECT_TRUE(inputs->written.empty()) << "every user may read the inputs, so no file is written";
   EXPECT_FALSE(named_device(rig, "iio:device2"));
   EXPECT_FALSE(named_device(rig, "iio:device3"));
   std::ofstream(root.path() + "/iio:device2/name") << "dac7578\n";

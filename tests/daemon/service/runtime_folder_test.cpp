@@ -96,7 +96,7 @@ TEST_F(RuntimeFolderTest, PutsAWholeFileOrNone) {
   ASSERT_TRUE(mine.put("file", "old"));
   ASSERT_TRUE(mine.put("file", long_text));
   EXPECT_EQ(mine.get("file", 2'000'000).value(), long_text);
-  EXPECT_FALSE(mine.get("file", 999'999)) << "larger than the limit";
+  EXPECT_FALSE(mine.get("file", 999'999)) << "a file above the size limit is not read";
   mine.remove("file");
   EXPECT_FALSE(mine.get("file", 10));
   EXPECT_TRUE(fs::is_empty(place_)) << "no temporary file remains";
@@ -110,7 +110,7 @@ TEST_F(RuntimeFolderTest, KnowsWhetherANameIsStillTheFile) {
   mine.remove("a");
   EXPECT_FALSE(mine.still_names("a", file->get()));
   ASSERT_TRUE(mine.lock_file("a"));
-  EXPECT_FALSE(mine.still_names("a", file->get())) << "another file of this name";
+  EXPECT_FALSE(mine.still_names("a", file->get())) << "the name now refers to another file";
 }
 
 TEST_F(RuntimeFolderTest, OnlyFoldersInRunEndWithTheMachine) {

@@ -93,7 +93,7 @@ TEST_F(SocketSession, AStopThatNamesAStartEndsThatOneAlone) {
            {"start_id", "cell/2"}, {"request", request + 1}, {"request", 4294967295U}}) {
     EXPECT_EQ(stop_of(key, value)["error"]["refusal"]["name"], "named_start_not_running") << key << value;
   }
-  EXPECT_EQ(status()["sequence"]["ended"], nullptr) << "none of these stops names this start";
+  EXPECT_EQ(status()["sequence"]["ended"], nullptr) << "none of these stop requests refers to this start";
   EXPECT_EQ(start("cell/1")["error"]["code"], "bad_request") << "the id is already in use";
   EXPECT_EQ(stop_of("start_id", "cell/1")["ok"], true);
   ASSERT_TRUE(until_state("idle"));
@@ -103,7 +103,8 @@ TEST_F(SocketSession, AStopThatNamesAStartEndsThatOneAlone) {
   ASSERT_EQ(second["ok"], true) << second;
   EXPECT_EQ(stop_of("start_id", "cell/1")["error"]["refusal"]["code"], "R12");
   EXPECT_EQ(stop_of("request", request)["error"]["refusal"]["code"], "R12");
-  EXPECT_EQ(status()["sequence"]["ended"], nullptr) << "a later start is running now";
+  EXPECT_EQ(status()["sequence"]["ended"], nullptr)
+      << "the stop requests refer to an earlier start, so the sequence continues";
   EXPECT_EQ(stop_of("request", second["result"]["request"])["ok"], true);
 }
 
@@ -211,7 +212,7 @@ TEST_F(SocketSession, WatchStreamsAtTheRateThatWasAskedFor) {
   }
   const double period_s = (times.back() - times.front()) / 19;
   EXPECT_GT(period_s, 0.04);
-  EXPECT_LT(period_s, 0.5) << "a loaded machine may be slow, but must not stop";
+  EXPECT_LT(period_s, 0.5) << "the loop may be slow on a loaded machine, but it must continue";
 }
 
 TEST_F(SocketSession, StatisticsHaveTheirHistogramsOnRequest) {

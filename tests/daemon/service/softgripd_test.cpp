@@ -199,7 +199,7 @@ TEST_F(SoftgripdTest, AFullDiskEndsTheRecordingAndNotTheGrip) {
     ASSERT_TRUE(until_state(client, "idle"));
     ASSERT_EQ(client.ask({{"command", "start"}, {"sequence", "pick_stone"}})["ok"], true);
     ASSERT_TRUE(until_state(client, "running"));
-    ASSERT_TRUE(until_state(client, "idle", 30)) << "the sequence continues to its end";
+    ASSERT_TRUE(until_state(client, "idle", 30)) << "the sequence runs to its end although the disk is full";
     const json end = status(client);
     EXPECT_EQ(end["sequence"]["ended"], "done");
     EXPECT_EQ(end["channels"][0]["result"], "RELEASED");

@@ -224,14 +224,14 @@ TEST_F(SocketServerTest, TheLongestSilentOnesMakeRoom) {
   clients.push_back(connect_to(settings_.path));
   turn();
   EXPECT_NE(received(clients[1]).value_or("").find("too_many_clients"), std::string::npos)
-      << "this client never sent a line";
+      << "the client that never sent a line loses its place first";
   turn(1, 6 * ns_per_s);
   send_text(clients[3], "hello\n");
   turn();
   clients.push_back(connect_to(settings_.path));
   turn();
   EXPECT_NE(received(clients[0]).value_or("").find("too_many_clients"), std::string::npos)
-      << "this client was silent for the longest time";
+      << "the client that was silent for the longest time loses its place";
   EXPECT_EQ(received(clients[2]), "");
   EXPECT_EQ(received(clients[3]), "");
 }
@@ -250,7 +250,7 @@ TEST_F(SocketServerTest, AClientThatKeepsItsPlaceIsDisplacedByNobody) {
   send_text(clients.back(), "hello\n");
   turn();
   EXPECT_NE(received(clients[1]).value_or("").find("too_many_clients"), std::string::npos)
-      << "a silent client without a reason to keep its place";
+      << "the silent client that has no reason to keep its place loses it";
   keeps_.insert(4);
   turn(1, 60 * ns_per_s);
   const Descriptor late = connect_to(settings_.path);
@@ -291,7 +291,7 @@ TEST_F(SocketServerTest, WhoLooksHasPlacesOfItsOwn) {
   ASSERT_EQ(stat(settings_.look.path.c_str(), &status), 0);
   EXPECT_EQ(status.st_mode & 0777, 0666U);
   server_.reset();
-  EXPECT_NE(stat(settings_.look.path.c_str(), &status), 0) << "its socket file is removed, too";
+  EXPECT_NE(stat(settings_.look.path.c_str(), &status), 0) << "the read-only socket file is also removed";
 }
 
 TEST_F(SocketServerTest, WhoOperatesIsHeardBeforeWhoLooks) {
@@ -408,7 +408,7 @@ TEST_F(SocketServerTest, ASlowWatcherMissesLinesAndThenIsDropped) {
   turn();
   for (int i = 0; i < 1000; ++i) server().send(watcher, std::string(10'000, 'w'), true);
   turn();
-  EXPECT_EQ(server().clients(), 1U) << "missed states do not accumulate";
+  EXPECT_EQ(server().clients(), 1U) << "states that a client has not read do not accumulate in its queue";
   turn(11, ns_per_s);
   EXPECT_EQ(server().clients(), 0U) << "the client has read nothing for 10 s";
 }
@@ -461,7 +461,7 @@ TEST_F(SocketServerTest, AnUrgentLineOfAClientThatHasGoneIsHeard) {
     turn(20);
     EXPECT_EQ(std::count(lines_.begin(), lines_.end(), "urgent: down"), 1);
     EXPECT_EQ(std::count(lines_.begin(), lines_.end(), "move"), 0)
-        << "a client that has left must not cause motion";
+        << "a request of a client that has disconnected must not cause motion";
     EXPECT_EQ(server().clients(), 0U);
   }
   EXPECT_EQ(closed_, 3);

@@ -34,7 +34,7 @@ TEST_F(UnderPressure, NothingIsSaidWhereTheControllerSaysSo) {
   EXPECT_TRUE(json().is_null());
   set(30, 30);
   snapshot_.under_pressure = 0;
-  EXPECT_TRUE(json().is_null()) << "the finger is moving";
+  EXPECT_TRUE(json().is_null()) << "a moving finger is not reported as pressurised";
 }
 
 TEST_F(UnderPressure, WhatStaysOnIsNamedWithTheCommandThatEndsIt) {
