@@ -11,7 +11,7 @@ using namespace drivers;
 
 const std::string boards = SOFTGRIP_SOURCE_DIR "/config/boards/";
 
-/// A small valid board map; each test changes one line of it.
+/// A small valid board map, of which each test changes one line.
 const std::string valid = R"(name: test
 source: a test
 address_base: 1
@@ -221,7 +221,8 @@ TEST(BoardMapFile, AModuleMayHaveOneDirectionOnly) {
   EXPECT_TRUE(inputs.map->has_inputs());
   EXPECT_FALSE(inputs.map->has_outputs());
 
-  // The keys of a direction require this direction, and a module needs at least one direction.
+  // The keys of inputs require `inputs`, the keys of outputs require `outputs`, and a module needs at least
+  // one of the two.
   EXPECT_NE(
       read(without(valid, "inputs:", "outputs:")).problems.format().find("`input_status` needs `inputs`"),
       std::string::npos);
@@ -288,8 +289,8 @@ TEST(BoardMapFile, AHeartbeatHasTwoValuesThatDiffer) {
       << "only a heartbeat alternates";
 }
 
-/// Some couplers reset their watchdog only for function codes in a mask. The reader computes the mask from
-/// the function codes in the file, and checks that they include the function that writes.
+/// Some couplers reset their watchdog only for function codes in a mask. The reader computes this mask from
+/// the function codes in the file and checks that they include the function that writes the outputs.
 TEST(BoardMapFile, AMaskOfFunctionsIsMadeOfThem) {
   std::string text = valid;
   text.replace(text.find("functions: [16]"), 15, "functions: [3, 16, 23]");

@@ -1,4 +1,5 @@
-// Fuzz target of the board map: any bytes give a map with usable numbers, or a refusal with a location.
+// Fuzz target: takes arbitrary bytes as a board map. The reader must return a map with usable values, or a
+// refusal with a location.
 //
 //   scripts/fuzz.sh board_map_fuzz 30
 
@@ -19,7 +20,7 @@ void require(bool holds) {
 }
 
 void check(const drivers::TerminalBlock& block) {
-  if (block.registers.count == 0) return;  // a module with one direction only
+  if (block.registers.count == 0) return;  // a module without inputs or without outputs
   require(std::isfinite(block.raw_min) && std::isfinite(block.raw_max) && block.raw_min < block.raw_max);
   for (const double raw : {block.raw_min, block.raw_max}) {
     const double electrical = block.scaling.y_at(raw);

@@ -1,4 +1,4 @@
-// `channel_defaults` of a rig file contains the settings that all channels share.
+// Tests the key `channel_defaults` of a rig file, which contains the settings that all channels share.
 
 #include "rig/channel_defaults.h"
 

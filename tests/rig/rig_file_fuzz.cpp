@@ -1,5 +1,6 @@
-// Fuzz target of the rig file: any bytes give a rig with all properties that RigFile guarantees, or a refusal
-// with a location. Files that the rig names are searched in the folder of config/rig.yaml.
+// Fuzz target: takes arbitrary bytes as a rig file. The reader must return a rig with all properties that
+// RigFile guarantees, or a refusal with a location. Files to which the rig file refers are searched in the
+// folder of config/rig.yaml.
 //
 //   scripts/fuzz.sh rig_file_fuzz 30
 
