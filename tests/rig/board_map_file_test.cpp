@@ -240,7 +240,8 @@ TEST(BoardMapFile, SeveralFlagsAndSeveralClearingWrites) {
   ASSERT_TRUE(result.map.has_value()) << result.problems.format();
   EXPECT_EQ(result.map->watchdog.tripped->count, 2);
   ASSERT_EQ(result.map->watchdog.clear.size(), 2U);
-  EXPECT_EQ(result.map->watchdog.clear[1].address, 41) << "the file counts from 1";
+  EXPECT_EQ(result.map->watchdog.clear[1].address, 41)
+      << "addresses start at 1 in the file and at 0 on the bus";
 }
 
 TEST(BoardMapFile, TheCountOfClientsIsARegister) {
@@ -252,7 +253,8 @@ TEST(BoardMapFile, TheCountOfClientsIsARegister) {
   ASSERT_TRUE(result.map.has_value()) << result.problems.format();
   ASSERT_TRUE(result.map->watchdog.clients.has_value());
   EXPECT_EQ(result.map->watchdog.clients->function, 4);
-  EXPECT_EQ(result.map->watchdog.clients->address, 50) << "the file counts from 1";
+  EXPECT_EQ(result.map->watchdog.clients->address, 50)
+      << "addresses start at 1 in the file and at 0 on the bus";
   EXPECT_FALSE(with("{function: 1, address: 51}").map.has_value());
   EXPECT_FALSE(with("{function: 3}").map.has_value());
   EXPECT_FALSE(read(valid).map->watchdog.clients.has_value());
@@ -286,7 +288,7 @@ TEST(BoardMapFile, AHeartbeatHasTwoValuesThatDiffer) {
   EXPECT_FALSE(
       read(changed("watchdog:", "setup: [{function: 6, address: 61, value: 1, alternate: 0}]\nwatchdog:"))
           .map.has_value())
-      << "only a heartbeat alternates";
+      << "only a heartbeat may have alternating values";
 }
 
 /// Some couplers reset their watchdog only for function codes in a mask. The reader computes this mask from

@@ -63,7 +63,7 @@ TEST_F(RigComparisonTest, APressureAtWhichTheModelGoesFarBeyondItsDisplacement) 
   EXPECT_LT(advised, 20);
   change("pressure_max_kpa: 60", "pressure_max_kpa: " + found[1].str());
   EXPECT_EQ(compare().format().find("displacement_max_mm"), std::string::npos)
-      << "the advised value must not be reported";
+      << "the value that the warning advises must not cause another warning";
 }
 
 TEST_F(RigComparisonTest, APressureBelowRestAtWhichTheModelGoesFarBeyondItsDisplacement) {
@@ -79,7 +79,7 @@ TEST_F(RigComparisonTest, APressureBelowRestAtWhichTheModelGoesFarBeyondItsDispl
   ASSERT_TRUE(std::regex_search(first.hint, found, std::regex("pressure_min_kpa: (-[\\d.]+)"))) << first.hint;
   change("pressure_min_kpa: -40", "pressure_min_kpa: " + found[1].str());
   EXPECT_EQ(compare().format().find("displacement_min_mm"), std::string::npos)
-      << "the advised value must not be reported";
+      << "the value that the warning advises must not cause another warning";
 }
 
 TEST_F(RigComparisonTest, ASpeedThatNoFingerHas) {
@@ -121,7 +121,7 @@ TEST_F(RigComparisonTest, ARecipeThatReliesOnIt) {
   ASSERT_TRUE(pick) << none.format();
   document::Problems told;
   compare_grips(*pick, *rig, told);
-  ASSERT_EQ(told.warnings().size(), 1U) << "reported once, not for each finger";
+  ASSERT_EQ(told.warnings().size(), 1U) << "the problem is reported once, not for each finger";
   EXPECT_NE(told.warnings()[0].file.find("pick_stone.yaml"), std::string::npos);
   EXPECT_NE(told.warnings()[0].message.find("would also report HOLDING with a burst line"),
             std::string::npos);
@@ -130,7 +130,7 @@ TEST_F(RigComparisonTest, ARecipeThatReliesOnIt) {
   const auto staircase = control::load_sequence(folder + "sequences/pressure_staircase.yaml", none);
   document::Problems silent;
   compare_grips(*staircase, *rig, silent);
-  EXPECT_EQ(silent.format(), "") << "this sequence does not grip";
+  EXPECT_EQ(silent.format(), "") << "a sequence without a grip causes no warning";
 }
 
 }  // namespace
