@@ -1,5 +1,5 @@
-// Boards and gateways with habits, on real sockets and serial lines. The emulator has the habit, and the
-// driver can communicate with it only with the corresponding key.
+// Tests boards and gateways with peculiarities, on real sockets and serial lines. The emulator has the
+// peculiarity, and the driver can communicate with it only if the corresponding key is set.
 
 #include <gtest/gtest.h>
 
@@ -55,8 +55,9 @@ struct Client {
   std::vector<model::Reading> readings;
 };
 
-/// The board ignores requests during the first 0.4 s of a connection. The settle time delays no safe value:
-/// the board would ignore every write in this time, and each new connection restarts the 0.4 s.
+/// The board ignores requests during the first 0.4 s of a connection. The settle time does not delay safe
+/// outputs, because the board would ignore every write during this time, and each new connection restarts the
+/// 0.4 s.
 TEST(BoardHabits, ABoardThatIgnoresWhatComesFirstIsReachedBehindItsSettleTime) {
   RunningRig rig(rig_with(settling(0.4)));
   ModbusSettings settings = rig.board();
@@ -70,7 +71,7 @@ TEST(BoardHabits, ABoardThatIgnoresWhatComesFirstIsReachedBehindItsSettleTime) {
   }
   std::get<drivers::TcpAddress>(settings.links[0]).habits.settle_s = 0.4;
   Client settled(settings);
-  for (int session = 0; session < 2; ++session) {  // the first session, and a reopened one
+  for (int session = 0; session < 2; ++session) {  // the first session and a second session
     ASSERT_EQ(settled.board.connect(generous), BusStatus::ok) << settled.board.detail();
     ASSERT_EQ(settled.exchange(10 + session), BusStatus::ok) << settled.board.detail();
   }
@@ -89,7 +90,7 @@ TEST(BoardHabits, TheSettleTimeIsPartOfTheDeadlineForConnecting) {
   EXPECT_NE(std::string(board.detail()).find("settled"), std::string::npos) << board.detail();
 }
 
-/// One lost request does not end the connection, and the exchange ends within its own deadline. The time
+/// A lost request does not end the connection, and the exchange still ends within its deadline. So the time
 /// until safe outputs are written does not increase.
 TEST(BoardHabits, ALostRequestIsRepeatedWithinTheDeadline) {
   FaultSpec habit = fault_of(FaultKind::lost_request);
@@ -153,7 +154,7 @@ TEST(BoardHabits, RtuFramesThatAreRepeatedOrWrongEndTheSession) {
   }
 }
 
-/// Tests a serial line, and a serial server on the network.
+/// Tests a serial line and a serial server on the network.
 TEST(BoardHabits, StrayBytesAreThrownAway) {
   FaultSpec habit = fault_of(FaultKind::stray_bytes);
   habit.before = 1;
@@ -169,8 +170,8 @@ TEST(BoardHabits, StrayBytesAreThrownAway) {
   }
 }
 
-/// 16 input and 4 output registers, read and written 4 at a time: no number is torn, and no input is read as
-/// another one.
+/// The board has 16 input and 4 output registers, of which a request may contain 4. A value must not be split
+/// between two requests, and each input must be assigned to its own channel.
 TEST(BoardHabits, ABoardThatTakesFewRegistersGetsSeveralRequests) {
   FaultSpec habit = fault_of(FaultKind::few_registers);
   habit.most = 4;

@@ -1,4 +1,4 @@
-// Fuzz target: the bytes that a client may send to the emulator, in pieces of any size.
+// Fuzz target: takes arbitrary bytes, in pieces of any size, as the data that a client sends to the emulator.
 //
 //   cmake --preset fuzz && cmake --build --preset fuzz --target emulator_fuzz
 //   build/fuzz/tests/tools/emulator_fuzz -max_total_time=660 -max_len=1024

@@ -21,7 +21,8 @@ FaultSpec fault(std::string name, FaultKind kind) {
   return spec;
 }
 
-/// Two bench twins without noise on an ADAM-6024, and a client that counts its transactions.
+/// Two fingers of the model bench_twin without noise on an emulated ADAM-6024, and a client that counts its
+/// transactions.
 class EmulatorTest : public testing::Test {
  protected:
   static EmulatorSettings settings(std::vector<FaultSpec> faults = {}) {
@@ -55,7 +56,7 @@ class EmulatorTest : public testing::Test {
     const double volts = word_at(reply.pieces.at(0).bytes, 9) * 20.0 / 65535 - 10;
     return volts / 10 * 50 - 5;
   }
-  /// Resets the watchdog with requests until `until`, at most 0.1 s apart.
+  /// Resets the watchdog with requests at intervals of at most 0.1 s until the time `until`.
   static void keep_alive(Emulator& emulator, Nanoseconds until) {
     while (emulator.now() < until) {
       (void)ask(emulator, std::min(until, emulator.now() + second / 10), {0x04, 0, 0, 0, 1});

@@ -1,5 +1,5 @@
-// Fuzz target of the emulator's faults file: any bytes give faults within their bounds, or a refusal with a
-// location. All accepted faults can be scheduled.
+// Fuzz target: takes arbitrary bytes as a faults file of the emulator. The reader must return faults within
+// their bounds, or a refusal with a location. The emulator must be able to schedule all accepted faults.
 //
 //   scripts/fuzz.sh faults_file_fuzz 30
 

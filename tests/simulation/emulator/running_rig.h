@@ -1,6 +1,6 @@
 #pragma once
-// The emulator in a thread of the test, on free ports or on a pseudo-terminal, and the settings of a board
-// that connects to it.
+// Runs the emulator in a thread of the test, on free ports or on a pseudo-terminal, and provides the board
+// settings with which a driver connects to it.
 
 #include <string>
 #include <thread>
@@ -12,17 +12,17 @@
 namespace softgrip::simulation::test {
 
 struct RunningRigSettings {
-  std::vector<drivers::BoardMap> maps;  ///< one per module
+  std::vector<drivers::BoardMap> maps;  ///< board map of each module
   std::vector<std::string> names;       ///< names of the modules
-  Wire wire = Wire::tcp;                ///< on a network every module is a separate host
+  Wire wire = Wire::tcp;                ///< kind of connection; on a network every module is a separate host
   drivers::SerialLine line;             ///< settings of a serial line; RunningRig creates its pseudo-terminal
   std::size_t channels = 2;
   std::vector<FaultSpec> habits{};  ///< faults that are present from the start
-  bool rtu_over_tcp = false;        ///< on a network: use RTU frames
+  bool rtu_over_tcp = false;        ///< true: RTU frames are used on a network
 };
 
-/// Bench twins without noise, wired as by default_wiring(). On a serial line the modules have the units 1, 2,
-/// ...
+/// An emulated rig with fingers of the model bench_twin without noise, wired as by default_wiring(). On a
+/// serial line the modules have the unit addresses 1, 2, ...
 class RunningRig {
  public:
   explicit RunningRig(const RunningRigSettings& settings);
@@ -34,7 +34,7 @@ class RunningRig {
 
   /// Returns the settings with which a driver connects to the emulator.
   [[nodiscard]] const drivers::ModbusSettings& board() const noexcept { return board_; }
-  /// Ends the emulator and returns it. It may be inspected only after its end.
+  /// Ends the emulator and returns it. The emulator may be inspected only after its end.
   const Emulator& stop();
 
  private:

@@ -50,7 +50,7 @@ TEST(Plant, WithoutObjectItIsItsModelBitForBit) {
   EXPECT_GT(plant.displacement_mm(), 1);
 }
 
-// The result of a held command does not depend on the size of the steps in which time advances.
+// The displacement under a held command does not depend on the size of the steps in which time advances.
 TEST(Plant, AdvancingInPiecesIsTheSame) {
   Plant coarse(settings_of(twin()));
   Plant fine(settings_of(twin()));
