@@ -67,7 +67,8 @@ TEST(BoardHabits, ABoardThatIgnoresWhatComesFirstIsReachedBehindItsSettleTime) {
   const Nanoseconds before = clock.now();
   while (clock.now() - before < 1'000'000'000) {
     ASSERT_EQ(unsettled.board.connect(generous), BusStatus::ok);
-    ASSERT_EQ(unsettled.exchange(0, deadline), BusStatus::timed_out) << "the board needs no settle time";
+    ASSERT_EQ(unsettled.exchange(0, deadline), BusStatus::timed_out)
+        << "without a settle time the board must not respond";
   }
   std::get<drivers::TcpAddress>(settings.links[0]).habits.settle_s = 0.4;
   Client settled(settings);
@@ -75,7 +76,7 @@ TEST(BoardHabits, ABoardThatIgnoresWhatComesFirstIsReachedBehindItsSettleTime) {
     ASSERT_EQ(settled.board.connect(generous), BusStatus::ok) << settled.board.detail();
     ASSERT_EQ(settled.exchange(10 + session), BusStatus::ok) << settled.board.detail();
   }
-  EXPECT_NEAR(rig.stop().modules()[0].output(0), 1.1, 1e-3) << "volts";
+  EXPECT_NEAR(rig.stop().modules()[0].output(0), 1.1, 1e-3) << "output voltage [V]";
 }
 
 TEST(BoardHabits, TheSettleTimeIsPartOfTheDeadlineForConnecting) {
@@ -132,7 +133,7 @@ TEST(BoardHabits, RtuFramesOverTcp) {
   RunningRig rig(serial_server(settling(0)));
   ModbusSettings settings = rig.board();
   EXPECT_EQ(Client(settings).board.connect(deadline), BusStatus::timed_out)
-      << "the frames are not RTU frames";
+      << "the server expects RTU frames, but the driver sends TCP frames";
   settings = with_rtu_frames(settings);
   Client client(settings);
   ASSERT_EQ(client.board.connect(generous), BusStatus::ok) << client.board.detail();
@@ -141,7 +142,7 @@ TEST(BoardHabits, RtuFramesOverTcp) {
   EXPECT_NE(client.board.describe().find("RTU frames"), std::string::npos);
   settings.modules[0].unit = 9;
   EXPECT_EQ(Client(settings).board.connect(deadline), BusStatus::timed_out) << "there is no unit 9";
-  EXPECT_NEAR(rig.stop().modules()[0].output(0), 2, 1e-3) << "volts";
+  EXPECT_NEAR(rig.stop().modules()[0].output(0), 2, 1e-3) << "output voltage [V]";
 }
 
 TEST(BoardHabits, RtuFramesThatAreRepeatedOrWrongEndTheSession) {
@@ -188,7 +189,7 @@ TEST(BoardHabits, ABoardThatTakesFewRegistersGetsSeveralRequests) {
   for (int i = 0; i < 20; ++i) ASSERT_EQ(modest.exchange(30), BusStatus::ok) << modest.board.detail();
   const Emulator& emulator = rig.stop();
   for (std::size_t channel = 0; channel < 4; ++channel) {
-    EXPECT_NEAR(emulator.modules()[0].output(channel), 3, 1e-3) << "volts of output " << channel;
+    EXPECT_NEAR(emulator.modules()[0].output(channel), 3, 1e-3) << "voltage [V] of output " << channel;
     EXPECT_EQ(modest.readings[channel].validity, model::Validity::valid);
     EXPECT_NEAR(modest.readings[channel].displacement_mm,
                 emulator.fingers()[channel].plant().displacement_mm(), 1);

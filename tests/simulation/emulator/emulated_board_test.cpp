@@ -39,7 +39,7 @@ TEST(EmulatedBoard, OutputsFollowTheMapsScaling) {
   EXPECT_TRUE(board.commanded());
   EXPECT_NEAR(board.output(0), 10, 1e-12);
   EXPECT_NEAR(board.output(1), 2, 1e-12);
-  EXPECT_EQ(read_one(board, 0, 0x04, 10), 4095) << "read back";
+  EXPECT_EQ(read_one(board, 0, 0x04, 10), 4095) << "the read-back equals the written output";
   EXPECT_EQ(read_one(board, 0, 0x03, 11), 819);
 }
 
@@ -128,8 +128,8 @@ TEST(EmulatedBoard, AHeartbeatFeedsTheWatchdogOnlyIfItChanges) {
     return board.tripped();
   };
   EXPECT_FALSE(trips_with(1));
-  EXPECT_TRUE(trips_with(0)) << "a repeated value is not a heartbeat";
-  EXPECT_TRUE(trips_with(2)) << "a value other than the two heartbeat values";
+  EXPECT_TRUE(trips_with(0)) << "a repeated value does not count as a heartbeat";
+  EXPECT_TRUE(trips_with(2)) << "a value other than the two heartbeat values does not count as a heartbeat";
 }
 
 TEST(EmulatedBoard, ALatchedTripIgnoresWritesUntilItIsCleared) {
@@ -142,10 +142,10 @@ TEST(EmulatedBoard, ALatchedTripIgnoresWritesUntilItIsCleared) {
   ASSERT_TRUE(board.tripped());
   EXPECT_EQ(board.answer(second, Bytes{0x01, 0x10, 0x21, 0, 1}).pdu, (Bytes{0x01, 1, 1}));
   board.answer(second, write_outputs(2000, 2000));
-  EXPECT_EQ(board.output(0), 0) << "confirmed without effect";
+  EXPECT_EQ(board.output(0), 0) << "during a trip a write is confirmed but has no effect";
   board.answer(second, Bytes{0x05, 0x10, 0x20, 0xff, 0});
   EXPECT_FALSE(board.tripped());
-  EXPECT_EQ(board.output(0), 0) << "clearing alone does not change the output";
+  EXPECT_EQ(board.output(0), 0) << "the output changes only with the first write after the trip was cleared";
   board.answer(second, write_outputs(2000, 2000));
   EXPECT_GT(board.output(0), 4);
 }

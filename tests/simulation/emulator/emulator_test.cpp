@@ -68,7 +68,8 @@ TEST_F(EmulatorTest, TheFingerMovesAsItsModelDoes) {
   Emulator emulator(settings());
   command(emulator, 0, 40);
   keep_alive(emulator, 5 * second);
-  EXPECT_NEAR(emulator.fingers()[0].plant().pressure_kpa(), 40, 0.05) << "12 bits over 100 kPa";
+  EXPECT_NEAR(emulator.fingers()[0].plant().pressure_kpa(), 40, 0.05)
+      << "the output has 12 bits over 100 kPa";
   EXPECT_GT(emulator.fingers()[0].plant().displacement_mm(), 10);
   EXPECT_NEAR(reading_mm(emulator, 5 * second, 0), emulator.fingers()[0].plant().displacement_mm(), 0.002);
   EXPECT_NEAR(reading_mm(emulator, 5 * second, 1), emulator.fingers()[1].plant().displacement_mm(), 0.002);
@@ -175,7 +176,7 @@ TEST_F(EmulatorTest, ASensorOutOfRangeShowsTheUpperEndAndItsStatus) {
   emulator.advance(millisecond);
   EXPECT_NEAR(reading_mm(emulator, millisecond, 0), 45, 0.01);
   EXPECT_EQ(ask(emulator, millisecond, {0x04, 0, 20, 0, 1}).pieces.at(0).bytes.back(), 1)
-      << "above the range";
+      << "the status must be 1, above the range";
 }
 
 TEST_F(EmulatorTest, LinesBlockAndLeak) {

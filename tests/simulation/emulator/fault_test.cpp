@@ -78,7 +78,7 @@ TEST(FaultsFile, SaysWhatIsWrongAndWhere) {
             std::string::npos);
   EXPECT_NE(refused("{}\n").find("faults"), std::string::npos);
   EXPECT_NE(refused("faults:\n  - {name: a, kind: no_reply, for_s: 0}\n").find("for_s"), std::string::npos)
-      << "a fault with duration 0 does not occur";
+      << "a fault of duration 0 is refused because it would never occur";
 }
 
 TEST(FaultSchedule, FollowsTheClockFromTheFirstCommand) {
@@ -106,7 +106,8 @@ TEST(FaultSchedule, TriggersAndClearsByName) {
   EXPECT_TRUE(schedule.clear("a"));
   EXPECT_FALSE(schedule.active(0));
   EXPECT_TRUE(schedule.clear("b"));
-  EXPECT_FALSE(schedule.advance(20 * second)) << "cleared before its start, so the fault does not occur";
+  EXPECT_FALSE(schedule.advance(20 * second))
+      << "the fault was cleared before its start, so it does not occur";
   EXPECT_FALSE(schedule.trigger("c", 0));
   EXPECT_FALSE(schedule.clear("c"));
 }
@@ -120,7 +121,7 @@ TEST(FaultSchedule, EndsWithItsLastReply) {
   EXPECT_FALSE(schedule.active(0));
   schedule.trigger("a", 0);
   schedule.count_reply(0);
-  EXPECT_TRUE(schedule.active(0)) << "after another trigger the duration starts again";
+  EXPECT_TRUE(schedule.active(0)) << "after another trigger the count of responses starts again";
 }
 
 }  // namespace

@@ -90,11 +90,12 @@ TEST_P(ShippedBoard, APressureThatIsWrittenMovesTheFingerThatIsRead) {
   for (std::size_t i = 0; i < last.size(); ++i) {
     const simulation::Plant& plant = truth.fingers()[i].plant();
     EXPECT_EQ(last[i].validity, model::Validity::valid);
-    EXPECT_GT(last[i].displacement_mm, at_rest_mm + 5) << "the finger moves";
+    EXPECT_GT(last[i].displacement_mm, at_rest_mm + 5) << "the finger must move by more than 5 mm";
     // The tolerance is half a step of the coarsest input (12 bits over 50 mm) plus the motion since the
     // reading.
     EXPECT_NEAR(last[i].displacement_mm, plant.displacement_mm(), 0.05);
-    EXPECT_NEAR(plant.held_command_kpa(), 40, 0.02) << "half a step of 12 bits over 100 kPa";
+    EXPECT_NEAR(plant.held_command_kpa(), 40, 0.02)
+        << "the tolerance is half a step of an output with 12 bits over 100 kPa";
     if (rig_->board().wiring[i].pressure.has_value()) {
       EXPECT_NEAR(last[i].pressure_kpa, plant.pressure_kpa(), 0.1);
     }
@@ -108,7 +109,8 @@ TEST_P(ShippedBoard, ZeroPressureIsZeroWhateverItsRawNumber) {
   ASSERT_TRUE(hold(30, 300ms)) << board_->detail();
   ASSERT_TRUE(hold(0, 100ms)) << board_->detail();
   for (const Finger& finger : rig_->stop().fingers()) {
-    EXPECT_NEAR(finger.plant().held_command_kpa(), 0, 0.013) << "2047.5 is not an integer raw value";
+    EXPECT_NEAR(finger.plant().held_command_kpa(), 0, 0.013)
+        << "0 kPa is the raw value 2047.5, which is rounded";
   }
 }
 

@@ -26,7 +26,8 @@ Bytes only_piece(const Reply& reply) {
 
 TEST(WireFault, LeavesAGoodReplyAlone) {
   EXPECT_EQ(only_piece(good_reply(Wire::tcp, request, pdu)), whole);
-  EXPECT_EQ(only_piece(spoiled(FaultKind::sensor_stuck)), whole) << "no fault of the wire";
+  EXPECT_EQ(only_piece(spoiled(FaultKind::sensor_stuck)), whole)
+      << "a sensor fault must not change the bytes";
 }
 
 TEST(WireFault, SaysNothing) {

@@ -78,7 +78,7 @@ TEST(Plant, AnObjectStopsTheFingerAndLetsItGoAgain) {
   EXPECT_NEAR(held.displacement_mm(), way, 1e-5);
   held.set_object(PlantObject{.position_mm = 2, .yielding = 0});
   held.advance(1e-6);
-  EXPECT_NEAR(held.displacement_mm(), 2, 1e-4) << "rigid";
+  EXPECT_NEAR(held.displacement_mm(), 2, 1e-4) << "a rigid object stops the finger at its position";
   free.advance(2e-6);
   held.set_object(std::nullopt);
   settle(free, 40, 1);

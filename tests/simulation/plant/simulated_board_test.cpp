@@ -199,9 +199,10 @@ TEST(SimulatedBoard, SensorFaultsShowInTheReading) {
   ASSERT_EQ(rig.run(1, 30, 30), BusStatus::ok);
   const double last = rig.readings[1].displacement_mm;
   ASSERT_EQ(rig.exchange(30, 30), BusStatus::ok);
-  EXPECT_EQ(rig.readings[0].validity, Validity::out_of_range) << "beyond the sensor's range";
+  EXPECT_EQ(rig.readings[0].validity, Validity::out_of_range)
+      << "with the offset the reading is beyond the sensor's range";
   EXPECT_EQ(rig.readings[1].validity, Validity::out_of_range);
-  EXPECT_EQ(rig.readings[1].displacement_mm, last) << "the last value is repeated";
+  EXPECT_EQ(rig.readings[1].displacement_mm, last) << "the sensor repeats its last value";
 }
 
 TEST(SimulatedBoard, LostAndRestoredBus) {
@@ -220,7 +221,7 @@ TEST(SimulatedBoard, LostAndRestoredBus) {
   EXPECT_EQ(rig.board.connect(1s), BusStatus::disconnected);
   ASSERT_EQ(rig.run(1, 30, 30), BusStatus::disconnected);
   EXPECT_EQ(rig.board.connect(1s), BusStatus::ok);
-  EXPECT_EQ(rig.readings[0].sequence, before) << "readings change only with ok";
+  EXPECT_EQ(rig.readings[0].sequence, before) << "readings change only if the status is ok";
   EXPECT_EQ(rig.exchange(30, 30), BusStatus::ok);
 }
 
