@@ -1,4 +1,4 @@
-// The list of the effects, and the largest physical size of each.
+// The list of the effects, with the largest physical size of each effect.
 #include <algorithm>
 #include <random>
 #include <stdexcept>

@@ -5,14 +5,13 @@
 //               [--command CSV ... --log FILE] [--gauge CSV --log FILE]
 //
 // DIR receives log_1.csv ... in the project's log format and no other file. With --command the same world
-// plays further commands after its campaign, in the given order, and writes the last response as one log.
-// With --campaign the same finger is driven by other waveforms, with other noise; Z is added to every
-// reading, D to every temperature. With
-// --gauge an operator then holds the sensor's target at the positions in the first column of that file [mm],
-// and the readings are written next to them.
-// --runs is the number of logs [3; 1 with --poor]. --variation is the strength of the run-to-run variation
-// (variation.h) [0]; --list-runs prints the runs that it draws. With --closed-loop a controller plays the
-// commands of all logs.
+// plays the commands of these files after its campaign, in the given order, and writes the last response as
+// one log. With --campaign the same finger is driven by other waveforms, with other noise; Z is added to
+// every reading, D to every temperature. With --gauge an operator then holds the sensor's target at the
+// positions in the first column of that file [mm], and the readings of the sensor are written next to these
+// positions. --runs is the number of logs [3; 1 with --poor]. --variation is the strength of the run-to-run
+// variation (variation.h) [0]; --list-runs prints the runs that it draws. With --closed-loop a controller
+// plays the commands of all logs.
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -109,7 +108,7 @@ blind::Base scattered(std::uint64_t seed) {
   return base;
 }
 
-// Uses the commands as references of a controller whose sensor has this zero offset.
+// Makes the commands the references of a controller whose sensor has this zero offset.
 void close_loop(blind::LogInput& log, const blind::Sensor& sensor, double mm_per_kpa, double zero_mm,
                 std::uint64_t seed) {
   log.offset_mm += zero_mm;

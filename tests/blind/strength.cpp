@@ -46,7 +46,8 @@ void subtract(std::vector<double>& from, const std::vector<double>& direction, d
   for (std::size_t k = 0; k < from.size(); ++k) from[k] -= factor * direction[k];
 }
 
-// Gram-Schmidt orthonormalisation, applied twice so that the vectors are orthogonal to rounding.
+// Performs the Gram-Schmidt orthonormalisation twice, so that the vectors are orthogonal except for rounding
+// errors.
 void orthonormalise(std::vector<std::vector<double>>& directions) {
   for (std::size_t i = 0; i < directions.size(); ++i) {
     for (int pass = 0; pass < 2; ++pass)

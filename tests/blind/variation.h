@@ -1,6 +1,6 @@
 #pragma once
 // Differences between runs of an unchanged finger, for both families of simulated fingers. A diagnosis must
-// not name any of them as an effect.
+// not report any of these differences as a cause.
 
 #include <cstddef>
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace variation {
 
-/// Standard deviations at strength 1.
+/// Standard deviations of the variations at strength 1.
 inline constexpr double offset_share = 0.003;  // share of the span
 inline constexpr double gain_share = 0.01;
 inline constexpr double temperature_c = 2;
@@ -24,7 +24,8 @@ struct Run {
   double amplitude = 1;  // factor of the commands, at most 1
   double rate_hz = 0;    // 0: the default rate of the family
   // A pulse before the recording begins, so that hysteresis and creep have not settled.
-  double pulse_share = 0, pulse_s = 0, rest_s = 0;  // share of the working pressure
+  double pulse_share = 0, pulse_s = 0,
+         rest_s = 0;  // height as a share of the working pressure, duration, and rest after the pulse
 };
 
 /// Draws run number `run` of a campaign. `strength` scales all sizes; the rate varies at every strength above
@@ -34,14 +35,15 @@ Run draw_run(double strength, std::uint64_t seed, std::size_t run);
 /// Prints runs as CSV; a test compares them with the standard deviations above.
 void list_runs(std::ostream& out, double strength, std::uint64_t seed, std::size_t runs);
 
-/// Returns the index of the kind of input signal, of `kinds`, with which a campaign begins; 0 without
-/// variation.
+/// Returns the index, below `kinds`, of the kind of input signal with which a campaign begins. Returns 0
+/// without variation.
 std::size_t first_kind(double strength, std::uint64_t seed, std::size_t kinds);
 
 /// Resamples values to another rate, with linear interpolation.
 std::vector<double> resampled(const std::vector<double>& values, double from_hz, double to_hz);
 
-/// Returns the pressures of the pulse and of the rest after it, at `rate_hz`; empty without a pulse.
+/// Returns the pressures of the pulse and of the rest after the pulse, sampled at `rate_hz`. Returns an empty
+/// list if the run has no pulse.
 std::vector<double> pulse(const Run& run, double working_kpa, double rate_hz);
 
 /// A proportional-integral controller with a static feedforward, as on a rig without a model.

@@ -45,7 +45,7 @@ std::vector<double> triangles(std::mt19937_64& random) {
   Pen pen(out);
   std::uniform_real_distribution<double> unit(0, 1);
   pen.hold(1.5);
-  // The amplitudes increase, so that each triangle contains a first loading.
+  // The amplitudes increase, so that each triangle loads the finger beyond all earlier triangles.
   for (const double peak : {14.0, 25.0, 36.0, 47.0}) {
     pen.line(peak * (1 + 0.1 * (unit(random) - 0.5)), 1.5);
     pen.line(0, 1.5);
@@ -128,7 +128,7 @@ LogInput surrounded(std::vector<double> command_kpa, double rate, double campaig
 
 namespace {
 
-// Returns the log of a run: the command at the rate of the run, after the unrecorded pulse.
+// Returns the log of a run, in which the unrecorded pulse precedes the command at the sample rate of the run.
 LogInput varied(std::vector<double> command, const variation::Run& run, double start_s,
                 const Campaign& campaign) {
   const double rate = run.rate_hz > 0 ? run.rate_hz : rate_hz;

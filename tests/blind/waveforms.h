@@ -1,5 +1,5 @@
 #pragma once
-// The inputs of a campaign, drawn by a seed: commands, temperature and supply pressure.
+// Draws the inputs of a campaign from a seed: commands, temperature and supply pressure.
 
 #include <cstdint>
 #include <vector>

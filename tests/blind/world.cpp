@@ -25,7 +25,7 @@ double sign(double x) {
   return x > 0 ? 1 : x < 0 ? -1 : 0;
 }
 
-// All numbers that the integration needs, looked up once.
+// All parameters that the integration needs. They are looked up once.
 struct Numbers {
   explicit Numbers(const Effects& e)
       : delay_s(number(e, "transport_delay", "delay_s", 0)),
@@ -81,7 +81,8 @@ struct Memory {
   double campaign_s = 0;
 };
 
-// Relaxes x toward a target that changes linearly during the step, with the classical Runge-Kutta method.
+// Returns x after a step in which x relaxes towards a linearly changing target, by the classical Runge-Kutta
+// method.
 double relax(double x, double from, double to, double tau, double dt) {
   const auto f = [&](double share, double value) { return (from + share * (to - from) - value) / tau; };
   const double k1 = f(0, x), k2 = f(0.5, x + 0.5 * dt * k1), k3 = f(0.5, x + 0.5 * dt * k2),
@@ -95,7 +96,7 @@ class Rig {
       double offset_mm = 0)
       : base_(base), n_(n), memory_(memory), gain_(gain), offset_mm_(offset_mm), random_(seed) {}
 
-  // Simulates one fine step, in which the command changes linearly from `from` to `to`.
+  // Simulates one integration step, in which the command changes linearly from `from` to `to`.
   void step(double from, double to, double temperature, double supply, double dt) {
     const double wanted = valve(from, to, supply, dt);
     const double share_before = std::max(0.0, pressure_ - n_.threshold_kpa);
@@ -113,7 +114,8 @@ class Rig {
 
   double pressure() const { return pressure_; }
 
-  // The target is removed from the finger and held at this position. All dynamics of the sensor have settled.
+  // Sets the reading as if the target were removed from the finger and held at this position. All dynamics of
+  // the sensor have settled.
   void hold_target(double position_mm) { seen_mm_ = position_mm; }
   void wait(double duration_s) { memory_.campaign_s += duration_s; }
 
@@ -221,7 +223,8 @@ class Rig {
     moved_mm_ = y;
   }
 
-  // A person touches the finger now and then: steps of random size that decay.
+  // Simulates a person who touches the finger at random times. Each touch is a step of random size that
+  // decays.
   double bumps() {
     if (memory_.campaign_s >= next_bump_s_) {
       next_bump_s_ = memory_.campaign_s + 4 + 10 * uniform_(random_);

@@ -1,7 +1,7 @@
 #pragma once
-// A world that may contain a hidden effect. It has its own actuator model, which it integrates with its own
-// method and a fine step. This program links no code of the project. Its equations follow the definitions of
-// the causes, not the blocks.
+// A simulated world that may contain a hidden effect. Its actuator model and its integration with a fine step
+// are independent of the project, and the program links no code of the project. The equations follow the
+// definitions of the causes, not those of the blocks.
 
 #include <cstdint>
 #include <map>
@@ -21,8 +21,8 @@ struct Base {
   double slow_gain = 0.056, slow_tau = 13.7;
 };
 
-/// The hidden effects: a map from the id of an effect to its numbers by name. The id is one of the causes or
-/// of outside_ids().
+/// The parameters of a hidden effect by name. A map assigns them to the id of the effect, which is the id of
+/// a cause or one of outside_ids().
 using Effect = std::map<std::string, double>;
 using Effects = std::map<std::string, Effect>;
 
@@ -35,7 +35,7 @@ struct Sensor {
 /// The inputs of one log, one value per sample of the command.
 struct LogInput {
   double rate_hz = 100;
-  std::vector<double> command_kpa;  // linear between samples
+  std::vector<double> command_kpa;  // the command is linear between samples
   std::vector<double> temperature_c;
   std::vector<double> supply_kpa;
   // Run-to-run variation (variation.h).
@@ -47,7 +47,7 @@ struct LogInput {
 };
 
 struct LogOutput {
-  std::vector<double> command_kpa;      // as played
+  std::vector<double> command_kpa;      // the command that was played
   std::vector<double> pressure_kpa;     // true pressure at the actuator
   std::vector<double> displacement_mm;  // before noise and quantisation
 };
@@ -57,8 +57,8 @@ struct LogOutput {
 std::vector<LogOutput> simulate(const Base& base, const Effects& effects, const std::vector<LogInput>& logs,
                                 std::uint64_t seed, double step_s = 0.0005);
 
-/// A gauge check: an operator holds the sensor's target at known positions, one after the other, and reads
-/// the sensor.
+/// Settings of a gauge check, in which an operator holds the sensor's target at known positions, one after
+/// the other, and reads the sensor.
 struct GaugeWork {
   double placing_mm = 0.01;  // standard deviation of the target's true position
   double every_s = 20;       // time between two positions
@@ -66,8 +66,8 @@ struct GaugeWork {
   std::size_t samples = 200;  // number of readings that are averaged at each position
 };
 
-/// Returns the samples of each position, before noise and quantisation. `start_s` is the time of the campaign
-/// at the start of the check. Drift, disturbances and wrong samples continue during the check.
+/// Returns the samples of each position, displacement before noise and quantisation. `start_s` is the time of
+/// the campaign at the start of the check. Drift, disturbances and wrong samples continue during the check.
 std::vector<std::vector<double>> held_at(const Effects& effects, const std::vector<double>& positions_mm,
                                          double start_s, std::uint64_t seed, const GaugeWork& work);
 
@@ -78,19 +78,19 @@ void drop_unrecorded(LogInput& in, LogOutput& out);
 /// `pressure_kpa` and falls again.
 double span_mm(const Base& base, double pressure_kpa);
 
-/// Draws white noise; the seed determines it.
+/// Returns white noise that the seed determines.
 std::vector<double> noise(std::size_t samples, double rms, std::uint64_t seed);
 double quantised(double value, double step);
 
-/// Adds noise, then quantises; the seed determines the noise.
+/// Adds noise that the seed determines, and then quantises the values.
 std::vector<double> measured(const std::vector<double>& clean, double rms, double step, std::uint64_t seed);
 
 const std::vector<std::string>& library_ids();
 const std::vector<std::string>& outside_ids();
 
-/// Returns the numbers of an effect at amplitude 0 < s <= 1, where 1 is the largest physical size. The seed
-/// draws the other numbers. `span_mm` and `campaign_s` are the displacement span and the duration of the
-/// campaign.
+/// Returns the parameters of an effect at amplitude 0 < s <= 1, where 1 is the largest physical size. The
+/// parameters that do not depend on the amplitude are drawn from the seed. `span_mm` and `campaign_s` are the
+/// displacement span and the duration of the campaign.
 Effect draw_effect(const std::string& id, double s, std::uint64_t seed, double span_mm, double campaign_s);
 
 }  // namespace blind

@@ -1,4 +1,4 @@
-// The commands of a campaign, with temperature and supply pressure.
+// Draws the commands of a campaign, with temperature and supply pressure.
 #include <algorithm>
 #include <cmath>
 #include <random>
@@ -26,7 +26,7 @@ std::vector<double> joined(const Points& points, double rate_hz) {
   return out;
 }
 
-// Triangles of many amplitudes and rates, with minor loops on the larger ones.
+// Returns triangles of many amplitudes and rates. The larger triangles have minor loops.
 std::vector<double> triangles(std::mt19937_64& random, double rate_hz) {
   std::uniform_real_distribution<double> peak(20, 60), half(1.2, 5);
   Points points{{0, 0}, {1, 0}};
@@ -55,7 +55,7 @@ std::vector<double> stairs(std::mt19937_64& random, double rate_hz) {
   return joined(points, rate_hz);
 }
 
-// Sums of two sines with frequencies from 0.05 to 0.6 Hz, never below zero.
+// Returns sums of two sines with frequencies from 0.05 to 0.6 Hz, which are never below 0 kPa.
 std::vector<double> sines(std::mt19937_64& random, double rate_hz) {
   std::uniform_real_distribution<double> slow(0.05, 0.12), fast(0.25, 0.6);
   const double f = slow(random), g = fast(random);
@@ -71,7 +71,7 @@ std::vector<double> sines(std::mt19937_64& random, double rate_hz) {
 using Draw = std::vector<double> (*)(std::mt19937_64&, double);
 constexpr Draw kinds[] = {triangles, stairs, sines};
 
-// One drawn run: its input signal, and its differences from the other runs.
+// One drawn run, with its input signal and its differences from the other runs.
 struct Drawn {
   variation::Run run;
   double rate_hz;

@@ -11,8 +11,8 @@ namespace {
 constexpr std::array<double, 3> prony_tau_s{0.3, 6, 120};
 constexpr std::size_t plays = 10, slips = 8;
 
-// Mooney-Rivlin rubber, uniaxial and incompressible: nominal stress divided by its initial slope, with C2 =
-// C1/4.
+// Returns the nominal stress of incompressible Mooney-Rivlin rubber with C2 = C1/4 in uniaxial tension,
+// divided by the initial slope of the stress.
 double rubber_stress(double stretch) noexcept {
   return 2 * (0.8 + 0.2 / stretch) * (stretch - 1 / (stretch * stretch)) / 6;
 }
@@ -69,7 +69,8 @@ Finger::Finger(const FingerNumbers& numbers) : numbers_(numbers) {
     full_ = held.raw(working_kpa * std::min(1.0, i * 1.0 / stairs), long_s);
 }
 
-// Generalised play (Krasnosel'skii and Pokrovskii): both envelopes are the same nonlinear function, shifted.
+// Generalised play (Krasnosel'skii and Pokrovskii). Both envelopes are the same nonlinear function, shifted
+// in opposite directions.
 double Finger::play(double q) noexcept {
   const double bent = q + numbers_.envelope * q * q * (1 - 0.5 * q);
   double sum = 0;
@@ -119,7 +120,9 @@ double Finger::preisach(double q) noexcept {
   if (rising == (memory_.size() % 2 == 1)) memory_.push_back(input_);
   input_ = q;
   while (memory_.size() >= 2) {
-    const double before = memory_[memory_.size() - 2];  // beyond this turning point the last two are erased
+    const double before =
+        memory_[memory_.size() -
+                2];  // if the input passes this turning point, the last two turning points are erased
     if (rising ? q < before : q > before) break;
     memory_.resize(memory_.size() - 2);
   }
@@ -133,7 +136,8 @@ double Finger::preisach(double q) noexcept {
   return (1 - 2 * numbers_.width) * q + 2 * numbers_.width * sum;
 }
 
-// Slices of a bending tube. The pressure acts on a growing cross-section, against rubber with a Prony series.
+// A bending tube that is divided into slices. The pressure acts on a growing cross-section against
+// viscoelastic rubber, which is described by a Prony series.
 double Finger::tube(double q, double step_s) noexcept {
   const double pull = 0.25 * std::max(0.0, q);
   double bend = 0;

@@ -1,6 +1,6 @@
 #pragma once
-// Soft fingers of five makes. Each has its own hysteresis, creep with time constants over several decades,
-// and a slight curvature.
+// Soft fingers of five makes. Each make has its own kind of hysteresis, creep with time constants over
+// several decades, and a slight curvature.
 
 #include <array>
 #include <cstdint>
@@ -16,24 +16,25 @@ struct FingerNumbers {
   double span_mm = 16;        // displacement at working_kpa after all creep has ended
   double width = 0.1;         // width of the hysteresis; 0: no loops
   double curvature = 0.1;
-  double creep = 0.15;           // share of the creeping part
-  double creep_tilt = 0;         // weight of the branch with time constant tau: tau^tilt
+  double creep = 0.15;           // share of the displacement that creeps
+  double creep_tilt = 0;         // exponent of the weight tau^creep_tilt of a branch with time constant tau
   double envelope = 0.1;         // nonlinearity of the loops (generalised play, Preisach density)
-  double longest_creep_s = 1e9;  // branches slower than this are left out
+  double longest_creep_s = 1e9;  // branches with longer time constants are left out
 };
 
 const std::vector<std::string>& makes();
 FingerNumbers draw_finger(const std::string& make, std::uint64_t seed);
 
-/// A number that differs between fingers of one make, with the bounds within which it is drawn.
+/// A parameter that differs between fingers of one make, with the bounds within which its value is drawn.
 struct OwnNumber {
   double FingerNumbers::*member;
   double low, high;
 };
-/// Width, curvature, creep and its tilt: the numbers that a refitted model may absorb.
+/// Returns the parameters whose changes a refitted model may absorb: width, curvature, creep and tilt of the
+/// creep.
 std::vector<OwnNumber> own_numbers(const std::string& make);
 
-/// A finger that starts without load and without memory.
+/// A finger that starts without load and without a load history.
 class Finger {
  public:
   explicit Finger(const FingerNumbers& numbers);
@@ -41,7 +42,7 @@ class Finger {
   double step(double pressure_kpa, double step_s);
 
  private:
-  // time constants from 0.02 to 2000 s: five decades, three branches per decade
+  // The time constants of creep range from 0.02 to 2000 s, with three branches per decade.
   static constexpr std::size_t branches = 16;
   static constexpr std::size_t slices = 8;
   double raw(double pressure_kpa, double step_s);

@@ -6,11 +6,11 @@
 //                  [--runs N] [--variation X] [--closed-loop] [--rate-hz R]
 //   textbook-world --list | --makes | --probe flow|rest|hold|loops|relays|span|creep
 //
-// Without --make, the seed chooses the make. The strength of a cause is its excess error (strength.h) divided
-// by the noise of 0.04 mm. With --campaign the same finger and valve are driven by other waveforms, with
-// other noise. Z is added to every reading, D to every temperature. --runs is the number of logs [3; 1 with
-// --poor]. --variation is the strength of the run-to-run variation (variation.h) [0]; it also draws the rate.
-// With --closed-loop a controller plays the commands of all logs.
+// Without --make, the seed chooses the make. The strength of a cause is its excess error (strength.h)
+// divided by the noise of 0.04 mm. With --campaign the same finger and valve are driven by other waveforms,
+// with other noise. Z is added to every reading, D to every temperature. --runs is the number of logs [3; 1
+// with --poor]. --variation is the strength of the run-to-run variation (variation.h) [0]; with a variation
+// the sample rate of each log is also drawn. With --closed-loop a controller plays the commands of all logs.
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
@@ -32,8 +32,8 @@ namespace {
 
 constexpr double noise_mm = 0.04, step_mm = 0.01, pressure_noise_kpa = 0.05, supply_noise_kpa = 0.3,
                  temperature_noise_c = 0.05;
-// Mechanisms above this size are visible: over the 15,000 samples of a campaign, white noise of 0.04 mm hides
-// only much smaller ones.
+// Mechanisms above this size are visible, because white noise of 0.04 mm hides only much smaller mechanisms
+// over the 15,000 samples of a campaign.
 constexpr double visible_mm = noise_mm / 4;
 
 struct Arguments {
@@ -44,7 +44,7 @@ struct Arguments {
   bool pressure = false, temperature = true, supply = true, list = false, makes = false, closed_loop = false;
 };
 
-// The sample time must be a whole multiple of the valve's time step.
+// Reads the sample rate. The sample time must be a whole multiple of the valve's time step.
 double rate(const std::string& value) {
   const double rate_hz = std::stod(value);
   if (rate_hz != 50 && rate_hz != 100 && rate_hz != 200 && rate_hz != 400)
@@ -126,7 +126,7 @@ class Noise {
   std::normal_distribution<double> normal_{0, 1};
 };
 
-// Uses the commands as references of a controller, which reads the same noisy readings as the log.
+// Makes the commands the references of a controller, whose readings have the same noise as the log.
 void close_loop(textbook::Log& log, const textbook::World& world, double zero_mm, std::uint64_t seed) {
   Noise noise(seed);
   for (std::size_t k = log.unrecorded; k < log.command_kpa.size(); ++k)

@@ -18,7 +18,7 @@ struct SettledLoop {
   double bend_mm = 0, asymmetry_mm = 0;
 };
 
-// The second loop to working pressure, of the same finger without creep.
+// Returns properties of the second loop to working pressure of the same finger without creep.
 SettledLoop settled_loop(FingerNumbers numbers) {
   numbers.creep = 0;
   Finger finger(numbers);
@@ -39,8 +39,8 @@ SettledLoop settled_loop(FingerNumbers numbers) {
   return {Recalibration(place).left_mm(middle), rms(skew)};
 }
 
-// RMS [kPa] of the difference between the valve's pressure and the command behind a dead time and a
-// first-order lag.
+// Returns the RMS [kPa] of the difference between the pressure of the valve and the output of a model that
+// consists of a dead time and a first-order lag.
 double lag_miss_kpa(const std::vector<Log>& logs, const std::vector<Answer>& answers, double tau_s,
                     double delay_s) {
   double sum = 0, count = 0;
@@ -51,7 +51,7 @@ double lag_miss_kpa(const std::vector<Log>& logs, const std::vector<Answer>& ans
     for (std::size_t k = 0; k < command.size(); ++k, ++count) {
       const double miss = answers[l].pressure_kpa[k] - lagged;
       sum += miss * miss;
-      // Input of the lag until the next sample: the command at the middle of the interval.
+      // Until the next sample, the input of the lag is the command at the middle of the interval.
       const double place = std::max(0.0, static_cast<double>(k) + 0.5 - delay_s * logs[l].rate_hz);
       const auto low = std::min(static_cast<std::size_t>(place), command.size() - 2);
       const double part = place - static_cast<double>(low);

@@ -1,6 +1,6 @@
 #pragma once
-// The physics of a world without a hidden effect, as causes of the vocabulary. If a diagnosis names one of
-// them, this is a finding and not a false name.
+// Expresses the physics of a world without a hidden effect as causes that a diagnosis can report. If a
+// diagnosis reports one of these causes, the report is correct and not a false alarm.
 
 #include <map>
 #include <string>
@@ -10,9 +10,9 @@
 
 namespace textbook {
 
-/// Returns a map from the id of a cause to its change of the displacement [mm RMS], for each that changes
-/// more than `visible_mm`. The change is computed by removing the mechanism from the world, or by fitting the
-/// competing model. It does not depend on the results of a diagnosis:
+/// Returns a map from the id of a cause to the displacement change by this cause [mm RMS], for each cause
+/// that changes the displacement by more than `visible_mm`. The change is computed by removing the mechanism
+/// from the world, or by fitting the competing model, without the results of a diagnosis:
 ///
 ///   slow_creep             creep slower than `slowest_twin_s`, beyond zero and gain
 ///   hysteresis_shape       the loops as a whole, beyond zero and gain (no make has a Bouc-Wen element)
@@ -25,7 +25,8 @@ namespace textbook {
 std::map<std::string, double> own_physics(const World& world, const std::vector<Log>& logs,
                                           std::uint64_t seed, double visible_mm);
 
-/// Slower than each branch of a two-branch model that was identified from such logs (given.yaml: 10 s).
+/// Time constant above which creep counts as slow. Each branch of a two-branch model that was identified from
+/// such logs is faster (10 s in given.yaml).
 inline constexpr double slowest_twin_s = 15;
 
 }  // namespace textbook

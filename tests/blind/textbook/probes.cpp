@@ -24,8 +24,8 @@ void probe_rest() {
   }
 }
 
-// Prints the true pressure one minute after a step to a level, from below and above, and its change in the
-// next ten seconds.
+// Prints the true pressure one minute after a step to a level, from below and from above, and the change of
+// the pressure in the next 10 s.
 void probe_hold() {
   std::puts("seed,command_kpa,pressure_kpa,wander_kpa");
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
@@ -58,8 +58,8 @@ void probe_span() {
   }
 }
 
-// Compares an unloading from 55 kPa with and without a minor loop 20 -> 40 -> 20. After the minor loop, both
-// must be equal.
+// Compares an unloading from 55 kPa with and without a minor loop 20 -> 40 -> 20 kPa. After the minor loop,
+// both displacements must be equal.
 void probe_loops() {
   std::puts("make,place,displacement_mm");
   for (const char* make : {"play", "maxwell_slip", "preisach"}) {
@@ -90,8 +90,8 @@ void probe_loops() {
   }
 }
 
-// Prints a varying pressure and the output of the relays, so that another program can count the relays one by
-// one.
+// Prints a varying pressure and the output of the relays, so that another program can compare this output
+// with a sum over single relays.
 void probe_relays() {
   FingerNumbers numbers = draw_finger("preisach", 1);
   numbers.creep = numbers.curvature = 0;

@@ -1,11 +1,12 @@
 #pragma once
-// Tests of single parts, which print tables on the standard output.
+// Tests single parts of the simulated worlds and prints the results as tables on the standard output.
 
 #include <string>
 
 namespace textbook {
 
-/// `name` is flow, rest, hold, loops, relays, span or creep. Throws std::invalid_argument for any other name.
+/// Runs the test `name`: flow, rest, hold, loops, relays, span or creep. Throws std::invalid_argument for any
+/// other name.
 void probe(const std::string& name);
 
 }  // namespace textbook

@@ -5,8 +5,8 @@
 //
 // Listens on a free port of the loopback interface and prints it: "listening on 127.0.0.1:PORT". All fingers
 // are equal, and each has its own valve, so that controllers can be compared at the same time. Output i
-// commands finger i (0 to 10 V: 0 to 100 kPa); input i is its sensor (0 to 10 V: -5 to 45 mm), input 4 + i
-// its pressure. Ends when its client disconnects.
+// commands finger i (0 to 10 V for 0 to 100 kPa). Input i is the sensor of finger i (0 to 10 V for -5 to 45
+// mm), and input 4 + i is the pressure of finger i. Ends when its client disconnects.
 #include <arpa/inet.h>
 #include <modbus/modbus.h>
 #include <unistd.h>
@@ -58,7 +58,7 @@ Arguments arguments(int argc, char** argv) {
   return a;
 }
 
-/// One finger and its valve, simulated in steps of a constant command.
+/// One finger and its valve. The command is constant during a step of the simulation.
 class Plant {
  public:
   explicit Plant(const textbook::World& world) : valve_(world.valve), finger_(world.finger) {}
@@ -111,7 +111,7 @@ class Rig {
   }
 
  private:
-  // The high word comes first. This function does not use the conversions of libmodbus, because they have
+  // Returns a value whose high word comes first. The conversions of libmodbus are not used, because they have
   // changed between versions.
   double volts(int at, std::size_t i) const {
     const std::uint16_t* words = registers_of(at, i);

@@ -21,7 +21,8 @@ std::vector<double> difference(std::vector<double> of, const std::vector<double>
   return of;
 }
 
-// Gaussian elimination with pivoting. A direction that depends linearly on the others gets the value 0.
+// Solves a linear system by Gaussian elimination with pivoting. The value of a direction that depends
+// linearly on the others is 0.
 std::vector<double> solved(std::vector<std::vector<double>> a, std::vector<double> b) {
   const std::size_t n = b.size();
   for (std::size_t i = 0; i < n; ++i) {
@@ -65,8 +66,8 @@ void Recalibration::add(std::vector<double> change_mm, double low, double high) 
   for (std::size_t i = 0; i + 1 < directions_.size(); ++i) products_[i].push_back(products_.back()[i]);
 }
 
-// In the bounded optimum, every number is either free or at one of its bounds. The numbers are few, so all
-// combinations are tried, and the best that keeps the bounds is the optimum.
+// At the optimum, every parameter is either free or at one of its bounds. The parameters are few, so all
+// combinations are tried. The optimum is the best combination that satisfies the bounds.
 double Recalibration::left_mm(const std::vector<double>& difference_mm) const {
   const std::size_t n = directions_.size();
   const double square = dot(difference_mm, difference_mm);
@@ -148,8 +149,8 @@ Scaled Excess::scaled(const std::string& id, double target_mm) const {
     }
     return excess_mm;
   };
-  // Searches upwards for the first amplitude that is large enough. At the largest amplitude, a smaller gain
-  // may explain most of the effect.
+  // The search goes upwards to the first amplitude that is large enough. It cannot start at the largest
+  // amplitude, because there a smaller gain may explain most of the effect.
   double low = std::log(1e-3), high = low, below = 0, above = at(low);
   while (above < target_mm && high < 0) {
     low = high;

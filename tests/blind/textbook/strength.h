@@ -8,14 +8,15 @@
 
 namespace textbook {
 
-/// Computes how much of a difference of displacements a linear change of a few numbers of the finger cannot
-/// explain. Zero and gain are unbounded; every other number stays within its bounds.
+/// Computes the part of a displacement difference that changes of a few parameters of the finger cannot
+/// explain. The difference is linear in these changes. Zero and gain are unbounded, and every other parameter
+/// stays within its bounds.
 class Recalibration {
  public:
-  /// Starts with zero and gain only.
+  /// Starts with only zero and gain as parameters.
   explicit Recalibration(const std::vector<double>& displacement_mm);
-  /// Adds a number: one unit of it changes the displacement by `change_mm`, and it may change by `low` to
-  /// `high` units.
+  /// Adds a parameter. A change by one unit changes the displacement by `change_mm`, and the parameter may
+  /// change by `low` to `high` units.
   void add(std::vector<double> change_mm, double low, double high);
   /// Returns the RMS [mm] of the unexplained part of `difference_mm`.
   double left_mm(const std::vector<double>& difference_mm) const;
@@ -36,14 +37,15 @@ struct Scaled {
 };
 
 /// The strength of an effect is the part of its change of the displacement that a refitted model cannot
-/// explain, as RMS over the campaign. In the refit, zero and gain are unbounded, and the finger's numbers
-/// (own_numbers) stay within the bounds of its make. A leak counts in full: the measured pressure shows it,
-/// although in the displacement it looks like a gain.
+/// explain, as RMS over the campaign. In the refit, zero and gain are unbounded, and the parameters of the
+/// finger (own_numbers) stay within the bounds of its make. The whole displacement change by a leak counts,
+/// because the measured pressure shows a leak, although a leak changes the displacement like a smaller gain.
 class Excess {
  public:
   Excess(const World& world, const std::vector<Log>& logs, std::uint64_t seed);
   double of_mm(const Effects& effects) const;
-  /// Returns the smallest amplitude that gives `target_mm`, or the nearest if none does.
+  /// Returns the effect with the smallest amplitude that gives `target_mm`, or with the nearest amplitude if
+  /// none does.
   Scaled scaled(const std::string& id, double target_mm) const;
 
  private:

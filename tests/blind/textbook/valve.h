@@ -1,7 +1,7 @@
 #pragma once
-// An electro-pneumatic regulator from textbook equations: ISO 6358 ports on a spool, a tube, the volume of
-// the finger. Pressures are absolute, in kPa; volumes in dm3; conductances in dm3/(s kPa) at the reference
-// state.
+// An electro-pneumatic regulator from textbook equations, with ISO 6358 ports on a spool, a tube, and the
+// volume of the finger. Pressures are absolute, in kPa; volumes in dm3; conductances in dm3/(s kPa) at the
+// reference state.
 
 namespace textbook {
 
@@ -21,11 +21,11 @@ struct ValveNumbers {
   double valve_volume_dm3 = 0.02, finger_volume_dm3 = 0.08;
   double proportional_per_kpa = 0.08, integral_per_kpa_s = 0.25;
   double spool_lag_s = 0.012;
-  double overlap = 0.04;               // as a share of the spool's travel, to either side
+  double overlap = 0.04;               // share of the spool's travel, in either direction
   double pilot_hysteresis_kpa = 0.15;  // half the width of the hysteresis
 };
 
-/// Isothermal chambers: V dp/dt = reference pressure x flow.
+/// A valve with isothermal chambers, in which V dp/dt = reference pressure x flow.
 class Valve {
  public:
   explicit Valve(const ValveNumbers& numbers) noexcept : numbers_(numbers) {}
@@ -35,7 +35,7 @@ class Valve {
   double air_kpa_dm3() const noexcept {
     return valve_kpa_ * numbers_.valve_volume_dm3 + finger_kpa_ * numbers_.finger_volume_dm3;
   }
-  /// Sets the pressures, for tests. If `shut`, the spool then remains closed.
+  /// Sets the pressures, for tests. If `shut` is true, the spool remains closed afterwards.
   void set(double valve_kpa, double finger_kpa, bool shut) noexcept;
 
  private:

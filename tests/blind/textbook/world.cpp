@@ -11,11 +11,11 @@ namespace textbook {
 namespace {
 
 constexpr double valve_step_s = 0.00025;
-constexpr int finger_steps = 5;     // per sample
-constexpr double supply_kpa = 200;  // nominal, gauge
+constexpr int finger_steps = 5;     // number of steps of the finger per sample
+constexpr double supply_kpa = 200;  // nominal supply pressure (gauge)
 
-// The numbers of the effects, looked up once, because a world is simulated in millions of steps. A missing
-// effect has the number 0.
+// The parameters of the effects. They are looked up once, because a world is simulated in millions of steps.
+// The parameters of a missing effect are 0.
 struct Hidden {
   const Effects& effects;
 
@@ -79,7 +79,8 @@ struct Age {
 class Asked {
  public:
   Asked(const Hidden& hidden, const Log& log) : h_(hidden), log_(log) {}
-  // Returns the setpoint at sample `k`. Must be called in the order of the samples; uses no later command.
+  // Returns the setpoint at sample `k`. Must be called in the order of the samples. Later commands are not
+  // used.
   double at(std::size_t k, const std::vector<double>& command) {
     const double place = std::max(0.0, static_cast<double>(k) - h_.transport_delay_delay_s * log_.rate_hz);
     const auto low = static_cast<std::size_t>(place);
@@ -194,7 +195,7 @@ class Body {
       const double below = 1 - std::exp(-(age_.largest_kpa - p) / h_.stress_softening_range_kpa);
       y *= 1 + h_.stress_softening_share * below * age_.largest_kpa / working_kpa;
     }
-    const double per_mm = h_.stiffening_per_mm;  // a finger that stiffens keeps its span
+    const double per_mm = h_.stiffening_per_mm;  // stiffening does not change the span of the finger
     return y * (1 + per_mm * span_) / (1 + per_mm * std::max(0.0, y));
   }
   double loaded(double y, double dt) {

@@ -1,5 +1,6 @@
 #pragma once
-// Worlds of textbook physics: a valve, a finger, added effects and a campaign of logs, all drawn by a seed.
+// Simulated worlds of textbook physics. A world consists of a valve, a finger, added effects and a campaign
+// of logs, all drawn from a seed.
 
 #include <cstdint>
 #include <map>
@@ -27,7 +28,7 @@ struct Log {
 };
 
 struct Answer {
-  // the command as played; the pressure at the finger; the displacement before noise
+  // The played command, the pressure at the finger, and the displacement without noise.
   std::vector<double> command_kpa, pressure_kpa, displacement_mm;
 };
 
@@ -46,7 +47,7 @@ struct Campaign {
   double span_mm = 0;    // span of the finger; required with a variation
 };
 
-/// Draws logs with three kinds of commands in turn: triangles, steps, sums of sines.
+/// Draws logs with three kinds of commands in turn: triangles, steps, and sums of sines.
 std::vector<Log> draw_campaign(const Campaign& campaign);
 /// Removes the unrecorded samples of a log.
 void drop_unrecorded(Log& log, Answer& answer);
@@ -57,7 +58,7 @@ double duration_s(const std::vector<Log>& logs);
 std::vector<Answer> simulate(const World& world, const Effects& effects, const std::vector<Log>& logs,
                              std::uint64_t seed);
 
-/// The pressures at the finger only, log by log. They take most of the time of a simulation, and they are
+/// Computes only the pressures at the finger, log by log. They take most of the time of a simulation and are
 /// equal for all effects that do not act on the pressure.
 using Pressures = std::vector<std::vector<double>>;  // gauge, kPa
 Pressures simulate_pressures(const World& world, const Effects& effects, const std::vector<Log>& logs);
@@ -78,7 +79,8 @@ struct Setting {
 };
 
 const std::vector<std::string>& library_ids();
-/// Returns the numbers of an effect at amplitude 0 < s <= 1. The seed draws the numbers that have no size.
+/// Returns the parameters of an effect at amplitude 0 < s <= 1. The parameters that do not scale with the
+/// amplitude are drawn from the seed.
 Numbers draw_effect(const std::string& id, double s, const Setting& setting, std::uint64_t seed);
 
 }  // namespace textbook
