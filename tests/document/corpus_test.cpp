@@ -1,4 +1,4 @@
-// Runs the fuzzer's corpus in every build: no input may crash the parser again.
+// Parses the corpus of the fuzz target in every build. No input may crash the parser.
 
 #include <gtest/gtest.h>
 
@@ -19,7 +19,8 @@ TEST(Corpus, IsHarmless) {
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     std::ifstream file(entry.path(), std::ios::binary);
     const std::string text{std::istreambuf_iterator<char>(file), {}};
-    const std::string whole = text + text;  // adds a second document, or a line without an end of line
+    const std::string whole =
+        text + text;  // the repeated text is a second document, or it continues the last line
     for (const std::string& input : {text, whole, text.substr(text.size() / 2)}) {
       LLVMFuzzerTestOneInput(reinterpret_cast<const std::uint8_t*>(input.data()), input.size());
     }

@@ -1,4 +1,5 @@
-// Converts texts to numbers: exactly, independent of the locale, and with a hint if a text is not a number.
+// Tests the conversion of texts to numbers. It must be exact and independent of the locale, and must give a
+// hint if a text is not a number.
 
 #include "document/number.h"
 #include "base/numbers.h"

@@ -60,7 +60,8 @@ TEST(Parse, AnEmptyValueStandsWhereItIsMissing) {
   Problems problems;
   const Document document = parse("a.yaml", "a:\n\n# comment below\nb: 1\nc:\n  -\n  - 2\n", problems);
   EXPECT_TRUE(problems.empty()) << problems.format();
-  EXPECT_EQ(value_of(document.root, "a").at.line, 3);  // the comment hides the colon
+  EXPECT_EQ(value_of(document.root, "a").at.line,
+            3);  // line 3 instead of 1, because the comment hides the position of the colon
   EXPECT_EQ(value_of(document.root, "c").items[0].at, (Location{6, 3}));
 }
 
@@ -146,7 +147,8 @@ TEST(Parse, SyntaxErrorsSayWhatWasOpen) {
 }
 
 TEST(Parse, AnOpenQuoteDoesNotSwallowTheRestOfTheFile) {
-  // The YAML parser itself accepts the end of the file within a quoted text if a line break precedes it.
+  // The YAML parser itself accepts a quoted text that is not closed before the end of the file if the file
+  // ends with a line break.
   for (const char* const text : {"a: 'open\n", "a: \"open\nb: 2\n\n", "a: \"open \\\"\n", "a: 'it''s\n"}) {
     EXPECT_EQ(problems_of(text), (Lines{"1:4: a quote is opened here but never closed"})) << text;
   }
@@ -173,7 +175,7 @@ TEST(Parse, BoundsAreExact) {
   EXPECT_EQ(problems_of("a: [[1]]\n", bounds), Lines{});
   EXPECT_EQ(problems_of("a: [[[1]]]\n", bounds), (Lines{"1:6: the document is nested deeper than 3 levels"}));
   bounds = {};
-  bounds.nodes = 5;  // the map, two keys, two values
+  bounds.nodes = 5;  // 5 nodes: the map, 2 keys and 2 values
   EXPECT_EQ(problems_of("a: 1\nb: 2\n", bounds), Lines{});
   EXPECT_EQ(problems_of("a: 1\nb: 2\nc: 3\n", bounds), (Lines{"3:1: the document has more than 5 values"}));
 }

@@ -72,7 +72,7 @@ TEST(Problems, RepetitionsGo) {
   EXPECT_EQ(problems.without_repeats().size(), 2U);
 }
 
-/// The line and the caret of a formatted problem.
+/// Returns the quoted line and the line with the caret of a formatted problem.
 std::pair<std::string, std::string> shown_line(const Problem& problem) {
   Problems problems;
   problems.add(problem);
@@ -85,7 +85,8 @@ std::pair<std::string, std::string> shown_line(const Problem& problem) {
 TEST(Problems, TheCaretStandsUnderTheCharacterWhateverItsBytes) {
   const auto [line, caret] = shown_line(problem_at(1, 10, "größe: 1"));
   EXPECT_EQ(line, "    größe: 1");
-  EXPECT_EQ(caret, "           ^");  // the column counts nine bytes for seven characters
+  EXPECT_EQ(caret,
+            "           ^");  // the column is a number of bytes; the 7 characters before it have 9 bytes
   const auto [tabbed, below] = shown_line(problem_at(1, 3, "\ta: \x1b[1m"));
   EXPECT_EQ(tabbed, "    \\ta: \\x1b[1m");
   EXPECT_EQ(below, "       ^");
@@ -124,7 +125,7 @@ TEST(Shown, ControlCharactersAreVisible) {
 TEST(Nearest, FindsSlipsOfTheFingerOnly) {
   const std::vector<std::string> keys{"pressure_min_kpa", "pressure_max_kpa", "name", "rate_hz"};
   EXPECT_EQ(nearest("presure_max_kpa", keys), "pressure_max_kpa");
-  EXPECT_EQ(nearest("nmae", keys), "");  // too far: two changes in four letters
+  EXPECT_EQ(nearest("nmae", keys), "");  // 2 changes in 4 letters are too many
   EXPECT_EQ(nearest("nam", keys), "name");
   EXPECT_EQ(nearest("rate_hertz", keys), "rate_hz");
   EXPECT_EQ(nearest("temperature", keys), "");

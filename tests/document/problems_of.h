@@ -1,5 +1,5 @@
 #pragma once
-// The problems that parsing a text reports, for the tests of documents.
+// Returns the problems that the parser reports for a text, for the tests of documents.
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// Tests every getter with every kind of mistake. All mistakes of a document are reported in one pass.
+// Tests every getter with every kind of mistake. All mistakes of a document must be reported in one pass.
 
 #include "document/reader.h"
 

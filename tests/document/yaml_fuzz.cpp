@@ -1,5 +1,5 @@
-// For all inputs: parses the bytes, calls every getter and formats every message. Run with -dict=yaml.dict
-// corpus/.
+// Fuzz target: parses arbitrary bytes, calls every getter and formats every message. Run it with the
+// arguments -dict=yaml.dict corpus/.
 
 #include <cstddef>
 #include <cstdint>
@@ -17,7 +17,7 @@ using softgrip::document::MapReader;
 using softgrip::document::Node;
 using softgrip::document::Problems;
 
-/// Aborts if a tree exceeds the bounds, has two equal keys in a map, or has a position outside the text.
+/// Aborts if a tree exceeds the bounds, a map has two equal keys, or a position is outside the text.
 void check(const Node& node, int depth, std::size_t& nodes) {
   if (++nodes > softgrip::document::Bounds{}.nodes || depth > softgrip::document::Bounds{}.depth)
     std::abort();
