@@ -1,5 +1,5 @@
-// The library and the command line give identical results, bit for bit: each result of `softgrip` is compared
-// with the library's result for the same logs.
+// Tests that the library and the command line give identical results. Each result of `softgrip` is compared
+// bit for bit with the result of the library for the same logs.
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -21,7 +21,7 @@
 #include "library/include/softgrip/validate.h"
 #include "tests/library/finger.h"
 
-// GCC 12 warns wrongly that a new std::stop_source is not initialised.
+// GCC 12 incorrectly warns that a new std::stop_source is not initialised.
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
 
 namespace softgrip::commands_test {
@@ -29,7 +29,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// Logs of the bench twin and of a twin with another gain, written by `softgrip simulate`.
+/// Logs of the model bench_twin and of a variant with another gain, written by `softgrip simulate`.
 class LibraryAndCommand : public testing::Test {
  protected:
   LibraryAndCommand() {
@@ -45,7 +45,7 @@ class LibraryAndCommand : public testing::Test {
   ~LibraryAndCommand() override { std::filesystem::remove_all(folder_); }
 
   [[nodiscard]] std::string path(const std::string& name) const { return (folder_ / name).string(); }
-  /// Runs `softgrip` and returns what it prints; an exit code other than 0 fails the test.
+  /// Runs `softgrip` and returns its output. The test fails if the exit code is not 0.
   std::string run(const std::string& arguments) const {
     const std::string output = path("output");
     const std::string command =
@@ -54,7 +54,7 @@ class LibraryAndCommand : public testing::Test {
     EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << text_of(path("errors"));
     return text_of(output);
   }
-  /// Returns the JSON without the keys whose values differ from call to call.
+  /// Returns the JSON without the given keys, whose values differ from call to call.
   static Json plain(const std::string& text, std::initializer_list<const char*> without) {
     Json json = Json::parse(text);
     for (const char* key : without) json.erase(key);
@@ -153,8 +153,8 @@ TEST_F(LibraryAndCommand, DiagnoseAChange) {
   EXPECT_NE(found.verdict, "unchanged");
 }
 
-/// Returns the time from a stop request, sent after `after`, to the exception [s]. If the work returns, the
-/// test fails.
+/// Requests a stop of the work after the time `after`. Returns the time [s] from this request to the
+/// exception. If the work ends without an exception, the test fails.
 template <class Work>
 double time_to_stop_s(std::chrono::milliseconds after, Work work) {
   std::stop_source stop;

@@ -17,7 +17,7 @@ namespace {
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// Returns the name of the argument that a call refuses, or "" if it refuses none.
+/// Returns the name of the argument that a call refuses, or "" if the call refuses no argument.
 template <class Call>
 std::string refused_argument(Call call) {
   try {
