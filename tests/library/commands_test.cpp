@@ -226,7 +226,7 @@ TEST_F(LibraryAndCommand, HealthOfRecordings) {
   EXPECT_EQ(stages.back(), "recording 3 of 3");
   stages.clear();
   (void)health(recordings, path("base"), options);
-  EXPECT_TRUE(stages.empty()) << "the scores have all recordings";
+  EXPECT_TRUE(stages.empty()) << "no recording is evaluated again because all scores are stored";
 }
 
 TEST_F(LibraryAndCommand, HealthIsRefusedOrStopped) {

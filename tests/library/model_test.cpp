@@ -49,7 +49,7 @@ TEST(LibraryModel, NamesTheLineOfAMalformedFile) {
   }
   try {
     (void)Model::load("/no/such/file.yaml");
-    FAIL() << "the file does not exist";
+    FAIL() << "reading a file that does not exist must throw";
   } catch (const FileError& error) {
     const std::string message = error.what();
     EXPECT_NE(message.find("/no/such/file.yaml:1:1: the file cannot be read"), std::string::npos) << message;
