@@ -1,6 +1,6 @@
-// Broken configurations. Each broken/NAME.yaml is named after the error that it contains. NAME.expected holds
-// all messages that the check must print. NAME.also, if present, names files that are checked together with
-// it.
+// Tests broken configurations. The name of each file broken/NAME.yaml describes its error. NAME.expected
+// contains all messages that the check must print. NAME.also, if it exists, lists the files that are checked
+// together with NAME.yaml.
 
 #include <gtest/gtest.h>
 

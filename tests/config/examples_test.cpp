@@ -1,4 +1,4 @@
-// The shipped configurations are accepted without a warning, and they fit each other.
+// Tests that the shipped configurations are accepted without a warning and are consistent with each other.
 
 #include <gtest/gtest.h>
 #include <unistd.h>

@@ -1,4 +1,4 @@
-// Reads the shipped rigs and compares the values. No key in them may be missing or wrong without an error.
+// Reads the shipped rig files and compares the values. If a key is missing or wrong, there must be an error.
 
 #include "rig/rig_file.h"
 
@@ -151,8 +151,7 @@ rig::RigReading edited(const std::string& name, const std::vector<std::pair<std:
   return rig::read_rig_so_far(document::parse(shipped(name), text, problems), problems);
 }
 
-/// Two converters with the same name and one with another name, in a folder tree like that of this computer's
-/// devices.
+/// Two converters with the same name and one with another name, in a folder tree like /sys of this computer.
 class Converters : public ::testing::Test {
  protected:
   Converters() {
@@ -288,7 +287,7 @@ TEST(RestPressure, BeyondTheLimitsIsRefusedWithTheRange) {
 TEST(RestPressure, OfTheBoardsWatchdogIsThatOfTheChannel) {
   const std::string asked = "this board does not vent by itself when softgripd dies";
   for (const auto& [old, now, said] : std::vector<std::array<std::string, 3>>{
-           // 0 V is full vacuum
+           // on this board an output of 0 V means full vacuum
            {"map: board.yaml", "map: ../boards/softgrip-sim.yaml",
             "its watchdog puts channel `left` to -100 kPa, and the rest pressure of this channel is 0 kPa"},
            {"rest_kpa: 0", "rest_kpa: 10",
@@ -303,8 +302,8 @@ TEST(RestPressure, OfTheBoardsWatchdogIsThatOfTheChannel) {
       << "within 1 % of the range: " << problems.format();
 }
 
-// The limits apply to the daemon only. The board can write a pressure beyond them, up to the range of the
-// valve.
+// The limits apply only to the daemon. The board can write a pressure beyond these limits, up to the range of
+// the valve.
 TEST(RestPressure, OfTheBoardsWatchdogIsNotBeyondTheLimits) {
   using Edits = std::vector<std::pair<std::string, std::string>>;
   const auto with = [](Edits edits, const Edits& more) {
@@ -416,8 +415,8 @@ std::optional<std::string> refusal(const Document& document) {
   return problems.format();
 }
 
-/// Returns true if the text names the key. If channels share the entry, the text may name a key below it
-/// instead.
+/// Returns true if the text names the key. If channels share the entry, the text may name a key below the
+/// entry instead.
 bool is_named(const Node::Entry& entry, const std::string& text) {
   return text.find("`" + entry.key + "`") != std::string::npos ||
          std::any_of(entry.value.entries.begin(), entry.value.entries.end(),
