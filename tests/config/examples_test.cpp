@@ -170,7 +170,8 @@ TEST_F(CheckFolder, AndToTheChannelsOfOneThatCouldBeRead) {
         "  - move: {channels: [right], displacement_mm: 80, duration_s: 1}\n");
   const rig::CheckReport report = check();
   EXPECT_TRUE(says(report, "`pressure_max_kpa` must be a number")) << report.problems.format();
-  EXPECT_FALSE(says(report, "goes to 90 mm")) << "the limits of channel left could not be read";
+  EXPECT_FALSE(says(report, "goes to 90 mm"))
+      << "a motion of channel left cannot be checked without its limits";
   EXPECT_TRUE(says(report, "goes to 80 mm, channel 'right'")) << report.problems.format();
 }
 

@@ -128,7 +128,8 @@ TEST(RigFile, AVacuumIsSimulatedWithinTheValvesRange) {
   ASSERT_TRUE(rig.has_value()) << problems.format();
   const auto& board = std::get<simulation::SimulatedBoardSettings>(rig->board);
   EXPECT_EQ(board.channels[1].valve_min_kpa, -60);
-  EXPECT_EQ(board.channels[1].vented_kpa, 0) << "the rest pressure, not the lowest pressure";
+  EXPECT_EQ(board.channels[1].vented_kpa, 0)
+      << "a vented channel has the rest pressure and not the lowest pressure";
   VirtualClock clock;
   simulation::SimulatedBoard simulated(board, clock);
   std::vector<model::Reading> readings(2);
@@ -216,7 +217,7 @@ TEST_F(Converters, AHeartbeatCountsAsAWatchdogIfEveryValveRestsWithoutPower) {
   EXPECT_EQ(heart->timeout_s, 0.5);
   EXPECT_FALSE(edited("rig_iio.yaml", {not_accepted}, problems).accepted);
   EXPECT_FALSE(edited("rig_iio.yaml", {heartbeat, not_accepted, holds}, problems).accepted)
-      << "without power these valves keep their pressure";
+      << "these valves keep their pressure without power, so the heartbeat does not make the board vent";
 }
 
 TEST_F(Converters, APressureSensorIsReadInKilopascalsAboveAmbient) {
@@ -265,7 +266,7 @@ TEST(RestPressure, IsOfTheChannelAndZeroWithoutTheKey) {
                               {"  rest_kpa: 0 ", "  rest_kpa: -10 "}},
                              problems);
   EXPECT_EQ(std::get<simulation::SimulatedBoardSettings>(vacuum.rig.board).channels[0].vented_kpa, 0)
-      << "without its limits the channel could reach 0 kPa";
+      << "the board may vent to 0 kPa, because the limits of the channel do not apply to the board";
 }
 
 TEST(RestPressure, BeyondTheLimitsIsRefusedWithTheRange) {
@@ -299,7 +300,7 @@ TEST(RestPressure, OfTheBoardsWatchdogIsThatOfTheChannel) {
   }
   Problems problems;
   EXPECT_TRUE(edited("vacuum/rig_tcp.yaml", {{"rest_kpa: 0", "rest_kpa: 0.9"}}, problems).accepted)
-      << "within 1 % of the range: " << problems.format();
+      << "the difference is within 1 % of the range: " << problems.format();
 }
 
 // The limits apply only to the daemon. The board can write a pressure beyond these limits, up to the range of
@@ -324,7 +325,7 @@ TEST(RestPressure, OfTheBoardsWatchdogIsNotBeyondTheLimits) {
   for (const Edits& edits : {vacuum, with(with(vacuum, inflates), no_pressure)}) {
     Problems problems;
     EXPECT_TRUE(edited("vacuum/rig_tcp.yaml", edits, problems).accepted)
-        << "no pressure in the range is nearer to 0 kPa: " << problems.format();
+        << "the range of the valve contains no pressure nearer to 0 kPa: " << problems.format();
   }
 }
 
