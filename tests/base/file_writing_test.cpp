@@ -11,7 +11,7 @@
 
 #include "base/files.h"
 
-// Files are written completely or not at all.
+// Tests that files are written completely or not at all.
 namespace softgrip::file_writing_test {
 namespace {
 
@@ -85,7 +85,7 @@ TEST_F(FileWritingTest, ANewFileHasThePermissionsThatTheUmaskLeaves) {
   EXPECT_EQ(now.st_mode & 07777U, 0640U);
 }
 
-/// Another user could place a link in a shared folder that leads to one of our files.
+/// In a shared folder, another user could place a link to one of this user's files.
 TEST_F(FileWritingTest, ALinkInThePlaceOfAResultIsReplacedAndNotFollowed) {
   const fs::path link = folder_ / "result.csv";
   fs::create_symlink("rig.yaml", link);

@@ -8,7 +8,7 @@
 
 #include "base/cancellation.h"
 
-// GCC 12 wrongly reports that a new std::stop_source is not initialised.
+// GCC 12 incorrectly warns that a new std::stop_source is not initialised.
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
 
 namespace softgrip::parallel_test {
@@ -79,8 +79,8 @@ TEST(ParallelFor, LoopsWithinALoopShareItsThreads) {
     });
   }
   EXPECT_EQ(leaves, 15);
-  // A thread that waited for others continues before the thread that replaced it has ended, so three can run
-  // for a moment.
+  // A thread that has waited for other threads continues before the thread that replaced it has ended, so
+  // three threads can run for a moment.
   EXPECT_LE(crowd.most(), 3);
 }
 
@@ -135,7 +135,7 @@ TEST(ParallelFor, PassesAnExceptionOnWhenAllIsDone) {
                  std::runtime_error);
     ASSERT_EQ(done, 7);
   }
-  // The thread has been returned to the budget.
+  // The thread that the loop used has been returned to the budget.
   EXPECT_EQ(ThreadBudget::current()->take(5), 1U);
   ThreadBudget::current()->give_back(1);
 }

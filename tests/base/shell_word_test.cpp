@@ -9,7 +9,7 @@
 namespace softgrip::shell_word_test {
 namespace {
 
-/// The words that the shell makes of `text`, each between brackets.
+/// Returns the words into which the shell splits `text`, each between brackets.
 std::string words_of(const std::string& text) {
   FILE* const shell = popen(("printf '[%s]' " + text).c_str(), "r");
   std::string words;
