@@ -43,7 +43,7 @@ TEST_F(ComputerDeviceTest, FitsItsNodeItsAddressAndThePathsThatLeadToIt) {
   EXPECT_EQ(node_of((sys_ / "devices/platform/i2c-1/1-0061").string()), "iio:device1");
   EXPECT_EQ(node_of((bus_ / "iio:device0").string()), "iio:device0");
   EXPECT_EQ(node_of("1-006"), "no converter of this computer is called `1-006`")
-      << "part of an address is not enough";
+      << "a part of an address does not select a device";
   EXPECT_EQ(node_of(""), "no converter of this computer is called ``");
   EXPECT_EQ(node_of((sys_ / "devices/platform/i2c-1/1-00").string()).substr(0, 12), "no converter");
 }
@@ -62,7 +62,7 @@ TEST_F(ComputerDeviceTest, AWordOfTwoDevicesIsRefusedWithBothAndWhatTellsThemApa
             "(address `1-0061`, name `mcp4725`)");
   EXPECT_EQ(found.error().hint, "write `1-0060` or `1-0061`");
   EXPECT_FALSE(only_device(devices, (sys_ / "devices/platform/i2c-1").string(), "converter"))
-      << "a path that matches two devices";
+      << "a path that matches two devices is ambiguous";
 }
 
 TEST_F(ComputerDeviceTest, AWordOfOneKindThatIsAnotherKindElsewhereFitsTwo) {

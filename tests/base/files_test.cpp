@@ -85,7 +85,7 @@ TEST_F(FilesTest, InAFolderNoLinkIsFollowed) {
   ASSERT_TRUE(opened);
   EXPECT_EQ(opened->size, 4U);
   EXPECT_EQ(*read_start(*opened, 3), "tex");
-  EXPECT_EQ(*read_start(*opened, 3), "t") << "reading continues where it ended";
+  EXPECT_EQ(*read_start(*opened, 3), "t") << "the second call continues after the bytes of the first call";
   EXPECT_EQ(open_regular_in(folder, "link").error(), "it is a symbolic link, not a regular file");
   EXPECT_TRUE(open_regular(at("link")));
 }

@@ -47,7 +47,7 @@ TEST(PeriodicSchedule, NeverLosesItsPhaseNorTicksInThePast) {
     ASSERT_EQ((schedule.due() - start) % period, 0);
     ASSERT_EQ(schedule.due() - before, static_cast<Nanoseconds>(1 + skipped) * period);
     ASSERT_TRUE(skipped == 0 || schedule.due() - now < period)
-        << "a deadline that was still ahead was skipped";
+        << "the schedule skipped a deadline in the future";
   }
   EXPECT_EQ(static_cast<Nanoseconds>(counted) * period, schedule.due() - start);
 }
