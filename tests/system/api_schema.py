@@ -11,7 +11,7 @@ SCHEMA = pathlib.Path(__file__).resolve().parents[2] / "daemon/socket/socket-api
 
 @functools.cache
 def validator(name=None):
-    """The validator of any line of the daemon, or of the type `name` in $defs."""
+    """Returns the validator of any line of the daemon, or of the type `name` in $defs."""
     schema = json.loads(SCHEMA.read_text())
     if name:
         schema.pop("oneOf")
@@ -25,7 +25,7 @@ RESULTS = {"start": "accepted", "stop": "accepted", "vent": "accepted", "release
 
 
 def check(line, command=None):
-    """Raises an AssertionError that names what does not match the schema."""
+    """Raises an AssertionError that describes the part of a line that does not match the schema."""
     result = line.get("result") if command and line.get("ok") else None
     name, value = (RESULTS.get(command, command), result) if result is not None else (None, line)
     error = jsonschema.exceptions.best_match(validator(name).iter_errors(value))

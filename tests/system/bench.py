@@ -1,5 +1,5 @@
-"""Processes and files of the end-to-end tests: a folder per test, free ports, and no process or file remains
-afterwards.
+"""Manages the processes and files of the end-to-end tests. Each test has its own folder and free ports, and no process
+or file remains after the test.
 
 The programs come from the build. The environment variable SOFTGRIP_BUILD names its folder.
 """
@@ -28,16 +28,17 @@ SOFTGRIP = BUILD / "tools" / "softgrip"
 SOFTGRIP_RIG = BUILD / "tools" / "softgrip-rig"
 SOFTGRIPD = BUILD / "daemon" / "softgripd"
 
-# A generous limit, because the machine may be busy. No result depends on it.
+# A generous limit, because the machine may be busy. No result depends on this limit.
 PATIENCE_S = 30
 
-# The rig of the tests: 100 Hz, and the bus may be silent for 0.6 s.
+# The rig of the tests runs at 100 Hz, and its bus may be silent for 0.6 s.
 RATE_HZ = 100
 BUS_DOWN_CYCLES = 30  # shorter than the watchdog of the board
 
 
 def wait_for(what, condition, patience_s=PATIENCE_S, pause_s=0.02):
-    """Returns the first true result of condition(); fails with `what` after the patience."""
+    """Calls condition() repeatedly and returns its first true result. Fails with the message `what` after the longest
+    waiting time."""
     end = time.monotonic() + patience_s
     while True:
         result = condition()
@@ -75,12 +76,12 @@ class Lines:
 
 
 def resident_kib(pid):
-    """The resident memory of a process."""
+    """Returns the resident memory of a process [KiB]."""
     return int(re.search(r"VmRSS:\s+(\d+)", pathlib.Path(f"/proc/{pid}/status").read_text()).group(1))
 
 
 class Process:
-    """A child process whose output goes to files and which ends with its test at the latest."""
+    """A child process whose output goes to files. The process ends at the end of its test at the latest."""
 
     def __init__(self, name, arguments, folder, environment=None):
         self.name = name
@@ -106,12 +107,12 @@ class Process:
         self.child.send_signal(number)
 
     def kill(self):
-        """Kills it with SIGKILL, like kill -9."""
+        """Kills the process with SIGKILL, like kill -9."""
         self.child.kill()
         self.child.wait(PATIENCE_S)
 
     def end(self, number=signal.SIGTERM):
-        """Asks it to end and returns its exit code."""
+        """Requests the end of the process and returns its exit code."""
         if self.running():
             self.send(number)
         return self.wait()
@@ -209,7 +210,7 @@ class Daemon(Process):
             raise AssertionError(f"{error}\n{self.errors()}") from None
 
     def start(self, sequence):
-        """Starts a sequence. It tries again if a delay of the busy machine caused a refusal."""
+        """Starts a sequence. Repeats the start if a delay of the busy machine caused a refusal."""
         def accepted():
             reply = self.ask("start", sequence=sequence)
             if reply["ok"]:
@@ -224,7 +225,8 @@ class Daemon(Process):
 
 
 class BenchTest(unittest.TestCase):
-    """A test with its own folder that contains the shipped configuration; its processes end with it."""
+    """A test with its own folder, which contains the shipped configuration. The processes of the test end with the
+    test."""
 
     def setUp(self):
         self.folder = pathlib.Path(tempfile.mkdtemp(prefix="softgrip_system_"))
@@ -243,12 +245,13 @@ class BenchTest(unittest.TestCase):
                 print(f"--- {process.name}\n{process.output()[-2000:]}\n{process.errors()[-6000:]}", file=sys.stderr)
 
     def check_recordings(self):
-        """Whatever the test was about, its recordings must keep the promises of docs/reliability.md."""
+        """Checks that all recordings of the test satisfy the guarantees of docs/reliability.md."""
         for about in sorted((self.folder / "runs").glob("*/run.json")):
             self.assertEqual(recording_check.check(about.parent), [])
 
     def start_rig(self, *arguments):
-        """Starts an emulated rig with a stone between the fingers, and its daemon, until it is idle."""
+        """Starts an emulated rig with a stone between the fingers and its daemon, and waits until the daemon is
+        idle."""
         self.board = self.emulator("--object", "stone", *arguments)
         self.rig_path = self.rig(self.board.port)
         self.softgripd = self.daemon(self.rig_path)
@@ -260,9 +263,11 @@ class BenchTest(unittest.TestCase):
         return path
 
     def rig(self, port, changes=(), name="rig_tcp.yaml"):
-        """The shipped TCP rig with this port, the test's folder, and more changes (pattern, replacement).
+        """Writes the shipped TCP rig with this port, the folder of the test, and further changes (pattern,
+        replacement).
 
-        Loop and bounds are set for a busy machine, so that a stall of the host does not look like a fault."""
+        The rate of the loop and the time limits are set for a busy machine, so that a stall of the host is not judged
+        as a fault."""
         text = (self.folder / "config" / name).read_text()
         for pattern, replacement in (
                 (r"port: \d+", f"port: {port}"),
@@ -286,7 +291,8 @@ class BenchTest(unittest.TestCase):
         return path
 
     def creep_faster(self):
-        """Changes the finger of the shipped rigs and its model so that its creep ends after a few seconds."""
+        """Changes the finger of the shipped rigs and its model so that the creep of the finger ends after a few
+        seconds."""
         path = self.folder / "config/models/bench_twin.yaml"
         text, count = re.subn(r"c1_kpa_s_per_mm: [\d.]+", "c1_kpa_s_per_mm: 20", path.read_text())
         self.assertEqual(count, 1)
@@ -305,7 +311,7 @@ class BenchTest(unittest.TestCase):
         return process
 
     def softgrip(self, *arguments, expect=0, timeout_s=PATIENCE_S):
-        """Runs the command line and returns the finished process; its exit code must be as expected."""
+        """Runs softgrip and returns the finished process. The exit code must equal `expect`."""
         done = subprocess.run([str(a) for a in (SOFTGRIP, *arguments)], capture_output=True, text=True,
                               timeout=timeout_s, cwd=self.folder, stdin=subprocess.DEVNULL,
                               env={**os.environ, "SOFTGRIP_SOCKET": str(self.folder / "softgripd.sock")})
@@ -314,7 +320,7 @@ class BenchTest(unittest.TestCase):
         return done
 
     def recordings(self):
-        """The folders of recordings, oldest first."""
+        """Returns the folders of the recordings, the oldest first."""
         return sorted(path.parent for path in (self.folder / "runs").glob("*/run.csv"))
 
     @staticmethod

@@ -1,4 +1,4 @@
-"""A folder with a log and a model, for tests of the files that a command reads and writes."""
+"""Provides a folder with a log and a model for tests of the files that a command reads and writes."""
 
 import resource
 import shutil

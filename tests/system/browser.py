@@ -1,4 +1,4 @@
-"""A real browser that shows the operator's page."""
+"""Runs a real browser that shows the operator's page."""
 
 import base64
 
@@ -11,7 +11,8 @@ from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.support.select import Select
 
-# It has no sandbox as root. Its own network requests are switched off, because they cost processor time and delays.
+# The browser has no sandbox if it runs as root. Its own network requests are switched off, because they cost processor
+# time and cause delays.
 QUIET = ("--headless=new", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-sync",
          "--disable-background-networking", "--disable-component-update")
 # The colours of each visible element that has its own text, and of its background.
@@ -100,7 +101,7 @@ class Browser:
         return [b.text for b in self.driver.find_elements(By.TAG_NAME, "button") if b.is_displayed()]
 
     def results(self):
-        """The large texts on the fingers' cards."""
+        """Returns the large texts on the cards of the fingers."""
         return [e.text for e in self.driver.find_elements(By.CSS_SELECTOR, ".finger .big")]
 
     def wait(self, what, condition, patience_s=bench.PATIENCE_S):
@@ -115,12 +116,12 @@ class Browser:
         return self.wait(f"the page to say {states}", lambda: self.text("state") in states)
 
     def complaints(self):
-        """What the browser wrote to its console: refused scripts, failed loads, exceptions."""
+        """Returns the messages of the browser's console: refused scripts, failed loads and exceptions."""
         return [entry["message"] for entry in self.driver.get_log("browser")
                 if entry["level"] in ("SEVERE", "WARNING") and entry["source"] != "rendering"]
 
     def nameless(self):
-        """The roles of controls and pictures for which a screen reader would have no name."""
+        """Returns the roles of the controls and pictures that have no name for a screen reader."""
         nodes = self.driver.execute_cdp_cmd("Accessibility.getFullAXTree", {})["nodes"]
         controls = {"button", "textbox", "combobox", "spinbutton", "link", "image", "img", "list", "form", "region"}
         wanted = controls - {"list", "form"}
@@ -129,7 +130,7 @@ class Browser:
                 and not n.get("name", {}).get("value")]
 
     def faint(self, least=4.5):
-        """Texts with less contrast than WCAG 2.1 AA requires."""
+        """Returns the texts whose contrast is lower than WCAG 2.1 AA requires."""
         return [t for t in self.run(TEXTS) if contrast(t["ink"], t["ground"]) < least]
 
     def picture(self, path, width):

@@ -1,4 +1,5 @@
-"""Buttons and lamps of a rig: a GPIO chip in user space that is preloaded into softgripd (gpio_chips.cpp)."""
+"""Simulates the buttons and lamps of a rig by a GPIO chip in user space that is preloaded into softgripd
+(gpio_chips.cpp)."""
 
 import time
 
@@ -19,7 +20,7 @@ gpio:
 
 
 def environment(folder):
-    """The environment of the softgripd that uses the chip."""
+    """Returns the environment of the softgripd that uses the chip."""
     (folder / "gpio").mkdir()
     return {"GPIO_CHIPS": str(folder / "gpio"), "LD_PRELOAD": str(PRELOADED)}
 
@@ -37,7 +38,7 @@ class Lines:
         self.wire.ask(f"low {name} {time.monotonic_ns()}")
 
     def press_for(self, for_s, name="ESTOP"):
-        """Presses without waiting for an answer, because a process that is stopped does not answer."""
+        """Presses a button without waiting for an answer, because a stopped process does not answer."""
         self.wire.file.write(f"high {name} {time.monotonic_ns()}\n")
         self.wire.file.flush()
         time.sleep(for_s)
@@ -53,7 +54,7 @@ class Lines:
         self.wire.ask("gone")
 
     def on(self):
-        """The names of the lines that are high."""
+        """Returns the names of the lines that are high."""
         return set(self.wire.ask("levels").split())
 
     def close(self):

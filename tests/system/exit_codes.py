@@ -1,4 +1,4 @@
-"""The table of docs/reference/exit-codes.md, and how to bring a program to each of its endings."""
+"""Reads the table of docs/reference/exit-codes.md and brings a program to each of the endings in the table."""
 
 import contextlib
 import dataclasses
@@ -25,7 +25,7 @@ TEMPORARY = re.compile(r"/\.softgrip-[0-9a-f]{16}\.part$|^\.softgrip-[0-9a-f]{16
 
 
 def table():
-    """{command: {ending: cell}} of the page."""
+    """Returns {command: {ending: cell}} of the page."""
     rows = {}
     for line in PAGE.read_text().splitlines():
         cells = [cell.strip() for cell in line.strip("|").split("|")]
@@ -35,13 +35,13 @@ def table():
 
 
 def motion_faults():
-    """{command: (code without the board, code with safe outputs)} of the page's second table."""
+    """Returns {command: (code without the board, code with safe outputs)} of the second table of the page."""
     rows = (line.strip("|").split("|") for line in PAGE.read_text().splitlines() if line.startswith("| `"))
     return {row[0].strip(" `"): tuple(cell.strip() for cell in row[1:]) for row in rows if len(row) == 3}
 
 
 def each(test, commands, ending, check):
-    """Calls check(name, command, cell) as a subtest for every command that can end in this way."""
+    """Calls check(name, command, cell) as a subtest for every command that can have this ending."""
     cells = table()
     for name, command in commands.items():
         if cells[name][ending] != IMPOSSIBLE:
@@ -51,18 +51,19 @@ def each(test, commands, ending, check):
 
 @dataclasses.dataclass
 class Command:
-    """How to bring one row of the table to its endings. `{out}` in the words is the folder of the outputs."""
+    """The command of one row of the table and the conditions of its endings. `{out}` in the words is the folder of the
+    outputs."""
 
     done: str
     refused: str = ""
-    hangs_at: str = ""  # an input that it opens while it works: the end of the path
-    writes: str = ""  # a file that it replaces, within {out}; "": it only writes to the standard output
-    new: bool = False  # it never replaces a file
-    more: tuple = ()  # other forms that write, for the full disk
+    hangs_at: str = ""  # end of the path of an input that the command opens while it works
+    writes: str = ""  # file within {out} that the command replaces; "": the command only writes to the standard output
+    new: bool = False  # the command never replaces a file
+    more: tuple = ()  # other forms of the command that write, for the test with a full disk
 
 
 class FullDisk:
-    """A folder on a disk that fill() fills. Without the right to mount, the kernel's limit on the size of files is
+    """A folder on a disk that fill() fills. If mounting is not permitted, the kernel's limit of the file size is
     used."""
 
     def __init__(self, folder):
@@ -79,7 +80,7 @@ class FullDisk:
                 filler.write(bytes(4096))
 
     def limit(self):
-        """Is called in the child before it runs the program."""
+        """Called in the child process before it runs the program."""
         if not self.mounted:
             signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
             resource.setrlimit(resource.RLIMIT_FSIZE, (1, resource.RLIM_INFINITY))
@@ -90,7 +91,7 @@ class FullDisk:
 
 
 def code_of(cell, number=None):
-    """The return code of subprocess for a cell of the table."""
+    """Returns the return code of subprocess that corresponds to a cell of the table."""
     return -number if cell == "signal" else int(cell)
 
 
@@ -112,13 +113,13 @@ class Runner:
                               timeout=expect_s, **keys)
 
     def created(self, line, out="out"):
-        """The finished process, and the paths of the files that it created."""
+        """Returns the finished process and the paths of the files that it created."""
         with tempfile.NamedTemporaryFile(prefix="softgrip_created_") as noted:
             done = self.run(line, out, env={"LD_PRELOAD": str(fail_nth.SHIM), "FAIL_CREATED": noted.name})
             return done, pathlib.Path(noted.name).read_text().splitlines()
 
     def stopped(self, line, number, hangs_at, out="out"):
-        """The return code after a signal that arrives while it opens an input."""
+        """Returns the return code after a signal that arrives while the command opens an input."""
         told = self.folder / "told"
         told.unlink(missing_ok=True)
         child = subprocess.Popen(self.words(line, out), cwd=self.folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
@@ -127,14 +128,16 @@ class Runner:
         return self.end_of(child, number, lambda: told.exists() or child.poll() is not None)
 
     def waiting(self, line, number, out="out", pause_s=0.3):
-        """The return code after a signal that arrives while it waits for a daemon or until its own output is read."""
+        """Returns the return code after a signal that arrives while the command waits for a daemon or for the reader of
+        its output."""
         child = subprocess.Popen(self.words(line, out), cwd=self.folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
                                  stderr=subprocess.PIPE, env=self.environment)
         time.sleep(pause_s)
         return self.end_of(child, number, lambda: True)
 
     def blocked(self, line, number, out="out"):
-        """The return code after a signal that arrives while it waits for the reader of its standard output."""
+        """Returns the return code after a signal that arrives while the command waits for the reader of its standard
+        output."""
         reader, writer = os.pipe()
         os.set_blocking(writer, False)
         with contextlib.suppress(BlockingIOError):
@@ -145,7 +148,7 @@ class Runner:
                                  stderr=subprocess.PIPE, env=self.environment)
         os.close(writer)
         try:
-            # It waits in the kernel for the pipe: it sleeps and uses no more processor time.
+            # The command waits in the kernel for the pipe when it sleeps and uses no more processor time.
             def waits():
                 state, used = self.state_and_ticks(child.pid)
                 time.sleep(0.1)
@@ -170,7 +173,7 @@ class Runner:
                 child.kill()
 
     def unread(self, line, ignored, out="out"):
-        """The finished process after the reader of its standard output was closed, with SIGPIPE ignored or not."""
+        """Returns the finished process whose standard output was closed by its reader, with SIGPIPE ignored or not."""
         reader, writer = os.pipe()
         os.close(reader)
         try:

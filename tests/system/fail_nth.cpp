@@ -1,17 +1,19 @@
-// Fails the Nth call of one function, for every program that it is preloaded into (LD_PRELOAD):
+// Lets the Nth call of one function fail in every program into which this library is preloaded (LD_PRELOAD):
 //
 //   FAIL_CALL=open FAIL_NTH=3 FAIL_TOLD=/tmp/failed LD_PRELOAD=.../libfail_nth.so softgripd ...
 //
-// FAIL_CALL is a name of the table below; several functions with the same purpose count together (open,
-// openat, fopen). FAIL_FROM=1 fails every call from the Nth on, like a full disk. When a call fails,
-// FAIL_TOLD is created. A test increments N until this file is no longer created, as the tests of SQLite do.
+// FAIL_CALL is a name of the table below. The calls of several functions with the same purpose (open, openat,
+// fopen) are counted together. With FAIL_FROM=1 every call from the Nth on fails, as on a full disk. When a
+// call fails, the file FAIL_TOLD is created. A test increments N until this file is no longer created, as the
+// tests of SQLite do.
 //
-// FAIL_CREATED=FILE appends the path of every file that a call may create to FILE, a line each.
+// With FAIL_CREATED=FILE the path of every file that a call may create is appended to FILE, one path per
+// line.
 //
-// FAIL_HANG=NAME: opening a file whose path ends in NAME never returns, as on a mount without its server.
-// FAIL_TOLD is created then, too.
+// With FAIL_HANG=NAME a call that opens a file whose path ends in NAME never returns, as on a mount without
+// its server. FAIL_TOLD is created in this case, too.
 
-#undef _FORTIFY_SOURCE  // its wrappers of recv and others would be second definitions
+#undef _FORTIFY_SOURCE  // its wrappers of recv and other functions would be defined a second time here
 
 #include <dlfcn.h>
 #include <fcntl.h>
@@ -34,7 +36,7 @@
 
 namespace {
 
-/// The request from the environment; read once.
+/// The settings from the environment, which are read once.
 struct Order {
   const char* call = std::getenv("FAIL_CALL");
   const char* told = std::getenv("FAIL_TOLD");
@@ -67,7 +69,7 @@ Function real(const char* name) noexcept {
   return reinterpret_cast<Function>(dlsym(RTLD_NEXT, name));
 }
 
-/// Creates the file FAIL_TOLD by calls that are not counted.
+/// Creates the file FAIL_TOLD. The calls for this are not counted.
 void tell() noexcept {
   if (order().told == nullptr) return;
   using Open = int (*)(const char*, int, ...);
@@ -86,7 +88,7 @@ bool fails(const char* call, int error) noexcept {
   return true;
 }
 
-/// Records the path if this call may create a file. Its own calls are not counted.
+/// Records the path if this call may create a file. The calls of this function are not counted.
 void note_created(const char* path, bool creates) noexcept {
   if (!creates || order().created == nullptr) return;
   using Open = int (*)(const char*, int, ...);
@@ -100,7 +102,7 @@ void note_created(const char* path, bool creates) noexcept {
   if (noted <= 0) std::abort();
 }
 
-/// Does not return if opening this path must hang.
+/// Does not return if the opening of this path must hang.
 void hang_at(const char* path) noexcept {
   if (order().hang == nullptr) return;
   const std::size_t end = std::strlen(order().hang);
@@ -112,8 +114,9 @@ void hang_at(const char* path) noexcept {
 
 }  // namespace
 
-// Counts the allocations of C++ code in all threads from main() on. Before main() the program cannot report
-// an error and has not commanded anything. Allocations with a special alignment are not counted.
+// Counts the allocations of C++ code in all threads from main() on. Earlier allocations are not counted,
+// because before main() the program cannot report an error and has commanded no output. Allocations with a
+// special alignment are not counted.
 void* operator new(std::size_t size) {
   void* const memory = in_main && fails("allocation", ENOMEM) ? nullptr : std::malloc(size > 0 ? size : 1);
   if (memory == nullptr) throw std::bad_alloc();
@@ -137,7 +140,8 @@ void operator delete[](void* memory, std::size_t) noexcept {
 
 extern "C" {
 
-// NOLINTBEGIN(readability-identifier-naming,bugprone-reserved-identifier): the C library's names
+// NOLINTBEGIN(readability-identifier-naming,bugprone-reserved-identifier): these names are given by the C
+// library
 int __libc_start_main(Main program, int count, char** arguments, void (*begin)(), void (*end)(),
                       void (*unload)(), void* stack) {
   program_main = program;
@@ -215,7 +219,7 @@ FILE* fopen64(const char* path, const char* mode) {
 ssize_t write(int descriptor, const void* data, size_t size) {
   if (fails("write", ENOSPC)) return -1;
   static const auto next = real<ssize_t (*)(int, const void*, size_t)>("write");
-  // Write one half and refuse the rest at the next call, like a disk that becomes full.
+  // This call writes one half of the data, and the next call fails, as on a disk that becomes full.
   if (size > 1 && fails("short_write", ENOSPC)) return next(descriptor, data, size / 2);
   return next(descriptor, data, size);
 }
@@ -223,7 +227,7 @@ ssize_t write(int descriptor, const void* data, size_t size) {
 ssize_t writev(int descriptor, const iovec* parts, int count) {
   if (fails("write", ENOSPC)) return -1;
   static const auto next = real<ssize_t (*)(int, const iovec*, int)>("writev");
-  // Write half of the first part that is not empty: a short write.
+  // A short write: this call writes half of the first part that is not empty.
   int first = 0;
   while (first < count && parts[first].iov_len == 0) ++first;
   if (first < count && parts[first].iov_len > 1 && fails("short_write", ENOSPC)) {

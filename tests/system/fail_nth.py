@@ -1,6 +1,6 @@
 """Fails the Nth call of one kind (libfail_nth.so), for N from 1 until a run has fewer than N such calls.
 
-scripts/fail_nth.sh runs all of it; test_fail_nth.py runs what takes less than a minute.
+scripts/fail_nth.sh runs all scenarios; test_fail_nth.py runs the part that takes less than a minute.
 """
 
 import argparse
@@ -44,7 +44,7 @@ def ends_in_a_destructor(done, call):
 
 
 def run(arguments, folder, call, nth, from_then_on=False):
-    """The finished process, and whether it had an Nth call."""
+    """Runs the command. Returns the finished process, and True if it reached the Nth call."""
     told = folder / "told"
     told.unlink(missing_ok=True)
     environment = {**os.environ, "LD_PRELOAD": str(SHIM), "FAIL_CALL": call, "FAIL_NTH": str(nth), "FAIL_TOLD": str(told)}
@@ -59,7 +59,7 @@ def run(arguments, folder, call, nth, from_then_on=False):
 
 
 def check_end(done, what, codes, silenced=False):
-    """The program neither crashes nor ends without a message, unless it cannot write one."""
+    """Checks that the program neither crashes nor ends without a message, unless it cannot write the message."""
     if done.returncode not in codes:
         raise Failure(f"{what}: exit code {done.returncode}\n{done.stderr[-1500:]}")
     if done.returncode != 0 and not silenced and len((done.stdout + done.stderr).strip()) < 20:
@@ -67,8 +67,8 @@ def check_end(done, what, codes, silenced=False):
 
 
 def check_recording(folder, what):
-    """The existing part of a recording is complete: all rows except the last, run.json if it exists, and no temporary
-    file."""
+    """Checks that the existing part of a recording is complete: all rows except the last, and run.json if it exists. No
+    temporary file may remain."""
     csv = folder / "run.csv"
     if csv.exists():
         rows = csv.read_text().split("\n")
@@ -84,14 +84,15 @@ def check_recording(folder, what):
 
 
 def check_complete(folder, done, what):
-    """With exit code 0, everything that was requested exists."""
+    """Checks that all requested results exist if the exit code is 0."""
     about = folder / "run.json"
     if not about.exists() or json.loads(about.read_text())["state"] != "complete":
         raise Failure(f"{what}: exit code 0 without a complete recording\n{done.stderr[-1500:]}")
 
 
 def numbers(call, highest):
-    """1, 2, 3 ...; for frequent calls every number up to ten, then a quarter more each time."""
+    """Generates 1, 2, 3 ... For frequent calls it generates every number up to 10 and then increases the number by a
+    quarter each time."""
     nth = 1
     while nth <= highest:
         yield nth
@@ -117,7 +118,8 @@ class Scenario:
         shutil.rmtree(self.folder, ignore_errors=True)
 
     def virtual(self, call, nth, from_then_on=False):
-        """Runs softgripd in virtual time: one thread, so the calls are always the same."""
+        """Runs softgripd in virtual time. It has one thread in this mode, so the order of the calls is always the
+        same."""
         shutil.rmtree(self.out, ignore_errors=True)
         histograms = self.folder / "histograms"
         histograms.unlink(missing_ok=True)
@@ -135,7 +137,8 @@ class Scenario:
         return happened
 
     def writer(self, arguments, name, call, nth, from_then_on=False):
-        """A command that writes a file or a folder: afterwards there is the old file or the complete new one."""
+        """Runs a command that writes a file or a folder. After the run, the old or the complete new version must
+        exist."""
         out = self.folder / name
         before = "what was there before\n"
         if out.suffix:
@@ -160,7 +163,7 @@ class Scenario:
                            call, nth, from_then_on)
 
     def validate(self, call, nth, from_then_on=False):
-        """A command that writes several files into a folder."""
+        """Runs a command that writes several files into a folder."""
         log = self.folder / "log.csv"
         if not log.exists():
             subprocess.run([bench.SOFTGRIP, "simulate", "--model", "config/models/bench_twin.yaml", "--input", "steps",
@@ -204,7 +207,8 @@ class Scenario:
 
 
 def until_success(scenario, call, highest=2000, from_then_on=False):
-    """Fails call after call until a run succeeds without a failed call; returns the number of failed calls."""
+    """Lets one call after the other fail, until a run has no failed call and succeeds. Returns the number of failed
+    calls."""
     failed = 0
     for nth in numbers(call, highest):
         if not scenario(call, nth, from_then_on):

@@ -1,8 +1,8 @@
-"""Runs cells of fault_matrix.yaml: a real softgripd, a real softgrip-rig, real sockets, and between them a wire with
-faults.
+"""Runs the cells of fault_matrix.yaml with a real softgripd, a real softgrip-rig, real sockets, and a connection with
+faults between them.
 
-scripts/fault_matrix.sh runs all of them and publishes docs/results/fault-matrix.md; test_fault_matrix.py runs a few.
-With --vacuum the same faults act on the rig of config/vacuum, whose outputs are below their rest pressure.
+scripts/fault_matrix.sh runs all cells and publishes docs/results/fault-matrix.md; test_fault_matrix.py runs a few
+cells. With --vacuum the same faults act on the rig of config/vacuum, whose outputs are below their rest pressure.
 """
 
 import argparse
@@ -30,7 +30,7 @@ import wire_proxy
 
 TABLE = pathlib.Path(__file__).with_name("fault_matrix.yaml")
 PAGE = bench.SOURCE / "docs" / "results" / "fault-matrix.md"
-# The phases by their names in safe_action of the rig file; `connect` is not in it.
+# The phases by their names in safe_action of the rig file, which does not contain `connect`.
 PHASE_OF = {"idle": "idle", "closing": "closing", "holding": "holding", "venting": "releasing"}
 # How long a fault without any visible effect is observed, in cycles.
 OBSERVED_CYCLES = 80
@@ -48,7 +48,7 @@ steps:
   - release: {{duration_s: 3, purge_s: 0.5, timeout_s: 8, on_fail: vent}}
 """
 
-# Below the rest pressure, and as slow as the other sequence.
+# This sequence is below the rest pressure and as slow as the other sequence.
 VACUUM_SEQUENCE = """name: matrix
 steps:
   - grip:
@@ -68,11 +68,11 @@ NOT_BELOW_REST = {("repetition_of_contents", "holding")}
 
 
 class Wrong(AssertionError):
-    """The result of a cell differs from the table."""
+    """The result of a cell differs from the result that the table requires."""
 
 
 class Skipped(Exception):
-    """Something that a cell needs is not permitted or does not exist."""
+    """A resource that a cell needs is not permitted or does not exist."""
 
 
 def require(holds, sentence):
@@ -96,7 +96,7 @@ class Table:
         return cells.get(phase, cells.get("all"))
 
     def names(self):
-        """The names that an expression of `within` may use, in cycles."""
+        """Returns the names that an expression of `within` may use, with their values in cycles."""
         rig, shipped = self.rig, shipped_rig()
         rate = rig["rate_hz"]
         slowest_kpa_per_s = self.sequence["slowest_kpa_per_s"]
@@ -136,7 +136,7 @@ class Cell:
         self.processes = []
         self.proxy = None
         self.lines = None
-        self.seen = 0  # events up to this id were before the fault
+        self.seen = 0  # events up to this id occurred before the fault
         self.measured = {}
 
     # --- the processes
@@ -158,7 +158,8 @@ class Cell:
         return path
 
     def vacuum_rig(self):
-        """The vacuum rig on the board that the wire knows, with the middle of its range as the safe value."""
+        """Writes the vacuum rig for the board that the proxy supports, with the middle of the output range as the safe
+        value."""
         boards = self.folder / "config" / "boards"
         board, count = re.subn(r"safe_v: \[0, 0\]", "safe_v: [5, 5]", (boards / "adam-6024.yaml").read_text())
         require(count == 1, "adam-6024.yaml has no safe_v")
@@ -206,15 +207,15 @@ class Cell:
             self.lines = digital_lines.Lines(self.folder)
 
     def clear_emergency_stop(self):
-        """The emergency stop counts as pressed from the start."""
+        """Resets the emergency stop, which counts as pressed after the start of the daemon."""
         self.daemon.wait_for_state("faulted")
         bench.wait_for("an acknowledged start", lambda: self.daemon.ask("acknowledge")["ok"], pause_s=0.05)
         bench.wait_for("the enable output", lambda: "ENABLE" in self.lines.on())
         self.seen = self.daemon.events()[-1]["id"]
 
     def find_origin(self):
-        """time.monotonic() at the daemon's time 0. A status is as old as the last tick, so the youngest of several
-        statuses counts."""
+        """Returns time.monotonic() at the daemon's time 0. A status is as old as the last tick, so the newest of
+        several statuses is used."""
         self.origin = math.inf
         for n in range(20):
             now_s = self.daemon.status()["time_s"]
@@ -259,7 +260,8 @@ class Cell:
             self.proxy.clear()
 
     def first_other_write(self):
-        """The time of the first write with other values than the outputs had when the board began to ignore writes."""
+        """Returns the time of the first write whose values differ from the outputs at the time when the board began to
+        ignore writes."""
         before = [words for at, words in self.proxy.writes if at <= self.began][-1:]
         return next((at for at, words in self.proxy.writes
                      if at > self.began and before and wire_proxy.noticeable(words, before[0])), self.began)
@@ -291,7 +293,7 @@ class Cell:
         return next((e for e in self.daemon.events() if e["kind"] == "fault_latched" and e["id"] > self.seen), None)
 
     def observe(self, cycles=OBSERVED_CYCLES):
-        """Waits for so many ticks."""
+        """Waits for this number of ticks."""
         ticks = self.daemon.status()["loop"]["ticks"]
         bench.wait_for("ticks", lambda: self.daemon.status()["loop"]["ticks"] >= ticks + cycles)
 
@@ -299,7 +301,7 @@ class Cell:
         return self.emulator.commands_kpa()
 
     def away_kpa(self):
-        """The distance of the outputs from their rest pressure, which is 0 kPa."""
+        """Returns the distance of the outputs from their rest pressure, which is 0 kPa."""
         return [abs(kpa) for kpa in self.outputs_kpa()]
 
     def check_waits(self):
@@ -322,11 +324,11 @@ class Cell:
         if self.expected.get("outputs") != "spoiled":
             self.check_outputs(fault["code"])
             self.check_no_motion(writes_before)
-        if self.has_lines() and not self.expected.get("for_good"):  # a chip that was removed drives no output
+        if self.has_lines() and not self.expected.get("for_good"):  # a removed chip drives no output
             bench.wait_for("an enable output that has dropped", lambda: "ENABLE" not in self.lines.on(), 2)
             bench.wait_for("the fault lamp", lambda: "FAULT" in self.lines.on(), 2)
         self.find_origin()
-        self.observe(60)  # the end of the recording
+        self.observe(60)  # wait for the end of the recording
         self.clear_fault()
         if self.expected.get("for_good"):
             require(not self.daemon.ask("acknowledge")["ok"], "the fault was acknowledged although its cause remains")
@@ -336,7 +338,7 @@ class Cell:
 
     def action(self, code):
         safety = shipped_rig()["safety"]
-        # Where the board has no watchdog, a hold continues without the bus: only the phase decides.
+        # If the board has no watchdog, a hold continues without the bus, so only the phase determines the action.
         watched = self.fault.get("rig") != "serial"
         if watched and code.startswith("F1") or code in ("F303", "F304") or self.phase == "connect":
             return "vent"  # the ADAM's watchdog vents
@@ -345,7 +347,7 @@ class Cell:
         return safety["safe_action"][PHASE_OF[self.phase]]
 
     def check_outputs(self, code):
-        """The outputs of the emulator are what a valve would receive."""
+        """Checks the outputs of the emulator, which are the values that a valve would receive."""
         action = self.action(code)
         self.measured["outputs"] = action
         if action == "vent":
@@ -365,7 +367,8 @@ class Cell:
                     f"an output moved away from rest after the fault: {before} to {after}")
 
     def acknowledge(self):
-        """The fault is removed: the acknowledgement is accepted, the rig becomes idle, and nothing moves."""
+        """Checks the behaviour after the fault is removed: the acknowledgement is accepted, the rig becomes idle, and
+        no finger moves."""
         since = len(self.proxy.writes)
         bench.wait_for("an acknowledged fault", lambda: self.daemon.ask("acknowledge")["ok"], 15, 0.1)
         self.daemon.wait_for_state("idle")
@@ -392,7 +395,8 @@ class Cell:
         require(not self.latched(), "there is still a fault at the end")
 
     def check_unseen(self):
-        """There is no fault although something is wrong. The grip result is measured, but not judged."""
+        """Checks that the daemon reports no fault in a case that it cannot detect. The grip result is measured, but not
+        judged."""
         self.observe()
         fault = self.latched()
         require(not fault, f"a fault was detected: {fault and fault['code']}: {fault and fault['text']}")
@@ -419,9 +423,9 @@ class Cell:
             require(missing <= slips, f"{recording.name}: {missing} ticks missing, {slips} slipped")
 
     def reaction(self, fault):
-        """The ticks between the first effect of the fault and the latched fault, counted in the rows of the
-        recording."""
-        for recording in reversed(self.recordings()):  # the emergency stop at the start was an event of its own
+        """Returns the number of ticks between the first effect of the fault and the latched fault, counted in the rows
+        of the recording."""
+        for recording in reversed(self.recordings()):  # the emergency stop at the start also has a recording
             about = json.loads((recording / "run.json").read_text())
             same = next((e for e in reversed(about["faults"]) if e["code"] == fault["code"]), None)
             if same is None:
@@ -440,7 +444,7 @@ class Cell:
             self.begin_fault()
             self.start_daemon()
             hurry(True)
-            # Short faults end before anything can be observed.
+            # Short faults end before they can be observed.
             if self.expected["ends"] in ("ridden", "unseen"):
                 self.daemon.wait_for_state("idle")
         else:
@@ -478,9 +482,9 @@ class Cell:
 
 
 def hurry(yes):
-    """This process is the wire. A wire does not wait for the machine's other work, so this process gets a higher
-    priority where that is permitted. It mostly sleeps. Child processes start without the priority, because the test
-    checks the priorities that they set."""
+    """Raises the priority of this process where this is permitted, because this process simulates a wire, and a wire
+    does not wait for other work of the machine. The process mostly sleeps. Child processes start with the normal
+    priority, because the test checks the priorities that they set."""
     with contextlib.suppress(PermissionError):
         os.sched_setscheduler(0, os.SCHED_FIFO if yes else os.SCHED_OTHER, os.sched_param(30 if yes else 0))
 
@@ -506,8 +510,8 @@ def run_once(name, phase, vacuum=False):
 
 
 def run_cell(name, phase, attempts=2, vacuum=False):
-    """Runs a failed cell once more, because the machine may have stood still. The number of repetitions is printed and
-    published."""
+    """Runs a cell, and repeats it once if it fails, because the machine may have paused. The number of repetitions is
+    printed and published."""
     for attempt in range(1, attempts + 1):
         result = run_once(name, phase, vacuum)
         result["attempts"] = attempt

@@ -53,7 +53,7 @@ T, COMMAND, PRESSURE, TIP, WARM = TRUTH.values()
 
 
 def table(names, columns, separator=",", decimal=".", above="", units=None, quote=False, end="\n"):
-    """Rows of text; a value of None becomes an empty cell."""
+    """Returns rows of text, in which a value of None becomes an empty cell."""
     def cell(value):
         text = "" if value is None else value if isinstance(value, str) else repr(value)
         text = text if isinstance(value, str) else text.replace(".", decimal)
@@ -121,7 +121,7 @@ def text_matrix(text):
 
 
 def structures(name, elements):
-    """An array of structures; the values of the fields are already encoded."""
+    """Returns an array of structures. The values of the fields are already encoded."""
     names = b"".join(field.encode().ljust(32, b"\0") for field in elements[0])
     return headed(2, (1, len(elements)), name, struct.pack("<HHi", 5, 4, 32) + element(1, names)
                   + b"".join(value for fields in elements for value in fields.values()))
@@ -145,7 +145,8 @@ def trials():
 
 
 def lvm(x_columns, sections):
-    """LabVIEW's text format with sections of equal length; without X columns the times are counted."""
+    """Returns the text format of LabVIEW with sections of equal length. Without X columns the times follow from the row
+    numbers."""
     text = "".join(f"{key}\t{value}\n" for key, value in (
         ("LabVIEW Measurement", ""), ("Writer_Version", "2"), ("Separator", "Tab"), ("Decimal_Separator", ","),
         ("Multi_Headings", "Yes"), ("X_Columns", x_columns), ("Time_Pref", "Relative"), ("***End_of_Header***", "")))
@@ -208,7 +209,7 @@ def recording(path):
 
 
 def exported(file):
-    """The recording as MCAP, written by `softgrip export`."""
+    """Returns the recording as MCAP, written by `softgrip export`."""
     def make(path):
         with tempfile.TemporaryDirectory() as folder:
             run = pathlib.Path(folder) / "run"
@@ -220,7 +221,7 @@ def exported(file):
 
 
 def mcap(messages):
-    """An MCAP file of (topic, time [s], object), in the order of the times."""
+    """Returns an MCAP file of the messages (topic, time [s], object), in the order of the times."""
     def text(value):
         return struct.pack("<I", len(value)) + value.encode()
 
@@ -237,7 +238,7 @@ def mcap(messages):
 
 
 class File:
-    """One foreign file: how it is made, the import options, and the required result."""
+    """One external file: the function that makes it, the import options, and the required result."""
 
     def __init__(self, name, about, content, options="", *, columns=None, refused="", says="", left_out=None, joined=0,
                  tolerance=1e-9):
@@ -256,7 +257,7 @@ class File:
 
 
 def spreadsheets():
-    """Workbooks, and files that look like workbooks."""
+    """Returns workbooks, and files that look like workbooks."""
     names = ["Time (s)", "P set (kPa)", "Tip (mm)"]
     rows = [list(row) for row in zip(T, COMMAND, TIP)]
     days = [["Time", *names[1:]]] + [[workbooks.date(45443.999 + t / 86400), *row] for t, *row in rows]
@@ -294,7 +295,7 @@ def spreadsheets():
 
 
 def measurements():
-    """LabVIEW's .tdms files."""
+    """Returns .tdms files of LabVIEW."""
     times = {"t": tdms.Channel(T, {"unit_string": "s"}), "set": tdms.Channel(COMMAND, {"unit_string": "kPa"}),
              "tip": tdms.Channel(TIP, {"unit_string": "mm"})}
     ramp = [k - 150 for k in range(COUNT)]
@@ -337,7 +338,7 @@ EPOCH = 1717156800
 
 
 def reports():
-    """More files of the kinds in public field reports, each with the text of its rows."""
+    """Returns more files of the kinds in public field reports, each with the text of its rows."""
     names = ["time_s", "set_kpa", "tip_mm"]
     ms = [round(1000 * t) for t in T]
     thirds = {"pressure_command_kpa": [COMMAND[3 * (i // 3)] for i in range(COUNT)]}
@@ -446,7 +447,7 @@ def reports():
 
 
 def other_fingers_and_clocks():
-    """Fingers in rows, and channels with different intervals or start times."""
+    """Returns files with fingers in rows, and files whose channels have different intervals or start times."""
     rows = [(round(t + delay, 3), finger, *values) for t, *both in zip(T, COMMAND, TIP) for delay, finger, values in
             ((0, 1, both), (0.002, 2, [60 - both[0], 12 - both[1]]))]
     of_first = {"left_out": {"other_channel": COUNT}}
@@ -505,7 +506,7 @@ def other_fingers_and_clocks():
 
 
 def signals(stamp):
-    """MCAP recordings with a topic for each signal."""
+    """Returns MCAP recordings with a topic for each signal."""
     units = "--unit command=kPa --unit displacement=mm"
 
     def of(name, values, late_s=0.0, every=1):
@@ -822,7 +823,8 @@ def read_csv(path):
 
 
 def furthest(got, wanted):
-    """The largest difference, relative to the column's size; or why there is none."""
+    """Returns the largest difference, relative to the size of the column, or the reason why no difference can be
+    computed."""
     if set(got) != set(wanted):
         return math.inf, f"columns {sorted(got)} instead of {sorted(wanted)}"
     worst = 0.0
@@ -839,7 +841,7 @@ def furthest(got, wanted):
 
 
 def outcome(file, folder):
-    """The result of one file: (wrong, what, rest); `wrong` is empty if the result is as required."""
+    """Returns the result of one file as (wrong, what, rest). `wrong` is empty if the result is as required."""
     path = file.make(folder)
     out = folder / "out" / (file.name + ".csv")
     done = subprocess.run([BUILD / "tools/softgrip", "import", path, *shlex.split(file.options), "--yes", "--json",

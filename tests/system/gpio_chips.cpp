@@ -1,5 +1,5 @@
-// A GPIO chip without a kernel for a whole softgripd (LD_PRELOAD). A test outside the process sets and reads
-// its lines:
+// Simulates a GPIO chip for a complete softgripd (LD_PRELOAD). A test outside the process sets and reads the
+// lines of the chip:
 //
 //   GPIO_CHIPS=/tmp/folder LD_PRELOAD=.../libgpio_chips.so softgripd ...
 //
@@ -11,10 +11,10 @@
 //   gone              the chip is removed
 //   levels            returns the names of all lines that are high
 //
-// With GPIO_TWIN there is a second chip with the label of the first.
+// If GPIO_TWIN is set, a second chip with the same label exists.
 //
-// The answer is "ok" or the names. While the process is paused, it answers nothing. When it continues, it
-// executes the waiting requests with their own times, like the kernel's queue of edges.
+// The answer to a request is "ok" or the names. A paused process does not answer. When the process continues,
+// it executes the waiting requests with their own times, like the kernel's queue of edges.
 
 #include <dlfcn.h>
 #include <fcntl.h>
@@ -101,7 +101,7 @@ void serve(int listening) {
     std::perror("gpio_chips");
     std::abort();
   }
-  // This thread must not receive the signals for softgripd.
+  // All signals are blocked in this thread, because softgripd must receive them.
   sigset_t all;
   sigset_t before;
   sigfillset(&all);
@@ -112,7 +112,7 @@ void serve(int listening) {
 
 }  // namespace
 
-/// std::filesystem lists folders with openat(). The folder GPIO_CHIPS replaces /dev.
+/// Opens the folder GPIO_CHIPS in place of /dev. std::filesystem calls openat() to list a folder.
 extern "C" int openat(int at, const char* path, int flags, ...) {
   using Openat = int (*)(int, const char*, int, ...);
   static const auto real = reinterpret_cast<Openat>(dlsym(RTLD_NEXT, "openat"));

@@ -1,5 +1,5 @@
-"""Grips of the shipped recipe on simulated parts, in virtual time or over the wire. The judgement does not use the
-controller's values: the force on the part is calculated from the plant's own numbers and a curve of `softgrip
+"""Grips simulated parts with the shipped recipe, in virtual time or over a real connection. The judgement does not use
+the controller's values: the force on the part is calculated from the plant's own numbers and a curve of `softgrip
 simulate`."""
 
 import csv
@@ -17,9 +17,9 @@ import bench
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 MODEL = ROOT / "config/models/bench_twin.yaml"
-REACH_MM = 10  # how far behind its expected place a part is searched for
-APPROACH_MM = 4  # how far in front of it the approach ends
-# What sensor noise, the resolution of the board and the filter of the readings may add to a bound.
+REACH_MM = 10  # distance [mm] behind the expected place up to which a part is searched
+APPROACH_MM = 4  # distance [mm] in front of the expected place at which the approach ends
+# The tolerance of a bound for sensor noise, the resolution of the board and the filter of the readings.
 TOLERANCE_KPA = 0.5
 
 
@@ -38,13 +38,14 @@ PARTS = (Part("stone", 12, 0.1), Part("spring", 10, 0.5), Part("screw", 17, 0.05
 class Trial:
     part: Part | None  # None: there is no part
     fingers: int
-    offset_mm: float  # relative to where the recipe expects the part
-    tilt_mm: float  # how much farther the part is for the second finger
+    offset_mm: float  # position relative to the place at which the recipe expects the part
+    tilt_mm: float  # additional distance of the part for the second finger
     seed: int
 
     @property
     def slips(self):
-        """Over the wire, every fifth part slips away while it is held."""
+        """Returns True if the part slips away while it is held, which is the case in every fifth trial over the real
+        connection."""
         return self.part is not None and random.Random(f"slips {self.seed}").random() < 0.2
 
     def place_mm(self, finger):
@@ -61,8 +62,8 @@ class Judged:
 
 
 class Finger:
-    """The real behaviour of the simulated fingers: the model, or one that moves farther by so many percent; and the
-    pressure at which it rests at a displacement without a part, three seconds after a jump."""
+    """The true behaviour of the simulated fingers, which is that of the model or of a model that moves farther by a
+    given percentage. Also computes the pressure at which the free finger rests at a displacement 3 s after a jump."""
 
     def __init__(self, softgrip, folder, farther_percent=0):
         self.softgrip, self.model = softgrip, folder / f"finger_{farther_percent:g}.yaml"
@@ -75,7 +76,7 @@ class Finger:
         self.points = self.rests(folder)
 
     def answer(self, rows, folder):
-        """The free finger's displacement for rows of (time, pressure)."""
+        """Returns the displacement of the free finger for rows of (time, pressure)."""
         log, answer = folder / "commands.csv", folder / "free.csv"
         log.write_text("time_s,pressure_command_kpa\n" + "".join(f"{time_s},{kpa}\n" for time_s, kpa in rows))
         subprocess.run([self.softgrip, "simulate", "--model", self.model, "--input", log, "--out", answer], check=True,
@@ -98,14 +99,14 @@ class Finger:
 
 
 def drawn(seed):
-    """Draws a trial: with or without a part, for one finger or two, up to 8 mm from the expected place."""
+    """Draws a trial with or without a part, for one or two fingers. The part is up to 8 mm from the expected place."""
     random_ = random.Random(seed)
     part = None if random_.random() < 0.1 else random_.choice(PARTS)
     return Trial(part, random_.choice((1, 2)), random_.uniform(-8, 8), random_.uniform(-1, 1), seed)
 
 
 def recipe(trial):
-    """The shipped recipe for a part that is expected elsewhere; an empty grip expects a stone."""
+    """Returns the shipped recipe with another expected place of the part. An empty grip expects a stone."""
     expected_mm = (trial.part or PARTS[0]).expected_mm
     text = (ROOT / "config/sequences/pick_stone.yaml").read_text()
     text = text.replace("displacement_mm: 8", f"displacement_mm: {expected_mm - APPROACH_MM}", 1)
@@ -135,7 +136,7 @@ def rig(trial, finger_model, folder):
 
 
 def bound_kpa(text):
-    """The largest squeeze that a recipe allows in any step."""
+    """Returns the largest gripping pressure that a recipe allows in any step."""
     return max(float(value) for value in re.findall(r"squeeze_max_kpa: ([\d.]+)", text))
 
 
@@ -152,8 +153,8 @@ def play(trial, finger, folder):
 
 
 def play_on_the_wire(trial, finger, folder):
-    """Runs a trial with softgripd and softgrip-rig in real time. For both fingers the part is at the first finger's
-    place."""
+    """Runs a trial with softgripd and softgrip-rig in real time. The part is at the same place for both fingers, the
+    place of the first finger."""
     shutil.copytree(ROOT / "config", folder / "config")
     (folder / "config/sequences/recipe.yaml").write_text(recipe(trial))
     there = () if trial.part is None else ("--object", f"{trial.place_mm(0)}:{trial.part.yielding}")
@@ -180,7 +181,7 @@ def play_on_the_wire(trial, finger, folder):
 
 
 def judged(trial, finger, folder, recording, end):
-    """The result of a trial, from its recording."""
+    """Computes the result of a trial from its recording."""
     story = json.loads((recording / "run.json").read_text())
     with open(recording / "run.csv", newline="") as file:
         rows = list(csv.DictReader(file))
@@ -194,8 +195,8 @@ def judged(trial, finger, folder, recording, end):
 
 
 def peak_squeeze(rows, trial, number, finger, folder):
-    """The largest squeeze, from the real position of the finger: the free finger's position for the commands that were
-    sent, and the position of the part."""
+    """Returns the largest gripping pressure, computed from the true position of the finger. This position follows from
+    the motion of the free finger under the sent commands and from the position of the part."""
     if trial.part is None:
         return 0
     free = finger.answer([(row["time_s"], row["pressure_command_kpa"]) for row in rows], folder)
@@ -208,7 +209,7 @@ def peak_squeeze(rows, trial, number, finger, folder):
 
 
 def broken(trial, judged, allowed_kpa):
-    """The promises of a grip that this one did not keep; empty if it kept all."""
+    """Returns the guarantees of a grip that this trial violated; empty if it violated none."""
     told = [answer for answers in judged.answers for answer in answers]
     problems = []
     if judged.peak_kpa > allowed_kpa + TOLERANCE_KPA:

@@ -4,7 +4,8 @@
     tests/system/import_reports.py [FOLDER] [--softgrip PROGRAM]...
 
 FOLDER has a folder for each report. Without FOLDER the reports of foreign_files.py are made and imported. The table has
-a row for each file, and with two programs a column for each: before and after. Exit code 1 if a run crashed."""
+a row for each file. With two programs it has a column for each program, to compare two versions. Exit code 1 if a run
+crashed."""
 
 import argparse
 import json
@@ -36,7 +37,7 @@ def own_cases(folder):
 
 
 def outcome(program, path, options):
-    """(exit code, sentence) of one import."""
+    """Returns (exit code, sentence) of one import."""
     with tempfile.TemporaryDirectory() as out:
         done = subprocess.run([program, "import", path, *shlex.split(options), "--yes", "--json", "--out",
                                pathlib.Path(out) / "log.csv"], capture_output=True, text=True, timeout=120,

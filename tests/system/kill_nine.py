@@ -1,7 +1,7 @@
-"""kill -9 at random times while recording: every recording can be opened, at most one second is lost, and the board
-vents.
+"""Kills the daemon with kill -9 at random times during a recording. Every recording can be opened, at most the last
+second is lost, and the board vents.
 
-scripts/kill_nine.sh runs it a hundred times; test_kill.py runs it a few times.
+scripts/kill_nine.sh runs this test a hundred times; test_kill.py runs it a few times.
 """
 
 import argparse
@@ -50,8 +50,8 @@ def opens(folder, recording, *arguments):
 
 
 def once(number, seed):
-    """Runs one daemon and kills it after a random time. Returns how much was lost and how long the board took to vent
-    [s]."""
+    """Runs one daemon and kills it after a random time. Returns the lost duration of the recording [s] and the time
+    until the board vented [s]."""
     chance = random.Random(f"{seed}/{number}")
     folder = pathlib.Path(tempfile.mkdtemp(prefix="softgrip_killed_"))
     processes = []
@@ -84,11 +84,11 @@ def once(number, seed):
             json.loads((recording / "run.json").read_text())
         if len(whole) > 3:
             opens(folder, recording, "plot", recording, "--out", folder / "run.svg")
-        if killed_at > 2:  # something has moved
+        if killed_at > 2: # the fingers have moved
             opens(folder, recording, "validate", "--model", "config/models/bench_twin.yaml", "--data", recording,
                   "--channel", "left")
         return {"number": number, "killed_at_s": killed_at, "lost_s": lost_s, "vented_s": vented_s, "wrong": None}
-    except Exception as error:  # printed and counted; the other runs continue
+    except Exception as error:  # the error is printed and counted, and the other runs continue
         return {"number": number, "wrong": f"{type(error).__name__}: {error}"}
     finally:
         for process in reversed(processes):

@@ -8,7 +8,7 @@ MAGIC = b"\x89MCAP0\r\n"
 
 
 class Content:
-    """The bytes of one record, read from left to right."""
+    """The bytes of one record, which are read from left to right."""
 
     def __init__(self, data):
         self.data, self.at = data, 0
@@ -39,7 +39,7 @@ class Content:
 
 
 def records(data, begin, end):
-    """(opcode, content, offset) of the records between two offsets."""
+    """Returns (opcode, content, offset) of the records between two offsets."""
     at = begin
     while at < end:
         opcode, length = struct.unpack_from("<BQ", data, at)
@@ -49,7 +49,7 @@ def records(data, begin, end):
 
 
 def read(path):
-    """{topic: [(log_time_ns, message)]}; fails at any difference from the specification."""
+    """Returns {topic: [(log_time_ns, message)]}. Fails at any difference from the specification."""
     data = path.read_bytes()
     assert data.startswith(MAGIC) and data.endswith(MAGIC), "no magic"
     footer_at = len(data) - len(MAGIC) - 29

@@ -1,4 +1,4 @@
-"""A process of a user without any permission for the rig: what every local user can do."""
+"""Runs a process of a user without any permission for the rig, to test what every local user can do."""
 
 import hashlib
 import os
@@ -15,12 +15,12 @@ NEEDS_ROOT = "only root can become another user"
 
 
 def board_name(port):
-    """The abstract name of the lock of the emulated board."""
+    """Returns the abstract socket name of the lock of the emulated board."""
     return "\0softgrip-board-" + hashlib.sha256(f"modbus 127.0.0.1 port {port} unit 1".encode()).hexdigest()
 
 
 def lock_folders():
-    """The folders in which the daemon of this user may have its lock file."""
+    """Returns the folders in which the daemon of this user may have its lock file."""
     user = os.geteuid()
     places = ("/run/softgrip", f"/run/user/{user}/softgrip", f"/tmp/softgrip-{user}")
     return [place for place in map(pathlib.Path, places) if place.is_dir()]
@@ -60,7 +60,7 @@ class OtherUser:
                     raise
         if backlog is not None:
             held.listen(backlog)
-        if backlog == 0:  # its queue is full: a new connection has to wait
+        if backlog == 0:  # fills the queue of the socket, so that a new connection has to wait
             full = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
             full.connect(address)
         os.write(told, b"1")

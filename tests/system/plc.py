@@ -1,4 +1,4 @@
-"""softgrip-plc with the other processes of a test, and a master that commands it like a PLC."""
+"""Runs softgrip-plc with the other processes of a test, and a Modbus master that commands it like a PLC."""
 
 import re
 import struct
@@ -18,7 +18,7 @@ NOT_GIVEN = 0x8000
 
 
 class Map:
-    """The addresses by name, from the file that the gateway reads."""
+    """The register addresses by name, from the file that the gateway reads."""
 
     def __init__(self, path):
         registers = yaml.safe_load(path.read_text())["registers"]
@@ -48,13 +48,13 @@ class Plc(bench.Process):
 
 
 def block(counter, command, recipe=0):
-    """A request as a PLC writes it in every cycle: counter, command and recipe in one frame."""
+    """Returns the request that a PLC writes in every cycle, with counter, command and recipe in one frame."""
     pdu = struct.pack(">BHHB3H", 16, 0, 3, 6, counter, command, recipe)
     return struct.pack(">HHHB", 7, 0, len(pdu) + 1, 1) + pdu
 
 
 class Master:
-    """Counts its commands and reads the result of each."""
+    """A Modbus master that counts its commands and reads the result of each command."""
 
     def __init__(self, plc, synchronise=True):
         self.map = plc.map
@@ -90,8 +90,7 @@ class Master:
         self.write("master_heartbeat", self.beats)
 
     def synchronise(self):
-        """Takes over the counter of the gateway with a counter without a command, as soon as no command is in
-        progress."""
+        """Writes the counter value of the gateway without a command, as soon as no command is in progress."""
         bench.wait_for("the end of what is under way", lambda: self.read("outcome") != 1)
         self.counter = self.read("done_counter")
         self.write("command_counter", self.counter, 0)
@@ -103,7 +102,7 @@ class Master:
         return self.counter
 
     def done(self, counter, patience_s=bench.PATIENCE_S):
-        """(outcome, reason) of the command with that counter."""
+        """Returns (outcome, reason) of the command with that counter."""
         first = self.map.address["done_counter"]
 
         def look():
@@ -125,6 +124,6 @@ class Master:
 
 
 def started(daemon, since=0):
-    """The requests by which the gateway has started sequences in this daemon."""
+    """Returns the ids of the requests by which the gateway has started sequences in this daemon."""
     return [event["request"] for event in daemon.events(since)
             if event["kind"] == "sequence_started" and event.get("client") == "softgrip-plc"]

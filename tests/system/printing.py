@@ -1,4 +1,4 @@
-"""A page as it appears on paper: printed by chromium, read by poppler."""
+"""Prints a page with chromium and reads the printed text with poppler."""
 
 import re
 import subprocess
@@ -7,7 +7,7 @@ import browser
 
 
 def sheets(page, folder):
-    """The text of each printed page."""
+    """Returns the text of each printed page."""
     paper = folder / "printed.pdf"
     subprocess.run(["chromium", *browser.QUIET, f"--user-data-dir={folder / 'chromium'}", "--no-pdf-header-footer",
                     f"--print-to-pdf={paper}", page.resolve().as_uri()], check=True, capture_output=True, timeout=120)
@@ -19,5 +19,5 @@ def sheets(page, folder):
 
 
 def before_appendix(printed):
-    """The number of sheets before the appendix, which is for readers who check the numbers."""
+    """Returns the number of printed pages before the appendix, which is for readers who check the numbers."""
     return next(i for i, sheet in enumerate(printed) if sheet.lstrip().startswith("Appendix"))

@@ -1,7 +1,8 @@
-"""An ADAM-6024 with two soft fingers, served by pymodbus; it shares no code with the emulator.
+"""Simulates an ADAM-6024 with two soft fingers by means of pymodbus. This program shares no code with the emulator.
 
 pymodbus_rig.py [OBJECT_MM]     an object stops both fingers at this displacement
-Prints {"port": N}. Then it answers each line on stdin with a line of JSON: what was written, and how often.
+Prints {"port": N}. Then it answers each line on stdin with a line of JSON that contains the written values and the
+number of writes.
 """
 
 import asyncio
@@ -28,11 +29,12 @@ FIRST_OUTPUT = 10
 INPUT_REGISTERS = 4  # the function codes that pymodbus passes on
 STEP_S = 0.001
 NOISE_COUNTS = 3
-YIELDING = 0.1  # the share of its free motion that the object leaves to a finger
+YIELDING = 0.1  # share of the free motion of a finger that remains beyond the object
 
 
 class Finger:
-    """The bench twin (config/models/bench_twin.yaml), integrated with explicit Euler steps of 1 ms."""
+    """A finger of the model bench_twin (config/models/bench_twin.yaml), integrated with explicit Euler steps of 1
+    ms."""
 
     ALPHA, BETA, GAMMA, ETA = 0.21105, 0.1713, 0.01625, 0.02428
     K0, BRANCHES = 325.9, ((18.16, 299.8), (2.761, 1.621))
@@ -68,8 +70,8 @@ class Finger:
         return free_mm - beyond_mm * (1 - YIELDING)
 
     def raw(self, count):
-        """The reading of a 16-bit input of -10 to 10 V that is wired as 0-10 V = -5 to 45 mm; never the same value
-        twice."""
+        """Returns the raw reading of a 16-bit input of -10 to 10 V whose sensor outputs 0 to 10 V for -5 to 45 mm.
+        Successive readings always differ."""
         volts = (self.displacement_mm() + 5) / 50 * 10
         return round((volts + 10) / 20 * 65535) + count % NOISE_COUNTS - 1
 

@@ -27,12 +27,12 @@ class QuietRigTest(bench.BenchTest):
         self.path = str(self.softgripd.socket_path)
 
     def running(self):
-        """The request of the sequence that runs; None if none runs."""
+        """Returns the request of the running sequence, or None if no sequence runs."""
         sequence = self.softgripd.status()["sequence"]
         return sequence["request"] if sequence and sequence["ended"] is None else None
 
     def ended(self, request):
-        """How the sequence of that start ended; None if it still runs."""
+        """Returns the end of the sequence of that start, or None if the sequence still runs."""
         for event in self.softgripd.events():
             if event["kind"] == "sequence_finished" and event["request"] == request:
                 return event["code"]

@@ -1,7 +1,7 @@
-"""Checks a recording against the promises of docs/reliability.md: recording_check.py RECORDING...
+"""Checks recordings against the guarantees of docs/reliability.md: recording_check.py RECORDING...
 
-It reads run.csv, run.json, and the rig file that run.json names, if that has not changed. Exit code 6 if a recording
-breaks a promise; the message names the row.
+It reads run.csv, run.json, and the rig file to which run.json refers, if this file has not changed. The exit code is 6
+if a recording violates a guarantee; the message contains the row.
 """
 
 import argparse
@@ -41,11 +41,11 @@ class Recording:
         self.limits = self.rig_limits()
 
     def channel_names(self):
-        """The names of the channels in the order of their rows."""
+        """Returns the names of the channels in the order of their rows."""
         return list(dict.fromkeys(row["channel"] for row in self.rows))
 
     def rig_limits(self):
-        """The limits by channel; none if the file was removed or changed since the recording."""
+        """Returns the limits by channel; empty if the rig file was removed or changed after the recording."""
         for file in self.about["files"]:
             path = pathlib.Path(file["path"])
             if file["role"] != "rig" or not path.exists():
@@ -59,7 +59,7 @@ class Recording:
         return {}
 
     def rest(self, name):
-        """The rest pressure of a channel: rest_kpa, or the end of its limits that is nearest to rest_kpa."""
+        """Returns the rest pressure of a channel, which is rest_kpa limited to the pressure limits of the channel."""
         limits = self.limits.get(name)
         rest = self.rest_kpa.get(name, 0)
         return rest if limits is None else max(limits["pressure_min_kpa"], min(rest, limits["pressure_max_kpa"]))
@@ -82,8 +82,8 @@ class Recording:
     # --- the recording is complete
 
     def check_whole(self):
-        """Every tick has a row of every channel in the same order, the times increase, and the number of rows is that
-        of run.json."""
+        """Checks that every tick has a row of every channel in the same order, that the times increase, and that the
+        number of rows equals the number in run.json."""
         for index, row in enumerate(self.rows):
             if row["channel"] != self.names[index % len(self.names)]:
                 self.says(row, f"row {index + 2} is out of order")
@@ -108,8 +108,8 @@ class Recording:
                 self.says(row, f"{command} kPa is out of the range of its limits")
 
     def check_step(self, name, before, row):
-        """From one tick to the next: only permitted changes of state, and away from rest only in a sequence and within
-        the slew."""
+        """Checks two successive ticks: the state changes only as permitted, and commands move away from rest only in a
+        sequence and within the slew limit."""
         if row["state"] != before["state"] and row["state"] not in NEXT[before["state"]]:
             self.says(row, f"{before['state']} is followed by {row['state']}")
         for side, slew in ((1, "slew_up_kpa_per_s"), (-1, "slew_down_kpa_per_s")):
@@ -123,8 +123,8 @@ class Recording:
                                f"{self.allowed(name, slew):.6f} are its slew")
 
     def check_return(self, name, before, row, last):
-        """The return to rest stays within the slew, except for what is written in one step: under a fault, and as the
-        last write."""
+        """Checks that the return to rest stays within the slew limit. The safe outputs during a fault and at the end
+        are exceptions, because they are written in one step."""
         if name not in self.limits or row["state"] == "faulted" or last:
             return
         for side, slew in ((1, "slew_down_kpa_per_s"), (-1, "slew_up_kpa_per_s")):
@@ -134,17 +134,17 @@ class Recording:
                                f"{self.allowed(name, slew):.6f} are its slew")
 
     def away(self, name, row, side):
-        """How far a command is above rest, or below it with side -1."""
+        """Returns the distance of a command above the rest pressure, or below the rest pressure if side is -1."""
         return max(0.0, side * (float(row["pressure_command_kpa"]) - self.rest(name)))
 
     def allowed(self, name, slew):
-        """The largest change in a tick. Ticks that the loop lost do not increase it."""
+        """Returns the largest permitted change in a tick. Missed ticks of the loop do not increase this change."""
         return self.limits[name][slew] * self.about["decimation"] / self.about["rate_hz"]
 
     # --- answers
 
     def check_results(self, rows):
-        """HOLDING begins with an observation: a valid displacement or a measured pressure."""
+        """Checks that the result HOLDING begins with evidence: a valid displacement or a measured pressure."""
         for before, row in zip(rows, rows[1:]):
             if row["result"] != "holding" or before["result"] == "holding":
                 continue
@@ -153,7 +153,7 @@ class Recording:
                 self.says(row, f"HOLDING from a reading that is {row['validity']}, while {before['state']}")
 
     def check_events(self):
-        """The events are in order, and no sequence runs between a fault and its acknowledgement."""
+        """Checks that the events are in order and that no sequence runs between a fault and its acknowledgement."""
         faulted = None
         time_s, number = -math.inf, 0
         for event in self.about["events"]:
@@ -171,7 +171,7 @@ class Recording:
 
 
 def check(folder):
-    """A sentence for each promise that a recording breaks."""
+    """Returns a sentence for each guarantee that a recording violates."""
     return Recording(pathlib.Path(folder)).check()
 
 

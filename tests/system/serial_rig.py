@@ -1,5 +1,5 @@
-"""The shipped rig on a serial line: a pseudo-terminal of the emulator on which bytes take as long as on a line. Its
-board has no watchdog and no read-back."""
+"""Provides the shipped rig on a serial line, which is a pseudo-terminal of the emulator on which bytes take as long as
+on a real line. The board has no watchdog and no read-back."""
 
 import os
 import re
@@ -13,14 +13,14 @@ RATE_HZ = 20
 
 
 def board_priority():
-    """A real module has its own processor and answers in time however busy this computer is, so the emulator gets a
-    higher priority."""
+    """Gives the emulator a higher priority, because a real module has its own processor and answers in time even if
+    this computer is busy."""
     return ["chrt", "-f", "40"] if resource.getrlimit(resource.RLIMIT_RTPRIO)[0] >= 40 or os.geteuid() == 0 else []
 
 
 def rig_file(folder, rate_hz, *changes):
-    """Half of the highest possible rate: the kernel carries the bytes of a pseudo-terminal in a thread that has to wait
-    on a busy machine."""
+    """Writes a rig file with half of the highest possible rate, because the kernel transfers the bytes of a
+    pseudo-terminal in a thread that has to wait on a busy machine."""
     text = (folder / "config" / "rig_rtu.yaml").read_text()
     for pattern, replacement in (
             (r"device: .*", f"device: {folder}/line"), (r"rate_hz: \d+", f"rate_hz: {rate_hz}"),
@@ -65,7 +65,7 @@ class Emulator(Shared):
 
 
 class Watcher:
-    """Replaces the proxy of the wire: it spoils nothing, and reads the outputs every few milliseconds."""
+    """Takes the place of the proxy. It changes no message and reads the outputs every few milliseconds."""
 
     def __init__(self, emulator):
         self.writes = []

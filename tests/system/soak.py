@@ -1,8 +1,8 @@
-"""Runs softgripd for hours: 1 kHz over TCP with softgrip-rig, sequence after sequence, with other work on the machine,
-and between them clients that connect and leave, pauses and a full disk (soak_disturbances.py).
+"""Runs softgripd for hours at 1 kHz over TCP with softgrip-rig, one sequence after the other, with other work on the
+machine. Clients that connect and leave, pauses and a full disk disturb the run (soak_disturbances.py).
 
-scripts/soak.sh runs it. Once a minute it writes a line into soak.csv: memory, descriptors, slips, drops, faults. At
-the end it prints a verdict: exit code 0, or 6 if a number grew, something was lost, or a fault occurred.
+scripts/soak.sh runs it. Once a minute it writes a line into soak.csv: memory, descriptors, overruns, dropped rows,
+faults. At the end it prints a verdict: exit code 0, or 6 if a number grew, something was lost, or a fault occurred.
 """
 
 import argparse
@@ -25,14 +25,14 @@ import soak_disturbances
 RATE_HZ = 1000
 # A pause of less than 100 ms on a shared machine is caused by the machine and is not a fault of a bus.
 PATIENCE_CYCLES = 100
-# What is between the fingers, the sequence, how it ends, and the result of both fingers.
+# The part between the fingers, the sequence, its required end, and the required result of both fingers.
 ROUND = (
     ("stone", "pick_stone", "done", "RELEASED"),
     ("out", "empty_grip", "failed", "NO PART"),
     ("13:0.05", "pick_screw", "done", "RELEASED"),
     ("out", "track_sine", "done", "RELEASED"),
 )
-# The newest ten thousand events are kept in memory; nothing else may grow.
+# The newest 10,000 events are kept in memory. No other data may grow.
 ALLOWED_GROWTH_KIB = 4096
 COLUMNS = ("minute", "rss_kib", "descriptors", "threads", "ticks", "slips_woken_late", "slips_took_long",
            "bus_exchanges", "bus_failures", "bus_slips", "sessions", "dropped_rows", "faults", "sequences", "unexpected",
@@ -40,7 +40,7 @@ COLUMNS = ("minute", "rss_kib", "descriptors", "threads", "ticks", "slips_woken_
 
 
 def load(folder):
-    """Other work: a quarter of one processor, and a few megabytes to the disk every second."""
+    """Runs other work, which uses a quarter of one processor and writes a few megabytes to the disk every second."""
     os.nice(19)
     block = random.Random(1).randbytes(1 << 20)
     path = folder / "load.bin"
@@ -105,7 +105,7 @@ class Soak:
         print(f"  {sentence}", flush=True)
 
     def take_events(self, awaited=()):
-        """Reads new events. Faults among them are counted and printed, except the kinds that are expected."""
+        """Reads new events. Counts and prints the faults among these events, except the expected kinds."""
         events = self.daemon.events(self.newest)
         for event in events:
             self.newest = event["id"]
@@ -119,7 +119,7 @@ class Soak:
         self.emulator.ask(f"object {item}" if item == "out" else "object back")
         if item != "out":
             self.emulator.ask(f"object {item}")
-        # It has its own client, so connections are opened and closed.
+        # Each sequence has its own client, so that connections are opened and closed.
         client = bench.Lines(self.folder / "softgripd.sock")
         reply = json.loads(client.ask(json.dumps({"command": "start", "sequence": sequence})))
         client.close()
@@ -146,7 +146,8 @@ class Soak:
         self.daemon.wait_for_state("idle")
 
     def read_recordings(self):
-        """Reads every recording to its end and deletes it: rows of both channels, one tick apart, none dropped."""
+        """Reads every recording to its end and deletes it. The recording must have rows of both channels at intervals
+        of one tick, and no row may be missing."""
         for recording in sorted((self.folder / "runs").iterdir()):
             about = json.loads((recording / "run.json").read_text())
             if about["state"] == "recording":
@@ -166,7 +167,7 @@ class Soak:
             shutil.rmtree(recording)
 
     def remove_recordings(self):
-        """Removes recordings that a full disk has cut off; they are not read."""
+        """Removes recordings that are incomplete because of a full disk, without reading them."""
         for recording in self.runs.path.iterdir():
             shutil.rmtree(recording)
 
@@ -185,7 +186,7 @@ class Soak:
         writer.writerow(row)
 
     def pauses(self, count):
-        """Only long pauses, one after the other."""
+        """Runs only long pauses, one after the other."""
         for _ in range(count):
             self.disturbances.long_pause()
             self.recover()
@@ -212,7 +213,7 @@ class Soak:
             self.sample((time.monotonic() - began) / 60, writer)
 
     def verdict(self, exit_code):
-        """A sentence for each requirement that is not fulfilled; empty if all are."""
+        """Returns a sentence for each requirement that is not fulfilled; empty if all requirements are fulfilled."""
         # The first round fills buffers that are filled only once.
         settled = self.samples[min(2, len(self.samples) - 1)]
         last = self.samples[-1]

@@ -1,6 +1,6 @@
-"""The disturbances of the soak test, between its sequences and during them: clients that connect and leave, pauses of
-the process shorter and longer than the board's watchdog, and a full disk. Each knows its required result; any other
-result counts as unexpected.
+"""Runs the disturbances of the soak test, between and during its sequences: clients that connect and leave, pauses of
+the process that are shorter or longer than the time-out of the board's watchdog, and a full disk. Each disturbance has
+a required result, and any other result counts as unexpected.
 """
 
 import os
@@ -18,7 +18,7 @@ RUNS_MIB = 64         # the disk of the recordings, if it is a separate one
 
 
 class Runs:
-    """The folder of the recordings as a separate file system, where mounting is permitted."""
+    """The folder of the recordings, which is a separate file system if mounting is permitted."""
 
     def __init__(self, folder):
         self.path = folder / "runs"
@@ -58,7 +58,7 @@ class Disturbances:
         time.sleep(self.chance.uniform(0.5, 6))  # approach, closing, holding
 
     def finish(self, what):
-        """The sequence ends normally."""
+        """Waits for the normal end of the sequence."""
         bench.wait_for(f"the end beside {what}", lambda: self.soak.daemon.status()["state"] in ("idle", "faulted"), 60, 0.25)
         self.soak.take_events()
         ended = self.soak.daemon.status()["sequence"]["ended"]
@@ -66,8 +66,8 @@ class Disturbances:
             self.soak.note(f"{what}: the sequence ended {ended}")
 
     def clients(self):
-        """Clients connect, send a request and leave: with their answer, without it, in the middle of a line, or without
-        a request."""
+        """Connects clients that leave after the answer to their request, before the answer, in the middle of a line, or
+        without a request."""
         self.start()
         for number in range(200):
             client = bench.Lines(self.soak.folder / "softgripd.sock")
@@ -93,8 +93,8 @@ class Disturbances:
         self.finish(f"a pause of {SHORT_PAUSE_S} s")
 
     def long_pause(self):
-        """The board has vented in the meantime: there is a fault, and no pressure rises until it is acknowledged and a
-        sequence is started."""
+        """Pauses the process until the board has vented. The daemon must then have a fault, and no pressure may rise
+        until the fault is acknowledged and a sequence is started."""
         self.start()
         self.stopped(LONG_PAUSE_S)
         risen, began = [], time.monotonic()

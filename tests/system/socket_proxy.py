@@ -1,4 +1,4 @@
-"""A Unix socket between a client and softgripd that can be disturbed while it is in use."""
+"""A Unix socket between a client and softgripd. Tests can disturb the connection while it is in use."""
 
 import contextlib
 import os
@@ -10,7 +10,7 @@ TO_DAEMON, TO_CLIENT = "to_daemon", "to_client"
 
 
 class SocketProxy:
-    """Listens at `path` and passes what clients say to the daemon at `daemon_path`, and the answers back.
+    """Listens at `path`, passes the bytes of clients to the daemon at `daemon_path`, and passes the answers back.
 
     `held`: the directions whose bytes wait. `refuses`: new connections are closed. let_go() passes on the bytes that
     wait, even if the client has left in the meantime, as the kernel does for a daemon that is paused.
@@ -49,7 +49,7 @@ class SocketProxy:
         self._wake()
 
     def waiting(self, direction):
-        """The bytes that wait, by connection."""
+        """Returns the bytes that wait, by connection."""
         with self._lock:
             return [pair[2 if direction == TO_DAEMON else 3] for pair in self._pairs]
 

@@ -1,5 +1,4 @@
-// Simulates a disk that does not respond, for every program into which this library is preloaded
-// (LD_PRELOAD):
+// Simulates a disk that does not respond, in every program into which this library is preloaded (LD_PRELOAD):
 //
 //   STUCK_FOLDER=/tmp/runs STUCK_WHILE=/tmp/stuck LD_PRELOAD=.../libstuck_disk.so softgrip-web ...
 //
@@ -7,7 +6,7 @@
 // The first such call creates STUCK_WHILE.waits, so that a test knows that the program is waiting for the
 // disk.
 
-#undef _FORTIFY_SOURCE  // its wrapper of read would be a second definition
+#undef _FORTIFY_SOURCE  // its wrapper of read would be defined a second time here
 
 #include <dirent.h>
 #include <dlfcn.h>

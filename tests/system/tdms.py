@@ -30,7 +30,7 @@ def property_bytes(name, value):
 
 
 def segment(group, channels, pieces=1, interleaved=False, rows=None, repeat=False):
-    """A segment of the given rows. `repeat`: the metadata of the previous segment stays valid."""
+    """Returns a segment of the given rows. `repeat`: True if the metadata of the previous segment stays valid."""
     begin, end = rows or (0, max(len(channel.values) for channel in channels.values()))
     metadata = struct.pack("<I", len(channels))
     for name, channel in channels.items():

@@ -1,4 +1,4 @@
-"""A program on a pseudo-terminal, and what a person would read there."""
+"""Runs a program on a pseudo-terminal and returns the text that a person would read there."""
 
 import fcntl
 import os
@@ -29,7 +29,8 @@ class Terminal:
             env={**os.environ, "TERM": "xterm-256color", "LC_ALL": "C.UTF-8", "TZ": "UTC", **(environment or {})})
 
     def _own_terminal(self):
-        """The program's own terminal, so that Ctrl-C, Ctrl-Z and a hang-up reach it as on a real one."""
+        """Makes the pseudo-terminal the controlling terminal of the program, so that Ctrl-C, Ctrl-Z and a hang-up have
+        the same effect as on a real terminal."""
         os.setsid()
         fcntl.ioctl(self.slave, termios.TIOCSCTTY, 0)
 
@@ -43,7 +44,7 @@ class Terminal:
         os.write(self.master, keys.encode())
 
     def read(self, seconds=0.05):
-        """Reads what the program writes within this time."""
+        """Reads the output of the program for this time."""
         end = time.monotonic() + seconds
         while (left := end - time.monotonic()) > 0:
             ready, _, _ = select.select([self.master], [], [], left)
@@ -60,7 +61,7 @@ class Terminal:
         return "\n".join(self.lines())
 
     def wait_for(self, what, patience_s=30):
-        """Waits until a text is on the screen, or a text for which `what` returns true; returns the screen."""
+        """Waits until a text is on the screen, or until `what` returns true for the screen. Returns the screen."""
         shows = what if callable(what) else lambda text: what in text
         end = time.monotonic() + patience_s
         while not shows(text := self.text()):
@@ -79,7 +80,8 @@ class Terminal:
         return self.child.returncode
 
     def restored(self):
-        """True if the cursor is visible, the first screen is shown again, and the keyboard is as before."""
+        """Returns True if the cursor is visible, the first screen is shown again, and the keyboard has its initial
+        settings."""
         self.read()
         shown = self.raw.rfind(b"\x1b[?25h") > self.raw.rfind(b"\x1b[?25l")
         back = self.raw.rfind(b"\x1b[?1049l") > self.raw.rfind(b"\x1b[?1049h")
