@@ -1,4 +1,4 @@
-"""Carries out docs/how-to/add-a-board.md: the map is checked and used for exchanges, and the driver compiles."""
+"""Carries out docs/how-to/add-a-board.md. The map is checked and used for exchanges, and the driver is compiled."""
 
 import pathlib
 import re
@@ -11,7 +11,7 @@ PAGE = bench.SOURCE / "docs" / "how-to" / "add-a-board.md"
 
 
 def block_of(path):
-    """The code that the page gives for this file."""
+    """Returns the code that the page gives for this file."""
     found = re.search(rf"`{re.escape(path)}`:\n\n```\w+\n(.*?)```\n", PAGE.read_text(), re.DOTALL)
     if found is None:
         raise AssertionError(f"{PAGE} gives no content of {path}")

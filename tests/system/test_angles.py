@@ -1,4 +1,5 @@
-"""Logs and models whose output is a bending angle: the same numbers as in mm, but another unit in every text."""
+"""Tests logs and models whose output is a bending angle. The values must equal those in mm, but every text must have
+the unit of the angle."""
 
 import csv
 import html
@@ -13,7 +14,8 @@ TWIN, GIVEN = "config/models/bench_twin.yaml", "config/models/zhang2025.yaml"
 
 
 def without_times(value):
-    """A JSON companion without the values that depend on the clock, the unit, the hashes and the texts."""
+    """Returns the JSON version of a report without the values that depend on the clock, the unit, the hashes and the
+    texts."""
     if isinstance(value, dict):
         return {key: without_times(inner) for key, inner in value.items()
                 if key not in ("wall_s", "stages_s", "hash", "sha256", "output_unit", "unit")}
@@ -23,7 +25,7 @@ def without_times(value):
 
 
 def words_of(page):
-    """The text of a page that a reader sees, without markup and drawing instructions."""
+    """Returns the text of a page that a reader sees, without markup and drawing instructions."""
     return html.unescape(re.sub(r"<[^>]*>", " ", re.sub(r"(?s)<style.*?</style>", "", page)))
 
 

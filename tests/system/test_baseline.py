@@ -1,4 +1,4 @@
-"""softgrip baseline --rig: the commissioning experiment on a rig, the files that it keeps, and what it refuses."""
+"""Tests softgrip baseline --rig: the commissioning experiment on a rig, the stored files, and the refusals."""
 
 import csv
 import json
@@ -26,7 +26,7 @@ class Baseline(bench.BenchTest):
         self.addCleanup(patch.stop)
 
     def simulated(self, *changes):
-        """config/rig.yaml with a left finger that can move freely."""
+        """Writes config/rig.yaml with a left finger that can move freely."""
         text = (self.folder / "config/rig.yaml").read_text()
         for old, new in ((STONE, ""), *changes):
             self.assertIn(old, text)
@@ -46,8 +46,8 @@ class Baseline(bench.BenchTest):
         self.assertEqual(list(self.temporary.iterdir()), [])
 
     def check_whole(self, logs):
-        """The folder of --data is complete, its second run was recorded and not copied, and --check gives the same
-        result."""
+        """Checks that the folder of --data is complete, that its second run was recorded and not copied, and that
+        --check gives the same result."""
         self.assertEqual(list(self.temporary.iterdir()), [])
         about = json.loads((self.folder / "base/baseline.json").read_text())
         names = [f"{run}_{i + 1}.csv" for run in ("healthy", "second") for i in range(logs)]

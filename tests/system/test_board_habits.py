@@ -1,4 +1,4 @@
-"""Boards with habits that users report: what status, events and doctor say about them."""
+"""Tests boards with peculiarities that users report. Status, events and doctor must describe these peculiarities."""
 
 import datetime
 import json
@@ -31,7 +31,7 @@ class OneTable(socketserver.ThreadingTCPServer):
 
 class BoardHabits(bench.BenchTest):
     def habit(self, kind, *arguments):
-        """An emulator that has this habit from the start."""
+        """Starts an emulator that has this peculiarity from the start."""
         emulator = self.emulator("--faults", self.write("habit.yaml", f"faults:\n  - {{name: it, kind: {kind}}}\n"),
                                  *arguments)
         emulator.ask("fault it")
@@ -90,7 +90,7 @@ class BoardHabits(bench.BenchTest):
         self.assertLess(took_s, 0.5)
 
     def board(self, name, *changes):
-        """The emulator's own board map with changes, as config/boards/NAME.yaml."""
+        """Writes the board map of the emulator with changes as config/boards/NAME.yaml."""
         text = (self.folder / "config/boards/softgrip-sim.yaml").read_text().replace("timeout_s: 0.2", "timeout_s: 2")
         for old, new in changes:
             self.assertIn(old, text)
@@ -99,11 +99,11 @@ class BoardHabits(bench.BenchTest):
         return name
 
     def described(self, port, board, session=""):
-        """A rig with this board map and these keys of the session."""
+        """Writes a rig file with this board map and these keys of the session."""
         return self.rig(port, [(r"map: boards/adam-6024.yaml", f"map: boards/{board}.yaml"), (r"unit: 1", "unit: 1" + session)])
 
     def examined(self, described, emulated, *arguments, fault="", session="", in_front=None):
-        """The doctor's report on a board that differs from its map."""
+        """Returns the report of softgrip doctor on a board that differs from its map."""
         if fault:
             arguments += ("--faults", self.write("fault.yaml", f"faults:\n  - {{name: it, kind: {fault}}}\n"))
         emulator = self.emulator(*arguments, board=emulated)

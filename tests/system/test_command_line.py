@@ -1,4 +1,4 @@
-"""The programs as a user sees them: exit codes, messages, JSON, the live view."""
+"""Tests the programs as a user sees them: exit codes, messages, JSON and the live view."""
 
 import json
 import os
@@ -11,7 +11,7 @@ import bench
 
 
 class Offline(bench.BenchTest):
-    """Commands that need no daemon."""
+    """Tests the commands that need no daemon."""
 
     def simulate(self, *arguments, model="bench_twin", expect=0):
         return self.softgrip("simulate", "--model", f"config/models/{model}.yaml", *arguments, expect=expect)
@@ -107,7 +107,7 @@ class Offline(bench.BenchTest):
 
 
 class Online(bench.BenchTest):
-    """Commands that communicate with the daemon."""
+    """Tests the commands that communicate with the daemon."""
 
     def setUp(self):
         super().setUp()
@@ -173,7 +173,7 @@ class Online(bench.BenchTest):
 
     @staticmethod
     def escapes(written):
-        """The last character of every escape sequence."""
+        """Returns the last character of every escape sequence."""
         for part in written.split(b"\x1b[")[1:]:
             for byte in part:
                 if 0x40 <= byte <= 0x7e:

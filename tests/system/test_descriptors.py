@@ -1,4 +1,4 @@
-"""Servers that have no free descriptor: they wait, and their existing connections continue."""
+"""Tests servers that have no free descriptor. They must wait, and their existing connections must continue."""
 
 import os
 import resource

@@ -1,5 +1,5 @@
-"""Device words of a rig file that fit two devices of the computer: every program refuses them with exit code 3, and
-nothing moves."""
+"""Tests rig files in which the name of a device matches two devices of the computer. Every program must refuse such a
+file with exit code 3, and no finger may move."""
 
 import os
 import pathlib
@@ -30,7 +30,7 @@ class Devices(unittest.TestCase):
         return path
 
     def refused(self, command, environment=None):
-        """The message of a program that refuses the rig file."""
+        """Returns the message of a program that refuses the rig file."""
         done = subprocess.run([str(word) for word in command], capture_output=True, text=True, timeout=bench.PATIENCE_S,
                               env={**os.environ, **(environment or {})})
         self.assertEqual(done.returncode, 3, done.stdout + done.stderr)
@@ -91,7 +91,7 @@ class Devices(unittest.TestCase):
         self.assertEqual((other / "out_voltage0_raw").read_text(), "1234\n")
         self.assertEqual((other / "out_voltage0_powerdown").read_text(), "1\n")
         (self.folder / "iio/iio:device0").unlink()
-        (self.folder / "iio/iio:device3").symlink_to(valve)  # its own converter comes back, under another number
+        (self.folder / "iio/iio:device3").symlink_to(valve)  # the rig's converter returns with another number
         bench.wait_for("the next session", lambda: "Communication with the board restored" in log.read_text())
 
     @unittest.skipUnless(digital_lines.PRELOADED.exists(), "not built: a sanitizer's runtime must be loaded first")

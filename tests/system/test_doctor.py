@@ -1,4 +1,4 @@
-"""softgrip doctor and calibrate as a technician runs them, with the emulator over TCP."""
+"""Tests softgrip doctor and calibrate as a technician runs them, with the emulator over TCP."""
 
 import json
 import os
@@ -39,13 +39,13 @@ class Doctor(bench.BenchTest):
         self.assertIn("cable", findings["board"]["advice"])
 
     def failures(self, report):
-        """The names of the failed checks; punctuality is left out because the machine may be busy."""
+        """Returns the names of the failed checks, except punctuality, because the machine may be busy."""
         return [finding["name"] for finding in report["findings"]
                 if finding["verdict"] == "fail" and finding["name"] not in ("timer", "bus time", "loop")]
 
     @staticmethod
     def swapped(key, one, other):
-        """Changes of the rig file that swap two terminals."""
+        """Returns changes of the rig file that swap two terminals."""
         kind = "output" if key == "valve" else "input"
         return [(rf"{key}: \{{{kind}: {a}\b", f"{key}: {{{kind}: {b}")
                 for a, b in ((one, 99), (other, one), (99, other))]
@@ -153,7 +153,8 @@ class Doctor(bench.BenchTest):
 
 
 class Calibrate(bench.BenchTest):
-    """The emulator is wired like the shipped rig; the file to calibrate has other values."""
+    """Tests softgrip calibrate. The emulator is wired like the shipped rig, and the rig file to be calibrated has other
+    values."""
 
     # The real sensor and valve, from config/rig_tcp.yaml.
     def true_mm(self, volts):
@@ -180,7 +181,7 @@ class Calibrate(bench.BenchTest):
             stream.close()
 
     def answer_with(self, child, reading):
-        """Answers every question until the end; returns everything that the program printed."""
+        """Answers every question until the program ends. Returns everything that the program printed."""
         said = b""
         while True:
             byte = os.read(child.stderr.fileno(), 1)
@@ -210,7 +211,7 @@ class Calibrate(bench.BenchTest):
         self.assertEqual(child.returncode, 0, said)
         error = float(re.search(r"sensor: error ([\d.]+) mm", out).group(1))
         sensor = self.line_in(out, "sensor")
-        # The gauge is read a moment before the average begins, and the finger creeps in between.
+        # The gauge is read a moment before the averaging begins, and the finger creeps in this time.
         for volts in (2, 4):
             self.assertAlmostEqual(sensor(volts), self.true_mm(volts), delta=error + 0.3, msg=out)
         self.assertEqual(max(emulator.commands_kpa()), 0)

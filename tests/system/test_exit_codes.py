@@ -1,5 +1,5 @@
-"""Every command in every ending: the exit code must be the one in docs/reference/exit-codes.md, which this test
-reads."""
+"""Tests every command with every ending. The exit code must equal the code in docs/reference/exit-codes.md, which this
+test reads."""
 
 import os
 import re
@@ -48,7 +48,8 @@ DESK = {
                            f"investigate --model {TWIN} --data bad.csv --rig config/rig.yaml --rig-channel left --yes "
                            "--out {out}/found", "log.csv", "found/investigation.json"),
 }
-# Commands that ask the daemon, in an order in which one daemon can answer all; each with the state that it needs.
+# The commands that send requests to the daemon, each with the state that it needs. In this order, one daemon can answer
+# all commands.
 CLIENTS = {
     "status": Command("status"),
     "sequences": Command("sequences"),
@@ -93,7 +94,7 @@ class Page(unittest.TestCase):
 
 
 class Desk(bench.BenchTest):
-    """Commands that work on files."""
+    """Tests the commands that work on files."""
 
     def setUp(self):
         super().setUp()
@@ -204,7 +205,7 @@ class Desk(bench.BenchTest):
 
 
 class Clients(bench.BenchTest):
-    """Commands that ask the daemon."""
+    """Tests the commands that send requests to the daemon."""
 
     def setUp(self):
         super().setUp()
@@ -311,14 +312,15 @@ class Clients(bench.BenchTest):
         self.each("closed pipe", check)
 
     def carried_out(self, name):
-        """The motion was carried out, wherever the sentence about it was written."""
+        """Checks that the motion was carried out. The sentence that reports the motion may be on either output
+        stream."""
         if name in ("stop", "vent", "release"):
             self.softgripd.wait_for_state("idle", "stopping", "holding")
             self.softgripd.wait_for_event("sequence_finished", since=self.since)
 
 
 class Motion(bench.BenchTest):
-    """Commands that move a rig: however they end, the outputs are safe afterwards."""
+    """Tests the commands that move a rig. After every ending the outputs must be safe."""
 
     def setUp(self):
         super().setUp()
@@ -332,8 +334,8 @@ class Motion(bench.BenchTest):
         self.count = 0
 
     def use_rested_fingers(self):
-        """Uses another rig: after a pressure a finger creeps for a minute, and doctor compares its motion with the
-        model."""
+        """Uses another rig with rested fingers, because a finger creeps for a minute after a pressure, and doctor
+        compares its motion with the model."""
         self.board = self.emulator("--faults", self.faults)
         self.rig_path = self.rig(self.board.port)
 
@@ -341,7 +343,7 @@ class Motion(bench.BenchTest):
         exit_codes.each(self, MOTION, ending, check)
 
     def line(self, command, out="out"):
-        """The words of the command, with its own rig and folders."""
+        """Returns the words of the command, with its own rig and folders."""
         self.use_rested_fingers()
         self.count += 1
         (self.folder / out / str(self.count)).mkdir()
@@ -354,7 +356,7 @@ class Motion(bench.BenchTest):
         self.assertLess(max(self.board.commands_kpa()), 0.1, f"{name} has ended, and a finger is under pressure")
 
     def working(self, line, **keys):
-        """The command, after it has raised a pressure."""
+        """Starts the command and returns it after it has raised a pressure."""
         child = subprocess.Popen(Runner.words(line, ""), cwd=self.folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
                                  stderr=subprocess.PIPE, env=self.runner.environment, **keys)
         self.addCleanup(child.kill)

@@ -1,4 +1,5 @@
-"""softgrip diagnose --explain: the comparisons for every name, by run and by cause, on the screen and in the files."""
+"""Tests softgrip diagnose --explain: the comparisons for every reported cause, by run and by cause, on the screen and
+in the files."""
 
 import json
 

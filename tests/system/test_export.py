@@ -1,5 +1,5 @@
-"""softgrip export, read by programs from other projects, and the files that identify, validate and diagnose write per
-log."""
+"""Tests softgrip export with readers from other projects, and the files that identify, validate and diagnose write for
+each log."""
 
 import csv
 import json
@@ -35,7 +35,7 @@ def same(test, got, wanted):
 
 
 class Signals(bench.BenchTest):
-    """A recording of two fingers, one of which once has no reading and also has a text."""
+    """A recording of two fingers. One finger has a missing reading and a text."""
 
     def setUp(self):
         super().setUp()
@@ -278,7 +278,7 @@ RATE_HZ, SECONDS = 1000, 60
 
 
 def wave_kpa(t):
-    """Sines of two frequencies, ramps, a jump and holds."""
+    """Returns a command of sines of two frequencies, ramps, a jump and holds."""
     if t < 10:
         return 20 * (1 - math.cos(2 * math.pi * 0.4 * t))
     if t < 25:
@@ -294,7 +294,7 @@ class ExportedC(bench.BenchTest):
     """How an exported model is compiled and run, and what `softgrip simulate` gives for the same commands."""
 
     def compiled(self, driver, model, *arguments):
-        """The program of an exported model; the compiler gives no warning with any option."""
+        """Compiles the program of an exported model. The compiler must give no warning with any option."""
         done = self.softgrip("export", model, "--out", "model.c", "--rate-hz", RATE_HZ, "--json", *arguments)
         told = json.loads(done.stdout)
         self.write("driver.c", driver.replace("NAME", told["function"].removesuffix("_step")))

@@ -1,5 +1,5 @@
-"""The Nth call fails, for every N until a run succeeds. This is the part that takes less than a minute;
-scripts/fail_nth.sh runs all."""
+"""Lets the Nth call of a function fail, for every N until a run succeeds. This test runs the part that takes less than
+a minute; scripts/fail_nth.sh runs all scenarios."""
 
 import unittest
 

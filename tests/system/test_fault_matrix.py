@@ -1,6 +1,6 @@
-"""The part of the fault matrix that runs with every test: one cell of every group in every relevant phase.
+"""Runs the part of the fault matrix that belongs to every test run: one cell of every group in every relevant phase.
 
-scripts/fault_matrix.sh runs all of it.
+scripts/fault_matrix.sh runs all cells.
 """
 
 import unittest

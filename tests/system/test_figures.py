@@ -1,4 +1,4 @@
-"""Figures as a user gets them: with a report, and from softgrip plot."""
+"""Tests the figures of reports and of softgrip plot."""
 
 import csv
 import pathlib

@@ -1,5 +1,5 @@
-"""Files that a command reads and writes: a command does not overwrite its own input, does not wait for a pipe, does not
-fill the memory because of a small file, and opens no other file that a file names."""
+"""Tests the files that a command reads and writes. A command must not overwrite its own input, wait for a pipe, fill
+the memory because of a small file, or open another file to which its input file refers."""
 
 import gzip
 import json
@@ -18,7 +18,8 @@ from bench_files import TWIN
 
 class Overwriting(bench_files.Files):
     def refused(self, line, input_path, program=bench.SOFTGRIP):
-        """The command refuses and its input is unchanged, also through a symbolic link and a hard link."""
+        """Checks that the command refuses the output and that its input is unchanged, also through a symbolic link and
+        a hard link."""
         path = self.folder / input_path
         before = path.read_bytes()
         with self.subTest(line):
@@ -73,7 +74,7 @@ class Overwriting(bench_files.Files):
                      "--out found", "found/step_1/log.csv")
 
     def test_what_is_continued_is_no_input(self):
-        """A mapping of the same log is written again, and scores are appended."""
+        """A command may overwrite the column mapping of the same log and append to stored scores."""
         self.softgrip("import", "log.csv", "--yes", "--out", "again.csv")
         self.write("raw.csv", (self.folder / "log.csv").read_text().replace("time_s,pressure_command_kpa,displacement_mm",
                                                                            "t [s],set [kPa],tip [mm]"))
@@ -91,7 +92,7 @@ class Overwriting(bench_files.Files):
 
 
 class Pipes(bench_files.Files):
-    """A pipe without a writer replaces a file. A command that waits for it never ends."""
+    """A pipe without a writer replaces an input file. A command that waits for the pipe would never end."""
 
     def test_inputs(self):
         self.record()
@@ -139,7 +140,8 @@ class Pipes(bench_files.Files):
 
 
 def compressed_matrix(name, rows, data):
-    """An element of a .mat file of version 5: a compressed column of doubles whose header announces `rows`."""
+    """Returns an element of a .mat file of version 5, which is a compressed column of doubles whose header states
+    `rows`."""
     def element(kind, content):
         return struct.pack("<II", kind, len(content)) + content + bytes(-len(content) % 8)
     flags = element(6, struct.pack("<II", 6, 0))  # class double
@@ -152,7 +154,7 @@ def compressed_matrix(name, rows, data):
 
 
 class Bombs(bench_files.Files):
-    """Small files that contain more than any memory can hold."""
+    """Tests small files whose uncompressed content is larger than any memory."""
 
     def packed(self, rows, times):
         with open(self.folder / "bomb.csv.gz", "wb") as file, gzip.GzipFile("", "wb", 9, file, 0) as text:
@@ -229,7 +231,7 @@ class Bombs(bench_files.Files):
 
 
 class OtherFiles(bench_files.Files):
-    """HDF5 files that name other files, whose content would get into the log."""
+    """Tests HDF5 files that refer to other files, whose content must not get into the log."""
 
     def setUp(self):
         super().setUp()

@@ -1,4 +1,5 @@
-"""Gentle grips: wherever the part is, it is held and squeezed by no more than the recipe allows."""
+"""Tests gentle grips. A part at any place must be held with a gripping pressure that does not exceed the limit of the
+recipe."""
 
 import csv
 import pathlib
@@ -20,8 +21,8 @@ class Gentle(bench.BenchTest):
                 self.assertEqual(gripping.broken(trial, judged, gripping.bound_kpa(gripping.recipe(trial))), [])
 
     def squeezed_kpa(self, truth):
-        """The pressure beyond what the free finger needs at that place; the part is rigid, so only the last place
-        counts."""
+        """Returns the pressure above the pressure that the free finger needs at the same place. The part is rigid, so
+        only the last place counts."""
         with open(truth, newline="") as file:
             rows = [row for row in csv.DictReader(file) if float(row["displacement_mm"]) > self.at_mm - 0.05]
         self.assertTrue(rows)

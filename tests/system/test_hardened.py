@@ -1,4 +1,4 @@
-"""The hardening options of every build of the programs, not only of the package."""
+"""Tests that every build of the programs has the hardening options, not only the package."""
 
 import platform
 import re

@@ -1,4 +1,4 @@
-"""softgrip health on recordings of softgrip run: it finds the change of a finger from its ordinary grips."""
+"""Tests softgrip health on recordings of softgrip run. It must find the change of a finger from its ordinary grips."""
 
 import datetime
 import json
@@ -17,7 +17,7 @@ def day(number, hour=8):
 
 
 class Health(bench.BenchTest):
-    """Twelve days with two grips each; the left finger changes from the ninth day on."""
+    """Recordings of 12 days with 2 grips per day. The left finger changes from the ninth day on."""
 
     @classmethod
     def setUpClass(cls):
@@ -148,7 +148,8 @@ class Health(bench.BenchTest):
 
 
 class Told(web.WebTest):
-    """The last result, which the service writes beside the recordings, is shown by every program that reads it."""
+    """Tests that every program that reads the last result shows it. The service writes this result next to the
+    recordings."""
 
     def judge(self):
         at_work = working_life.Rig(bench.SOFTGRIP, self.folder / "at_work")

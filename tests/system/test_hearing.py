@@ -1,6 +1,6 @@
-"""A vent is carried out whatever others do: floods, pipelined commands, silent crowds, clients that stop reading, files
-that never answer, a full disk, a reader that hangs. scripts/vent_times.py repeats the tests of Hearing that vent and
-keeps the longest time.
+"""Tests that a vent request is carried out regardless of other clients and resources: floods, pipelined commands, many
+silent clients, clients that stop reading, files that never respond, a full disk, and a reader that hangs.
+scripts/vent_times.py repeats the tests of Hearing that vent and prints the longest time.
 """
 
 import json
@@ -20,7 +20,8 @@ import bench
 import fail_nth
 import soak_disturbances
 
-# From the client's line to the written output. A busy machine may lengthen this time, other clients must not.
+# Longest time from the client's request to the written output. A busy machine may lengthen this time, but other clients
+# must not.
 VENT_BOUND_S = 0.5
 
 # A client that sends these lines, prints when it has sent them, and reads nothing.
@@ -67,7 +68,7 @@ class Hearing(bench.BenchTest):
         return client
 
     def vents(self, patience_s=5):
-        """How long a new client waits for the written output [s], and the answer that it gets."""
+        """Sends a vent request as a new client and checks the answer. Returns the time until the outputs fall [s]."""
         self.assertGreater(min(self.board.commands_kpa()), 10, "there is nothing to vent")
         began = time.monotonic()
         client = self.raw()
@@ -86,7 +87,7 @@ class Hearing(bench.BenchTest):
         self.addCleanup(self.stop_.set)
 
     def flood(self, line, reads=True):
-        """A client that sends as fast as it can, and reads its answers as fast, or never."""
+        """A client that sends as fast as it can, and reads its answers equally fast or never."""
         client = self.raw()
         client.settimeout(0.2)
 
@@ -141,7 +142,7 @@ class Hearing(bench.BenchTest):
         self.check_vent()
 
     def paused_clients(self, each):
-        """Processes that have sent their last line and are then stopped, as by a debugger, a closed laptop or a full
+        """Starts processes that send their last line and are then stopped, as by a debugger, a closed laptop or a full
         pipe."""
         for words, times in LAST_WORDS:
             for _ in range(each):
@@ -181,7 +182,7 @@ class Hearing(bench.BenchTest):
         self.assertEqual(self.daemon_.end(), 0)
 
     def serving_s(self):
-        """The processor time that the thread that serves clients has used."""
+        """Returns the processor time [s] of the thread that serves clients."""
         for task in pathlib.Path(f"/proc/{self.daemon_.child.pid}/task").iterdir():
             fields = (task / "stat").read_text()
             if "(softgrip-serve)" in fields:
@@ -272,7 +273,7 @@ class Ending(bench.BenchTest):
         os.close(writer)
         try:
             while True:
-                os.write(filler, b"x" * 4096)  # until it is full
+                os.write(filler, b"x" * 4096)  # writes until the pipe is full
         except BlockingIOError:
             os.close(filler)
         began = time.monotonic()

@@ -1,4 +1,4 @@
-"""How a person and a program see that a check failed."""
+"""Tests that a person and a program can see that a check failed."""
 
 import bench
 import terminal

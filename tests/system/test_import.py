@@ -1,4 +1,5 @@
-"""softgrip import as a user sees it: the matrix of foreign files, its questions, the kept answers, and the refusals."""
+"""Tests softgrip import as a user sees it: the table of external files, the questions, the stored answers, and the
+refusals."""
 
 import json
 import os

@@ -1,4 +1,4 @@
-"""softgrip init as a new user runs it: in a terminal, and by options."""
+"""Tests softgrip init as a new user runs it, in a terminal and with options."""
 
 import os
 import pty
@@ -36,12 +36,12 @@ class Terminal:
                 continue
             try:
                 said = os.read(self.master, 4096).decode()
-            except OSError:  # it has ended
+            except OSError:  # the program has ended
                 return
             self.said += said.replace("\r\n", "\n")
 
     def answer(self, question, text):
-        """Waits for a question that matches and answers it; returns the output since the last answer."""
+        """Waits for a matching question and answers it. Returns the output since the last answer."""
         self.read_until(lambda: re.search(rf"\? [^\n]*{question}[^\n]*: $", self.said))
         said, self.said = self.said, ""
         os.write(self.master, text.encode() + b"\n")

@@ -1,5 +1,5 @@
-"""softgrip investigate when the experiment is not as assumed: the finger touches an object, or the rig plays another
-signal. In both cases it ends with exit code 6, and does not use the recording as evidence."""
+"""Tests softgrip investigate if the experiment is not as assumed: the finger touches an object, or the rig plays
+another signal. In both cases the command must end with exit code 6 and must not use the recording as evidence."""
 
 import json
 import shlex
@@ -9,11 +9,11 @@ import bench
 
 GIVEN = "config/models/bench_twin.yaml"
 FINGER = "config/models/finger.yaml"
-# Once up and down. Afterwards the finger is softer, but the log also fits a sensor that has drifted or has a wrong
-# scale.
+# The pressure rises and falls once. Afterwards the finger is softer, but the log also fits a sensor that has drifted or
+# has a wrong scale.
 CORNERS = ((0, 0), (1, 0), (7, 45), (13, 0), (16, 0))
 RATE_HZ, NOISE_MM, NOISES, LONGEST_MINUTES = 25, "0.15", range(1, 17), 1
-# The rig behind --rig-command: a finger, and a regulator that changes the command on its way to the finger.
+# The rig behind --rig-command, which consists of a finger and a regulator that changes the command.
 PLAYER = """
 import csv, subprocess, sys
 with open(sys.argv[1], newline="") as file:
@@ -40,7 +40,8 @@ class Investigation(bench.BenchTest):
         self.assertTrue(any(map(self.asks, NOISES)), "for none of these logs an experiment is suggested")
 
     def asks(self, seed):
-        """Writes log.csv with this noise. True if a short experiment would separate the causes that explain it."""
+        """Writes log.csv with this noise. Returns True if a short experiment would separate the causes that explain the
+        log."""
         self.softgrip("simulate", "--model", FINGER, "--input", "load.csv", "--out", "log.csv", "--noise-mm", NOISE_MM,
                       "--seed", seed)
         told = json.loads(self.softgrip("diagnose", "--model", GIVEN, "--data", "log.csv", "--no-closed-loop", "--out",
@@ -64,7 +65,7 @@ class Investigation(bench.BenchTest):
         self.assertIn(told["why"], page)
 
     def simulated(self, about):
-        """The rig of config/rig.yaml with that finger. `about` replaces the stones in the file."""
+        """Writes the rig of config/rig.yaml with this finger. `about` replaces the stones in the file."""
         text = (self.folder / "config/rig.yaml").read_text()
         stone = "\n        object: {position_mm: 12, yielding: 0.1}    # a stone between the fingers"
         self.assertIn(stone, text)

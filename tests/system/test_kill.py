@@ -1,5 +1,5 @@
-"""kill -9 of the daemon in the middle of a grip: the board vents, and the recording is complete up to the last
-second."""
+"""Kills the daemon with kill -9 in the middle of a grip. The board must vent, and the recording must be complete except
+for at most the last second."""
 
 import json
 import random
@@ -54,8 +54,8 @@ class Kill(bench.BenchTest):
         self.assertEqual(again.status()["state"], "idle")
 
     def test_after_a_free_stroke_the_next_daemon_grips_again(self):
-        """A finger keeps an aftereffect of its last pressure. A daemon that did not observe it learns it with a stroke
-        without a part."""
+        """The creep of a finger after its last pressure is unknown to a new daemon. The daemon learns the creep from a
+        stroke without a part."""
         self.creep_faster()
         emulator = self.emulator("--object", "stone")
         rig = self.rig(emulator.port)
@@ -80,7 +80,7 @@ class Kill(bench.BenchTest):
         self.assertEqual(grip(), "HOLDING")
 
     def test_at_random_moments(self):
-        """scripts/kill_nine.sh makes a hundred of them."""
+        """Runs a few kills at random moments; scripts/kill_nine.sh runs a hundred."""
         seed = random.SystemRandom().randrange(1 << 31)
         print(f"seed {seed}")
         for number in range(4):

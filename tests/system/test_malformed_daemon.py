@@ -1,5 +1,5 @@
-"""A server sends lines that softgripd never sends: each command reports it in a sentence and ends with 4, and a gateway
-continues as without a daemon."""
+"""Tests a server that sends lines that softgripd never sends. Each command must report this in a sentence and end with
+exit code 4, and a gateway must continue as without a daemon."""
 
 import contextlib
 import json
@@ -123,7 +123,7 @@ class Commands(bench.BenchTest):
 
 
 class Gateways(bench.BenchTest):
-    """A gateway treats it as a lost connection and connects again."""
+    """Tests that a gateway treats a malformed line as a lost connection and connects again."""
 
     def setUp(self):
         super().setUp()

@@ -1,4 +1,4 @@
-"""A board has only one master, and signals that end a process let it end in order."""
+"""Tests that a board has only one Modbus client at a time, and that a process ends in order after a signal."""
 
 import os
 import pathlib
@@ -16,7 +16,7 @@ ENDING = (signal.SIGTERM, signal.SIGINT, signal.SIGHUP, signal.SIGQUIT, signal.S
 
 class Masters(bench.BenchTest):
     def second_rig(self, rig):
-        """The same board with another socket."""
+        """Writes a second rig file with the same board and another socket."""
         text = rig.read_text().replace("softgripd.sock", "second.sock")
         path = rig.with_name("second.yaml")
         path.write_text(text)

@@ -1,4 +1,4 @@
-"""mbpoll, which shares no code with softgrip, reads and writes the emulator."""
+"""Tests the emulator with mbpoll, which shares no code with softgrip."""
 
 import re
 import shutil

@@ -1,4 +1,4 @@
-"""The values that Prometheus reads are those of the daemon."""
+"""Tests that Prometheus reads the values of the daemon."""
 
 import json
 import shutil

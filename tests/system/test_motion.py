@@ -1,5 +1,6 @@
-"""Commands that move a rig without a daemon follow the same rule as the daemon: no pressure rises after a gap in which
-the board has vented, or without a sensor that the motion needs. They end with an exit code for it."""
+"""Tests that commands that move a rig without a daemon follow the same rule as the daemon: no pressure rises after a
+gap in which the board has vented, or without a sensor that the motion needs. The commands must then end with the
+corresponding exit code."""
 
 import json
 import re
@@ -47,7 +48,7 @@ class MotionTest(bench.BenchTest):
         bench.wait_for(f"{kpa} kPa", reached, pause_s=0.005)
 
     def outputs_to_the_end(self, child):
-        """The values of the outputs until the command ends."""
+        """Returns the values of the outputs until the command ends."""
         samples = []
         while child.running():
             samples.append(self.board.commands_kpa())
@@ -103,7 +104,7 @@ class Paused(MotionTest):
 
     def test_calibrate_while_it_asks(self):
         child = self.begin((*CALIBRATE, "--sensor", "--move", "--settle-s", "0.3"))
-        # Standard input is closed, so the pause is before the question, with pressure on the finger.
+        # Standard input is closed, so the pause occurs before the question, while the finger is pressurised.
         self.wait_for_pressure(child, 9.9)
         self.pause(child)
         samples = self.outputs_to_the_end(child)
@@ -137,7 +138,8 @@ class Silent(MotionTest):
         self.check_nothing_rises_again(samples)
 
     def test_calibrate_without_the_replies(self):
-        """The board still receives requests and holds: its outputs may keep the last command, but no more."""
+        """The board still receives requests and holds its outputs. The outputs may keep the last command, but must not
+        rise."""
         highest, samples = self.check("calibrate", "replies_lost", 4)
         self.assertLess(max(sample[0] for sample in samples), highest + 2, "at most one step of a cycle plus the noise")
         self.assertLessEqual(samples[-1][0], NOISE_KPA)

@@ -1,4 +1,4 @@
-"""The operator's page in a real browser: grips, parts that are lost, daemons that end and start, and permissions."""
+"""Tests the operator's page in a real browser: grips, lost parts, daemons that end and start, and permissions."""
 
 import http.server
 import os

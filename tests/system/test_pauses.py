@@ -1,4 +1,4 @@
-"""Whatever is paused, and for however long: when it continues, no pressure rises that was not commanded.
+"""Tests that no pressure rises without a command after a pause, regardless of the paused part and of the duration.
 
 The whole process (SIGSTOP) or only its loop, its bus or its service thread (ptrace) is paused, for less than,
 exactly and more than the time of the board's watchdog, in every phase of a grip, over a real wire.
@@ -12,7 +12,7 @@ import bench
 import pauses
 
 WATCHDOG_S = 0.5  # of the board map
-# What is paused, for how long, and the required result.
+# The paused part, the duration of the pause [s], and the required result.
 PAUSES = (
     ("process", 0.2, "anything"),   # shorter than the bus may be silent: the grip continues, or a fault ends it
     ("process", WATCHDOG_S, "F303"),

@@ -1,4 +1,4 @@
-"""Planned feedforward, from the rig file to the recording."""
+"""Tests planned feedforward from the rig file to the recording."""
 
 import math
 import re
@@ -15,7 +15,7 @@ TWIN = (("models/zhang2025.yaml", "models/bench_twin.yaml"), ("kp_kpa_per_mm: 3.
 
 
 class Virtual(bench.BenchTest):
-    """softgrip run in virtual time."""
+    """Tests softgrip run in virtual time."""
 
     def rig_with(self, *changes):
         text = (self.folder / "config/rig_planned.yaml").read_text()
@@ -75,7 +75,7 @@ class Virtual(bench.BenchTest):
 
 
 class Served(bench.BenchTest):
-    """The same over the socket, in real time."""
+    """Tests planned feedforward over the socket in real time."""
 
     def setUp(self):
         super().setUp()
@@ -103,7 +103,7 @@ class Served(bench.BenchTest):
         lines.file.write('{"id": 1, "command": "start", "sequence": "long", "sequence_text": "'
                          + long.replace("\n", "\\n") + '"}\n')
         lines.file.flush()
-        self.assertIn("idle", lines.ask('{"id": 2, "command": "status"}'))  # it answers while it plans
+        self.assertIn("idle", lines.ask('{"id": 2, "command": "status"}'))  # the daemon answers while it plans
         self.assertEqual(self.softgripd.ask("start", sequence="track_sine")["error"]["code"], "busy")
         self.softgripd.ask("vent")
         self.assertIn('"abandoned"', lines.file.readline())

@@ -1,4 +1,4 @@
-"""Faults of sensors, lines and outputs while a finger moves."""
+"""Tests faults of sensors, lines and outputs while a finger moves."""
 
 import time
 
@@ -17,7 +17,7 @@ FAULTS = """faults:
 
 class PlantFaults(bench.BenchTest):
     def tracking(self, changes=()):
-        """A daemon that tracks a sine with both fingers."""
+        """Starts a daemon that tracks a sine with both fingers."""
         self.emulated = self.emulator("--faults", self.write("faults.yaml", FAULTS))
         daemon = self.daemon(self.rig(self.emulated.port, changes))
         daemon.wait_for_state("idle")
@@ -41,7 +41,7 @@ class PlantFaults(bench.BenchTest):
         bench.wait_for("vented valves", lambda: max(self.emulated.commands_kpa()) < 0.1)
 
     def test_a_jumping_sensor(self):
-        # 15 mm at 100 mm/s: for 15 cycles no finger could be there.
+        # At 100 mm/s a finger needs 15 cycles for a motion of 15 mm, so the reading is implausible for 15 cycles.
         self.check_latches("jumping", ("F204",), "right", ((r"max_speed_mm_per_s: \d+", "max_speed_mm_per_s: 100"),
                                                            (r"invalid_reading_cycles: \d+", "invalid_reading_cycles: 10")))
 

@@ -1,4 +1,5 @@
-"""A PLC grips through softgrip-plc: counters, registers, a master that becomes silent, daemons that end and start."""
+"""Tests a PLC that grips through softgrip-plc: counters, registers, a master that becomes silent, and daemons that end
+and start."""
 
 import contextlib
 import socket
@@ -162,7 +163,7 @@ class Gateway(bench.BenchTest):
         self.assertEqual(master.command(plc.START, recipe=1)[0], plc.ACCEPTED)
 
     def test_the_reaction_to_a_silence_is_kept_for_the_next_daemon(self):
-        """The master becomes silent, and the daemon is killed before that is noticed."""
+        """The master becomes silent, and the daemon is killed before the gateway notices the silence."""
         changes = ((r"silence_s: 2", "silence_s: 0.5"), (r"when_silent: stop", "when_silent: vent"))
         master = self.master(self.gateway(changes=changes))
         self.assertEqual(master.command(plc.START, recipe=2)[0], plc.ACCEPTED)
@@ -234,7 +235,7 @@ class Gateway(bench.BenchTest):
         self.assertEqual(master.command(plc.VENT)[0], plc.ACCEPTED)
 
     def test_a_master_is_not_locked_out_by_its_own_dead_connections(self):
-        """The dead connections stay for a minute; the master gets a place much earlier."""
+        """The dead connections would stay for a minute, but the master must get a place much earlier."""
         gateway = self.gateway()
         dead = [self.master(gateway) for _ in range(4)]
         alive = bench.wait_for("a place", lambda: self.connected(gateway))

@@ -1,4 +1,4 @@
-"""Hostile masters of softgrip-plc get only refusals, and the PLC keeps its place."""
+"""Tests that hostile masters of softgrip-plc get only refusals and that the PLC keeps its place."""
 
 import contextlib
 import os
@@ -30,7 +30,7 @@ class Abuse(bench.BenchTest):
         return client
 
     def assert_well(self):
-        """The PLC gets answers on the connection that it has had from the beginning, and the rig has not moved."""
+        """Checks that the PLC still gets answers on its first connection and that the rig has not moved."""
         self.assertTrue(self.gateway.running())
         self.assertEqual(self.master.read("state"), plc.IDLE)
         status = self.softgripd.status()
@@ -141,7 +141,7 @@ class Abuse(bench.BenchTest):
         self.assert_well()
 
     def check_answers(self, data):
-        """The answer consists of complete frames, at most as many as requests, or the connection ends."""
+        """Checks that the answer consists of complete frames, at most one per request, or that the connection ends."""
         with socket.create_connection(("127.0.0.1", self.gateway.port)) as client:
             client.settimeout(bench.PATIENCE_S)
             answer = b""

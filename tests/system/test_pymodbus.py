@@ -1,4 +1,5 @@
-"""softgripd with a board served by pymodbus: two independent implementations of the protocol."""
+"""Tests softgripd with a board that pymodbus serves. The two programs have independent implementations of the
+protocol."""
 
 import json
 import pathlib

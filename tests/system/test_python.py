@@ -1,4 +1,4 @@
-"""The Python package with a real daemon: what a robot's program does, and what it experiences."""
+"""Tests the Python package with a real daemon, from the view of a robot's program."""
 
 import asyncio
 import os
@@ -95,7 +95,7 @@ class Python(bench.BenchTest):
         again.wait_for_state("idle")
         gripper.reconnect()
         self.assertEqual(gripper.wait(timeout_s=PATIENCE_S), softgrip.SequenceEnd.FAULTED)
-        # The finger has been squeezing until now: its creep on the way back would look like a part.
+        # The finger has gripped until now, so its creep on the way back would look like a part.
         gripper.start("pick_stone")
         with self.assertRaises(softgrip.GripFailed):
             gripper.wait_until(softgrip.Result.HOLDING, timeout_s=PATIENCE_S)

@@ -1,5 +1,5 @@
-"""Leaving the `with` block of a Python client, whatever happened in it: its own sequence no longer runs or an exception
-says that it may still run, and no sequence of another client is stopped."""
+"""Tests the end of the `with` block of a Python client after any event in the block. The client's own sequence must no
+longer run, or an exception must say that it may still run. No sequence of another client may be stopped."""
 
 import asyncio
 import contextlib
@@ -162,7 +162,7 @@ class Leaving(quiet_rig.QuietRigTest):
         self.assertEqual(self.running(), request)
 
     def interrupted(self, path, chance):
-        """A robot's program that gets a SIGINT in start() or a moment later."""
+        """Runs a robot's program that receives a SIGINT in start() or a moment later."""
         program = chance.choice((ROBOT, ROBOT, ASYNCIO_ROBOT))
         robot = subprocess.Popen([sys.executable, "-c", program, path, LONG, str(bench.PATIENCE_S)], text=True,
                                  stdout=subprocess.PIPE, stderr=subprocess.PIPE,

@@ -1,4 +1,5 @@
-"""Recordings of a grip that ends in a fault keep the promises; a recording with changed rows does not."""
+"""Tests that the recordings of a grip that ends in a fault satisfy the guarantees, and that a recording with changed
+rows does not."""
 
 import csv
 import signal
@@ -10,7 +11,8 @@ import recording_check
 
 class Recordings(bench.BenchTest):
     def record(self):
-        """A grip, a pause of the process beyond the board's watchdog, an acknowledgement, and another grip."""
+        """Records a grip, a pause of the process that is longer than the time-out of the board's watchdog, an
+        acknowledgement, and another grip."""
         emulator = self.emulator("--object", "stone")
         daemon = self.daemon(self.rig(emulator.port))
         daemon.wait_for_state("idle")
@@ -31,7 +33,7 @@ class Recordings(bench.BenchTest):
         return recordings
 
     def tampered(self, recording, change):
-        """The findings for the recording with changed rows; afterwards the recording is as before."""
+        """Returns the findings for the recording with changed rows. Afterwards the recording is restored."""
         path = recording / "run.csv"
         before = path.read_text()
         with open(path, newline="") as file:

@@ -1,4 +1,4 @@
-"""What scripts/rig_session.sh starts for the other scripts: an emulated rig and a daemon for it."""
+"""Tests scripts/rig_session.sh, which starts an emulated rig and its daemon for the other scripts."""
 
 import subprocess
 import unittest
@@ -7,7 +7,7 @@ import bench
 
 
 class RigSession(unittest.TestCase):
-    """The use of it in scripts/demo.sh."""
+    """Tests the use of scripts/rig_session.sh in scripts/demo.sh."""
 
     def test_a_rig_and_a_daemon_come_up_and_end(self):
         done = subprocess.run(["bash", "-euc", """

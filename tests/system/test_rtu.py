@@ -1,4 +1,5 @@
-"""A serial line end to end: real processes on a pseudo-terminal on which bytes take as long as on a line."""
+"""Tests a serial line end to end, with real processes on a pseudo-terminal on which bytes take as long as on a real
+line."""
 
 import re
 import shutil
@@ -12,7 +13,7 @@ from serial_rig import RATE_HZ
 
 
 class Line(bench.BenchTest):
-    """The shipped rig on a serial line: a pseudo-terminal of the emulator."""
+    """Tests the shipped rig on a serial line, which is a pseudo-terminal of the emulator."""
 
     def line_rig(self, *changes):
         return serial_rig.rig_file(self.folder, RATE_HZ, *changes)
@@ -82,7 +83,7 @@ class Line(bench.BenchTest):
 
 @unittest.skipUnless(shutil.which("mbpoll"), "mbpoll is not installed")
 class MbpollOnTheLine(bench.BenchTest):
-    """mbpoll, which shares no code with softgrip, is the master."""
+    """Tests the emulator with mbpoll as the Modbus client, which shares no code with softgrip."""
 
     def poll(self, *arguments):
         done = subprocess.run(["mbpoll", "-m", "rtu", "-b", "19200", "-P", "even", "-0", "-1", "-q",

@@ -1,4 +1,5 @@
-"""What remains after a daemon: softgripd --safe-outputs, which the service manager runs after a crash, and a hold."""
+"""Tests the outputs after the end of a daemon: softgripd --safe-outputs, which the service manager runs after a crash,
+and a hold."""
 
 import os
 import signal
@@ -80,7 +81,7 @@ class EditedRig(bench.BenchTest):
         return ended
 
     def edits(self):
-        """Changes that make a rig unreadable, by name."""
+        """Returns changes that make a rig file unreadable, by name."""
         board = self.folder / "config/boards/adam-6024.yaml"
         model = self.folder / "config/models/bench_twin.yaml"
         for path in (self.rig_path, board, model):
@@ -144,11 +145,12 @@ class EditedRig(bench.BenchTest):
 
 
 class Hold(bench.BenchTest):
-    """How long a hold lasts depends on the board. The programs say so before the start, at the start and at the end."""
+    """Tests the messages about a hold. The duration of a hold depends on the board, and the programs must say so before
+    the start, at the start and at the end."""
 
     def ends_holding(self, emulator, rig):
-        """The output of the check and of the daemon, which is ended while it holds, and the outputs of the board a
-        second later."""
+        """Returns the output of the check, the output of the daemon, which is ended while it holds, and the outputs of
+        the board 1 s later."""
         check = subprocess.run([bench.SOFTGRIPD, "--check", "--config", rig], capture_output=True, text=True, check=True)
         daemon = self.daemon(rig)
         daemon.wait_for_state("idle")

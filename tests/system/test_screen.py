@@ -1,4 +1,4 @@
-"""The output on the screen: pressure that remains, refusals as sentences, events as a journal."""
+"""Tests the output on the screen: remaining pressure, refusals as sentences, and events as a journal."""
 
 import json
 import re

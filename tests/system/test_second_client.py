@@ -1,4 +1,5 @@
-"""Another Modbus client that only reads keeps the board's watchdog from tripping: which programs report it, and how."""
+"""Tests another Modbus client whose reads keep the board's watchdog from tripping. The programs must report this
+client."""
 
 import contextlib
 import json

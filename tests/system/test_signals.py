@@ -1,5 +1,5 @@
-"""A signal that interrupts a command: first safe outputs, then the end by the same signal, so that a shell ends its
-loop."""
+"""Tests a signal that interrupts a command. The command must write safe outputs and then end by the same signal, so
+that a shell ends its loop."""
 
 import os
 import signal
@@ -23,7 +23,7 @@ class Interrupted(bench.BenchTest):
         return process
 
     def running(self, *more):
-        """A run whose fingers are under pressure."""
+        """Starts a run and returns it when its fingers are pressurised."""
         run = self.process(bench.SOFTGRIP, "run", "config/sequences/pick_stone.yaml", "--rig", self.rig_path, *more)
         bench.wait_for("pressure", lambda: min(self.board.commands_kpa()) > 3, pause_s=0.005)
         return run
@@ -92,7 +92,7 @@ class Interrupted(bench.BenchTest):
 
 
 class WithoutABoard(bench.BenchTest):
-    """Virtual time: an endless sequence is interrupted, and its recording is closed."""
+    """Tests virtual time: an endless sequence is interrupted, and its recording is closed."""
 
     def test_a_run_in_virtual_time(self):
         for number in INTERRUPTING:

@@ -1,4 +1,4 @@
-"""Version 1 of the socket API: identity and permissions of a client, dry runs, and events without gaps."""
+"""Tests version 1 of the socket API: identity and permissions of a client, dry runs, and events without gaps."""
 
 import json
 import time
@@ -8,7 +8,7 @@ import bench
 
 
 class Client:
-    """A connection that keeps its answers apart from the lines that it did not ask for."""
+    """A connection that separates the answers to its requests from all other lines."""
 
     def __init__(self, path):
         self.lines = bench.Lines(path)
@@ -39,7 +39,7 @@ class Client:
         return line
 
     def events(self, until):
-        """The received events, up to one for which `until` is true."""
+        """Returns the received events up to an event for which `until` is true."""
         events = []
         while True:
             line = self.told.pop(0) if self.told else self.line()

@@ -1,4 +1,5 @@
-"""softgrip start is interrupted: its sequence is stopped and no other, and the program ends by the signal."""
+"""Tests the interruption of softgrip start. Only its own sequence must be stopped, and the program must end by the
+signal."""
 
 import json
 import os

@@ -1,4 +1,4 @@
-"""softgrip tune and softgrip study as a user sees them, with short option sets."""
+"""Tests softgrip tune and softgrip study as a user sees them, with options for short runs."""
 
 import json
 import re

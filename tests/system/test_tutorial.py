@@ -20,7 +20,7 @@ FENCE = re.compile(r"^```\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 
 
 def fences(page):
-    """The page's commands, one string per fence."""
+    """Returns the commands of the page, one string per fence."""
     return FENCE.findall((bench.SOURCE / "docs/tutorial" / page).read_text(encoding="utf-8"))
 
 
@@ -44,7 +44,7 @@ class FirstRun(bench.BenchTest):
             "/tmp/softgrip-runs", f"{self.folder}/runs")
 
     def beside(self, name, words):
-        """A command that the page runs in its own terminal."""
+        """Runs a command that the page runs in its own terminal."""
         line = f"PATH={self.environment['PATH']}; exec {self.said(words).strip()}"
         process = bench.Process(name, ["bash", "-c", line], self.folder)
         self.processes.append(process)
@@ -57,7 +57,7 @@ class FirstRun(bench.BenchTest):
         return done.stdout
 
     def status(self):
-        """None as long as the daemon does not listen."""
+        """Returns the status, or None as long as the daemon does not listen."""
         done = subprocess.run([bench.SOFTGRIP, "status", "--json"], cwd=self.folder, text=True, capture_output=True,
                               env=self.environment)
         return json.loads(done.stdout) if done.returncode == 0 else {}
@@ -103,7 +103,7 @@ class FirstRun(bench.BenchTest):
         self.check_on_paper(self.folder / "diagnosis/report.html")
 
     def check_on_paper(self, page):
-        """It is also the report of the demo."""
+        """Checks the printed report, which is also the report of the demo."""
         text = page.read_text(encoding="utf-8")
         self.assertLess(len(text.encode()), 1_500_000)
         sheets = printing.sheets(page, self.folder)

@@ -1,4 +1,5 @@
-"""A rig from -40 to 60 kPa on the emulated board: whatever ends a vacuum, it ends at the rest pressure of 0 kPa."""
+"""Tests a rig from -40 to 60 kPa on the emulated board. Regardless of the reason for its end, a vacuum must end at the
+rest pressure of 0 kPa."""
 
 import os
 import signal
@@ -40,7 +41,8 @@ class Vacuum(bench.BenchTest):
             self.assertAlmostEqual(kpa, VACUUM_KPA, delta=EQUAL_KPA)
 
     def wait_for_rest(self):
-        """The rest pressure is reached and not passed: 0 kPa is the highest pressure on the way back from a vacuum."""
+        """Waits until the rest pressure is reached and checks that it is not passed: 0 kPa is the highest pressure on
+        the way back from a vacuum."""
         highest_kpa = -1e9
         end = time.monotonic() + bench.PATIENCE_S
         while time.monotonic() < end:

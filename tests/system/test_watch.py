@@ -1,4 +1,4 @@
-"""softgrip watch on a terminal: what it shows, what its keys do, and that it restores the terminal."""
+"""Tests softgrip watch on a terminal: the display, the keys, and the restored terminal at the end."""
 
 import os
 import signal

@@ -1,5 +1,5 @@
-"""The service manager's watchdog is notified while loop, bus and service thread run; the notices end as soon as one of
-them hangs."""
+"""Tests that the daemon notifies the service manager's watchdog while the loop, the bus and the service thread run. The
+notifications must end as soon as one of these threads hangs."""
 
 import contextlib
 import os
@@ -33,7 +33,7 @@ class Watchdog(bench.BenchTest):
         self.daemon_.wait_for_state("idle")
 
     def notices_for(self, seconds):
-        """What the daemon told the service manager in the next seconds."""
+        """Returns the messages of the daemon to the service manager in the next seconds."""
         texts, end = [], time.monotonic() + seconds
         while (left := end - time.monotonic()) > 0:
             self.notices.settimeout(left)

@@ -1,4 +1,4 @@
-"""Hostile clients of softgrip-web get only refusals, and the daemon is not affected."""
+"""Tests that hostile clients of softgrip-web get only refusals and that the daemon is not affected."""
 
 import contextlib
 import random
@@ -30,7 +30,7 @@ class Abuse(web.WebTest):
         return client
 
     def say(self, data):
-        """The complete answer to these bytes, after which nothing is sent."""
+        """Sends these bytes and no others. Returns the complete answer."""
         with socket.create_connection(("127.0.0.1", self.told.port)) as client:
             client.settimeout(bench.PATIENCE_S)
             # the server may close the connection before everything is sent: EPIPE, ECONNRESET, ENOTCONN
@@ -48,7 +48,7 @@ class Abuse(web.WebTest):
         return int(answer.split()[1]) if answer else 0
 
     def assert_well(self):
-        """softgrip-web answers, and the daemon's loop has continued."""
+        """Checks that softgrip-web answers and that the daemon's loop has continued."""
         def well():
             with contextlib.suppress(OSError):
                 return self.told.ask("/api/status")[0] == 200

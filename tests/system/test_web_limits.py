@@ -1,4 +1,5 @@
-"""Limits of softgrip-web: a viewer cannot use up what an operator needs for a stop or a vent."""
+"""Tests the limits of softgrip-web. A viewer must not use up the resources that an operator needs for a stop or a
+vent."""
 
 import contextlib
 import os
@@ -20,8 +21,8 @@ MEMORY_OF_UNIT_KIB = 128 * MIB_IN_KIB
 
 
 def processor_s(pid):
-    """The processor time that a process has used. Other processes have no influence on it, unlike on the elapsed
-    time."""
+    """Returns the processor time of a process [s]. Other processes have no influence on this time, unlike on the
+    elapsed time."""
     fields = pathlib.Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
     return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
@@ -37,7 +38,7 @@ class Limits(web.WebTest):
         """The tests of this file record nothing, or fill the folder themselves."""
 
     def send(self, told, path, receive_buffer=None):
-        """A connection that sends a request and does not read the answer."""
+        """Opens a connection that sends a request and does not read the answer."""
         client = socket.socket()
         self.addCleanup(client.close)
         client.settimeout(bench.PATIENCE_S)
@@ -54,13 +55,13 @@ class Limits(web.WebTest):
         return answer
 
     def log_in(self, told, token):
-        """The cookie of a new session."""
+        """Returns the cookie of a new session."""
         status, _, headers = told.ask("/api/session", {"token": token})
         self.assertEqual(status, 200)
         return headers["Set-Cookie"].partition(";")[0]
 
     def assert_heard(self, told):
-        """A stop, a vent and the metrics are answered at the first request."""
+        """Checks that a stop, a vent and the metrics are answered at the first request."""
         status, answer = told.command("stop")
         self.assertEqual((status, answer["details"]["refusal"]["name"]), (409, "nothing_to_stop"),
                          "the daemon must answer")

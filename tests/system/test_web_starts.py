@@ -1,4 +1,5 @@
-"""Starts from a browser that does not receive the answer: softgrip-web stops each by its id, and no other sequence."""
+"""Tests starts from a browser that does not receive the answer. softgrip-web must stop each of these starts by its id,
+and no other sequence."""
 
 import json
 import signal

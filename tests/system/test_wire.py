@@ -1,12 +1,12 @@
-"""The wire is cut in the middle of a grip: which fault latches and when, what the outputs do, and what is needed to
-continue."""
+"""Cuts the connection in the middle of a grip and tests which fault latches, when it latches, how the outputs change,
+and which steps are needed to continue."""
 
 import bench
 
 
 class Wire(bench.BenchTest):
     def holding(self, *emulator_arguments, changes=()):
-        """A daemon that holds a stone with both fingers."""
+        """Starts a daemon that holds a stone with both fingers."""
         self.rig_process = self.emulator("--object", "stone", *emulator_arguments)
         self.rig_file = self.rig(self.rig_process.port, changes)
         daemon = self.daemon(self.rig_file)
@@ -19,7 +19,8 @@ class Wire(bench.BenchTest):
         return daemon
 
     def check_cycles_to_fault(self, recording):
-        """The fault occurs after the number of cycles without a good exchange that the rig file allows, not later."""
+        """Checks that the fault occurs no later than after the number of cycles without a successful exchange that the
+        rig file allows."""
         rows = self.rows(recording, "left")
         faulted = next(i for i, row in enumerate(rows) if row["state"] == "faulted")
         missed = 0

@@ -1,4 +1,5 @@
-"""Every fault of the wire that the emulator knows: short faults cause no stop, lasting faults latch with their code."""
+"""Tests every connection fault of the emulator. Short faults must cause no stop, and lasting faults must latch with
+their code."""
 
 import bench
 

@@ -1,4 +1,4 @@
-"""softgrip-web with the other processes of a test."""
+"""Runs softgrip-web with the other processes of a test."""
 
 import json
 import re
@@ -12,7 +12,7 @@ LOOK, OPERATE = "look-" + "a" * 20, "operate-" + "b" * 20
 
 
 class Web(bench.Process):
-    """On a free port, for the test's daemon; `access` is the text of the access file, `operate` the socket for
+    """softgrip-web on a free port for the daemon of the test. `access`: text of the access file. `operate`: socket for
     commands."""
 
     def __init__(self, folder, access="without_token: operate", name="softgrip-web", port=0, most=64, environment=None,
@@ -36,7 +36,7 @@ class Web(bench.Process):
         return found and found.group(1)
 
     def ask(self, path, body=None, method=None, token=None, headers=()):
-        """(status, text, headers) of a request as the page sends it, or with a token."""
+        """Sends a request as the page does, or with a token. Returns (status, text, headers)."""
         request = urllib.request.Request(self.address + path, method=method,
                                          data=None if body is None else json.dumps(body).encode())
         if body is not None:
@@ -58,7 +58,7 @@ class Web(bench.Process):
         return status, json.loads(text)
 
     def metrics(self):
-        """The values by name with labels, as in the text."""
+        """Returns the values by their names with labels, as in the text."""
         status, text, _ = self.ask("/metrics")
         if status != 200:
             raise AssertionError(f"/metrics: {status} {text}")

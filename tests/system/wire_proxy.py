@@ -1,4 +1,4 @@
-"""A Modbus TCP wire between daemon and board that can be disturbed, and that records what was written.
+"""A Modbus TCP proxy between daemon and board that can disturb the connection and that records the written values.
 
 It knows the shipped ADAM-6024 map: six inputs from 0, two outputs from 10, input status from 20. A disturbance of a
 message has the name of a kind (KINDS); fault_matrix.yaml describes each kind by the class of faults that it
@@ -24,7 +24,7 @@ TOLERATED_RAW = 1
 
 
 class Frame:
-    """One Modbus TCP message in parts that can be changed."""
+    """One Modbus TCP message, divided into parts that can be changed."""
 
     def __init__(self, raw):
         self.transaction, self.protocol, self.length, self.unit = struct.unpack(">HHHB", raw[:7])
@@ -41,14 +41,14 @@ class Frame:
         return struct.unpack(">H", self.pdu[1:3])[0]
 
     def words(self):
-        """The words of a reply to a register read."""
+        """Returns the words of a reply to a register read."""
         return list(struct.unpack(f">{self.pdu[1] // 2}H", self.pdu[2:2 + self.pdu[1]]))
 
     def set_words(self, words):
         self.pdu[2:] = struct.pack(f">{len(words)}H", *words)
 
     def written(self):
-        """The words of a request that writes several registers."""
+        """Returns the words of a request that writes several registers."""
         return list(struct.unpack(f">{self.pdu[5] // 2}H", self.pdu[6:6 + self.pdu[5]]))
 
     def set_written(self, words):
@@ -56,18 +56,18 @@ class Frame:
 
 
 class Fault:
-    """What goes wrong while the fault is active. `times`: only for so many messages."""
+    """A fault of the connection. `times`: number of messages that the fault affects."""
 
     def __init__(self, kind, times=None, seed=1, **keys):
         self.kind = KINDS[kind]
         self.left = math.inf if times is None else times
         self.keys = keys
         self.random = random.Random(seed)
-        self.first_touch = None  # time.monotonic() of the first message that it changed
-        self.memory = {}  # what a kind must remember
+        self.first_touch = None  # time.monotonic() of the first changed message
+        self.memory = {}  # state that a kind of fault keeps between messages
 
     def touch(self):
-        """True if this message is one of those to be changed."""
+        """Returns True if this message must be changed."""
         if self.left <= 0:
             return False
         self.left -= 1
@@ -75,7 +75,7 @@ class Fault:
         return True
 
     def differs(self):
-        """The message now differs from what it should be."""
+        """Records that a message has been changed."""
         if self.first_touch is None:
             self.first_touch = time.monotonic()
 
@@ -135,7 +135,7 @@ class Session:
         self.send(reply.bytes())
 
     def wait_until_gone(self):
-        """Sends and answers nothing more; ends when the daemon closes the session."""
+        """Sends and answers nothing more, and returns when the daemon closes the session."""
         while not self.proxy.closed:
             ready, _, _ = select.select([self.client], [], [], 0.05)
             if ready and not self.client.recv(4096):
@@ -188,7 +188,7 @@ def repeated(session, fault, request):
 
 
 def replayed(session, fault, request):
-    """Old contents in a new frame, as a gateway with a cache returns them."""
+    """Replies with old contents in a new frame, as a gateway with a cache does."""
     reply = session.ask_board(request)
     session.proxy.note(request)
     if request.function == 4:
@@ -214,7 +214,7 @@ def inserted(session, fault, request):
 
 
 def other_function(session, fault, request):
-    """A well-formed answer to a different request."""
+    """Sends a well-formed answer to a different request."""
     if not fault.touch():
         return False
     reply = session.ask_board(request)
@@ -225,7 +225,7 @@ def other_function(session, fault, request):
 
 
 def twin(session, fault, request):
-    """Another board of the same kind answers, at rest and vented; the form of its messages is correct."""
+    """Replies like another board of the same kind that is at rest and vented. The form of its messages is correct."""
     reply = session.ask_board(request)
     session.proxy.note(request)
     if request.function == 4 and fault.touch():
@@ -260,7 +260,7 @@ def from_other_unit(session, fault, request):
 
 
 def out_of_order(session, fault, request):
-    """Each request is answered by the answer to the previous one."""
+    """Answers each request with the answer to the previous request."""
     if not fault.touch():
         return False
     reply = session.ask_board(request)
@@ -281,7 +281,7 @@ def wrong_sequence(session, fault, request):
 
 
 def corrupted_header(session, fault, request):
-    """One bit of the frame's first eight bytes."""
+    """Changes one bit of the first 8 bytes of the frame."""
     if not fault.touch():
         return False
     raw = bytearray(session.ask_board(request).bytes())
@@ -293,7 +293,7 @@ def corrupted_header(session, fault, request):
 
 
 def changed_words(session, fault, request, change):
-    """Passes the reply to a read of the inputs on after `change` has changed its words."""
+    """Changes the words of the reply to a read of the inputs by `change` and passes the reply on."""
     reply = session.ask_board(request)
     session.proxy.note(request)
     if is_read_of(request, INPUTS) and len(reply.pdu) > 2 and reply.function == 4 and fault.touch():
@@ -305,7 +305,7 @@ def changed_words(session, fault, request, change):
 
 
 def corrupted_value(session, fault, request):
-    """One bit of the left finger's displacement."""
+    """Changes one bit of the left finger's displacement."""
     def change(words):
         words[0] ^= 1 << fault.key("bit", 14)
     return changed_words(session, fault, request, change)
@@ -336,7 +336,7 @@ def sensor_noise(session, fault, request):
 
 
 def sensor_dropout(session, fault, request):
-    """From time to time the signal is missing for a reading."""
+    """Removes the sensor signal from some readings."""
     def change(words):
         fault.memory["n"] = fault.memory.get("n", 0) + 1
         if fault.memory["n"] % fault.key("every", 3) == 0:
@@ -351,7 +351,7 @@ def sensor_out_of_range(session, fault, request):
 
 
 def sensor_error(session, fault, request):
-    """The board's own status word of the left input says `over`."""
+    """Sets the board's status word of the left input to `over`."""
     reply = session.ask_board(request)
     session.proxy.note(request)
     if is_read_of(request, STATUS) and fault.touch():
@@ -375,21 +375,22 @@ def changed_write(session, fault, request, change):
 
 
 def asymmetric(session, fault, request):
-    """The left output gets another number than was sent, the right output the one that was sent."""
+    """Changes the value for the left output, but not the value for the right output."""
     def change(words):
         words[0] = min(4095, round(words[0] + fault.key("by_kpa", 10) * RAW_PER_KPA))
     return changed_write(session, fault, request, change)
 
 
 def received_by_some(session, fault, request):
-    """Only the right output takes the value; the left one keeps the value from when this began."""
+    """Passes only the value for the right output on. The left output keeps its value from the beginning of the
+    fault."""
     def change(words):
         words[0] = fault.memory.setdefault("word", words[0])
     return changed_write(session, fault, request, change)
 
 
 def blocked(session, fault, request):
-    """Another sender talks without a pause, so no answer gets through."""
+    """Simulates another sender that sends without a pause, so that no answer arrives."""
     if not fault.touch():
         return False
     session.ask_board(request)
@@ -409,7 +410,7 @@ def reset(session, fault, request):
 
 
 def half_open(session, fault, request):
-    """This session is dead without a message; new sessions work normally."""
+    """Makes this session fail without a message to either side. New sessions work normally."""
     sessions = fault.memory.setdefault("dead", set())
     if not sessions:
         sessions.add(id(session))
@@ -421,7 +422,7 @@ def half_open(session, fault, request):
 
 
 def silent(session, fault, request):
-    """Sessions stay open and new ones are accepted, but no request is answered."""
+    """Keeps sessions open and accepts new sessions, but answers no request."""
     if not fault.touch():
         return False
     session.wait_until_gone()
@@ -450,7 +451,7 @@ def stalled(session, fault, request):
 
 
 def exception(session, fault, request):
-    """No request is carried out."""
+    """Answers with an exception and carries out no request."""
     if not fault.touch():
         return False
     request.pdu = bytearray([request.function | 0x80, fault.key("code", 4)])
@@ -459,7 +460,7 @@ def exception(session, fault, request):
 
 
 def refused(session, fault, request):
-    """Sessions end, and new ones end at once."""
+    """Ends all sessions, and ends new sessions immediately."""
     if not fault.touch():
         return False
     raise ConnectionError("refused")
@@ -473,8 +474,8 @@ KINDS = {f.__name__: f for f in (
 
 
 class Proxy:
-    """Accepts the daemon and connects to the board. `writes` are (time.monotonic(), [raw outputs]) that it passed
-    on."""
+    """Accepts the connection of the daemon and connects to the board. `writes`: (time.monotonic(), [raw outputs]) of
+    each write that was passed on."""
 
     def __init__(self, board_port):
         self.board_port = board_port

@@ -14,7 +14,7 @@ STYLES = (f'<styleSheet xmlns="{MAIN}"><numFmts count="3"><numFmt numFmtId="164"
 
 
 class Cell:
-    """The inside of a cell: its attributes and its elements."""
+    """The content of a cell: its attributes and its elements."""
 
     def __init__(self, inside, attributes=""):
         self.inside, self.attributes = inside, attributes
@@ -44,7 +44,8 @@ def letters(column):
 
 
 def sheet(rows, strings, first_row=1, first_column=0, below="", row_attributes=""):
-    """Rows of cells. None is no cell; a row that is None is not in the file. Texts go into `strings`."""
+    """Returns the XML of a sheet with these rows of cells. A cell or a row that is None is missing in the file. Texts
+    are added to `strings`."""
     lines = []
     for number, row in enumerate(rows, first_row):
         if row is None:
@@ -67,7 +68,8 @@ def sheet(rows, strings, first_row=1, first_column=0, below="", row_attributes="
 
 
 def package(sheets, strings=(), from_1904=False, changed=None):
-    """The bytes of a workbook. `sheets`: XML by name. `changed`: parts that are replaced, or left out (None)."""
+    """Returns the bytes of a workbook. `sheets`: XML by name. `changed`: parts that are replaced, or left out
+    (None)."""
     relations, listed, parts = [], [], {}
     for number, (name, xml) in enumerate(sheets.items(), 1):
         relations.append((f"rId{number}", "worksheet", f"worksheets/sheet{number}.xml"))
@@ -92,7 +94,7 @@ def package(sheets, strings=(), from_1904=False, changed=None):
 
 
 def book(rows, **options):
-    """A workbook of one sheet."""
+    """Returns a workbook of one sheet."""
     strings = []
     xml = sheet(rows, strings, **options)
     return package({"Run": xml}, strings)

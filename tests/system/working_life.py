@@ -1,4 +1,4 @@
-"""A rig that works for months, in virtual time: grips recorded by `softgrip run` on fingers that change.
+"""Simulates a rig that works for months, in virtual time. `softgrip run` records grips on fingers that change.
 
 A change is made in the simulated plant, never in the recording: another gain of the model, a line that leaks, a sensor
 with a wrong scale. Only the time of day is written into run.json afterwards, because a run in virtual time has none.
@@ -12,7 +12,7 @@ import subprocess
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
 MODEL = SOURCE / "config/models/bench_twin.yaml"
-# The parameters that a larger gain makes larger, and those that it makes smaller.
+# The parameters that increase with the gain, and the parameters that decrease with the gain.
 GAINS = {"alpha_mm_per_kpa": 0.21105, "beta_mm_per_kpa": 0.1713}
 STIFFNESSES = {"k0_kpa_per_mm": 325.9, "k1_kpa_per_mm": 18.16, "c1_kpa_s_per_mm": 299.8, "k2_kpa_per_mm": 2.761,
                "c2_kpa_s_per_mm": 1.621}
@@ -23,10 +23,10 @@ THERMOMETER_NOISE_C = 0.2
 
 @dataclasses.dataclass(frozen=True)
 class Finger:
-    """The changes of a finger."""
+    """The simulated changes of a finger."""
     gain: float = 1
     zero_mm: float = 0
-    leak: float = 0  # share of the pressure
+    leak: float = 0  # lost share of the pressure
     valve_lag_s: float = VALVE_LAG_S
     gain_per_c: float = 0
 
@@ -37,7 +37,7 @@ class Grip:
     seed: int
     fingers: dict  # by name
     sequence: str = "pick_stone"
-    part_mm: float = 12  # where the part is
+    part_mm: float = 12  # position of the part
     temperature_c: float = 20
     thermometer: bool = False  # the rig has one thermometer for all channels
 
@@ -52,7 +52,7 @@ class Rig:
         self.recordings.mkdir(parents=True, exist_ok=True)
 
     def baseline(self):
-        """The logs of the healthy finger, and the result of `softgrip baseline` for them."""
+        """Writes the logs of the healthy finger and the result of `softgrip baseline` for these logs."""
         logs = []
         for signal in ("tp1", "steps", "sp2"):
             logs.append(self.folder / f"{signal}.csv")
@@ -64,7 +64,7 @@ class Rig:
         return self.recordings / f"{grip.at.replace(':', '-')}_{grip.sequence}"
 
     def has(self, grip):
-        """True if it was played completely."""
+        """Returns True if the sequence was played completely."""
         story = self._run_of(grip) / "run.json"
         return story.exists() and "started_at" in json.loads(story.read_text())
 

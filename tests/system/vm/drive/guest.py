@@ -1,4 +1,5 @@
-"""The basis of the steps in the guest: commands, the service, the emulator, and a printed verdict per step."""
+"""Provides the functions for the steps in the guest: commands, the service, the emulator, and the printed result of
+each step."""
 
 import json
 import os
@@ -16,12 +17,12 @@ RIG = CONFIGURATION / "rig_service.yaml"
 UNIT = "softgripd.service"
 SOCKET = "/run/softgrip/softgripd.sock"
 RUNS = pathlib.Path("/var/lib/softgrip/runs")
-# Generous, because the guest is emulated. A step that has its own limit states it.
+# Generous limit, because the guest is emulated. Some steps have their own limits.
 PATIENCE_S = 40
 
 
 class Failed(Exception):
-    """Something that a step expected did not happen."""
+    """A step did not have the expected result."""
 
 
 def expect(condition, what):
@@ -30,7 +31,7 @@ def expect(condition, what):
 
 
 def sh(command, check=True):
-    """The output of a command line, both streams; it must succeed unless `check` is false."""
+    """Runs a command line and returns its output, both streams. The command must succeed unless `check` is false."""
     done = subprocess.run(["bash", "-c", command], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
                           stdin=subprocess.DEVNULL, check=False)
     if check and done.returncode != 0:
@@ -39,7 +40,7 @@ def sh(command, check=True):
 
 
 def wait_for(what, condition, patience_s=PATIENCE_S, pause_s=0.1):
-    """The first true result of condition(), and the seconds that it took."""
+    """Returns the first true result of condition() and the time until this result [s]."""
     begin = time.monotonic()
     while True:
         result = condition()
@@ -65,7 +66,7 @@ def ask(path, line):
 
 
 class Emulator:
-    """softgrip-rig behind the installed rig file. Its board has no watchdog, so only softgrip can have vented it."""
+    """softgrip-rig as the board of the installed rig file. This board has no watchdog, so only softgrip can vent it."""
 
     control = "/run/emulator.sock"
     process = None
@@ -74,8 +75,8 @@ class Emulator:
         self.start()
 
     def start(self):
-        """Starts it with fingers that never moved. A used finger would creep back for half a minute before a start is
-        accepted."""
+        """Starts the service with fingers that never moved. A used finger would creep back for half a minute before a
+        start is accepted."""
         if self.process:
             self.process.kill()
             self.process.wait()
@@ -92,7 +93,7 @@ class Emulator:
         return took_s
 
     def expect_still(self, seconds):
-        """No pressure is commanded for so long."""
+        """Checks that no pressure is commanded for this duration."""
         end = time.monotonic() + seconds
         while time.monotonic() < end:
             expect(max(self.commands_kpa()) == 0, f"the outputs moved: {self.commands_kpa()}")
@@ -100,8 +101,8 @@ class Emulator:
 
 
 class Lines:
-    """A chip of simulated GPIO lines that the rig file names and the test switches, and a chip that the rig file does
-    not name."""
+    """A chip of simulated GPIO lines that the rig file uses and the test switches, and a second chip that the rig file
+    does not use."""
 
     label = "softgrip-panel"
     emergency_stop, enable = 0, 1
@@ -117,7 +118,7 @@ class Lines:
 
     @staticmethod
     def plug_in(name, label):
-        """Adds a chip of two lines; returns its name and its folder."""
+        """Adds a chip of two lines. Returns the name and the folder of the chip."""
         device = pathlib.Path("/sys/kernel/config/gpio-sim") / name
         bank = device / "bank"
         bank.mkdir(parents=True)
@@ -176,7 +177,7 @@ class Service:
         return wait_for(f"event {kind} {keys}", find, patience_s)[0][0]
 
     def thread(self, name):
-        """The number of one of its threads."""
+        """Returns the id of a thread of the service."""
         tasks = pathlib.Path(f"/proc/{self.pid()}/task")
         for task in tasks.iterdir():
             if (task / "comm").read_text().strip() == name:
@@ -184,14 +185,15 @@ class Service:
         raise Failed(f"no thread {name}")
 
     def start_fresh(self, emulator):
-        """It runs, idle, with a restart count of 0 and new fingers, whatever the last step left."""
+        """Brings the service to the idle state with a restart count of 0 and new fingers, regardless of the previous
+        step."""
         sh(f"systemctl stop {UNIT}; systemctl reset-failed {UNIT}", check=False)
         emulator.start()
         sh(f"systemctl start {UNIT}", check=False)
         self.wait_idle()
 
     def hold(self):
-        """A stone is between the fingers."""
+        """Starts a grip and waits until both fingers hold a stone."""
         expect(self.state() == "idle", f"the daemon is {self.state()}")
         since = self.newest_event()
         sh("softgrip start pick_stone")

@@ -1,5 +1,5 @@
-"""Wake-up latency of softgripd and of cyclictest in turns, idle and loaded. In a guest whose clock counts instructions
-the host has no influence; what remains is caused by the kernel and the program. Prints a table."""
+"""Measures the wake-up latency of softgripd and of cyclictest in turns, idle and loaded, and prints a table. In a guest
+whose clock counts instructions, the host has no influence, so the latency is caused by the kernel and the program."""
 
 import itertools
 import pathlib
@@ -22,7 +22,7 @@ RIG = CONFIGURATION / "rig_service.yaml"
 
 
 def histogram(lines):
-    """Counts by microsecond, from the output of cyclictest."""
+    """Returns the counts per microsecond from the output of cyclictest."""
     counts = {}
     for line in lines:
         fields = line.split()

@@ -1,4 +1,4 @@
-"""The system test inside the guest: installs the package, takes the service through many failures, and purges the
+"""Runs the system test inside the guest: installs the package, exposes the service to many failures, and purges the
 package.
 
     steps.py [SEED]    draws the random moments; the seed is printed, and drawn if not given
@@ -18,10 +18,10 @@ from guest import (CONFIGURATION, DRIVE, RIG, RUNS, UNIT, Emulator, Failed, Line
                    wait_for)
 
 service = Service()
-# WatchdogSec=, and how long softgripd accepts a standstill of a thread before it sends no more notices.
+# WatchdogSec=, and the longest stall of a thread after which softgripd still notifies the service manager.
 WATCHDOG_S = 2.0
 STANDSTILL_S = {"softgrip-loop": 0.55, "softgrip-bus": 1.05, "process": 0}
-# The time in which the emulated processor starts a confined program; a real one needs hundredths of a second.
+# The time in which the emulated processor starts a confined program. A real processor needs hundredths of a second.
 START_S = 3.0
 DROP_IN = pathlib.Path(f"/run/systemd/system/{UNIT}.d/system-test.conf")
 # Files that the machine itself writes during the test, and files that tools leave beside the user database.
@@ -38,7 +38,7 @@ def packages():
 
 
 def files():
-    """Every path, and the contents of those in /etc."""
+    """Returns every path, and the contents of the files in /etc."""
     found = {}
     for folder, folders, names in os.walk("/"):
         folders[:] = [name for name in folders if os.path.join(folder, name) not in NOT_COMPARED]
@@ -145,7 +145,7 @@ gpio:
 
 
 def expect_came_back(state, restarts):
-    """Vented, restarted once, idle, and nothing moves for three seconds."""
+    """Checks that the service vented, restarted once and is idle, and that no finger moves for 3 s."""
     wait_for("a restart", lambda: service.restarts() == restarts + 1)
     service.wait_idle()
     state["emulator"].expect_still(3)
