@@ -1,4 +1,4 @@
-"""Finds the package: `import package` before `import softgrip`."""
+"""Makes the package importable. Use `import package` before `import softgrip`."""
 
 import pathlib
 import sys

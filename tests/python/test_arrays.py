@@ -1,5 +1,5 @@
-"""Models, logs and diagnosis on arrays: the same numbers as the commands, results that can be pickled, and exceptions
-for any invalid argument.
+"""Tests models, logs and diagnosis with arrays: results equal to those of the commands, results that can be pickled,
+and exceptions for invalid arguments.
 
 Needs the folder python of a build (SOFTGRIP_BUILD), which contains the extension module.
 """
@@ -36,7 +36,7 @@ def command(*arguments):
 
 
 def plain(report, *without):
-    """The result without the values that differ from call to call."""
+    """Returns the result without the values that differ from call to call."""
     return {key: value for key, value in report.items() if key not in without}
 
 
@@ -227,7 +227,7 @@ class Imports(unittest.TestCase):
 
 
 class HostileArguments(unittest.TestCase):
-    """Whatever the arguments are, the only failure is an exception."""
+    """Tests that invalid arguments of any kind cause only an exception."""
 
     BAD = [None, "", "text", b"bytes", 1j, [], [[]], [1, 2, 3], [1], [np.nan, np.nan], [np.inf, 0], [0, -1], {}, {1: 2},
            object(), np.zeros((2, 2)), np.zeros(0), np.array(["a", "b"]), np.array([None, 1]), [True, False], 1e308,
@@ -235,7 +235,7 @@ class HostileArguments(unittest.TestCase):
            np.array(["2020-01-01", "2020-01-02"], dtype="datetime64[s]"), "a\0b", [0, 1e-320]]
 
     def refused(self, call):
-        """Calls the function with each bad value; returns how many were refused."""
+        """Calls the function with each bad value. Returns the number of refused values."""
         count = 0
         for bad in self.BAD:
             try:
@@ -337,7 +337,7 @@ class Threads(unittest.TestCase):
         identify(log, starts=50, threads=1)
         done.set()
         other.join()
-        self.assertGreater(len(ticks), 3)  # with the GIL held, only the first would run
+        self.assertGreater(len(ticks), 3)  # if the GIL were held, only the first would run
 
     def test_fits_in_threads_give_one_result(self):
         from concurrent.futures import ThreadPoolExecutor

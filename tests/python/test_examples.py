@@ -1,4 +1,4 @@
-"""The examples in examples/python, one file each, run and have at most 80 lines."""
+"""Tests that the examples in examples/python run and have at most 80 lines. Each example is one file."""
 
 import os
 import pathlib

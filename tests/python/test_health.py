@@ -1,4 +1,5 @@
-"""Health of recordings: the numbers and pages of `softgrip health`, results that pickle, and exceptions for any argument.
+"""Tests the health of recordings: values and pages equal to those of `softgrip health`, results that can be pickled,
+and exceptions for invalid arguments.
 
 Needs the folder python of a build (SOFTGRIP_BUILD), which has the extension module.
 """
@@ -27,7 +28,7 @@ MADE = ("made", "made_unix_s")
 
 
 class Health(unittest.TestCase):
-    """A grip a day of two fingers for twelve days; the left one leaks from the ninth on."""
+    """Recordings of one grip of two fingers per day for 12 days. The left finger leaks from the ninth day on."""
 
     @classmethod
     def setUpClass(cls):

@@ -1,5 +1,5 @@
-"""Lines that softgripd never sends: each is a ProtocolError or has no effect, but never raises one of Python's own
-exceptions."""
+"""Tests lines that softgripd never sends. Each line must raise a ProtocolError or have no effect, and must never raise
+one of Python's own exceptions."""
 
 import json
 import random
@@ -43,7 +43,7 @@ OTHERS = (None, True, False, 0, -1, 1.5, 10**400, "", "x", "\ud800", [], [1], {}
 
 
 def places(value, path=()):
-    """The paths of a value and of all values in it; each of them may be replaced."""
+    """Returns the paths of a value and of all values in it. The test may replace the value at each path."""
     yield path
     if isinstance(value, dict):
         for key in value:
@@ -54,7 +54,7 @@ def places(value, path=()):
 
 
 def put(value, path, other):
-    """A copy with `other` at that place, or without the place if `other` is `put` itself."""
+    """Returns a copy with `other` at that path, or without the value at that path if `other` is the function `put`."""
     if not path:
         return other
     copy = dict(value) if isinstance(value, dict) else list(value)
@@ -67,7 +67,7 @@ def put(value, path, other):
 
 class Malformed(unittest.TestCase):
     def hear(self, command, said):
-        """What the package returns or raises for a line that follows a request of that name."""
+        """Returns the result or the exception of the package for a line that follows a request of that name."""
         session = Session()
         session.subscribed({"since": 0, "started_at": "x"})
         number, _ = session.request("start" if command == "check" else command,

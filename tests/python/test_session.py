@@ -1,4 +1,4 @@
-"""How the clients interpret the daemon's lines, without a socket."""
+"""Tests how the clients interpret the daemon's lines. The tests use no socket."""
 
 import json
 import unittest
@@ -98,7 +98,7 @@ class Story(unittest.TestCase):
         told = Events()
         told.tell("overall_result", "HOLDING")
         told.session.subscribed({"since": 0, "started_at": "second"})
-        told.tell("overall_result", "RELEASED")  # of the new daemon's request, whose number is that of the old one
+        told.tell("overall_result", "RELEASED")  # for a request of the new daemon with the same number
         self.assertEqual(told.reached(softgrip.Result.HOLDING), softgrip.Result.HOLDING)
         told.session.grip = 3
         self.assertFalse(told.session.ended())
@@ -116,7 +116,7 @@ class Starts(unittest.TestCase):
         number, sent = session.request("start", {"sequence": "pick"})
         (start_id,) = session.starts
         self.assertEqual(json.loads(sent)["start_id"], start_id)
-        session.forget(number)  # an exception occurred while the answer was awaited
+        session.forget(number)  # as after an exception during the wait for the answer
         session.receive(line(id=number, ok=True, result={"request": 5}))
         self.assertEqual(session.starts, {start_id: 5})
         self.assertEqual(session.grip, 5)

@@ -1,4 +1,4 @@
-"""The type annotations of package and examples are correct."""
+"""Tests that the type annotations of the package and of the examples are correct."""
 
 import os
 import subprocess
