@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Checks that one place opens files for reading (base/files.cpp) and one place writes them (base/file_writing.cpp).
 
-Every other call in the programs' C++ that opens, creates or renames a file is listed in file_calls.txt with its reason:
+Every other call in the C++ code of the programs that opens, creates or renames a file must be listed in file_calls.txt
+with its reason:
 
     PATH: COUNT CALL: REASON
 
@@ -42,7 +43,7 @@ def without_comments_and_strings(text):
 
 
 def calls_in(text):
-    """(name, line) of every call."""
+    """Returns (name, line) of every call."""
     plain = without_comments_and_strings(text)
     for name, pattern in CALLS.items():
         for found in re.finditer(pattern, plain):
@@ -50,7 +51,7 @@ def calls_in(text):
 
 
 def excused():
-    """{(path, call): how often}"""
+    """Returns {(path, call): number of listed calls}."""
     allowed = {}
     for line in LIST.read_text().splitlines():
         if line and not line.startswith("#"):
@@ -75,7 +76,7 @@ def findings_in(sources, allowed):
 
 
 def check_itself():
-    """Every kind of call is found in a program that contains it, and not in a comment or a text."""
+    """Checks that every kind of call is found in code, but not in a comment or a string."""
     examples = {"fstream": "std::ofstream file(path);", "fopen": "std::fopen(path, mode);",
                 "open": "int file = open(path.c_str(),\n  O_WRONLY | O_CREAT);", "mkstemp": "::mkstemp(name);",
                 "rename": "fs::rename(from, to, error);", "copy": "fs::copy_file(from, to);", "resize": "ftruncate(file, 0);",

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Checks that every test that a document names exists: named_tests.py [--build BUILD_DIR]
+"""Checks that every test to which a document refers exists: named_tests.py [--build BUILD_DIR]
 
 A test is named in inline code or in a code block: `Suite.Name` of GoogleTest, `test_module`, `test_module.Class` or
 `test_module.Class.test_method` of Python, `repository.name` of CTest, and `name_test`, a program or a file. `*`
@@ -28,7 +28,8 @@ def google_tests():
 
 
 def python_tests():
-    """module, module.Class and module.Class.test_method of every test_*.py, and the methods alone."""
+    """Returns module, module.Class and module.Class.test_method of every test_*.py, and the names of the methods
+    alone."""
     names = set()
     for name in tree.names():
         file = tree.ROOT / name
@@ -51,7 +52,8 @@ def cmake_texts():
 
 
 def ctest_tests(build):
-    """The tests of CTest. Without a build: those whose complete name is in a CMakeLists.txt, with * for a variable."""
+    """Returns the tests of CTest. Without a build, returns the tests whose complete name is in a CMakeLists.txt, with *
+    for a variable."""
     if build and (build / "CTestTestfile.cmake").exists():
         texts = [file.read_text() for file in (build / "tests").rglob("CTestTestfile.cmake")]
         return {name for text in texts for name in re.findall(r"^add_test\(\[=\[(.*?)\]=\]", text, re.MULTILINE)}
@@ -60,7 +62,7 @@ def ctest_tests(build):
 
 
 def test_programs():
-    """The programs of GoogleTest, and the stems of their files."""
+    """Returns the programs of GoogleTest and the stems of their files."""
     programs = {name for text in cmake_texts() for name in re.findall(r"softgrip_test\((\w+)", text)}
     stems = {pathlib.PurePosixPath(name).stem for name in tree.names()
              if re.search(r"_test\.(cpp|sh)$", name) or re.fullmatch(r"tests/.*_test\.py", name)}
@@ -73,7 +75,7 @@ class Tests:
         self.programs = test_programs()
 
     def exists(self, word):
-        """None if the word is not the name of a test."""
+        """Returns whether the test exists, or None if the word is not the name of a test."""
         if re.fullmatch(r"[A-Z]\w*\*?\.[A-Z*][\w*]*|\*?[A-Z]\w*\*", word):
             return any(fnmatch.fnmatchcase(name, word) for name in self.google)
         if re.fullmatch(r"test_\w+(\.\w[\w*]*)*", word) and not word.endswith(".py"):

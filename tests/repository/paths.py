@@ -29,7 +29,7 @@ def names_and_folders():
 
 
 def programs(build):
-    """The files that ninja makes, relative to the build folder; None without a build."""
+    """Returns the files that ninja makes, relative to the build folder, or None without a build."""
     file = build / "build.ninja" if build else None
     if file is None or not file.exists():
         return None
@@ -44,12 +44,12 @@ def alternatives(word):
 
 
 def pattern_of(word):
-    """The reader's own values match anything."""
+    """Returns a pattern in which the reader's own values match any text."""
     return re.sub(r"<[^<>]*>|\b[A-Z][A-Z_]+\b(?![.])", "*", word)
 
 
 def lines_of(text):
-    """(line number, line, whether it is in a code block)"""
+    """Returns (line number, line, True in a code block) of every line."""
     inside = False
     for number, line in enumerate(text.splitlines(), 1):
         if line.lstrip().startswith("```"):
@@ -59,7 +59,7 @@ def lines_of(text):
 
 
 def words_of(text):
-    """(line number, word) of inline code and of code blocks"""
+    """Returns (line number, word) of inline code and of code blocks."""
     for number, line, inside in lines_of(text):
         for code in [line] if inside else re.findall(r"`([^`]+)`", line):
             for word in re.split(r"[\s'\"=()|;]+", code):
@@ -67,7 +67,7 @@ def words_of(text):
 
 
 def made_by_the_reader(document, text):
-    """The files that a how-to page lets its reader make: those of its code blocks, and examples."""
+    """Returns the files that the reader of a how-to page makes: those of its code blocks, and examples."""
     if not document.name.startswith("add-"):
         return lambda word: False
     files = set(re.findall(r"^```\w+ file=(\S+)", text, re.MULTILINE))
@@ -75,7 +75,7 @@ def made_by_the_reader(document, text):
 
 
 def headings_of(text):
-    """(line number, heading)"""
+    """Returns (line number, heading) of every heading."""
     for number, line, inside in lines_of(text):
         if not inside and re.match(r"#+ +", line):
             yield number, line.lstrip("#").strip()
@@ -138,7 +138,8 @@ class Judge:
             self.findings.append(f"{place}: the link `{target}`: that page has no such heading")
 
     def headings(self, document, text):
-        """A repeated heading makes its link ambiguous, and is a sign of text that was pasted twice."""
+        """Checks for repeated headings. The link to such a heading is ambiguous, and the text may have been pasted
+        twice."""
         seen = {}
         for number, heading in headings_of(text):
             if heading in seen:

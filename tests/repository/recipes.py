@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Checks that the edits of a how-to page fit the sources: in a copy, without the builds of `ctest -L recipe`."""
+"""Checks that the edits of the how-to pages fit the sources. The edits are made in a copy, without the builds of `ctest
+-L recipe`."""
 
 import pathlib
 import sys
@@ -13,7 +14,8 @@ import recipe  # noqa: E402
 
 
 def edits_of_the_cause(folder):
-    """The number of edits on the page about causes. Each is made; an AssertionError names the one that does not fit."""
+    """Makes all edits of the page about causes and returns their number. An AssertionError describes the edit that does
+    not fit."""
     add_a_cause.copy_of(ROOT, folder)
     made = 0
     for language, info, body in add_a_cause.FENCE.findall((ROOT / add_a_cause.PAGE).read_text()):

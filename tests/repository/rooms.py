@@ -16,7 +16,7 @@ product = "base document model control drivers simulation rig daemon sysid tools
 
 
 def rooms():
-    """[(folder, other folders, rooms that it may use)] in the order of the file."""
+    """Returns [(folder, other folders, rooms that it may use)] in the order of the file."""
     text = re.sub(r"#.*", "", (source / "cmake/rooms.cmake").read_text())
     found = []
     for call in re.findall(r"softgrip_room\(([^)]*)\)", text):
@@ -31,7 +31,7 @@ def rooms():
 
 
 def included_by(folders):
-    """The folders of the project whose headers the files of `folders` include."""
+    """Returns the folders of the project whose headers the files of `folders` include."""
     folders_included = set()
     for folder in folders:
         for file in [*(source / folder).glob("*.h"), *(source / folder).glob("*.cpp")]:
@@ -41,7 +41,7 @@ def included_by(folders):
 
 
 def table(known):
-    """The table of the page; `known` is the content of each room, by folder."""
+    """Returns the table of the page. `known`: content of each room, by folder."""
     lines = ["| room | content | may include |\n", "|---|---|---|\n"]
     for folder, _, uses in rooms():
         lines.append(f"| `{folder}` | {known.get(folder, '')} | {', '.join(uses)} |\n")

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Checks that numbers and names in documents agree with the sources: threads, fingers, worlds, and files that
-include Ceres. The figures of README.md must be on the pages that it links."""
+include Ceres. The figures of README.md must be on the pages to which it links."""
 
 import re
 import sys
@@ -25,8 +25,8 @@ def sources(folder):
 
 
 def threads():
-    """The named threads in the sources of softgripd, the first thread, and the thread that writes the lines of the
-    log."""
+    """Checks the number of threads on the page: the named threads in the sources of softgripd, the first thread, and
+    the thread that writes the log."""
     daemon = [text(name) for name in sources("daemon/")]
     made = {name for one in daemon for name in re.findall(r'\.name = "(softgrip-[a-z]+)"', one)}
     pools = sum(one.count("make_shared<spdlog::details::thread_pool>") for one in daemon)
@@ -49,7 +49,7 @@ def fingers():
 
 
 def worlds():
-    """The numbers of lines in the tables from which tests/blind makes tests: in every run, and with --all."""
+    """Returns the numbers of rows in the tables from which tests/blind makes tests: in every run, and with --all."""
     counts = {"": 0, "more_": 0}
     for more in counts:
         for folder, name, world in (("", "fixed_worlds", WORLD), ("textbook/", "fixed_worlds", WORLD),
@@ -70,7 +70,7 @@ def includes_of_ceres():
 
 
 def front_page():
-    """Each version, and each figure that counts or compares, is on a page that its row or sentence links."""
+    """Checks that each version and each count or comparison is on a page to which its row or sentence links."""
     body = text("README.md").split("## Four results")[1]
     for part in re.split(r"\n(?=[|-]|\n)", body):
         linked = " ".join(one_line(re.sub(r"#.*", "", link)) for link in re.findall(r"\]\(([^)]+\.md[^)]*)\)", part))

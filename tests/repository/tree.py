@@ -1,4 +1,4 @@
-"""The files of the project in git; in a tarball, all files except those of a build."""
+"""Lists the files of the project that git tracks. In a tarball, lists all files except those of a build."""
 
 import pathlib
 import subprocess
