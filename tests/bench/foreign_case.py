@@ -24,7 +24,7 @@ def mm(i):
 
 
 def log_text(head, row, samples=SAMPLES):
-    """The text of a log: `head`, then one line for each sample; row(i) returns the line of sample i."""
+    """Returns the text of a log: `head`, and one line for each sample. row(i) returns the line of sample i."""
     return "\n".join([head, *(row(i) for i in range(samples))]) + "\n"
 
 
@@ -40,7 +40,7 @@ class ForeignCase(unittest.TestCase):
         (self.data / name).write_bytes(text if isinstance(text, bytes) else text.encode())
 
     def put_plain(self, name="a.csv", **changed):
-        """Writes a log in the units of the contract; `changed` replaces lines by their number."""
+        """Writes a log in the units of the contract; `changed` maps the numbers of lines to their replacements."""
         lines = log_text("t_s,u_kpa,y_mm", lambda i: f"{0.1 * i:.1f},{kpa(i):.4f},{mm(i):.4f}").splitlines()
         for number, line in changed.items():
             lines[int(number.removeprefix("line")) - 1] = line
@@ -55,12 +55,12 @@ class ForeignCase(unittest.TestCase):
         return log_table.read_table(self.table_path(text), self.data)
 
     def read(self, keys):
-        """Reads the first log of a table. `entry` are the keys of its entry as lines of YAML."""
+        """Reads the first log of a table. `entry` contains the keys of the table entry as lines of YAML."""
         entry = self.table("logs:\n- file: a.csv\n" + textwrap.indent(textwrap.dedent(keys), "  ")).logs[0]
         return log_reading.read_log(entry, self.data)
 
     def spoiled(self, keys):
-        """The message about a log that cannot be used."""
+        """Returns the message about a log that cannot be used."""
         with self.assertRaises(log_reading.Spoiled) as caught:
             self.read(keys)
         return str(caught.exception).replace(f"{self.data}/", "").replace(f"{self.folder}/", "")

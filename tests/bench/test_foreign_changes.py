@@ -1,4 +1,4 @@
-"""Tests bench/foreign/judge_changes.py: how an answer is judged, and the run-to-run spread."""
+"""Tests bench/foreign/judge_changes.py: the judgement of an answer, and the spread between runs."""
 import importlib.util
 import random
 import unittest

@@ -1,4 +1,4 @@
-"""bench/foreign.py as a user calls it. A program that answers at once replaces softgrip."""
+"""Tests bench/foreign.py as a user calls it. A program that answers immediately replaces softgrip."""
 import contextlib
 import importlib.util
 import io
@@ -11,7 +11,8 @@ from foreign_case import ForeignCase
 if importlib.util.find_spec("scipy"):
     import foreign
 
-# Notes its call, writes a model, and answers from a file; refuses the log that the file `refuse` names.
+# This program records its call, writes a model, and answers from a file. It refuses the log whose name is in the file
+# `refuse`.
 PROGRAM = """#!/usr/bin/python3
 import json, pathlib, sys
 folder, words = pathlib.Path("{folder}"), sys.argv[1:]
@@ -122,7 +123,7 @@ class Command(ForeignCase):
         first, second = (case["rows"][0]["methods"] for case in self.results()["cases"])
         self.assertEqual((first["auto"]["held_out_mm"], second["plain"]["held_out_mm"]), (0.001, 0.9))
         for methods in (first, second):
-            # The readings are 0.25 mm/kPa plus a sawtooth of 0.01 mm.
+            # The readings are 0.25 mm/kPa times the pressure, plus a sawtooth of 0.01 mm.
             self.assertLess(methods["output_error"]["held_out_mm"], 0.02)
             self.assertLess(methods["scipy"]["held_out_mm"], 0.05)
         self.assertEqual(self.results()["summary"]["identification"]["linear_better"], {"plain": 1, "auto": 1})

@@ -23,8 +23,8 @@ def drive(seed):
 
 
 class Plant:
-    """A known system: 0.1 mm/kPa at once, a lag of 0.5 s, and a mode of 1.5 Hz or creep of 8 s. It is integrated with
-    20 steps per sample."""
+    """A known system with an immediate gain of 0.1 mm/kPa, a lag of 0.5 s, and a mode of 1.5 Hz or creep of 8 s. The
+    system is integrated with 20 steps per sample."""
 
     def __init__(self, resonance, start=(0.0, 0.0, 0.0)):
         self.resonance, self.state = resonance, list(start)

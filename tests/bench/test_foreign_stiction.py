@@ -1,4 +1,4 @@
-"""Tests bench/foreign/horch.py on simulated control loops, and how an answer on a labelled loop is judged."""
+"""Tests bench/foreign/horch.py on simulated control loops, and the judgement of an answer on a labelled loop."""
 import importlib.util
 import math
 import random
@@ -15,8 +15,8 @@ SAMPLES, LAG_S = 1500, 8.0
 
 
 class Stem:
-    """A valve stem with stiction: it only moves when the command leaves a band around it, and then moves to the
-    command."""
+    """A valve stem with stiction. The stem moves only if the command leaves a band around the stem position, and then
+    moves to the command."""
 
     def __init__(self, band):
         self.band, self.at = band, 0.0
@@ -28,7 +28,8 @@ class Stem:
 
 
 def loop(seed, band=0.0, disturbance=0.0, gain=0.4, reset_s=6.0, noise=0.02):
-    """(command, reading) of a proportional-integral controller on a first-order process, 1 s per sample."""
+    """Returns (command, reading) of a proportional-integral controller on a first-order process, with 1 s per
+    sample."""
     draw, stem = random.Random(seed), Stem(band)
     process, integral, commands, readings = 0.5, 0.0, [], []
     period_s = draw.uniform(35, 60)
