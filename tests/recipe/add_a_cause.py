@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Carries out docs/how-to/add-a-cause.md in a copy of the source tree: its files, its edits, its commands.
+"""Carries out docs/how-to/add-a-cause.md in a copy of the source tree, with the files, edits and commands of the page.
 
     add_a_cause.py --source DIR --work DIR
 
@@ -20,7 +20,8 @@ FENCE = re.compile(r"^```(\w+)(?: ([^\n]*))?\n(.*?)^```$", re.MULTILINE | re.DOT
 
 
 def copy_of(source, target):
-    """Copies the files that the repository tracks or would add; without a repository, everything except the builds."""
+    """Copies the files that the repository tracks or would add. Without a repository, copies everything except the
+    builds."""
     if target.exists():
         kept = target / "build"
         for path in target.iterdir():
@@ -38,7 +39,8 @@ def copy_of(source, target):
 
 
 def insert(path, hunk):
-    """Adds the hunk's new lines (+) at the only place where its other lines are found, regardless of spacing."""
+    """Adds the new lines (+) of a hunk at the only place at which the other lines of the hunk are found, regardless of
+    spacing."""
     parts = [(line[0], line[1:]) for line in hunk.splitlines()]
     assert all(mark in " +" for mark, _ in parts), f"{path}: a hunk only adds"
     wanted = [line.split() for mark, line in parts if mark == " "]
@@ -65,7 +67,7 @@ def main():
     args = parser.parse_args()
     copy = args.work / "source"
     copy_of(args.source, copy)
-    if shutil.which("ccache"):  # what did not change is taken from the existing build
+    if shutil.which("ccache"):  # unchanged files are taken from the existing build
         os.environ.update(CMAKE_CXX_COMPILER_LAUNCHER="ccache", CCACHE_NOHASHDIR="1",
                           CCACHE_BASEDIR=os.path.commonpath([args.source, copy]))
     run("cmake --preset release -DSOFTGRIP_TESTS=ON -DSOFTGRIP_BENCHMARKS=OFF", copy)
@@ -82,7 +84,7 @@ def main():
             insert(copy / file[1], body)
         elif file:
             (copy / file[1]).write_text(body)
-    # A block that no cause uses does not compile, and the message is the one on the page.
+    # A block that no cause uses must not compile, and the message must be that of the page.
     refused = run("cmake --build build/release --target softgrip_sysid_diagnosis_causes", copy, check=False)
     assert refused.returncode != 0 and expected, "a block without a cause compiles"
     for sentence in expected:

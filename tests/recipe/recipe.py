@@ -16,7 +16,7 @@ from source_copy import SOURCE, copy_sources  # noqa: E402
 
 
 class RecipeError(AssertionError):
-    """The page does not fit the source."""
+    """The edits of the page do not fit the source."""
 
 
 FENCE = re.compile(r"^```(\w+) file=(\S+)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
@@ -33,7 +33,7 @@ def change(path, hunk):
 
 
 class Tree:
-    """A copy of the source tree in `folder`, with a build of its own."""
+    """A copy of the source tree in `folder`, with its own build."""
 
     def __init__(self, folder):
         self.folder = pathlib.Path(folder) / "softgrip"
@@ -55,7 +55,7 @@ class Tree:
         return len(fences)
 
     def make(self, *targets):
-        """Builds like the release preset, with a compiler cache where there is one."""
+        """Builds like the release preset, with a compiler cache if one is installed."""
         launcher = shutil.which("ccache")
         options = [f"-DCMAKE_CXX_COMPILER_LAUNCHER={launcher}"] if launcher else []
         environment = {**os.environ, "CCACHE_BASEDIR": str(self.folder)}
