@@ -1,5 +1,5 @@
-"""What every campaign over worlds does: the worlds that are not known yet, some side by side by the workflow of workflows/,
-until all are done or the time is up; and the command by which a page was made."""
+"""Runs a campaign over simulated worlds. The workflow of workflows/ runs several missing worlds in parallel, until all
+are done or the time is over. The module also returns the command by which a page was made."""
 import csv
 import hashlib
 import json
@@ -24,7 +24,7 @@ def write_table(path, worlds, judge):
 
 
 def collect(ledger, worlds, out, planned, told):
-    """Adds what the workflow has done; returns what went wrong, a line each."""
+    """Adds the results of the workflow to the ledger. Returns the failures, one line each."""
     wrong = []
     for world in worlds:
         row = out / "world" / name_of(world) / "row.json"
@@ -40,8 +40,8 @@ def collect(ledger, worlds, out, planned, told):
 
 
 def run(ledger, planned, judge, args, told):
-    """Adds to the ledger what `judge`.run_world(build, folder, world) returns; told(world, result) is a line for the screen.
-    No world is begun after args.most_minutes (None: all are run)."""
+    """Adds the results of `judge`.run_world(build, folder, world) to the ledger. told(world, result) returns a line for
+    the screen. No world is started after args.most_minutes (None: all worlds are run)."""
     left = list({name_of(world): world for world in planned if world not in ledger}.values())
     if not left or args.most_minutes == 0:
         return
@@ -58,7 +58,8 @@ def run(ledger, planned, judge, args, told):
 
 
 def command(script, parser, args, options):
-    """The command line with those of `options` that are not the defaults, the folder of one that needs it, and the page."""
+    """Returns the command line with the `options` that differ from the defaults, the folder of an option that needs it,
+    and the page."""
     line = f"{script} --work DIR" if hasattr(args, "work") else script
     for option in options:
         value = getattr(args, option)

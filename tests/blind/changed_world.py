@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""One world of changed_worlds.csv: a finger changes, is diagnosed, the answer judged. Exit code 0 when the outcome is one
-of those expected.
+"""Runs one world of changed_worlds.csv: changes a finger, diagnoses it and judges the answer. The exit code is 0 if the
+outcome is one of the expected outcomes.
 
     changed_world.py --build BUILD FAMILY CAUSE STRENGTH SEED COLUMNS OUTCOME[|OUTCOME]
 """

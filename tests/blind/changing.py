@@ -1,4 +1,5 @@
-"""One changed world, from its making to a judgement: what the fixed ones of the test suite and the campaign share.
+"""Makes, diagnoses and judges one world with a changed finger. The fixed worlds of the test suite and the campaign use
+this module.
 
 A world: family (`textbook` or `first`), cause (or `none`), strength (of the usual one: `--strength 8` of the worlds),
 seed, columns (`pressure` or `command`), zero_mm and warmer_c (of the later day). The healthy logs are the finger's
@@ -17,12 +18,13 @@ import varying
 GIVEN = {"textbook": pathlib.Path(__file__).resolve().parent / "textbook/given.yaml", "first": judging.GIVEN}
 PROGRAM = {"textbook": "tests/blind/textbook/textbook-world", "first": "tests/blind/blind-world"}
 USUAL = 8
-# The same readings by another name, and which name the same law has in the other family.
+# Causes with the same readings, and the names of the same law in the other family.
 TWINS = {"stiffening": {"sensor_nonlinearity"}, "sensor_nonlinearity": {"stiffening"}}
 
 
-# Numbers that mean the same in a world and in the answer: the world's name and the answer's. A textbook valve lags inside
-# its regulator's loop, a textbook sensor from sample to sample, and the band of a dead band is one of sticking or of dragging.
+# Parameters with the same meaning in a world and in the answer: the name in the world and the name in the answer. A
+# textbook valve lags inside its regulator's loop, a textbook sensor from sample to sample, and the band of a dead band
+# is one of sticking or of dragging.
 SAME_NUMBERS = {"transport_delay": {"delay_s": "delay_s"}, "valve_lag": {"time_constant_s": "time_constant_s"},
                 "pressure_saturation": {"limit_kpa": "limit_kpa"}, "actuator_threshold": {"threshold_kpa": "threshold_kpa"},
                 "sensor_lag": {"time_constant_s": "time_constant_s"},
@@ -35,8 +37,8 @@ OTHERWISE_IN_TEXTBOOKS = {"valve_lag", "sensor_lag"}
 
 
 def intervals(family, cause, diagnosis, truth):
-    """Of a true change that is named first: per number that both know, what is true, the answer, its interval, whether it
-    holds the truth."""
+    """Returns, for a true change that is reported first and each parameter that world and answer share, the true value,
+    the reported value, its interval, and whether the interval covers the true value."""
     if not diagnosis["causes"] or diagnosis["causes"][0]["id"] != cause:
         return []
     if family == "textbook" and cause in OTHERWISE_IN_TEXTBOOKS:
@@ -52,8 +54,9 @@ def intervals(family, cause, diagnosis, truth):
 
 
 def judge(cause, diagnosis):
-    """unchanged, false_alarm, unexplained of an unchanged world; else first, twin (its mirror image is first), listed
-    (among the rivals of the first or named after it), missed (unchanged), unnamed (unexplained), wrong."""
+    """Returns the judgement of a diagnosis. For an unchanged world: unchanged, false_alarm or unexplained. Otherwise:
+    first, twin (an indistinguishable cause is first), listed (a later cause or an alternative), missed (no change
+    reported), unnamed (unexplained change) or wrong."""
     named = [c["id"] for c in diagnosis["causes"]]
     if cause == "none":
         return "false_alarm" if named else diagnosis["verdict"]
@@ -67,7 +70,7 @@ def judge(cause, diagnosis):
 
 
 def make(build, world, work):
-    """(healthy logs, later logs, truth)"""
+    """Returns (healthy logs, later logs, truth)."""
     program = [build / PROGRAM[world["family"]], "--seed", str(world["seed"])]
     program += ["--pressure"] if world["columns"] == "pressure" else []
     runs = ["--runs", str(world.get("baseline_runs", varying.BASELINE_RUNS)), *varying.of_generator(world, False)]
@@ -82,7 +85,7 @@ def make(build, world, work):
 
 
 def run_world(build, folder, world, threads=1):
-    """Makes the world, diagnoses it; returns the world with what came of it."""
+    """Makes and diagnoses the world. Returns the world with the results."""
     build = pathlib.Path(build).resolve()
     work = pathlib.Path(tempfile.mkdtemp(dir=folder))
     try:

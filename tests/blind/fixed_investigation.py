@@ -1,9 +1,10 @@
 #!/usr/bin/python3
-"""Worlds with fixed seeds whose logs are ambiguous: `softgrip investigate` must resolve each to the truth.
+"""Runs worlds with fixed seeds whose logs are ambiguous. `softgrip investigate` must find the true cause of each world.
 
     fixed_investigation.py --build BUILD CAUSE[+CAUSE]:STRENGTH:SEED:EXPERIMENT ...
 
-EXPERIMENT is what must have resolved it; `none`: the logs alone name the truth. Exit code 0 when all of them are.
+EXPERIMENT is the experiment that must resolve the ambiguity; `none`: the logs alone show the true cause. The exit code
+is 0 if all worlds are resolved.
 """
 import argparse
 import sys

@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""One world of fixed_worlds.csv: hides, diagnoses, judges. Exit code 0 when the outcome is one of those expected.
+"""Runs one world of fixed_worlds.csv: hides an effect, diagnoses the logs and judges the answer. The exit code is 0 if
+the outcome is one of the expected outcomes.
 
     fixed_world.py --build BUILD CAUSE[+CAUSE] STRENGTH SEED OUTCOME[|OUTCOME]
 """

@@ -1,9 +1,11 @@
 #!/usr/bin/python3
-"""The sensor of a blind world on a gauge, for `softgrip investigate --gauge-command "gauge.py PROGRAM FOLDER WORLD..."`.
+"""Simulates a gauge check of the sensor of a blind world, for `softgrip investigate --gauge-command "gauge.py PROGRAM
+FOLDER WORLD..."`.
 
     gauge.py BLIND_WORLD FOLDER [option of blind-world ...] POSITIONS_CSV GAUGE_OUT
 
-FOLDER is that of rig.py: what was played before lies in it, and the world's time has gone on.
+FOLDER is the folder of rig.py, which contains the earlier commands, so the gauge check takes place after these
+commands.
 """
 import pathlib
 import subprocess

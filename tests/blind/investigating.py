@@ -1,4 +1,4 @@
-"""Lets `softgrip investigate` resolve a blind world by experiments and by a gauge on that world."""
+"""Lets `softgrip investigate` resolve the ambiguity of a blind world by experiments and a gauge check on this world."""
 import json
 import pathlib
 import shlex
@@ -9,7 +9,8 @@ import tempfile
 import judging
 
 HERE = pathlib.Path(__file__).resolve().parent
-# What is still equal for every command and for every gauge: lags of valve and sensor, unless the pressure is recorded.
+# Causes that remain equal for every command and every gauge check: lags of valve and sensor, unless the pressure is
+# recorded.
 INDISTINGUISHABLE = [{"valve_lag", "sensor_lag"}]
 
 
@@ -23,8 +24,8 @@ def outcome_of(hidden, step):
 
 
 def investigate_world(build, folder, world, gauge=True):
-    """`before` and `outcome`: what the first and the last verdict are worth (judging.judge); `resolved_by`: the
-    experiment after which the verdict named the truth alone."""
+    """Returns `before` and `outcome`, the judgement of the first and of the last verdict (judging.judge), and
+    `resolved_by`, the experiment after which the verdict contained only the truth."""
     build = pathlib.Path(build).resolve()
     with tempfile.TemporaryDirectory(dir=folder) as name:
         work = pathlib.Path(name)
@@ -57,6 +58,6 @@ def investigate_world(build, folder, world, gauge=True):
 
 
 def is_indistinguishable(result):
-    """Whether every set that was left open cannot be told apart by any command nor by a gauge."""
+    """Returns True if no command and no gauge check can separate any of the remaining sets of causes."""
     left = [set(one) for one in result.get("after", []) if len(one) > 1]
     return bool(left) and all(any(one <= twins for twins in INDISTINGUISHABLE) for one in left)

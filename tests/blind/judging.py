@@ -1,6 +1,6 @@
-"""One blind world, from its making to a judgement: what the fixed worlds of the test suite and the campaign share.
+"""Makes, diagnoses and judges one blind world. The fixed worlds of the test suite and the campaign use this module.
 
-The engine is called as a user calls it and never sees the truth.
+The diagnosis is called as a user calls it and never receives the truth.
 """
 import json
 import pathlib
@@ -13,7 +13,8 @@ import varying
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 GIVEN = ROOT / "tests/blind/given.yaml"
 
-# The world's number, where the engine's parameter means the same: effect -> {engine's name: f(world's numbers)}.
+# Parameters with the same meaning in the diagnosis and in the world: effect -> {name in the diagnosis: f(parameters of
+# the world)}.
 SAME_MEANING = {
     "transport_delay": {"delay_s": lambda n: n["delay_s"]},
     "valve_lag": {"time_constant_s": lambda n: n["time_constant_s"]},
@@ -44,14 +45,14 @@ def is_outside(cause):
 
 
 def judge(hidden, diagnosis):
-    """What a diagnosis is worth when `hidden` (ids) is the truth:
+    """Returns the judgement of a diagnosis if `hidden` (ids) is the truth:
 
-    right            the verdict that the truth asks for, and no other name
-    ambiguous_right  ambiguous, with the truth among what is listed
-    partly           of several hidden causes some are named, and nothing that is not there
-    missed           nothing is named although something is there
-    unexplained      a clean world of which structure is said to be left
-    wrong            something is named that is not there
+    right            the verdict is correct, and no wrong cause is reported
+    ambiguous_right  the verdict is ambiguous, and the true causes are among the listed causes
+    partly           some of several hidden causes are reported, and no wrong cause
+    missed           no cause is reported although an effect is hidden
+    unexplained      no effect is hidden, but the verdict is that an error remains unexplained
+    wrong            a cause is reported that is not hidden
     """
     verdict = diagnosis["verdict"]
     named = [cause["id"] for cause in diagnosis["causes"]]
@@ -76,7 +77,8 @@ def judge(hidden, diagnosis):
 
 
 def covered(hidden, truth, diagnosis):
-    """For each parameter with an interval whose true value is known: whether the interval holds it."""
+    """Returns, for each parameter with an interval and a known true value, whether the interval covers the true
+    value."""
     found = {}
     for cause in diagnosis["causes"]:
         if cause["id"] not in hidden:
@@ -92,14 +94,14 @@ def covered(hidden, truth, diagnosis):
 
 
 def diagnose(build, model, logs, out, *options):
-    """(diagnosis, None), or (None, the message) where the program fails."""
+    """Returns (diagnosis, None), or (None, message) if the program fails."""
     done = subprocess.run([build / "tools/softgrip", "diagnose", "--model", model, "--data", *logs, "--out", out,
                            *options, "--json"], capture_output=True, text=True)
     return (json.loads(done.stdout), None) if done.returncode == 0 else (None, done.stderr[-300:])
 
 
 def run_world(build, folder, world):
-    """Makes the world, diagnoses its logs; returns the world with what came of it."""
+    """Makes the world and diagnoses its logs. Returns the world with the results."""
     build = pathlib.Path(build).resolve()
     work = pathlib.Path(tempfile.mkdtemp(dir=folder))
     try:
@@ -125,7 +127,7 @@ def run_world(build, folder, world):
 
 
 def library(build):
-    """(ids of the library, ids outside it) that the worlds can hide."""
+    """Returns (ids of the library, ids outside the library) of the effects that the worlds can hide."""
     ids = subprocess.run([pathlib.Path(build) / "tests/blind/blind-world", "--list"], check=True, capture_output=True,
                          text=True).stdout.split()
     return [i for i in ids if not is_outside(i)], [i for i in ids if is_outside(i)]

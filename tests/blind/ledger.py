@@ -1,10 +1,10 @@
-"""Outcomes as lines of JSON, so that a long run can be stopped and taken up again."""
+"""Stores outcomes as lines of JSON, so that a long run can be stopped and continued."""
 import json
 
 
 class Ledger:
-    """`rows` are those that stand in the file; what has the same values of `keys` as one of them is known.
-    A key that a row or a world lacks counts as None, so that ledgers of earlier versions stay valid."""
+    """`rows`: the rows in the file. A world with the same values of `keys` as one of the rows is known. A key that a
+    row or a world lacks counts as None, so that ledgers of earlier versions stay valid."""
 
     def __init__(self, path, keys):
         self.path, self.keys = path, keys

@@ -1,9 +1,9 @@
 #!/usr/bin/python3
-"""A blind world as the rig of `softgrip investigate --rig-command "rig.py PROGRAM FOLDER WORLD..."`.
+"""Simulates a blind world as the rig of `softgrip investigate --rig-command "rig.py PROGRAM FOLDER WORLD..."`.
 
     rig.py BLIND_WORLD FOLDER [option of blind-world ...] COMMAND_CSV LOG_OUT
 
-The world remembers: commands that it has answered are kept in FOLDER and come before the new one.
+The world continues from call to call: earlier commands are stored in FOLDER and are played before the new command.
 """
 import pathlib
 import shutil

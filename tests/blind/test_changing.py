@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The judge of changed worlds."""
+"""Tests the judgement of worlds with a changed finger."""
 import unittest
 
 from changing import intervals, judge

@@ -1,7 +1,8 @@
 #!/usr/bin/python3
-"""Run-to-run variation of the simulated fingers: test_variation.py BLIND_WORLD TEXTBOOK_WORLD [unittest option ...]
+"""Tests the run-to-run variation of the simulated fingers: test_variation.py BLIND_WORLD TEXTBOOK_WORLD [unittest
+option ...]
 
-Without variation the programs write the bytes that they wrote before they had it.
+Without variation the programs must write the same bytes as before they had this option.
 """
 import csv
 import hashlib
@@ -28,7 +29,7 @@ RUNS = 400
 
 
 def logs(program, *options):
-    """The bytes of each log, in order."""
+    """Returns the bytes of each log, in order."""
     with tempfile.TemporaryDirectory() as folder:
         work = pathlib.Path(folder)
         subprocess.run([program, *options, "--out", work / "logs", "--truth", work / "truth.json"], check=True)
@@ -71,11 +72,11 @@ class Off(unittest.TestCase):
 
 
 class Drawn(unittest.TestCase):
-    """Means and spreads of the runs."""
+    """Tests the means and the standard deviations of the drawn runs."""
 
     def assert_spread(self, values, mean, deviation):
         self.assertAlmostEqual(statistics.mean(values), mean, delta=4 * deviation / RUNS ** 0.5)
-        # 4 standard errors of a standard deviation.
+        # The tolerance is 4 standard errors of a standard deviation.
         self.assertAlmostEqual(statistics.stdev(values) / deviation, 1, delta=4 / (2 * RUNS) ** 0.5)
 
     def test_offset_gain_temperature_and_supply(self):
@@ -111,7 +112,7 @@ class Drawn(unittest.TestCase):
 
 
 class Logs(unittest.TestCase):
-    """The logs show what was drawn."""
+    """Tests that the logs have the drawn variation."""
 
     def test_1_3_and_6_runs(self):
         for name, program in PROGRAMS.items():

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Run-to-run variation as option of the campaigns: plans, generators, ledgers and pages."""
+"""Tests the run-to-run variation as an option of the campaigns: plans, generators, ledgers and pages."""
 import argparse
 import contextlib
 import io
@@ -61,7 +61,7 @@ class Plans(unittest.TestCase):
 
 
 class Generators(unittest.TestCase):
-    """The programs are called with what the world has."""
+    """Tests that the programs are called with the options of the world."""
 
     def called(self, function, *arguments_of):
         calls = []

@@ -1,4 +1,5 @@
-"""Run-to-run variation (variation.h): options of a campaign, keys of a world, options of its generator, text of its page."""
+"""Handles the run-to-run variation (variation.h): options of a campaign, keys of a world, options of its generator, and
+text of its page."""
 
 KEYS = ("variation", "closed_loop", "baseline_runs")  # of a world; a world without them is as before they existed
 BASELINE_RUNS = 3
@@ -13,7 +14,7 @@ def add_options(parser, baseline_runs=False):
 
 
 def of_world(args, baseline_runs=BASELINE_RUNS):
-    """The keys of a world of this campaign."""
+    """Returns the keys of a world of this campaign."""
     keys = {}
     if getattr(args, "variation", 0):
         keys["variation"] = args.variation
@@ -25,19 +26,20 @@ def of_world(args, baseline_runs=BASELINE_RUNS):
 
 
 def belongs(row, args):
-    """True if a row of a ledger has the variation of this campaign."""
+    """Returns True if a row of a ledger has the variation of this campaign."""
     own = of_world(args)
     return all(row.get(key) == own.get(key) for key in ("variation", "closed_loop"))
 
 
 def of_generator(world, closed_loop=True):
-    """Options of the program that writes the logs of a world; `closed_loop`: where the world has one."""
+    """Returns the options of the program that writes the logs of a world. `closed_loop`: True if the world has a closed
+    loop."""
     options = ["--variation", str(world["variation"])] if "variation" in world else []
     return [*options, "--closed-loop"] if closed_loop and world.get("closed_loop") else options
 
 
 def text(args):
-    """The sentences of a page."""
+    """Returns the sentences about the variation on a page."""
     closed = " A controller plays the commands of the logs (closed loop)." if getattr(args, "closed_loop", False) else ""
     strength = getattr(args, "variation", 0)
     if not strength:

@@ -1,6 +1,7 @@
 #!/usr/bin/python3
-"""One world of this folder's fixed_worlds.csv: hides, diagnoses, judges. Exit code 0 when the outcome is one of those
-expected and the structure that the logs of a world without an effect choose leaves no more than it may.
+"""Runs one world of this folder's fixed_worlds.csv: hides an effect, diagnoses the logs and judges the answer. The exit
+code is 0 if the outcome is one of the expected outcomes and, in a world without an effect, the error of the identified
+structure is within its limit.
 
     fixed_world.py --build BUILD CAUSE[+CAUSE] STRENGTH SEED MAKE COLUMNS OUTCOME[|OUTCOME]
 """

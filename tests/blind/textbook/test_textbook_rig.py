@@ -1,4 +1,5 @@
-"""textbook-rig answers as the board that it stands for, and its fingers are those of textbook-world."""
+"""Tests that textbook-rig answers like the board that it simulates, and that its fingers are those of
+textbook-world."""
 import pathlib
 import re
 import socket
@@ -14,7 +15,7 @@ OUTPUTS_AT, READ_BACK_AT = 256, 24
 
 
 class Master:
-    """Function 23 of Modbus TCP: outputs written, inputs read."""
+    """Writes outputs and reads inputs with function 23 of Modbus TCP."""
 
     def __init__(self, port):
         self.socket = socket.create_connection(("127.0.0.1", port), timeout=10)
@@ -34,7 +35,7 @@ class Master:
         return struct.unpack(f">{count}f", answer[9:])
 
     def stay(self, output_v, seconds):
-        """What the last tenth of a second looks like, as means."""
+        """Returns the mean values of the last 0.1 s."""
         end, seen = time.monotonic() + seconds, []
         while time.monotonic() < end:
             seen.append((time.monotonic(), self.exchange(output_v)))

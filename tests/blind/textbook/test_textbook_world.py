@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The physics of textbook-world, judged by its output alone: test_textbook_world.py PROGRAM [unittest option ...]"""
+"""Tests the physics of textbook-world by its output alone: test_textbook_world.py PROGRAM [unittest option ...]"""
 import collections
 import csv
 import functools
@@ -26,7 +26,7 @@ def probe(name):
 
 
 def world(*options, seed=SEED):
-    """The bytes of the logs, in order, and the truth."""
+    """Returns the bytes of the logs, in order, and the truth."""
     with tempfile.TemporaryDirectory() as folder:
         work = pathlib.Path(folder)
         output("--seed", str(seed), "--out", work / "logs", "--truth", work / "truth.json", *options)
@@ -38,7 +38,7 @@ def displacements(logs):
 
 
 def beyond_zero_and_gain(change, plain):
-    """RMS of what a straight line in `plain` leaves of `change`."""
+    """Returns the RMS of the residual of `change` after a fit of a straight line in `plain`."""
     count = len(change)
     change_mean, plain_mean = sum(change) / count, sum(plain) / count
     change, plain = [c - change_mean for c in change], [p - plain_mean for p in plain]

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""What a diagnosis of a textbook world is worth: trial.judge."""
+"""Tests trial.judge, the judgement of the diagnosis of a textbook world."""
 import pathlib
 import sys
 import unittest

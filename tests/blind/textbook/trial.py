@@ -1,4 +1,4 @@
-"""One world of textbook physics, from its making to a judgement: what its fixed worlds and its campaign share.
+"""Makes, diagnoses and judges one world of textbook physics. The fixed worlds and the campaign use this module.
 
 A world: causes, strength, seed, make, columns (`pressure` or `command`: whether the measured pressure is recorded) and
 given (`plain` or `commissioned`: which model the diagnosis starts from).
@@ -17,7 +17,7 @@ import judging  # noqa: E402
 import varying  # noqa: E402
 
 GIVEN = HERE / "given.yaml"
-NOISE_MM = 0.04  # of the readings that textbook-world writes
+NOISE_MM = 0.04  # noise of the readings that textbook-world writes
 # What the structure that the logs choose may leave of a world without an effect, held out, over the noise.
 HELD_OUT_AT_MOST = {"pressure": 1.6, "command": 5}
 
@@ -31,13 +31,14 @@ def listed(build, option):
 
 
 def judge(hidden, own, diagnosis):
-    """What a diagnosis is worth when `hidden` (ids) is the truth and `own` what the world has without it.
+    """Returns the judgement of a diagnosis if `hidden` (ids) is the truth and `own` (ids) are the causes of the world
+    without a hidden effect.
 
-    found    hidden causes that are named, or stand among the alternatives of a name; each name finds one at most
-    alone    those of them that are named without alternatives
-    wrong    names that, with all their alternatives, are neither hidden nor own
-    outcome  wrong, right (all alone), ambiguous_right (all), partly, missed; of a world without an effect: wrong,
-             unexplained (structure is left and nothing of its own is named) or right
+    found    hidden causes that are reported or are alternatives of a reported cause; each report finds at most one
+    alone    found causes that are reported without alternatives
+    wrong    reported causes that are neither hidden nor own, and whose alternatives are not either
+    outcome  wrong, right (all are alone), ambiguous_right (all are found), partly, missed; for a world without a hidden
+             effect: wrong, unexplained (an error remains and no own cause is reported) or right
     """
     sets = [[cause["id"], *rivals] for cause, rivals in zip(diagnosis["causes"], diagnosis["alternatives"])]
     wrong = [one[0] for one in sets if not {*hidden, *own} & {*one}]
@@ -59,12 +60,12 @@ def judge(hidden, own, diagnosis):
 
 
 def hiding(world):
-    """Options of make_logs() that hide the world's causes."""
+    """Returns the options of make_logs() that hide the causes of the world."""
     return ["--cause", ",".join(world["causes"]), "--strength", str(world["strength"])] if world["causes"] else []
 
 
 def make_logs(build, work, world, *options):
-    """(paths of the logs, truth)"""
+    """Returns (paths of the logs, truth)."""
     command = [program(build), "--seed", str(world["seed"]), "--make", world["make"], "--out", work / "logs", "--truth",
                work / "truth.json", *varying.of_generator(world), *options]
     if world["columns"] == "pressure":
@@ -74,7 +75,7 @@ def make_logs(build, work, world, *options):
 
 
 def identified(build, logs, out, threads):
-    """identify.json with the structure that the logs choose, or None."""
+    """Returns identify.json with the structure that is identified from the logs, or None."""
     done = subprocess.run([build / "tools/softgrip", "identify", "--structure", "auto", "--data", *logs, "--out", out,
                            "--threads", str(threads)], capture_output=True, text=True)
     return json.loads((out / "identify.json").read_text()) if done.returncode == 0 else None
@@ -90,7 +91,8 @@ def given_model(build, work, world, threads):
 
 
 def held_out(build, logs, work, threads):
-    """Of the structure that the logs choose: held-out error over the noise, and its description."""
+    """Returns the held-out error of the identified structure, divided by the noise, and the description of the
+    structure."""
     report = identified(build, logs, work / "identified", threads)
     if report is None:
         return {}
@@ -100,7 +102,7 @@ def held_out(build, logs, work, threads):
 
 
 def named_in(diagnosis, judged):
-    """What the ledger keeps of a diagnosis and of what it is worth."""
+    """Returns the entries of the ledger for a diagnosis and its judgement."""
     closed_loop = diagnosis.get("closed_loop") or {}
     return {"verdict": diagnosis["verdict"], "named": [c["id"] for c in diagnosis["causes"]],
             "rivals": diagnosis["alternatives"], "partial": [c["id"] for c in diagnosis["partial_causes"]],
@@ -109,13 +111,13 @@ def named_in(diagnosis, judged):
 
 
 def diagnosed(build, model, logs, work, world, threads):
-    """Where the pressure is recorded it drives the finger, and the valve is judged by it."""
+    """Diagnoses the world. A recorded pressure is the input of the finger model and the output of the valve model."""
     drive = ("--drive", "measured") if world["columns"] == "pressure" else ()
     return judging.diagnose(build, model, logs, work / "out", "--threads", str(threads), *drive)
 
 
 def run_world(build, folder, world, threads=1):
-    """Makes the world, diagnoses its logs; returns the world with what came of it."""
+    """Makes the world and diagnoses its logs. Returns the world with the results."""
     build = pathlib.Path(build).resolve()
     work = pathlib.Path(tempfile.mkdtemp(dir=folder))
     try:
