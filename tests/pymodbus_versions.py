@@ -1,4 +1,4 @@
-"""The differences between the pymodbus of Debian 12 (3.0) and that of Debian 13 (3.8), in one place."""
+"""Hides the differences between pymodbus 3.0 of Debian 12 and pymodbus 3.8 of Debian 13."""
 
 import asyncio
 
@@ -36,7 +36,7 @@ class ModbusSlaveContext(datastore.ModbusSlaveContext):
 
 
 def block():
-    """A block with all registers of a table."""
+    """Returns a block with all registers of a table."""
     return ModbusSequentialDataBlock(FIRST_REGISTER, [0] * 65536)
 
 

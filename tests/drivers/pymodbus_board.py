@@ -1,4 +1,4 @@
-"""A board served by pymodbus, a Modbus implementation that shares no code with the one under test.
+"""Serves a board with pymodbus, a Modbus implementation that shares no code with the tested implementation.
 
 It communicates with the test over stdin and stdout, one JSON object per line:
   {"set": [table, address, [values]]}     table: holding, input, coil
@@ -48,7 +48,7 @@ class Board(ModbusSlaveContext):
 
 
 def answer(board, line):
-    """The answer to a line of the test, or None."""
+    """Returns the answer to a line of the test, or None."""
     request = json.loads(line)
     if "set" in request:
         table, address, values = request["set"]
@@ -77,7 +77,7 @@ async def start(board):
 
 
 def wire(one, other):
-    """The cable: carries bytes between the inner ends of two pseudo-terminals."""
+    """Simulates a cable: transfers bytes between the inner ends of two pseudo-terminals."""
     while True:
         for end in select.select([one, other], [], [])[0]:
             os.write(other if end == one else one, os.read(end, 4096))

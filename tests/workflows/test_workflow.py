@@ -1,4 +1,5 @@
-"""The workflow with a few small logs: a bad row, a killed run that continues, and which steps are run again."""
+"""Tests the workflow with a few small logs: a bad row, a killed run that continues, and the steps that are run
+again."""
 
 import json
 import os

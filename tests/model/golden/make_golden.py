@@ -1,8 +1,9 @@
 #!/usr/bin/python3
-"""Writes chain_golden.csv: what the continuous equations say, by another language, library and author's hand.
+"""Writes chain_golden.csv, an independent solution of the continuous equations in another language with another
+library.
 
-Signals and numbers are written down here again on purpose: nothing is read from model/ or config/.
-Needs python3-scipy. Usage: ./make_golden.py > chain_golden.csv
+Signals and parameters are intentionally repeated here, so that nothing is read from model/ or config/. Needs
+python3-scipy. Usage: ./make_golden.py > chain_golden.csv
 """
 from scipy.integrate import solve_ivp
 
@@ -35,7 +36,7 @@ def steps():
 
 
 def integrate(m, corners, times):
-    """Displacement at `times`; every straight piece of the delayed command on its own."""
+    """Returns the displacement at `times`. Every linear segment of the delayed command is integrated separately."""
     corners = [(0.0, 0.0)] + [(t + m["delay"], p) for t, p in corners if t + m["delay"] > 0]
     corners.append((times[-1] + 1, corners[-1][1]))
     state = [0.0, 0.0] + [0.0] * len(m["branches"])
