@@ -32,7 +32,7 @@ def _vector(argument: str, values: npt.ArrayLike, unit: str) -> Vector:
         raise InvalidArgument(argument, f"{argument}: type {array.dtype}; {wanted}")
     if array.ndim != 1:
         raise InvalidArgument(argument, f"{argument}: shape {array.shape}; one dimension, {wanted}")
-    return np.ascontiguousarray(array, dtype=np.float64) if array.size else np.empty(0)
+    return np.require(array, np.float64, ("C_CONTIGUOUS", "ALIGNED")) if array.size else np.empty(0)
 
 
 def _number(argument: str, value: float, unit: str = "") -> float:

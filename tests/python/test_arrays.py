@@ -323,6 +323,13 @@ class HostileArguments(unittest.TestCase):
         np.testing.assert_array_equal(model.simulate(t, doubled[::2]), expected)
         np.testing.assert_array_equal(model.simulate(list(t), pressure.tolist()), expected)
 
+    def test_an_unaligned_array_is_copied(self):
+        unaligned = np.frombuffer(b"x" + np.arange(3.0).tobytes(), dtype=np.float64, offset=1)
+        self.assertFalse(unaligned.flags.aligned)
+        log = Log(unaligned, unaligned, unaligned)
+        self.assertTrue(log.t.flags.aligned)
+        np.testing.assert_array_equal(log.t, [0, 1, 2])
+
 
 class Threads(unittest.TestCase):
     def test_other_threads_run_during_a_fit(self):
