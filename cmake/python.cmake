@@ -1,6 +1,7 @@
 # The extension module of the Python package, where pybind11 and the headers of the system's Python are there. The folder
 # python/softgrip of the build tree has it beside links to the package's files: PYTHONPATH=BUILD/python.
-if(SOFTGRIP_SANITIZE)  # Python itself is built without
+# Python itself is built without sanitizers: the library of AddressSanitizer can be preloaded (tests/python/CMakeLists.txt).
+if(SOFTGRIP_SANITIZE AND (NOT SOFTGRIP_SANITIZE MATCHES "address" OR SOFTGRIP_FUZZERS))
   return()
 endif()
 if(EXISTS /usr/bin/python3)  # another one that comes first in PATH has other headers

@@ -2,7 +2,7 @@
 # Builds tests with the sanitizers and runs them:
 #   scripts/sanitize.sh        tests of code that parses external bytes with AddressSanitizer and UndefinedBehaviorSanitizer,
 #                              tests of code with threads with ThreadSanitizer: the part of scripts/test.sh
-#   scripts/sanitize.sh all    every test program with the first two, all tests of the daemon with the third
+#   scripts/sanitize.sh all    every test program and the Python module with the first two, all tests of the daemon with the third
 #   scripts/sanitize.sh build  builds the programs of the first form without running them
 # Tests that run other programs of the system are omitted. No report of a sanitizer is ignored, because reports are files in
 # build/PRESET/reports. tests/support/lsan.supp lists memory that other libraries keep until the process ends.
@@ -12,6 +12,7 @@ cd "$(dirname "$(realpath "$0")")/.."
 . scripts/ctest.sh
 
 only_build=false
+without='^python\.test_fuzz$'  # of the first form, which does not build the module
 # sanitized PRESET TEST_PROGRAM ...
 sanitized() {
   local preset=$1 reports=$PWD/build/$1/reports failed=0
@@ -23,7 +24,7 @@ sanitized() {
   rm -rf "$reports" && mkdir -p "$reports"
   ASAN_OPTIONS=log_path=$reports/asan UBSAN_OPTIONS=print_stacktrace=1:log_path=$reports/ubsan \
     TSAN_OPTIONS=log_path=$reports/tsan LSAN_OPTIONS=suppressions=$PWD/tests/support/lsan.supp:print_suppressions=0 \
-    run_ctest "$preset" 'blind|campaign|system|recipe' -E '_NOT_BUILT|^(systemd|packaging|repository|workflow|BlocksPage)\.' |
+    run_ctest "$preset" 'blind|campaign|system|recipe' -E "_NOT_BUILT|^(systemd|packaging|repository|workflow|BlocksPage)\.|$without" |
     grep -v ' Start \| Passed ' || failed=1
   if [ -n "$(ls "$reports")" ]; then
     cat "$reports"/* >&2
@@ -39,6 +40,7 @@ case ${1:-} in
     sanitized tsan base_test daemon_test daemon_process_test  # the drivers start no threads
     ;;
   all)
+    without='^$'
     sanitized asan-ubsan all
     sanitized tsan daemon_test daemon_process_test daemon_real_time_test drivers_test emulator_test emulator_wire_test
     ;;
