@@ -120,7 +120,7 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"no_unit",
               with("level: {default: 20, range: [10, 40], about: x}", "move: {pressure_kpa: $level}"),
               {},
-              "nothing says the unit of `level`"},
+              "the unit of `level` is not stated"},
         Wrong{"foreign_unit",
               with("level_bar: {default: 20, range: [10, 40], about: x}", "move: {pressure_kpa: $level_bar}"),
               {},
