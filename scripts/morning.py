@@ -187,7 +187,7 @@ def play():
             self.emulated.ask("object out")
             self.softgripd.wait_for_event("sequence_finished", since=since)
             self.softgripd.wait_for_state("idle")
-            self.show(("events", "--since", str(since)), keep=r"left: The grip's result|sequence")
+            self.show(("events", "--since", str(since)), keep=r"left: Grip result|sequence")
             self.emulated.ask("object stone")
 
         def wrong_recipe(self):

@@ -679,7 +679,7 @@ def files():
              matlab_5(packed(structure("run", {"t_ms": [1000 * t for t in T], "p_set_kPa": COMMAND,
                                                "p_meas_kPa": PRESSURE, "tip_mm": TIP}))), columns=MEASURED),
         File("dspace.mat", "MATLAB 5: structures with Name, Data and Unit (dSPACE)", dspace()),
-        File("trials.mat", "MATLAB 5: an array of structures", trials(), refused="of 3 fingers: '1', '2', '3'"),
+        File("trials.mat", "MATLAB 5: an array of structures", trials(), refused="belong to 3 fingers: '1', '2', '3'"),
         File("trials_chosen.mat", "MATLAB 5: one structure of an array", trials(), "--channel 2"),
         File("cells.mat", "MATLAB 5: a cell array", matlab_5(cells("log", [matrix("", T), matrix("", COMMAND),
                                                                         matrix("", TIP)])),

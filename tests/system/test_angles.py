@@ -223,7 +223,7 @@ class Angles(bench.BenchTest):
         self.softgrip("export", "simulated.csv", "--out", "wide.csv")
         self.assertIn("angle_deg", self.read("wide.csv").split("\n")[0])
         self.softgrip("export", model, "--rate-hz", "100", "--out", "finger.c")
-        self.assertIn("returns the bending angle [deg]", self.read("finger.c"))
+        self.assertIn("Returns the bending angle [deg]", self.read("finger.c"))
 
     def test_a_foreign_angle_is_imported_in_degrees(self):
         with open(self.folder / "tp1.csv", newline="") as file:

@@ -133,7 +133,7 @@ class Baseline(bench.BenchTest):
                 (["--rig-channel", "left", "--data", "log.csv", "--out", "base"], 2, "requires --rig"),
                 (["--rig", free, "--rig-channel", "left", "--experiments", "dance", "--out", "base"], 2, "dance"),
                 (["--out", "base"], 2, "needs --rig or --data"),
-                (["--check", "config"], 3, "config is no baseline")):
+                (["--check", "config"], 3, "config is not a baseline")):
             with self.subTest(why):
                 self.assertIn(why, self.softgrip("baseline", *arguments, expect=code).stderr)
         upper = self.simulated(("pressure_min_kpa: 0", "pressure_min_kpa: 2"))

@@ -209,7 +209,7 @@ class Calibrate(bench.BenchTest):
         child = self.start(rig, "--sensor", "--move", "--settle-s", "1.5", "--average-s", "0.6")
         out, said = self.answer_with(child, lambda: emulator.status()["channels"][0]["displacement_mm"])
         self.assertEqual(child.returncode, 0, said)
-        error = float(re.search(r"sensor: error ([\d.]+) mm", out).group(1))
+        error = float(re.search(r"sensor: error between the points ([\d.]+) mm", out).group(1))
         sensor = self.line_in(out, "sensor")
         # The gauge is read a moment before the averaging begins, and the finger creeps in this time.
         for volts in (2, 4):
@@ -271,7 +271,7 @@ class Calibrate(bench.BenchTest):
         before = rig.read_bytes()
         wrong = ("--gauge-mm", "4.8", "118.9", "--write")
         done = self.softgrip("calibrate", "--rig", rig, *self.QUICK, *wrong, expect=6)
-        self.assertIn("doubtful: sensor: at", done.stderr)
+        self.assertIn("doubtful: sensor: where the line of the rig file gives", done.stderr)
         self.assertIn("doubtful: sensor: between", done.stderr)
         self.assertIn("is unchanged", done.stderr)
         self.assertEqual(rig.read_bytes(), before)

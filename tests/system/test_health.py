@@ -92,7 +92,7 @@ class Health(bench.BenchTest):
         told = next(one for one in result["shared_changes"] if one["number"] == "pressure_loss_kpa")
         self.assertEqual(told["since"], day(8)[:10])
         self.assertEqual(told["fingers"], ["left", "right"])
-        self.assertTrue(any("changed alike" in warning for warning in result["warnings"]))
+        self.assertTrue(any("show the same change" in warning for warning in result["warnings"]))
 
     def test_a_leak_is_suspected(self):
         self.check_found(Finger(leak=0.04), "pressure_loss_kpa", 1, "leak")

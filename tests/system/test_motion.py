@@ -155,7 +155,7 @@ class Blind(MotionTest):
                 child = self.begin((*CALIBRATE, "--settle-s", "0.3", *what))
                 samples = self.outputs_to_the_end(child)
                 self.assertEqual(child.wait(), 6, child.errors())
-                self.assertRegex(child.errors(), r"the displacement sensor of `left`: \d+ readings in a row are not valid "
+                self.assertRegex(child.errors(), r"the displacement sensor of `left`: \d+ consecutive readings are not valid "
                                                  r"\(\w+\)")
                 self.assertLessEqual(max(max(sample) for sample in samples), NOISE_KPA)
                 self.assertEqual(child.output(), "", "no lines for the rig file")

@@ -128,7 +128,7 @@ class WithADaemon(bench.BenchTest):
     def test_the_list_says_what_a_start_may_choose(self):
         self.write("config/sequences/broken.yaml", "name: broken\nstep: []\n")
         text = self.softgrip("sequences").stdout
-        self.assertRegex(text, r"squeeze_kpa +3 to 10 kPa, default 5: how hard")
+        self.assertRegex(text, r"squeeze_kpa +3 to 10 kPa, default 5: gripping pressure")
         self.assertIn("hand_over: ", text)
         self.assertIn("broken.yaml:2:1: unknown key `step`", text)
         listed = {entry["name"]: entry for entry in
