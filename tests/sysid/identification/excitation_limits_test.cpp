@@ -29,7 +29,7 @@ TEST(ExcitationLimits, NameTheFreeParametersThatNeedWhatIsMissing) {
   for (double& kpa : ramp.pressure_command_kpa) kpa += 1;
   const std::vector<std::string> both = excitation_limits({ramp}, parameters);
   ASSERT_EQ(both.size(), 2U);
-  EXPECT_NE(both[1].find("need it: kelvin_voigt.k1_kpa_per_mm"), std::string::npos) << both[1];
+  EXPECT_NE(both[1].find("need this excitation: kelvin_voigt.k1_kpa_per_mm"), std::string::npos) << both[1];
 }
 
 }  // namespace
