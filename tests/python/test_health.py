@@ -96,7 +96,7 @@ class Health(unittest.TestCase):
         left = self.found.finger("left")
         first = next(one.indicator for one in left.alarms if one.active)
         self.assertEqual(axes.get_ylabel(), f"{left.indicator(first).title} [{left.indicator(first).unit}]")
-        self.assertEqual(left.plot("pressure_loss_kpa").get_ylabel(), "pressure lost while holding [kPa]")
+        self.assertEqual(left.plot("pressure_loss_kpa").get_ylabel(), "pressure loss while holding [kPa]")
         self.assertIn("gain", self.found.plot("right").get_ylabel())
         for bad in (lambda: self.found.plot("middle"), lambda: self.found.plot("left", "no_such")):
             with self.assertRaises(softgrip.InvalidArgument):
@@ -136,7 +136,7 @@ class Health(unittest.TestCase):
         (broken / "model.yaml").write_text("changed\n")
         (self.at / "bad.yaml").write_text("notes:\n  - {date: soon, action: x}\n")
         for call, kind, text in (
-                (lambda: health(self.recordings, broken), softgrip.MalformedFile, "model.yaml is not the file"),
+                (lambda: health(self.recordings, broken), softgrip.MalformedFile, "model.yaml was changed"),
                 (lambda: health(self.recordings, self.at / "nowhere"), softgrip.NoResult, "no baseline of `left`"),
                 (lambda: health(self.at / "nothing", self.baseline), softgrip.NoResult, "no recording can be compared"),
                 (lambda: health(self.recordings, self.baseline, notes=self.at / "bad.yaml"), softgrip.MalformedFile, "no date"),

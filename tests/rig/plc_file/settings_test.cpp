@@ -48,7 +48,7 @@ TEST(PlcSettings, TheShippedFileIsRead) {
 }
 
 TEST(PlcSettings, SaysWhatIsWrongAndWhere) {
-  EXPECT_NE(said_of("address: 101", "address: 100").find("is that of 'map_version' and of 'done_counter'"),
+  EXPECT_NE(said_of("address: 101", "address: 100").find("belongs to both 'map_version' and 'done_counter'"),
             std::string::npos);
   EXPECT_NE(said_of("first: 120", "first: 100").find("address 100"), std::string::npos);
   EXPECT_NE(said_of("name: recipe", "name: receipt").find("recipe"), std::string::npos);

@@ -96,7 +96,7 @@ TEST(FingerHealth, LearnsBeforeItJudges) {
   life.days = 2;
   const FingerHealth health = judged(life);
   EXPECT_EQ(health.state, FingerState::learning);
-  EXPECT_NE(health_sentence(health, {}).find("Too few"), std::string::npos);
+  EXPECT_NE(health_sentence(health, {}).find("too few grips"), std::string::npos);
 }
 
 TEST(FingerHealth, ADayIsAPointAndTellsItsGrips) {
@@ -254,7 +254,7 @@ TEST(HealthPage, OfAFingerWithoutAnyNumberIsStillOne) {
   for (ScoredRun& run : runs) run.score = GripScore();
   const FingerHealth health = judge_finger("left", runs, {}, base, {});
   EXPECT_EQ(health.state, FingerState::learning);
-  EXPECT_NE(health_page(health, suspicion_of(health), {"b", base, {}}).to_html().find("Too few"),
+  EXPECT_NE(health_page(health, suspicion_of(health), {"b", base, {}}).to_html().find("too few grips"),
             std::string::npos);
 }
 

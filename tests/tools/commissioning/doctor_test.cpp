@@ -128,7 +128,7 @@ class DoctorTest : public ::testing::Test {
 TEST_F(DoctorTest, AHealthyRigIsFit) {
   examine(true);
   EXPECT_EQ(findings_.worst(), Verdict::ok) << text_of({"", "", false, true}, findings_, 100, false);
-  expect("board", Verdict::ok, "answers");
+  expect("board", Verdict::ok, "responds");
   expect("sensor left", Verdict::ok, "mm");
   expect("valve right", Verdict::ok, "kPa measured");
   expect("finger right", Verdict::ok, "moved");

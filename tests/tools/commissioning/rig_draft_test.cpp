@@ -166,7 +166,7 @@ TEST(DraftFacts, SayWhatIsWrongWithAnAnswer) {
   EXPECT_NE(take(draft, "valve-kpa", "100"), "");
   EXPECT_NE(take(draft, "valve-kpa", "0 0"), "");
   EXPECT_EQ(take(draft, "valve-kpa", "0 6,5"), "") << "a decimal comma is accepted";
-  EXPECT_NE(take(draft, "pressure-max-kpa", "60").find("up to 6.5"), std::string::npos);
+  EXPECT_NE(take(draft, "pressure-max-kpa", "60").find("at most 6.5"), std::string::npos);
   EXPECT_NE(take(draft, "monitor", "perhaps"), "");
 }
 

@@ -166,7 +166,7 @@ TEST_F(RigUpdateTest, AGaugeThatDoesNotGoWithTheModelIsDoubted) {
             std::string::npos)
       << doubted(3)[0];
   const std::string sentence = doubted(3)[0];
-  const double model_mm = std::stod(sentence.substr(sentence.find("goes ") + 5));
+  const double model_mm = std::stod(sentence.substr(sentence.find("predicts ") + 9));
   EXPECT_GT(model_mm, 8);
   EXPECT_TRUE(doubted(model_mm).empty());
   EXPECT_TRUE(doubted(0.85 * model_mm).empty());

@@ -79,7 +79,7 @@ TEST(ClosedLoopGain, WhatOfAModelCanBeUndoneIsItsFeedforward) {
   nlohmann::ordered_json json;
   add_closed_loop(json, gain);
   EXPECT_EQ(json["closed_loop"]["gains"]["extended"]["feedforward_without"][0], "relaxing_friction");
-  EXPECT_NE(json["closed_loop"]["notes"].dump().find("without relaxing_friction"), std::string::npos);
+  EXPECT_NE(json["closed_loop"]["notes"].dump().find("omits relaxing_friction"), std::string::npos);
 }
 
 TEST(ClosedLoopGain, AModelThatMovesNothingIsLeftToThePid) {
