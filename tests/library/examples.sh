@@ -19,23 +19,6 @@ cmake -S "$source/examples/cpp" -B examples -DCMAKE_PREFIX_PATH="$work/installed
 cmake --build examples -j 2 >build.log 2>&1 || { cat build.log; fail "build"; }
 run_examples examples "$build/tools/softgrip" "$build/daemon/softgripd"
 
-"$softgrip" baseline --data one.csv --model "$model" --out baseline >/dev/null
-mkdir recordings && cp one.csv recordings/
-says "Too few grips yet" examples/nightly_health recordings/one.csv baseline night
-grep -q "<html" night/health-.html && [ -s night/health-scores.jsonl ] || fail "no page or no scores of the health"
-
-# A daemon whose board is simulated in its process.
-sed -e "s#/tmp/softgrip.sock#$work/socket#; s#/tmp/softgrip-runs#$work/runs#; s#models/bench_twin.yaml#$model#" \
-  -e "s#sequence_directory: sequences#sequence_directory: $source/config/sequences#" "$source/config/rig.yaml" >rig.yaml
-"$build/daemon/softgripd" --config rig.yaml >daemon.log 2>&1 &
-daemon=$!
-for _ in $(seq 600); do [ ! -S socket ] || break; sleep 0.05; done
-says "result: HOLDING" examples/grip_and_wait socket pick_stone
-! examples/grip_and_wait socket pick_stome 2>output.txt || fail "grip_and_wait started a sequence that does not exist"
-grep -q "cannot be run on this rig" output.txt || { cat output.txt; fail "no reason of the refusal"; }
-kill "$daemon" && wait "$daemon" || fail "softgripd ended with $?"
-daemon=
-
 if command -v pkg-config >/dev/null; then
   folder=$(find installed -name softgrip.pc -printf '%h\n')
   export PKG_CONFIG_PATH=$work/$folder
