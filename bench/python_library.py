@@ -128,7 +128,7 @@ def main():
         "| measured | result | required |", "|---|---|---|", *("| " + " | ".join(row) + " |" for row in rows), "",
         f"Import: median of {4 * args.runs} processes. Simulation: the fastest of {args.runs * CALLS:,} calls, in alternating",
         "processes of the two languages, both with `MALLOC_TRIM_THRESHOLD_` of 256 MiB. With the default, the small C++ program returns",
-        "memory to the system after each call and takes about 10 % longer.", "",
+        "memory to the system after each call, and the next call takes longer.", "",
         "## Identification", "",
         "| program | processor time [s] | fitted: tp1 [mm] | held out: steps [mm] | held out: sp2 [mm] |", "|---|---|---|---|---|",
         *("| " + " | ".join(row) + " |" for row in fits), "",

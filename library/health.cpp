@@ -13,18 +13,11 @@
 namespace softgrip {
 namespace {
 
-constexpr std::size_t largest_text = std::size_t{512} * 1024 * 1024;
-
-std::string text_of(const std::string& path) {
-  auto text = read_file(path, largest_text);
-  if (!text) throw FileError(text.error());
-  return *std::move(text);
-}
-
 std::vector<sysid::health::Note> notes_of(const std::string& path) {
   if (path.empty()) return {};
   document::Problems problems;
-  auto notes = sysid::health::read_notes(path, text_of(path), problems);
+  auto notes = sysid::health::load_notes(path, problems);
+  if (!notes && !notes.error().empty()) throw FileError(notes.error());
   if (!notes) library::refuse(problems);
   return *std::move(notes);
 }
@@ -92,8 +85,11 @@ Health health(const std::vector<std::string>& recordings, const std::string& bas
                                          {},         {},       options.progress};
   question.options.false_alarm_points = options.false_alarm_points;
   question.options.by_day = options.points == HealthPoints::day;
-  // A file that exists and cannot be read holds the scores of earlier days: it must not be replaced.
-  if (!options.scores.empty() && is_there(options.scores)) question.scores = text_of(options.scores);
+  if (!options.scores.empty()) {
+    auto earlier = sysid::health::earlier_scores(options.scores);
+    if (!earlier) throw FileError(earlier.error());
+    question.scores = *std::move(earlier);
+  }
   const auto found =
       library::cancellable(1, options.stop, [&] { return sysid::health::recorded_health(question); });
   if (!found) refuse(found.error().front());

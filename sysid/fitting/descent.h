@@ -44,8 +44,8 @@ struct Descent {
   bool converged = false;  ///< false: the descent ended because the maximum number of steps was reached
 };
 
-/// Returns one damped Gauss-Newton step. A coordinate at a bound stays there if the step would cross the
-/// bound.
+/// Returns one damped Gauss-Newton step. A coordinate at a bound stays there if the gradient pushes it
+/// against the bound.
 [[nodiscard]] Eigen::VectorXd damped_step(const NormalEquations& normal, const StepBounds& bounds,
                                           double damping, const DescentOptions& options);
 

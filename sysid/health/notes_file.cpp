@@ -1,8 +1,11 @@
 #include "sysid/health/notes_file.h"
 
 #include <algorithm>
+#include <utility>
 
+#include "base/files.h"
 #include "document/reader.h"
+#include "sysid/health/scored_run.h"
 
 namespace softgrip::sysid::health {
 namespace {
@@ -43,6 +46,15 @@ std::optional<std::vector<Note>> read_notes(const std::string& path, std::string
   if (!problems.empty()) return std::nullopt;
   std::stable_sort(notes.begin(), notes.end(), [](const Note& a, const Note& b) { return a.date < b.date; });
   return notes;
+}
+
+tl::expected<std::vector<Note>, std::string> load_notes(const std::string& path,
+                                                        document::Problems& problems) {
+  auto text = read_file(path, largest_health_file);
+  if (!text) return tl::unexpected(text.error());
+  auto notes = read_notes(path, *std::move(text), problems);
+  if (!notes) return tl::unexpected(std::string());
+  return *std::move(notes);
 }
 
 }  // namespace softgrip::sysid::health

@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include <tl/expected.hpp>
+
 #include "document/problem.h"
 
 namespace softgrip::sysid::health {
@@ -23,5 +25,10 @@ struct Note {
 /// `problems`.
 [[nodiscard]] std::optional<std::vector<Note>> read_notes(const std::string& path, std::string text,
                                                           document::Problems& problems);
+
+/// Reads the file and its notes. The error is a sentence if the file cannot be read. It is empty if the text
+/// has problems, which are all added to `problems`.
+[[nodiscard]] tl::expected<std::vector<Note>, std::string> load_notes(const std::string& path,
+                                                                      document::Problems& problems);
 
 }  // namespace softgrip::sysid::health

@@ -27,7 +27,6 @@ using Json = nlohmann::ordered_json;
 /// obsolete.
 constexpr const char* scoring = "1-";
 constexpr std::size_t id_letters = 12;
-constexpr std::size_t largest_baseline = std::size_t{512} * 1024 * 1024;
 
 /// Reads the baseline of each finger once: from DIR/FINGER if that folder is a baseline, otherwise from DIR.
 class Baselines {
@@ -51,7 +50,7 @@ class Baselines {
  private:
   std::optional<FingerBase> read(const std::string& folder) {
     const std::string file = (fs::path(folder) / "baseline.json").string();
-    const auto bytes = read_file(file, largest_baseline);
+    const auto bytes = read_file(file, largest_health_file);
     if (!bytes) return std::nullopt;
     const auto baseline = read_baseline(folder);
     if (!baseline) return refuse({baseline.error(), {}});

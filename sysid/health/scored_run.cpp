@@ -3,6 +3,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "base/files.h"
+
 namespace softgrip::sysid::health {
 namespace {
 
@@ -14,6 +16,11 @@ std::string text_at(const Json& object, const char* key) {
 }
 
 }  // namespace
+
+tl::expected<std::string, std::string> earlier_scores(const std::string& path) {
+  if (!is_there(path)) return std::string();
+  return read_file(path, largest_health_file);
+}
 
 std::vector<ScoredRun> read_scores(std::string_view text) {
   std::vector<ScoredRun> runs;

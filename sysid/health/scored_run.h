@@ -2,6 +2,7 @@
 // Stores the indicators of each finger in each recorded run as one line of a file. Lines are only added. The
 // indicators therefore remain available after a recording has been deleted, and no recording is read twice.
 
+#include <cstddef>
 #include <limits>
 #include <string>
 #include <string_view>
@@ -23,9 +24,14 @@ struct ScoredRun {
   double temperature_c = std::numeric_limits<double>::quiet_NaN();  ///< median of the run; NaN: not recorded
 };
 
+/// Largest file that health reads [bytes].
+inline constexpr std::size_t largest_health_file = std::size_t{512} << 20U;
 /// File name in the output folder.
 inline constexpr const char* scores_file = "health-scores.jsonl";
 
+/// Returns the text of this file, or "" if there is none. The error is a sentence: an existing file that
+/// cannot be read holds the scores of earlier days, so it must not be replaced.
+[[nodiscard]] tl::expected<std::string, std::string> earlier_scores(const std::string& path);
 /// Reads the lines of this file. An incomplete line, for example after a power failure, is skipped.
 [[nodiscard]] std::vector<ScoredRun> read_scores(std::string_view text);
 /// Returns the line of a run, with its line break.

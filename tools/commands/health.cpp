@@ -21,8 +21,6 @@ namespace {
 namespace fs = std::filesystem;
 namespace health = sysid::health;
 
-constexpr std::size_t largest_file = std::size_t{512} * 1024 * 1024;
-
 struct HealthOptions {
   std::vector<std::string> runs;
   std::string baseline;
@@ -40,11 +38,10 @@ tl::expected<std::vector<health::Note>, ExitCode> notes_of(const HealthOptions& 
     if (is_there(beside)) path = beside.string();
   }
   if (path.empty()) return std::vector<health::Note>{};
-  const auto text = read_file(path, largest_file);
-  if (!text) return tl::unexpected(fail(ExitCode::io, text.error()));
   document::Problems problems;
-  auto notes = health::read_notes(path, *text, problems);
-  if (!notes) return tl::unexpected(refuse(problems));
+  auto notes = health::load_notes(path, problems);
+  if (!notes)
+    return tl::unexpected(notes.error().empty() ? refuse(problems) : fail(ExitCode::io, notes.error()));
   return *std::move(notes);
 }
 
@@ -105,8 +102,7 @@ ExitCode run(HealthOptions options) {
   if (!options.out.empty()) {
     if (const auto ready = prepare_folder(options.out); !ready) return fail(ExitCode::io, ready.error());
     const std::string path = (fs::path(options.out) / health::scores_file).string();
-    // An existing file that cannot be read holds the scores of earlier days, so it must not be replaced.
-    auto earlier = is_there(path) ? read_file(path, largest_file) : std::string();
+    auto earlier = health::earlier_scores(path);
     if (!earlier) return fail(ExitCode::io, earlier.error());
     question.scores = *std::move(earlier);
   }
