@@ -41,7 +41,7 @@ tar -xf "$store/$release.tar" -C "$root" --exclude='./dev/*'
 git clone -q --no-hardlinks . "$root/softgrip"
 git -C "$root/softgrip" remote remove origin
 mkdir -p "$root/softgrip/build"
-find build -maxdepth 1 -name '*.deb' -exec cp {} "$root/softgrip/build" \;
+find build -maxdepth 1 -name '*.deb' -exec cp -p {} "$root/softgrip/build" \;
 cp -L /etc/resolv.conf /etc/hosts "$root/etc/"
 # Keep the packages that apt downloads for the next run.
 echo 'Binary::apt::APT::Keep-Downloaded-Packages "true"; APT::Keep-Downloaded-Packages "true";' \
