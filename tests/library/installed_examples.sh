@@ -23,7 +23,8 @@ sed -n '/^ *cp -r \/usr\/share\/doc\/libsoftgrip-dev/,/```/p' "$source/docs/how-
 bash -eu lines.sh >build.log 2>&1 || { cat build.log >&2; fail "build"; }
 run_examples build-examples softgrip "$(command -v softgripd)"
 
-mkdir -p installed/tools
+mkdir -p installed/tools installed/daemon
 ln -s "$(command -v softgrip)" installed/tools/softgrip
+ln -s "$(command -v softgripd)" installed/daemon/softgripd
 (cd "$source/tests/python" && SOFTGRIP_BUILD=$work/installed /usr/bin/python3 -m unittest test_examples)
 echo "the examples of C++ and Python ran with the installed packages"
