@@ -32,6 +32,7 @@
 #include "model/blocks/quantisation.h"
 #include "model/blocks/rate_dependent_levelling.h"
 #include "model/blocks/rate_dependent_width.h"
+#include "model/blocks/rate_limit.h"
 #include "model/blocks/relaxing_friction.h"
 #include "model/blocks/running_in.h"
 #include "model/blocks/sampling.h"
@@ -82,6 +83,7 @@ using Blocks = BlockList<TransportDelay,          //
                          ValveStiction,           //
                          ValveLag,                //
                          AsymmetricValveLag,      //
+                         RateLimit,               //
                          PressureRegulator,       //
                          SupplySag,               //
                          PressureSaturation,      //

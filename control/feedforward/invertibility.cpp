@@ -16,6 +16,7 @@
 #include "model/blocks/chamber_lag.h"
 #include "model/blocks/pressure_regulator.h"
 #include "model/blocks/pressure_saturation.h"
+#include "model/blocks/rate_limit.h"
 #include "model/blocks/valve_deadband.h"
 #include "model/blocks/valve_lag.h"
 #include "model/chain.h"
@@ -128,7 +129,7 @@ bool is_undone(const BlockInfo& info) {
   if (info.station != Station::valve) return false;
   return info.inverse == Inverse::preview ||
          model::is<model::ValveLag, model::AsymmetricValveLag, model::ChamberLag, model::PressureRegulator,
-                   model::PressureSaturation, model::ValveDeadband>(info);
+                   model::RateLimit, model::PressureSaturation, model::ValveDeadband>(info);
 }
 
 tl::expected<void, Refusal> check_bouc_wen(const model::Model& model, const LimitSettings& limits,

@@ -1,5 +1,6 @@
 #include "sysid/structure/driven_pressure.h"
 
+#include "model/blocks/rate_limit.h"
 #include "model/blocks/transport_delay.h"
 #include "model/play.h"
 #include "model/regulated_pressure.h"
@@ -18,11 +19,15 @@ class Valve {
         delay_(std::vector<double>{structure.delay ? n.delay_s : 0}, {.sample_time_s = record.sample_time_s}),
         second_(second_s(structure, n), second_s(structure, n), record.sample_time_s),
         lag_(structure.lag ? n.filling_s : 0, structure.lag ? n.venting_s : 0, record.sample_time_s),
+        limit_(std::vector<double>{limits(structure) ? n.filling_s_per_kpa : 0,
+                                   limits(structure) ? n.venting_s_per_kpa : 0},
+               {}),
         pilot_(n.pilot_band_kpa / 2),
         regulator_({n.filling_s, n.venting_s, n.overlap_kpa, n.integral_s, n.full_open_kpa}) {
     delay_.reset(first_kpa);
     second_.reset(first_kpa);
     lag_.reset(first_kpa);
+    limit_.reset(first_kpa);
     pilot_.reset(first_kpa);
     regulator_.reset(pilot_.output());
   }
@@ -31,7 +36,9 @@ class Valve {
   void step(const Segment& command, Next&& next) {
     delay_.step(command, {}, [&](const Segment& delayed) {
       if (!regulates_) {
-        return second_.step(delayed, [&](const Segment& slower) { lag_.step(slower, next); });
+        return second_.step(delayed, [&](const Segment& slower) {
+          lag_.step(slower, [&](const Segment& q) { limit_.step(q, {}, next); });
+        });
       }
       pilot_.step(delayed, [&](const Segment& asked) { regulator_.step(asked, next); });
     });
@@ -42,10 +49,13 @@ class Valve {
     return structure.lag && structure.second_lag ? n.second_s : 0;
   }
 
+  static bool limits(const BaseStructure& structure) { return structure.lag && structure.rate_limit; }
+
   bool regulates_;
   model::TransportDelay<double> delay_;
   model::TwoWayLag<double> second_;
   model::TwoWayLag<double> lag_;
+  model::RateLimit<double> limit_;
   model::Play<double> pilot_;
   model::RegulatedPressure<double> regulator_;
 };

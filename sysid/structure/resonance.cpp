@@ -8,6 +8,7 @@
 #include "model/blocks/asymmetric_valve_lag.h"
 #include "model/blocks/chamber_lag.h"
 #include "model/blocks/inertia.h"
+#include "model/blocks/rate_limit.h"
 #include "model/blocks/transport_delay.h"
 #include "model/blocks/valve_lag.h"
 #include "model/named.h"
@@ -35,10 +36,10 @@ void put(FitPoint& point, double period_s, double damping_ratio) {
 
 /// Returns the flat indices of the parameters of resonance, delay and lags.
 std::vector<std::size_t> latencies(const model::Model& model) {
-  constexpr std::array movable{model::block_type<model::TransportDelay>(),
-                               model::block_type<model::ValveLag>(),
-                               model::block_type<model::AsymmetricValveLag>(),
-                               model::block_type<model::ChamberLag>(), model::block_type<model::Inertia>()};
+  constexpr std::array movable{
+      model::block_type<model::TransportDelay>(),     model::block_type<model::ValveLag>(),
+      model::block_type<model::AsymmetricValveLag>(), model::block_type<model::RateLimit>(),
+      model::block_type<model::ChamberLag>(),         model::block_type<model::Inertia>()};
   std::vector<std::size_t> flat;
   std::size_t at = 0;
   for (const model::BlockSpec& block : model.blocks) {

@@ -25,6 +25,7 @@ std::string description_of(const BaseStructure& s) {
   if (s.lag && s.regulator) text += ", regulator with overlap";
   if (s.lag && !s.regulator) text += s.two_way ? ", lag (filling and venting)" : ", lag";
   if (s.lag && s.second_lag && !s.regulator) text += ", second lag";
+  if (s.lag && s.rate_limit && !s.regulator) text += ", rate limit";
   if (s.characteristic) text += ", characteristic";
   if (s.resonance) text += ", resonance";
   return text;

@@ -29,6 +29,7 @@ struct BaseStructure {
   bool two_way = true;         ///< filling and venting have different time constants
   bool second_lag = false;     ///< a second lag before the first one, with one time constant for both
                                ///< directions
+  bool rate_limit = false;     ///< a rate limit behind the lag, see model::RateLimit
   bool regulator = false;      ///< the lag is that of a regulator with an overlap, see RegulatedPressure
   bool characteristic = true;  ///< a nonlinear, monotonic map after the sum
   bool resonance = false;      ///< a second-order mode after the map, see with_resonance()
@@ -67,7 +68,9 @@ struct NonlinearNumbers {
   double delay_s = 0;
   double filling_s = 0;  ///< time constant while the pressure rises; 0: no lag
   double venting_s = 0;
-  double second_s = 0;        ///< time constant of the second lag
+  double second_s = 0;           ///< time constant of the second lag
+  double filling_s_per_kpa = 0;  ///< rate limit: shortest time in which the pressure rises by 1 kPa
+  double venting_s_per_kpa = 0;
   double pilot_band_kpa = 0;  ///< regulator: change of the command that the regulator ignores after a
                               ///< reversal
   double overlap_kpa = 0;     ///< regulator: this and the next two parameters are those of RegulatorNumbers

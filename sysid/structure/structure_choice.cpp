@@ -69,7 +69,7 @@ class Judge {
   /// trial with the lag.
   [[nodiscard]] StructureTrial judge_regulated(BaseStructure structure, const StructureTrial& lagging) const {
     structure.regulator = true;
-    structure.second_lag = false;
+    structure.second_lag = structure.rate_limit = false;
     return judge_near(structure, lagging.ridge, with_usual_regulator(lagging.numbers, grid_));
   }
 
@@ -203,13 +203,16 @@ BaseStructure without(BaseStructure s, Ingredient ingredient) {
       s.delay = false;
       break;
     case Ingredient::lag:
-      s.lag = s.second_lag = false;
+      s.lag = s.second_lag = s.rate_limit = false;
       break;
     case Ingredient::second_lag:
       s.second_lag = false;
       break;
+    case Ingredient::rate_limit:
+      s.rate_limit = false;
+      break;
     case Ingredient::latency:
-      s.delay = s.lag = s.second_lag = false;
+      s.delay = s.lag = s.second_lag = s.rate_limit = false;
       break;
     case Ingredient::regulator:
       s.regulator = false;
@@ -307,6 +310,7 @@ std::string_view name_of(Ingredient ingredient) {
       "delay",
       "lag",
       "a second lag",
+      "a rate limit",
       "delay and lag",
       "a regulator's overlap (a lag instead)",
       "a separate time constant for venting",
@@ -369,12 +373,19 @@ StructureChoice choose_structure(const std::vector<Record>& records, const Struc
     structure.second_lag = true;
     return judge.judge_near(structure, chosen.ridge, chosen.numbers);
   };
+  const auto limited = [&](BaseStructure structure, const StructureTrial& chosen) {
+    structure.second_lag = false;
+    structure.rate_limit = true;
+    return judge.judge_near(structure, chosen.ridge, chosen.numbers);
+  };
   const auto regulated = [&](const BaseStructure& structure, const StructureTrial& chosen) {
     return judge.judge_regulated(structure, chosen);
   };
   if (options.drive == Drive::command && options.dynamics) {
     say("a second lag");
     offer_extended(slower, options.threads, choice);
+    say("a rate limit");
+    offer_extended(limited, options.threads, choice);
   }
   if (options.drive == Drive::command) {
     say("a regulator instead of the lag");

@@ -45,6 +45,7 @@ enum class Ingredient {
   delay,
   lag,
   second_lag,
+  rate_limit,
   latency,         ///< delay and lag together, because one of them can largely replace the other
   regulator,       ///< replaced by a lag
   venting_lag,     ///< replaced by one time constant for both directions
@@ -60,6 +61,7 @@ inline constexpr std::array all_ingredients{Ingredient::hysteresis,
                                             Ingredient::delay,
                                             Ingredient::lag,
                                             Ingredient::second_lag,
+                                            Ingredient::rate_limit,
                                             Ingredient::latency,
                                             Ingredient::regulator,
                                             Ingredient::venting_lag,

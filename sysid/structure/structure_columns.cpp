@@ -19,8 +19,9 @@ using Weights = model::ExponentialWeights<double>;
 /// is also equal.
 bool drive_alike(const NonlinearNumbers& a, const NonlinearNumbers& b) {
   return a.delay_s == b.delay_s && a.filling_s == b.filling_s && a.venting_s == b.venting_s &&
-         a.second_s == b.second_s && a.pilot_band_kpa == b.pilot_band_kpa && a.overlap_kpa == b.overlap_kpa &&
-         a.integral_s == b.integral_s && a.full_open_kpa == b.full_open_kpa;
+         a.second_s == b.second_s && a.filling_s_per_kpa == b.filling_s_per_kpa &&
+         a.venting_s_per_kpa == b.venting_s_per_kpa && a.pilot_band_kpa == b.pilot_band_kpa &&
+         a.overlap_kpa == b.overlap_kpa && a.integral_s == b.integral_s && a.full_open_kpa == b.full_open_kpa;
 }
 
 /// Creep branches with a common input signal, computed in pairs.

@@ -179,6 +179,11 @@ class Search {
       }
     }
     if (structure_.lag && structure_.second_lag) add_driving(logarithmic(&N::second_s, 1.5, 0.1, 1e-4, 10));
+    if (structure_.lag && structure_.rate_limit) {
+      for (double N::*s_per_kpa : {&N::filling_s_per_kpa, &N::venting_s_per_kpa})
+        add_driving(logarithmic(s_per_kpa, 1.5, 1 / grid_.largest_kpa, 1e-4 / grid_.largest_kpa,
+                                1e3 / grid_.largest_kpa));
+    }
     if (structure_.lag && structure_.regulator) {
       // A regulator has no wider band. With a wider one, the search would fit a backlash.
       const double widest_kpa = widest_of_a_regulator * grid_.largest_kpa;
@@ -236,6 +241,26 @@ std::vector<NonlinearNumbers> starts_for(const std::vector<Record>& records, con
   return {start(0.02, 0.15, 0.15, 2, 0), start(0.15, 0.05, 0.05, 6, 1.2), start(0.1, 0.5, 1.5, 3, 0.5)};
 }
 
+/// Returns each start point with several rate limits that replace most of the lags. A lag that was fitted to
+/// a ramp of duration T has a time constant of about T / 1.5. The ramp is assumed to cover a share of the
+/// pressure range. A rate limit that is too fast has no effect and no gradient, so different shares are
+/// tried.
+std::vector<NonlinearNumbers> with_rate_limits(const std::vector<NonlinearNumbers>& starts,
+                                               const StructureGrid& grid) {
+  std::vector<NonlinearNumbers> limited;
+  for (NonlinearNumbers start : starts) {
+    if (start.filling_s_per_kpa > 0) return starts;
+    const double filling_s = std::exchange(start.filling_s, start.filling_s / 4);
+    const double venting_s = std::exchange(start.venting_s, start.venting_s / 4);
+    for (const double share : {1.0, 0.2, 0.04}) {
+      start.filling_s_per_kpa = 1.5 * filling_s / (share * grid.largest_kpa);
+      start.venting_s_per_kpa = 1.5 * venting_s / (share * grid.largest_kpa);
+      limited.push_back(start);
+    }
+  }
+  return limited;
+}
+
 }  // namespace
 
 NonlinearNumbers with_usual_regulator(NonlinearNumbers numbers, const StructureGrid& grid) {
@@ -276,8 +301,8 @@ FittedStructure fit_form(const std::vector<Record>& records, const BaseStructure
   const std::vector<Record> few = with_fewer_readings(records, options.most_rows);
   FittedStructure fit{structure, grid, {}, {}, 0, options.ridge, false, {}};
   double best = std::numeric_limits<double>::infinity();
-  const std::vector<NonlinearNumbers> starts =
-      near != nullptr ? std::vector{*near} : starts_for(records, grid);
+  std::vector<NonlinearNumbers> starts = near != nullptr ? std::vector{*near} : starts_for(records, grid);
+  if (structure.rate_limit) starts = with_rate_limits(starts, grid);
   std::vector<Descent<Search::State>> runs(starts.size());
   parallel_for_idle(starts.size(), [&](std::size_t i) {
     NonlinearNumbers start = starts[i];

@@ -10,6 +10,7 @@
 #include "model/blocks/prandtl_ishlinskii.h"
 #include "model/blocks/pressure_dependent_creep.h"
 #include "model/blocks/pressure_regulator.h"
+#include "model/blocks/rate_limit.h"
 #include "model/blocks/transport_delay.h"
 #include "model/blocks/valve_deadband.h"
 #include "model/blocks/valve_lag.h"
@@ -59,6 +60,7 @@ class Builder {
     } else {
       if (fit_.structure.second_lag) add<model::ValveLag>({n.second_s});
       add<model::AsymmetricValveLag>({n.filling_s, n.venting_s});
+      if (fit_.structure.rate_limit) add<model::RateLimit>({n.filling_s_per_kpa, n.venting_s_per_kpa});
     }
   }
 

@@ -266,6 +266,7 @@ valve:
   - transport_delay: {delay_s: 0.0372}
   - valve_lag: {time_constant_s: 0.02}
   - asymmetric_valve_lag: {filling_time_constant_s: 0.03, venting_time_constant_s: 0.06}
+  - rate_limit: {filling_s_per_kpa: 0.008, venting_s_per_kpa: 0.012}
   - chamber_lag: {filling_time_constant_s: 0.01, venting_time_constant_s: 0.02}
 actuator:
   - bouc_wen: {alpha_mm_per_kpa: 0.2, beta_mm_per_kpa: 0.1, gamma_per_kpa: 0.02, eta_per_kpa: 0.03, exponent: 1}

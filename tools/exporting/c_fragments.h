@@ -14,6 +14,8 @@ extern const std::string_view transport_delay;
 extern const std::string_view valve_lag;
 /// model/two_way_lag.h
 extern const std::string_view two_way_lag;
+/// model/blocks/rate_limit.h
+extern const std::string_view rate_limit;
 /// model/blocks/bouc_wen.h, exponent 1
 extern const std::string_view bouc_wen;
 /// model/play.h and model/blocks/prandtl_ishlinskii.h

@@ -145,4 +145,60 @@ static void two_way_lag_step(double *output, double filling, double venting, seg
 }
 )";
 
+const std::string_view rate_limit = R"(
+/* Limited rate of change, cut where the output meets the input. */
+static void rate_limit_go(double *output, double s_per_kpa, double duration_s, void *chain, next_block next) {
+  const double begin = *output;
+  *output = begin + duration_s / s_per_kpa;
+  next(chain, straight(duration_s, begin, *output));
+}
+
+static void rate_limit_follow(double *output, double filling, double venting, segment in, void *chain,
+                              next_block next) {
+  const double begin = *output;
+  const double rise = in.end - begin;
+  const double s_per_kpa = rise > 0.0 ? filling : venting;
+  if (fabs(rise) * s_per_kpa > in.duration_s) {
+    rate_limit_go(output, rise > 0.0 ? s_per_kpa : -s_per_kpa, in.duration_s, chain, next);
+    return;
+  }
+  *output = in.end;
+  next(chain, bent(in.duration_s, begin, in.end, in.mean));
+}
+
+static void rate_limit_step(double *output, double filling, double venting, segment in, void *chain,
+                            next_block next) {
+  const double gap = in.begin - *output;
+  const double s_per_kpa = gap > 0.0 ? filling : -venting;
+  const double least_s = 1e-6 * in.duration_s;
+  double meeting_s = in.duration_s;
+  segment rest;
+  if (in.duration_s <= 0.0) {
+    const double begin = *output;
+    if ((in.end > begin ? filling : venting) > 0.0) return;
+    *output = in.end;
+    next(chain, straight(in.duration_s, begin, in.end));
+    return;
+  }
+  if (gap == 0.0 || s_per_kpa == 0.0) {
+    meeting_s = 0.0;
+  } else {
+    const double closing = 1.0 / s_per_kpa - (in.end - in.begin) / in.duration_s;
+    if (gap * closing > 0.0 && gap / closing < in.duration_s) meeting_s = gap / closing;
+  }
+  if (meeting_s <= least_s) {
+    rate_limit_follow(output, filling, venting, in, chain, next);
+    return;
+  }
+  if (in.duration_s - meeting_s <= least_s) {
+    rate_limit_go(output, s_per_kpa, in.duration_s, chain, next);
+    return;
+  }
+  rest = part_beyond(in, meeting_s / in.duration_s);
+  rest.duration_s = in.duration_s - meeting_s;
+  rate_limit_go(output, s_per_kpa, meeting_s, chain, next);
+  rate_limit_follow(output, filling, venting, rest, chain, next);
+}
+)";
+
 }  // namespace softgrip::tools::c_text

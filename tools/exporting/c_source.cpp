@@ -18,6 +18,7 @@
 #include "model/blocks/kelvin_voigt.h"
 #include "model/blocks/prandtl_ishlinskii.h"
 #include "model/blocks/pressure_dependent_creep.h"
+#include "model/blocks/rate_limit.h"
 #include "model/blocks/transport_delay.h"
 #include "model/blocks/valve_lag.h"
 #include "model/catalogue.h"
@@ -92,6 +93,9 @@ const std::map<std::string_view, CBlock>& c_blocks() {
         "valve_lag_step(&s->block_#, values_#[0], in, s, next)", "values_#[0]"}},
       {block_id<model::AsymmetricValveLag>, two_way},
       {block_id<model::ChamberLag>, two_way},
+      {block_id<model::RateLimit>,
+       {c_text::rate_limit, "double block_#;", "block_# = input",
+        "rate_limit_step(&s->block_#, values_#[0], values_#[1], in, s, next)", ""}},
       {block_id<model::BoucWen>,
        {c_text::bouc_wen, "bouc_wen block_#;", "bouc_wen_reset(&b->block_#, values_#, input)",
         "bouc_wen_step(&b->block_#, values_#, in)", ""}},
@@ -179,7 +183,7 @@ class Generator {
     const bool is_cut_before =
         model::has_any<model::TransportDelay, model::AsymmetricValveLag, model::ChamberLag>(model_);
     const bool passes = model::has_any<model::PrandtlIshlinskii>(model_);
-    if (is_cut_before || passes) text_ += cutting;
+    if (is_cut_before || passes || model::has_any<model::RateLimit>(model_)) text_ += cutting;
     if (is_cut_before) text_ += cutting_before;
     if (passes) text_ += passing;
     if (model::has_any<model::BoucWen, model::Characteristic>(model_)) text_ += phi_one;

@@ -65,6 +65,7 @@ using All = List<ActuatorThreshold,        //
 /// Blocks that are not a form of a cause: the base structure, and the random error of the sensor.
 using NoCauses = List<model::AsymmetricValveLag<double>,      //
                       model::PressureRegulator<double>,       //
+                      model::RateLimit<double>,               //
                       model::ChamberLag<double>,              //
                       model::BoucWen<double>,                 //
                       model::KelvinVoigt<double>,             //

@@ -10,6 +10,7 @@
 #include "model/blocks/kelvin_voigt.h"
 #include "model/blocks/prandtl_ishlinskii.h"
 #include "model/blocks/pressure_regulator.h"
+#include "model/blocks/rate_limit.h"
 #include "model/blocks/transport_delay.h"
 #include "model/blocks/valve_lag.h"
 #include "model/catalogue.h"
@@ -224,6 +225,7 @@ TEST(IdentifyStructure, FindsAFingerOfPlays) {
   EXPECT_LT(continuation_rmse_mm(play_finger(), found->model, SignalName::tp2, 0), 3 * 0.03)
       << "error on a log that was not fitted";
   EXPECT_FALSE(model::position_of<model::ValveLag>(found->model)) << "the finger has no second lag";
+  EXPECT_FALSE(model::position_of<model::RateLimit>(found->model)) << "the finger has no rate limit";
   EXPECT_FALSE(model::position_of<model::Inertia>(found->model)) << "the finger has no resonance";
   ASSERT_FALSE(found->structure->ablation.empty());
   for (const auto& without : found->structure->ablation) {
@@ -303,6 +305,24 @@ TEST(IdentifyStructure, FindsASecondLag) {
   const auto position = model::position_of<model::ValveLag>(found->model);
   ASSERT_TRUE(position);
   EXPECT_NEAR(found->model.blocks[*position].values[0], 0.12, 0.06);
+}
+
+/// The command changes by 12 kPa within 0.2 s. The pressure needs 0.36 s to rise and 0.72 s to fall.
+TEST(IdentifyStructure, FindsARateLimit) {
+  const model::Model limited =
+      model::with_block(play_finger(), {model::block_type<model::RateLimit>(), {0.03, 0.06}});
+  const auto found = identify_structure({simulated(limited, SignalName::steps, 100, 0.03, 15)},
+                                        StructureQuestion::prandtl_ishlinskii);
+  ASSERT_TRUE(found) << found.error();
+  EXPECT_LT(found->rmse_mm, 1.4 * 0.03);
+  const auto position = model::position_of<model::RateLimit>(found->model);
+  ASSERT_TRUE(position);
+  EXPECT_NEAR(found->model.blocks[*position].values[0], 0.03, 0.003);
+  EXPECT_NEAR(found->model.blocks[*position].values[1], 0.06, 0.006);
+  const auto without = std::find_if(found->structure->ablation.begin(), found->structure->ablation.end(),
+                                    [](const auto& each) { return each.without == "a rate limit"; });
+  ASSERT_NE(without, found->structure->ablation.end());
+  EXPECT_GT(without->heldout_rmse_mm, 2 * found->rmse_mm);
 }
 
 TEST(IdentifyStructure, FindsAResonance) {

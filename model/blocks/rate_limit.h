@@ -1,0 +1,95 @@
+#pragma once
+// The pressure changes at a limited rate, because the port or the pump supplies a limited flow.
+
+#include <cmath>
+
+#include "model/block.h"
+
+namespace softgrip::model {
+
+/// p follows u with -1 / venting <= p' <= 1 / filling. Exact for straight input: where the pressure meets
+/// the command, two segments are passed on. With a parameter of 0, the pressure follows immediately in that
+/// direction.
+template <class T>
+class RateLimit {
+ public:
+  static constexpr BlockInfo info =
+      block_info("rate_limit", Station::valve, Kind::pressure, Inverse::bound, "Rate limit",
+                 "The pressure changes at a limited rate.", "p follows u, -1 / venting <= p' <= 1 / filling");
+  static constexpr std::array parameters{
+      parameter("filling_s_per_kpa", "s/kPa", "shortest time in which the pressure rises by 1 kPa",
+                Typical{0.005}, Within{0.0, 1000.0}, Scale{0.005}, Neutral{0.0}),
+      parameter("venting_s_per_kpa", "s/kPa", "shortest time in which the pressure falls by 1 kPa",
+                Typical{0.005}, Within{0.0, 1000.0}, Scale{0.005}, Neutral{0.0})};
+
+  RateLimit(std::span<const T> values, const Preparation&)
+      : filling_s_per_kpa_(values[0]), venting_s_per_kpa_(values[1]) {}
+
+  void reset(const T& input) { output_ = input; }
+  [[nodiscard]] T output() const { return output_; }
+
+  template <class Next>
+  void step(const Segment<T>& in, const Surroundings&, Next&& next) {
+    const T gap = in.begin - output_;
+    if (is_zero(in.duration_s)) return jump(in, next);
+    if (value_of(gap) == 0.0) return follow(in, next);
+    const T s_per_kpa = value_of(gap) > 0.0 ? filling_s_per_kpa_ : -venting_s_per_kpa_;
+    const T meeting_s = meeting(in, gap, s_per_kpa);
+    const double least_s = least_share * value_of(in.duration_s);
+    if (value_of(meeting_s) <= least_s) return follow(in, next);
+    if (value_of(in.duration_s - meeting_s) <= least_s) return go(in.duration_s, s_per_kpa, next);
+    Segment<T> rest = in.beyond(meeting_s / in.duration_s);
+    go(meeting_s, s_per_kpa, next);
+    rest.duration_s = in.duration_s - meeting_s;
+    follow(rest, next);
+  }
+
+ private:
+  /// A meeting within this share of the duration from either end of a segment does not divide the segment.
+  static constexpr double least_share = 1e-6;
+
+  /// Passes on a jump of the command in a direction without a limit.
+  template <class Next>
+  void jump(const Segment<T>& in, Next&& next) {
+    const bool fills = value_of(in.end) > value_of(output_);
+    if (value_of(fills ? filling_s_per_kpa_ : venting_s_per_kpa_) > 0.0) return;
+    const T begin = output_;
+    output_ = in.end;
+    next(Segment<T>::straight(in.duration_s, begin, output_));
+  }
+
+  /// Returns the time at which the output meets a straight input, or the whole duration. The gap changes at
+  /// the rate slope - 1 / s_per_kpa.
+  static T meeting(const Segment<T>& in, const T& gap, const T& s_per_kpa) {
+    if (value_of(s_per_kpa) == 0.0) return T(0.0);
+    const T closing = 1.0 / s_per_kpa - (in.end - in.begin) / in.duration_s;
+    if (value_of(gap) * value_of(closing) <= 0.0) return in.duration_s;
+    const T meeting_s = gap / closing;
+    return value_of(meeting_s) < value_of(in.duration_s) ? meeting_s : in.duration_s;
+  }
+
+  /// Moves the output at the largest rate.
+  template <class Next>
+  void go(const T& duration_s, const T& s_per_kpa, Next&& next) {
+    const T begin = output_;
+    output_ = begin + duration_s / s_per_kpa;
+    next(Segment<T>::straight(duration_s, begin, output_));
+  }
+
+  /// Follows an input that begins at the output, or moves the output at the largest rate.
+  template <class Next>
+  void follow(const Segment<T>& in, Next&& next) {
+    const T rise = in.end - output_;
+    const T& s_per_kpa = value_of(rise) > 0.0 ? filling_s_per_kpa_ : venting_s_per_kpa_;
+    if (std::abs(value_of(rise)) * value_of(s_per_kpa) > value_of(in.duration_s))
+      return go(in.duration_s, value_of(rise) > 0.0 ? s_per_kpa : -s_per_kpa, next);
+    const T begin = output_;
+    output_ = in.end;
+    next(Segment<T>{in.duration_s, begin, output_, in.mean});
+  }
+
+  T filling_s_per_kpa_, venting_s_per_kpa_;
+  T output_{0.0};
+};
+
+}  // namespace softgrip::model
