@@ -156,18 +156,19 @@ softgrip_room(tools/investigation
   LIBRARIES nlohmann_json::nlohmann_json)
 # A report computed again.
 softgrip_room(tools/verification USES base document model model/file sysid/logs LIBRARIES nlohmann_json::nlohmann_json)
-softgrip_room(tools/studies
+# The studies of the paper. `softgrip study` runs them.
+softgrip_room(bench/studies
   USES base model control/elements control/feedforward control/tuning sysid/logs sysid/pages sysid/fitting
        sysid/identification)
 # The commissioning experiment on a rig.
 softgrip_room(tools/baseline
-  USES base daemon/service sysid/logs sysid/identification sysid/diagnosis/experiments tools/investigation tools/studies)
+  USES base daemon/service sysid/logs sysid/identification sysid/diagnosis/experiments tools/investigation)
 softgrip_room(tools/commands
   USES base model/file control/feedforward control/tuning rig daemon/service daemon/socket sysid/logs sysid/recordings
        sysid/pages sysid/fitting sysid/identification sysid/structure sysid/instrument sysid/changes sysid/diagnosis/verdict
        sysid/diagnosis/report sysid/health tools/command_line tools/client
        tools/log_input tools/recordings tools/figures tools/importing tools/exporting tools/commissioning tools/investigation tools/verification
-       tools/studies tools/baseline
+       tools/baseline bench/studies
   LIBRARIES CLI11::CLI11 nlohmann_json::nlohmann_json
   PRECOMPILE <CLI/CLI.hpp>)
 
@@ -175,7 +176,7 @@ softgrip_room(tools/commands
 softgrip_room(library FOLDERS library/include/softgrip
   USES base document model model/file control/elements control/feedforward control/tick drivers/board simulation/plant
        sysid/logs sysid/import sysid/fitting sysid/identification sysid/instrument sysid/diagnosis/report
-       sysid/diagnosis/verdict sysid/changes sysid/health tools/studies
+       sysid/diagnosis/verdict sysid/changes sysid/health
   LIBRARIES nlohmann_json::nlohmann_json)
 softgrip_public_headers(library/include)
 

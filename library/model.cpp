@@ -14,7 +14,7 @@
 #include "library/model_parts.h"
 #include "model/chain.h"
 #include "model/file/model_file.h"
-#include "tools/studies/simulation.h"
+#include "sysid/logs/simulated_log.h"
 
 namespace softgrip {
 namespace {
@@ -141,7 +141,7 @@ std::vector<double> Model::simulate(std::span<const double> time_s, std::span<co
   };
   surroundings("supply_kpa", options.supply_kpa, "kPa", log.supply_kpa);
   surroundings("temperature_c", options.temperature_c, "degrees Celsius", log.temperature_c);
-  tools::simulate(model, {options.noise, options.seed, options.held}, log);
+  sysid::simulate(model, {options.noise, options.seed, options.held}, log);
   return std::move(log.displacement_mm);
 }
 

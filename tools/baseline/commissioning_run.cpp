@@ -12,8 +12,8 @@
 #include "daemon/service/signals.h"
 #include "sysid/diagnosis/experiments/experiment.h"
 #include "sysid/identification/validate.h"
+#include "sysid/logs/simulated_log.h"
 #include "tools/investigation/experiment_check.h"
-#include "tools/studies/simulation.h"
 
 namespace softgrip::tools {
 namespace {

@@ -8,12 +8,12 @@
 #include <string>
 
 #include "base/numbers.h"
+#include "sysid/logs/simulated_log.h"
 #include "tools/command_line/model_input.h"
 #include "tools/command_line/option_check.h"
 #include "tools/command_line/output.h"
 #include "tools/commands/commands.h"
 #include "tools/log_input/log_input.h"
-#include "tools/studies/simulation.h"
 
 namespace softgrip::tools {
 namespace {
@@ -26,7 +26,7 @@ struct SimulateOptions {
   std::string out;
   std::string channel;
   std::optional<double> rate_hz;
-  SimulationSettings settings;
+  sysid::SimulationSettings settings;
   bool json = false;
 };
 
@@ -42,7 +42,7 @@ std::string signal_names() {
 /// Returns the command to simulate, or an exit code.
 tl::expected<sysid::Log, ExitCode> read_input(const SimulateOptions& options) {
   if (const auto signal = model::signal_named(options.input)) {
-    return sampled_signal(*signal, options.rate_hz.value_or(default_rate_hz));
+    return sysid::sampled_signal(*signal, options.rate_hz.value_or(default_rate_hz));
   }
   if (options.rate_hz) {
     return tl::unexpected{fail(ExitCode::usage, "--rate-hz is only for a SIGNAL; a log has its own times")};

@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "base/files.h"
+#include "bench/studies/control_study.h"
+#include "bench/studies/published.h"
 #include "tools/command_line/option_check.h"
 #include "tools/command_line/output.h"
 #include "tools/command_line/progress_line.h"
@@ -16,8 +18,6 @@
 #include "tools/commands/commands.h"
 #include "tools/commands/series_output.h"
 #include "tools/figures/figure_files.h"
-#include "tools/studies/control_study.h"
-#include "tools/studies/published.h"
 
 namespace softgrip::tools {
 namespace {
@@ -68,7 +68,7 @@ void add_output(CLI::App& command, Output& output) {
 void add_published(CLI::App& study, ExitCode& outcome) {
   struct Options {
     Output output;
-    PublishedOptions study;
+    studies::PublishedOptions study;
   };
   auto options = std::make_shared<Options>();
   CLI::App* command = study.add_subcommand(
@@ -79,15 +79,15 @@ void add_published(CLI::App& study, ExitCode& outcome) {
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   command->callback([options, &outcome] {
-    outcome = run_study(options->output, options->study, study_published, "published.json", published_json,
-                        published_page, published_text);
+    outcome = run_study(options->output, options->study, studies::study_published, "published.json",
+                        studies::published_json, studies::published_page, studies::published_text);
   });
 }
 
 void add_control(CLI::App& study, ExitCode& outcome) {
   struct Options {
     Output output;
-    ControlStudyOptions study;
+    studies::ControlStudyOptions study;
   };
   auto options = std::make_shared<Options>();
   CLI::App* command = study.add_subcommand("control",
@@ -108,8 +108,8 @@ void add_control(CLI::App& study, ExitCode& outcome) {
       ->check(number_between(1.05, 5.0))
       ->capture_default_str();
   command->callback([options, &outcome] {
-    outcome = run_study(options->output, options->study, study_control, "control.json", control_json,
-                        control_page, control_text);
+    outcome = run_study(options->output, options->study, studies::study_control, "control.json",
+                        studies::control_json, studies::control_page, studies::control_text);
   });
 }
 

@@ -6,7 +6,7 @@
 
 #include "model/file/model_file.h"
 #include "sysid/diagnosis/experiments/waveform.h"
-#include "tools/studies/simulation.h"
+#include "sysid/logs/simulated_log.h"
 
 namespace softgrip::tools::experiment_check_test {
 namespace {

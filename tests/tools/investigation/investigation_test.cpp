@@ -14,9 +14,9 @@
 #include "model/file/model_file.h"
 #include "simulation/plant/simulated_board.h"
 #include "sysid/diagnosis/experiments/waveform.h"
+#include "sysid/logs/simulated_log.h"
 #include "tools/investigation/experiment_rig.h"
 #include "tools/investigation/investigation_report.h"
-#include "tools/studies/simulation.h"
 
 namespace softgrip::tools::investigation_test {
 namespace {

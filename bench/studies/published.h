@@ -13,12 +13,12 @@
 #include <string>
 #include <vector>
 
+#include "bench/studies/paper_table.h"
 #include "model/model.h"
 #include "sysid/logs/log.h"
 #include "sysid/pages/page.h"
-#include "tools/studies/paper_table.h"
 
-namespace softgrip::tools {
+namespace softgrip::studies {
 
 struct PublishedOptions {
   std::uint64_t seed = 1;  ///< seed of noise and start points
@@ -115,4 +115,4 @@ enum class Triangles {
 /// Returns the tables as text for a terminal.
 [[nodiscard]] std::string published_text(const PublishedStudy& study);
 
-}  // namespace softgrip::tools
+}  // namespace softgrip::studies

@@ -1,12 +1,12 @@
-#include "tools/studies/control_study.h"
+#include "bench/studies/control_study.h"
 
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 
-#include "tools/studies/models.h"
+#include "bench/studies/models.h"
 
-namespace softgrip::tools::control_study_test {
+namespace softgrip::studies::control_study_test {
 namespace {
 
 /// One quick study serves all tests.
@@ -78,4 +78,4 @@ TEST(ControlStudy, WritesNumbersThatReadBackAndAPageOfItsOwn) {
 }
 
 }  // namespace
-}  // namespace softgrip::tools::control_study_test
+}  // namespace softgrip::studies::control_study_test

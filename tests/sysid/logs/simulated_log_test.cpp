@@ -1,4 +1,4 @@
-#include "tools/studies/simulation.h"
+#include "sysid/logs/simulated_log.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 
 #include "model/file/model_file.h"
 
-namespace softgrip::tools::simulation_test {
+namespace softgrip::sysid::simulated_log_test {
 namespace {
 
 model::Model twin() {
@@ -19,7 +19,7 @@ model::Model twin() {
 TEST(SampledSignal, EndsWhereTheSignalEnds) {
   for (const model::SignalName signal : model::all_signals()) {
     for (const double rate_hz : {7.0, 100.0, 1000.0}) {
-      const sysid::Log log = sampled_signal(signal, rate_hz);
+      const Log log = sampled_signal(signal, rate_hz);
       ASSERT_FALSE(log.time_s.empty());
       EXPECT_EQ(log.time_s.front(), 0);
       EXPECT_LE(log.time_s.back(), model::duration_s(signal) + 1e-9);
@@ -32,8 +32,8 @@ TEST(SampledSignal, EndsWhereTheSignalEnds) {
 
 TEST(Simulate, DoesNotDependOnTheRate) {
   const model::Model model = twin();
-  sysid::Log coarse = sampled_signal(model::SignalName::sp1, 50);
-  sysid::Log fine = sampled_signal(model::SignalName::sp1, 500);
+  Log coarse = sampled_signal(model::SignalName::sp1, 50);
+  Log fine = sampled_signal(model::SignalName::sp1, 500);
   simulate(model, {}, coarse);
   simulate(model, {}, fine);
   // The command is smooth: linear interpolation over 20 ms deviates by much less than this tolerance.
@@ -46,7 +46,7 @@ TEST(Simulate, DoesNotDependOnTheRate) {
 TEST(Simulate, RepeatsABitForBitAndChangesWithTheSeed) {
   const model::Model model = twin();
   const auto with_seed = [&](std::uint64_t seed) {
-    sysid::Log log = sampled_signal(model::SignalName::tp1, 20);
+    Log log = sampled_signal(model::SignalName::tp1, 20);
     simulate(model, {0.05, seed}, log);
     return log.displacement_mm;
   };
@@ -56,8 +56,8 @@ TEST(Simulate, RepeatsABitForBitAndChangesWithTheSeed) {
 
 TEST(Simulate, AddsWhiteNoiseOfTheGivenSize) {
   const model::Model model = twin();
-  sysid::Log clean = sampled_signal(model::SignalName::tp1, 200);
-  sysid::Log noisy = clean;
+  Log clean = sampled_signal(model::SignalName::tp1, 200);
+  Log noisy = clean;
   simulate(model, {}, clean);
   constexpr double noise_mm = 0.05;
   simulate(model, {noise_mm, 11}, noisy);
@@ -81,10 +81,10 @@ TEST(Simulate, AddsWhiteNoiseOfTheGivenSize) {
 
 TEST(Simulate, UsesTheTimesOfAnIrregularLog) {
   const model::Model model = twin();
-  sysid::Log regular = sampled_signal(model::SignalName::tp2, 1000);
+  Log regular = sampled_signal(model::SignalName::tp2, 1000);
   simulate(model, {}, regular);
   // Keep samples at increasing distances; between them the command remains piecewise linear.
-  sysid::Log irregular;
+  Log irregular;
   for (std::size_t i = 0; i < regular.size(); i += 1 + i % 3) {
     irregular.time_s.push_back(regular.time_s[i]);
     irregular.pressure_command_kpa.push_back(regular.pressure_command_kpa[i]);
@@ -99,7 +99,7 @@ TEST(Simulate, UsesTheTimesOfAnIrregularLog) {
 
 TEST(Simulate, StartsAtRestAtTheFirstCommand) {
   const model::Model model = twin();
-  sysid::Log log;
+  Log log;
   for (int i = 0; i < 100; ++i) {
     log.time_s.push_back(0.1 * i);
     log.pressure_command_kpa.push_back(40);
@@ -110,4 +110,4 @@ TEST(Simulate, StartsAtRestAtTheFirstCommand) {
 }
 
 }  // namespace
-}  // namespace softgrip::tools::simulation_test
+}  // namespace softgrip::sysid::simulated_log_test

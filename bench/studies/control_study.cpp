@@ -1,4 +1,4 @@
-#include "tools/studies/control_study.h"
+#include "bench/studies/control_study.h"
 
 #include <algorithm>
 #include <atomic>
@@ -9,14 +9,14 @@
 
 #include "base/parallel.h"
 #include "base/random.h"
+#include "bench/studies/models.h"
 #include "control/feedforward/invertibility.h"
 #include "control/tuning/tracking_run.h"
 #include "control/tuning/tune.h"
 #include "sysid/identification/identify.h"
-#include "tools/studies/models.h"
-#include "tools/studies/simulation.h"
+#include "sysid/logs/simulated_log.h"
 
-namespace softgrip::tools {
+namespace softgrip::studies {
 namespace {
 
 using control::FeedforwardKind;
@@ -51,7 +51,7 @@ struct Identified {
 Identified identify_twin(const model::Model& start, const ControlStudyOptions& options) {
   std::vector<sysid::Log> logs;
   for (const model::SignalName signal : {model::SignalName::tp1, model::SignalName::sp1}) {
-    logs.push_back(sampled_signal(signal, log_rate_hz));
+    logs.push_back(sysid::sampled_signal(signal, log_rate_hz));
     simulate(bench_twin(), {log_noise_mm, options.seed + logs.size()}, logs.back());
   }
   sysid::IdentifyOptions fit;
@@ -289,4 +289,4 @@ ControlStudy study_control(const ControlStudyOptions& options) {
   return study;
 }
 
-}  // namespace softgrip::tools
+}  // namespace softgrip::studies

@@ -8,7 +8,7 @@
 #include "model/model.h"
 #include "model/signals.h"
 
-namespace softgrip::tools {
+namespace softgrip::studies {
 
 /// The identification error for one finger and one signal.
 struct PaperFigure {
@@ -39,4 +39,4 @@ struct PaperTableOptions {
 /// Returns sentences that explain why the values differ from those of the paper.
 [[nodiscard]] const std::vector<std::string>& paper_table_remarks();
 
-}  // namespace softgrip::tools
+}  // namespace softgrip::studies

@@ -1,10 +1,10 @@
 #pragma once
 // The simulated fingers of the studies. Their parameters are fixed here, so that a study does not depend on
-// installed files. tests/tools/studies compares them with config/models.
+// installed files. tests/bench/studies compares them with config/models.
 
 #include "model/model.h"
 
-namespace softgrip::tools {
+namespace softgrip::studies {
 
 inline constexpr double kpa_per_bar = 100;
 
@@ -21,4 +21,4 @@ inline constexpr double kpa_per_bar = 100;
 /// Returns the value at a path. The path must exist.
 [[nodiscard]] double value_of(const model::Model& model, const char* path);
 
-}  // namespace softgrip::tools
+}  // namespace softgrip::studies

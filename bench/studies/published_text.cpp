@@ -4,12 +4,12 @@
 #include <nlohmann/json.hpp>
 
 #include "base/numbers.h"
+#include "bench/studies/models.h"
+#include "bench/studies/published.h"
+#include "bench/studies/study_text.h"
 #include "sysid/pages/page.h"
-#include "tools/studies/models.h"
-#include "tools/studies/published.h"
-#include "tools/studies/study_text.h"
 
-namespace softgrip::tools {
+namespace softgrip::studies {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -158,4 +158,4 @@ std::string published_json(const PublishedStudy& study) {
   return json.dump(2) + "\n";
 }
 
-}  // namespace softgrip::tools
+}  // namespace softgrip::studies

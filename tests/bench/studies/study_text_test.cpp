@@ -1,10 +1,10 @@
-#include "tools/studies/study_text.h"
+#include "bench/studies/study_text.h"
 
 #include <gtest/gtest.h>
 
-#include "tools/studies/models.h"
+#include "bench/studies/models.h"
 
-namespace softgrip::tools::study_text_test {
+namespace softgrip::studies::study_text_test {
 namespace {
 
 TEST(StudyText, ACellIsFilledAtTheLeftAndNeverCut) {
@@ -20,4 +20,4 @@ TEST(StudyText, EveryParameterStandsUnderItsPath) {
 }
 
 }  // namespace
-}  // namespace softgrip::tools::study_text_test
+}  // namespace softgrip::studies::study_text_test

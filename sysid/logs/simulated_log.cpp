@@ -1,22 +1,22 @@
-#include "tools/studies/simulation.h"
+#include "sysid/logs/simulated_log.h"
 
 #include <cmath>
 
 #include "base/random.h"
 #include "model/chain.h"
 
-namespace softgrip::tools {
+namespace softgrip::sysid {
 namespace {
 
 // Makes the added noise independent of the model's own noise.
 constexpr std::uint64_t added_noise = 1;
 
 /// Returns the interval of a regular log, or 0 for an irregular log.
-double sample_time_of(const sysid::Log& log) {
-  return log.size() < 2 ? 0 : sysid::sampling_of(log).sample_time_s();
+double sample_time_of(const Log& log) {
+  return log.size() < 2 ? 0 : sampling_of(log).sample_time_s();
 }
 
-model::Surroundings surroundings_at(const sysid::Log& log, std::size_t i) {
+model::Surroundings surroundings_at(const Log& log, std::size_t i) {
   model::Surroundings surroundings;
   surroundings.time_s = log.time_s[i];
   if (!log.supply_kpa.empty()) surroundings.supply_kpa = log.supply_kpa[i];
@@ -26,8 +26,8 @@ model::Surroundings surroundings_at(const sysid::Log& log, std::size_t i) {
 
 }  // namespace
 
-sysid::Log sampled_signal(model::SignalName signal, double rate_hz) {
-  sysid::Log log;
+Log sampled_signal(model::SignalName signal, double rate_hz) {
+  Log log;
   log.name = model::name_of(signal);
   // Include a last sample that exceeds the end by a rounding error.
   const auto intervals = static_cast<std::size_t>(std::floor(model::duration_s(signal) * rate_hz + 1e-6));
@@ -39,7 +39,7 @@ sysid::Log sampled_signal(model::SignalName signal, double rate_hz) {
   return log;
 }
 
-void simulate(const model::Model& model, const SimulationSettings& settings, sysid::Log& log) {
+void simulate(const model::Model& model, const SimulationSettings& settings, Log& log) {
   log.displacement_mm.assign(log.size(), 0);
   if (log.size() == 0) return;
   model::Chain<double> chain(model, {}, sample_time_of(log), settings.seed);
@@ -59,4 +59,4 @@ void simulate(const model::Model& model, const SimulationSettings& settings, sys
   }
 }
 
-}  // namespace softgrip::tools
+}  // namespace softgrip::sysid

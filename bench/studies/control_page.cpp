@@ -6,10 +6,10 @@
 
 #include "base/enumerated.h"
 #include "base/numbers.h"
-#include "tools/studies/control_study.h"
-#include "tools/studies/models.h"
+#include "bench/studies/control_study.h"
+#include "bench/studies/models.h"
 
-namespace softgrip::tools {
+namespace softgrip::studies {
 namespace {
 
 using sysid::Colour;
@@ -144,4 +144,4 @@ sysid::Page control_page(const ControlStudy& study) {
   return page;
 }
 
-}  // namespace softgrip::tools
+}  // namespace softgrip::studies

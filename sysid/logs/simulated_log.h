@@ -8,10 +8,10 @@
 #include "model/signals.h"
 #include "sysid/logs/log.h"
 
-namespace softgrip::tools {
+namespace softgrip::sysid {
 
 /// Samples a test signal from 0 to its end. displacement_mm is empty.
-[[nodiscard]] sysid::Log sampled_signal(model::SignalName signal, double rate_hz);
+[[nodiscard]] Log sampled_signal(model::SignalName signal, double rate_hz);
 
 struct SimulationSettings {
   /// Standard deviation of white noise that is added to the noise of the model's own sensor blocks.
@@ -26,6 +26,6 @@ struct SimulationSettings {
 /// is set, the command is piecewise linear between samples. The simulation starts with a single rise to the
 /// first command, which was then held. If the log contains supply_kpa or temperature_c, they are inputs of
 /// the model. Equal inputs and settings give identical results.
-void simulate(const model::Model& model, const SimulationSettings& settings, sysid::Log& log);
+void simulate(const model::Model& model, const SimulationSettings& settings, Log& log);
 
-}  // namespace softgrip::tools
+}  // namespace softgrip::sysid

@@ -1,4 +1,4 @@
-#include "tools/studies/published.h"
+#include "bench/studies/published.h"
 
 #include <algorithm>
 #include <array>
@@ -8,6 +8,8 @@
 #include <span>
 
 #include "base/random.h"
+#include "bench/studies/invertible_match.h"
+#include "bench/studies/models.h"
 #include "control/feedforward/actuator_inverse.h"
 #include "control/feedforward/invertibility.h"
 #include "model/blocks/bouc_wen.h"
@@ -16,11 +18,9 @@
 #include "sysid/fitting/trajectory.h"
 #include "sysid/identification/identify.h"
 #include "sysid/logs/record.h"
-#include "tools/studies/invertible_match.h"
-#include "tools/studies/models.h"
-#include "tools/studies/simulation.h"
+#include "sysid/logs/simulated_log.h"
 
-namespace softgrip::tools {
+namespace softgrip::studies {
 namespace {
 
 constexpr double most_kpa = 60;
@@ -124,14 +124,14 @@ PublishedMatch match_published(double eta_per_bar, const PublishedOptions& optio
   PublishedMatch row;
   row.eta_per_bar = eta_per_bar;
   const model::Model published = published_model(eta_per_bar);
-  sysid::Log log = sampled_signal(model::SignalName::tp1, options.rate_hz);
+  sysid::Log log = sysid::sampled_signal(model::SignalName::tp1, options.rate_hz);
   simulate(published, {}, log);
   row.span_mm = sysid::span_mm(log);
   row.model = invertible_match({log}, match_start(), {0.8, options.starts, options.seed, options.threads});
   const bool first = study.match_log.size() == 0;
   row.rmse_mm = rmse_between(row.model, log, first ? &study.match_mm : nullptr);
   if (first) study.match_log = std::move(log);
-  sysid::Log other = sampled_signal(model::SignalName::tp2, options.rate_hz);
+  sysid::Log other = sysid::sampled_signal(model::SignalName::tp2, options.rate_hz);
   simulate(published, {}, other);
   row.other_rmse_mm = rmse_between(row.model, other);
   row.lag_s = value_of(row.model, "valve_lag.time_constant_s");
@@ -299,7 +299,7 @@ PublishedStudy study_published(const PublishedOptions& options) {
     say("published response " + std::to_string(i + 1) + " of " + std::to_string(etas_per_bar.size()));
     study.matches.push_back(match_published(etas_per_bar[i], options, study));
   }
-  sysid::Log response = sampled_signal(model::SignalName::tp1, options.rate_hz);
+  sysid::Log response = sysid::sampled_signal(model::SignalName::tp1, options.rate_hz);
   simulate(published_model(2), {}, response);
   study.twin_rmse_mm = rmse_between(bench_twin(), response);
   say("inverses");
@@ -311,4 +311,4 @@ PublishedStudy study_published(const PublishedOptions& options) {
   return study;
 }
 
-}  // namespace softgrip::tools
+}  // namespace softgrip::studies

@@ -8,7 +8,7 @@
 #include "model/model.h"
 #include "sysid/logs/log.h"
 
-namespace softgrip::tools {
+namespace softgrip::studies {
 
 struct MatchOptions {
   double most_ratio = 0.8;  ///< upper limit of beta/(alpha + 1/k0)
@@ -25,4 +25,4 @@ struct MatchOptions {
 [[nodiscard]] model::Model invertible_match(const std::vector<sysid::Log>& logs, const model::Model& start,
                                             const MatchOptions& options);
 
-}  // namespace softgrip::tools
+}  // namespace softgrip::studies

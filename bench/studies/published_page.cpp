@@ -4,10 +4,10 @@
 #include <cmath>
 
 #include "base/numbers.h"
-#include "tools/studies/models.h"
-#include "tools/studies/published.h"
+#include "bench/studies/models.h"
+#include "bench/studies/published.h"
 
-namespace softgrip::tools {
+namespace softgrip::studies {
 namespace {
 
 using sysid::Chart;
@@ -243,4 +243,4 @@ sysid::Page published_page(const PublishedStudy& study) {
   return page;
 }
 
-}  // namespace softgrip::tools
+}  // namespace softgrip::studies

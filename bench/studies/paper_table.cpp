@@ -1,15 +1,15 @@
-#include "tools/studies/paper_table.h"
+#include "bench/studies/paper_table.h"
 
 #include <array>
 #include <utility>
 
 #include "base/random.h"
+#include "bench/studies/models.h"
 #include "sysid/identification/identify.h"
 #include "sysid/identification/validate.h"
-#include "tools/studies/models.h"
-#include "tools/studies/simulation.h"
+#include "sysid/logs/simulated_log.h"
 
-namespace softgrip::tools {
+namespace softgrip::studies {
 namespace {
 
 using model::SignalName;
@@ -21,7 +21,7 @@ constexpr std::array<std::pair<SignalName, double>, 4> printed{
 std::vector<PaperFigure> figures_of(const model::Model& finger, const PaperTableOptions& options) {
   std::vector<sysid::Log> logs;
   for (std::size_t i = 0; i < printed.size(); ++i) {
-    sysid::Log log = sampled_signal(printed[i].first, options.rate_hz);
+    sysid::Log log = sysid::sampled_signal(printed[i].first, options.rate_hz);
     log.name = model::name_of(printed[i].first);
     simulate(finger, {options.noise_mm, derived_seed(options.seed, i)}, log);
     logs.push_back(std::move(log));
@@ -69,4 +69,4 @@ const std::vector<std::string>& paper_table_remarks() {
   return remarks;
 }
 
-}  // namespace softgrip::tools
+}  // namespace softgrip::studies

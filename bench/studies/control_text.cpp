@@ -4,12 +4,12 @@
 #include <nlohmann/json.hpp>
 
 #include "base/numbers.h"
+#include "bench/studies/control_study.h"
+#include "bench/studies/models.h"
+#include "bench/studies/study_text.h"
 #include "sysid/pages/page.h"
-#include "tools/studies/control_study.h"
-#include "tools/studies/models.h"
-#include "tools/studies/study_text.h"
 
-namespace softgrip::tools {
+namespace softgrip::studies {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -98,4 +98,4 @@ std::string control_json(const ControlStudy& study) {
   return json.dump(2) + "\n";
 }
 
-}  // namespace softgrip::tools
+}  // namespace softgrip::studies

@@ -12,7 +12,7 @@
 #include "model/model.h"
 #include "sysid/pages/page.h"
 
-namespace softgrip::tools {
+namespace softgrip::studies {
 
 struct ControlStudyOptions {
   std::uint64_t seed = 1;
@@ -89,4 +89,4 @@ struct ControlStudy {
 /// Returns the tables as text for a terminal.
 [[nodiscard]] std::string control_text(const ControlStudy& study);
 
-}  // namespace softgrip::tools
+}  // namespace softgrip::studies

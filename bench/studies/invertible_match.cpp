@@ -1,4 +1,4 @@
-#include "tools/studies/invertible_match.h"
+#include "bench/studies/invertible_match.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@
 #include "sysid/fitting/residuals.h"
 #include "sysid/logs/record.h"
 
-namespace softgrip::tools {
+namespace softgrip::studies {
 namespace {
 
 /// Weight of the constraint [kPa]: millimetres of residual per mm/kPa by which the bound is exceeded.
@@ -109,4 +109,4 @@ model::Model invertible_match(const std::vector<sysid::Log>& logs, const model::
   return space.point(best->z).model;
 }
 
-}  // namespace softgrip::tools
+}  // namespace softgrip::studies

@@ -1,4 +1,4 @@
-#include "tools/studies/models.h"
+#include "bench/studies/models.h"
 
 #include <array>
 #include <string_view>
@@ -12,7 +12,7 @@
 #include "model/catalogue.h"
 #include "model/named.h"
 
-namespace softgrip::tools {
+namespace softgrip::studies {
 namespace {
 
 template <template <class> class Block>
@@ -66,4 +66,4 @@ double wrong_way_ratio(const model::Model& model) {
          (value_of(model, "bouc_wen.alpha_mm_per_kpa") + 1 / value_of(model, "kelvin_voigt.k0_kpa_per_mm"));
 }
 
-}  // namespace softgrip::tools
+}  // namespace softgrip::studies

@@ -8,7 +8,7 @@
 
 #include "model/model.h"
 
-namespace softgrip::tools {
+namespace softgrip::studies {
 
 /// Right-aligns `text` in a column of `width` characters. A longer text is unchanged.
 [[nodiscard]] std::string cell(const std::string& text, std::size_t width);
@@ -16,4 +16,4 @@ namespace softgrip::tools {
 /// Returns every parameter by its path: {"bouc_wen.alpha_mm_per_kpa": 0.0708, ...}.
 [[nodiscard]] nlohmann::ordered_json parameters_of(const model::Model& model);
 
-}  // namespace softgrip::tools
+}  // namespace softgrip::studies

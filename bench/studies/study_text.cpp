@@ -1,6 +1,6 @@
-#include "tools/studies/study_text.h"
+#include "bench/studies/study_text.h"
 
-namespace softgrip::tools {
+namespace softgrip::studies {
 
 std::string cell(const std::string& text, std::size_t width) {
   return text.size() < width ? std::string(width - text.size(), ' ') + text : text;
@@ -13,4 +13,4 @@ nlohmann::ordered_json parameters_of(const model::Model& model) {
   return json;
 }
 
-}  // namespace softgrip::tools
+}  // namespace softgrip::studies

@@ -1,15 +1,15 @@
-#include "tools/studies/published.h"
+#include "bench/studies/published.h"
 
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 
+#include "bench/studies/invertible_match.h"
+#include "bench/studies/models.h"
 #include "model/file/model_file.h"
-#include "tools/studies/invertible_match.h"
-#include "tools/studies/models.h"
-#include "tools/studies/simulation.h"
+#include "sysid/logs/simulated_log.h"
 
-namespace softgrip::tools::published_test {
+namespace softgrip::studies::published_test {
 namespace {
 
 model::Model configured(const std::string& name) {
@@ -134,4 +134,4 @@ TEST(PaperTable, TheSameStructureLeavesTheNoiseAndLatencyLeavesMore) {
 }
 
 }  // namespace
-}  // namespace softgrip::tools::published_test
+}  // namespace softgrip::studies::published_test
