@@ -15,6 +15,7 @@
 #include "sysid/fitting/minimise.h"
 #include "sysid/fitting/residuals.h"
 #include "sysid/fitting/trajectory.h"
+#include "sysid/structure/published_element.h"
 
 namespace softgrip::sysid {
 namespace {
@@ -50,9 +51,10 @@ std::vector<std::size_t> latencies(const model::Model& model) {
   return flat;
 }
 
-ResonantFit minimised(const FitPoint& from, const std::vector<Record>& records) {
-  FitSpace space(from.model, records, latencies(from.model));
-  space.hold_starts(from.starts);
+ResonantFit minimised(const FitPoint& from, const std::vector<Record>& records, ResonanceFit fit) {
+  const bool all = fit == ResonanceFit::complete;
+  FitSpace space(from.model, records, all ? free_numbers(from.model) : latencies(from.model));
+  if (!all) space.hold_starts(from.starts);
   MinimiseOptions options;
   options.normal_equations = true;
   options.most_iterations = 20;
@@ -64,7 +66,7 @@ ResonantFit minimised(const FitPoint& from, const std::vector<Record>& records) 
 
 }  // namespace
 
-ResonantFit with_resonance(const FitPoint& point, const std::vector<Record>& records) {
+ResonantFit with_resonance(const FitPoint& point, const std::vector<Record>& records, ResonanceFit fit) {
   double interval_s = std::numeric_limits<double>::infinity(), length_s = 0;
   for (const Record& record : records) {
     interval_s = std::min(interval_s, record.mean_interval_s());
@@ -85,17 +87,19 @@ ResonantFit with_resonance(const FitPoint& point, const std::vector<Record>& rec
   ResonantFit found;
   for (const ResonantFit& start : best) {
     if (start.point.model.blocks.empty()) continue;
-    ResonantFit end = minimised(start.point, records);
+    ResonantFit end = minimised(start.point, records, ResonanceFit::dynamics);
     if (end.rmse_mm < found.rmse_mm) found = std::move(end);
   }
-  return found;
+  return fit == ResonanceFit::complete ? minimised(found.point, records, fit) : found;
 }
 
-FitPoint with_resonance_of(const FitPoint& resonant, FitPoint point, const std::vector<Record>& records) {
+FitPoint with_resonance_of(const FitPoint& resonant, FitPoint point, const std::vector<Record>& records,
+                           ResonanceFit fit) {
   const model::BlockSpec& mode = *model::find_block<model::Inertia>(resonant.model);
   put(point, model::value<model::Inertia>(mode, "period_s"),
       model::value<model::Inertia>(mode, "damping_ratio"));
-  return minimised(point, records).point;
+  const ResonantFit found = minimised(point, records, ResonanceFit::dynamics);
+  return fit == ResonanceFit::complete ? minimised(found.point, records, fit).point : found.point;
 }
 
 }  // namespace softgrip::sysid

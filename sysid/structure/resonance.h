@@ -15,14 +15,20 @@ struct ResonantFit {
   double rmse_mm = std::numeric_limits<double>::infinity();
 };
 
+/// Parameters that the fit of a resonance may change.
+enum class ResonanceFit {
+  dynamics,  ///< resonance, dead time, lags and rate limit. Start states stay fixed. This fit is fast.
+  complete   ///< all parameters of the structure, starting from the result of `dynamics`
+};
+
 /// Adds a resonance to a point and fits it. The search for period and damping ratio starts from several
-/// periods between 6 sampling intervals and 10 % of the longest record (at most 10 s). The dead time and the
-/// time constants of the valve are fitted as well. All other parameters stay fixed.
-[[nodiscard]] ResonantFit with_resonance(const FitPoint& point, const std::vector<Record>& records);
+/// periods between 6 sampling intervals and 10 % of the longest record (at most 10 s).
+[[nodiscard]] ResonantFit with_resonance(const FitPoint& point, const std::vector<Record>& records,
+                                         ResonanceFit fit);
 
 /// Adds the resonance of `resonant` to `point` and fits it to other readings of the same records. The fit
 /// starts from the parameters of `resonant`.
 [[nodiscard]] FitPoint with_resonance_of(const FitPoint& resonant, FitPoint point,
-                                         const std::vector<Record>& records);
+                                         const std::vector<Record>& records, ResonanceFit fit);
 
 }  // namespace softgrip::sysid

@@ -75,17 +75,17 @@ class Judge {
 
   /// Evaluates a trial with an additional resonance. The member `numbers` keeps the values of the trial
   /// without the resonance.
-  [[nodiscard]] StructureTrial judge_resonant(const StructureTrial& still) const {
+  [[nodiscard]] StructureTrial judge_resonant(const StructureTrial& still, ResonanceFit resonance_fit) const {
     StructureTrial trial = still;
     trial.structure.resonance = true;
-    const ResonantFit ringing = with_resonance(still.point, records_);
+    const ResonantFit ringing = with_resonance(still.point, records_, resonance_fit);
     trial.point = ringing.point;
     trial.rmse_mm = ringing.rmse_mm;
     StructureFitOptions options = with(still.ridge);
     options.most_iterations = fold_iterations;
     judge_held_out(trial, [&](const std::vector<Record>& rest) {
       const FittedStructure fit = fit_form(rest, still.structure, grid_, options, &still.numbers);
-      return with_resonance_of(trial.point, point_of(fit, rest, options_.drive), rest);
+      return with_resonance_of(trial.point, point_of(fit, rest, options_.drive), rest, resonance_fit);
     });
     return trial;
   }
@@ -393,7 +393,11 @@ StructureChoice choose_structure(const std::vector<Record>& records, const Struc
   }
   if (options.dynamics) {
     say("a resonance");
-    offer(judge.judge_resonant(choice.trials[choice.chosen]), choice);
+    // The complete fit takes as long as all other trials, so the fast fit decides whether it is needed.
+    const StructureTrial still = choice.trials[choice.chosen];
+    const StructureTrial screening = judge.judge_resonant(still, ResonanceFit::dynamics);
+    if (is_clearly_less(screening.block_losses_mm2, still.block_losses_mm2))
+      offer(judge.judge_resonant(still, ResonanceFit::complete), choice);
   }
   return choice;
 }
@@ -402,7 +406,8 @@ StructureTrial fitted_to(StructureTrial trial, const std::vector<Record>& record
   StructureTrial still = trial;
   const bool rings = std::exchange(still.structure.resonance, false);
   FitPoint point = fit_from(&trial.numbers, still, records, drive, {.most_iterations = fold_iterations});
-  trial.point = rings ? with_resonance_of(trial.point, std::move(point), records) : std::move(point);
+  trial.point = rings ? with_resonance_of(trial.point, std::move(point), records, ResonanceFit::complete)
+                      : std::move(point);
   trial.rmse_mm = rmse_of(trial.point.model, trial.point.starts, records);
   return trial;
 }
@@ -430,7 +435,7 @@ std::vector<WithoutIngredient> ablation_of(const std::vector<Record>& records, c
     const bool rings = std::exchange(still.resonance, false);
     StructureTrial trial = still.lag && still.regulator ? fair.judge_near(still, choice.ridge, chosen.numbers)
                                                         : fair.judge(still, choice.ridge);
-    ablation[i].trial = rings ? fair.judge_resonant(trial) : std::move(trial);
+    ablation[i].trial = rings ? fair.judge_resonant(trial, ResonanceFit::complete) : std::move(trial);
   });
   return ablation;
 }
