@@ -20,17 +20,18 @@ namespace {
 
 using Failure = tl::unexpected<NotCommissioned>;
 
-/// Highest pressure of the first, gentle motion, as a share of the largest pressure.
+/// Highest pressure of the first, gentle motion, as a share of the channel's largest pressure.
 constexpr double gentle_share = 0.3;
-/// A motion below this share of the model's motion counts as no motion.
+/// If the finger moves less than this share of the motion that the model predicts, it does not move.
 constexpr double least_motion = 0.1;
 /// Largest allowed displacement, as a share of the distance from rest to displacement_max_mm.
 constexpr double range_share = 0.9;
 constexpr int most_corrections = 8;
-/// Additional time of a motion: finding rest, connecting to the board and disconnecting [s].
+/// Time of a motion that its planned duration does not contain: measuring at rest, connecting to the board
+/// and disconnecting [s].
 constexpr double pause_s = 3;
 
-/// Returns slow triangles up to a share of the largest pressure.
+/// Returns a waveform of slow triangles from 0 to `share` times the largest pressure.
 sysid::Waveform slow(const char* name, const char* about, double share, int count,
                      const sysid::RigLimits& limits) {
   const double top_kpa = share * limits.pressure_max_kpa;
@@ -47,9 +48,8 @@ sysid::Waveform gentle(const sysid::RigLimits& limits) {
               limits);
 }
 
-/// Returns the motion that precedes the first run. A finger behaves differently when it reaches a
-/// displacement for the first time, or for the first time after a long pause, and its rest position changes
-/// afterwards.
+/// Returns the motion that precedes the first run. The first motion to a displacement, or the first after a
+/// long pause, differs from later motions. After it, the rest position has changed.
 sysid::Waveform first_load(const sysid::RigLimits& limits) {
   return slow("first_load", "so that both runs begin after the same loads", 1, 2, limits);
 }
@@ -81,7 +81,7 @@ Reach reach_of(const sysid::Log& log) {
   return reach;
 }
 
-/// Returns the displacement of the rig file's model for a waveform [mm].
+/// Returns the displacement that the model of the rig file predicts for a waveform [mm].
 double expected_mm(const ExperimentRig& rig, const sysid::Waveform& waveform) {
   const control::RigSettings& settings = rig.rig.settings;
   sysid::Log log;
@@ -172,12 +172,12 @@ class Commissioning {
     return check_free(*loaded);
   }
 
-  /// Plays the experiments of one run, with a rest before each, and appends their logs.
+  /// Plays the experiments of one run, each after a rest, and appends their logs.
   tl::expected<void, NotCommissioned> play_all(const std::string& folder, const std::string& run,
                                                std::vector<sysid::Log>& logs) {
     for (const sysid::Waveform& waveform : chosen(options_.experiments, runs_.limits)) {
       const double rest_s =
-          rig_.simulated ? 0 : options_.rest_s;  // a simulated rig starts from its initial state each time
+          rig_.simulated ? 0 : options_.rest_s;  // a simulated rig starts each motion from its initial state
       if (signals_->wait(nanoseconds(rest_s)) != 0)
         return fails(ExitCode::failed, "stopped by the user; the rig is vented");
       runs_.minutes += rest_s / 60;
@@ -220,8 +220,8 @@ class Commissioning {
 
   const ExperimentRig& rig_;
   const CommissioningOptions& options_;
-  // Created after the user's consent. It holds signals back, so that a signal between two motions does not
-  // end the process before the recordings are removed.
+  // Created after the user's consent. A signal is held back until the recordings are removed, so that it does
+  // not end the process between two motions.
   std::optional<daemon::Signals> signals_;
   CommissioningRuns runs_;
   std::uint64_t motions_ = 0;

@@ -1,5 +1,5 @@
 #pragma once
-// The commissioning experiment of a healthy finger, played twice on its rig.
+// Plays the commissioning experiments of a healthy finger twice on its rig.
 
 #include <functional>
 #include <string>
@@ -15,36 +15,37 @@
 namespace softgrip::tools {
 
 /// Returns the names of the default experiments from the experiment menu. They cover several pressure levels,
-/// pressure rates over two decades, holds and small hysteresis loops.
+/// pressure rates from the lowest to 100 times the lowest, holds and small hysteresis loops.
 [[nodiscard]] const std::vector<std::string>& usual_commissioning();
 
 struct CommissioningOptions {
-  std::vector<std::string> experiments;  ///< names of the menu, each at most once
-  /// Rest at zero pressure before each experiment, because creep needs about a minute to decay. A simulated
-  /// rig needs no rest, because it starts from its initial state each time.
+  std::vector<std::string> experiments;  ///< names of experiments from the experiment menu, each at most once
+  /// Rest at zero pressure before each experiment [s], because creep needs about a minute to decay. A
+  /// simulated rig needs no rest, because each experiment starts from its initial state.
   double rest_s = 60;
-  Consent consent;                               ///< called once before any motion; never for a simulated rig
-  std::function<void(const std::string&)> tell;  ///< reports one line before each motion; may be empty
+  Consent consent;                               ///< called once before the first motion; never called for a
+                                                 ///< simulated rig
+  std::function<void(const std::string&)> tell;  ///< prints one line before each motion; may be empty
 };
 
 struct CommissioningRuns {
-  std::vector<sysid::Log> first;   ///< one log per experiment, of the selected channel
-  std::vector<sysid::Log> second;  ///< logs of the repeated experiments
-  sysid::RigLimits limits;         ///< limits of the experiments
+  std::vector<sysid::Log> first;   ///< logs of the first run of the selected channel, one per experiment
+  std::vector<sysid::Log> second;  ///< logs of the second run, one per experiment
+  sysid::RigLimits limits;         ///< limits of pressure and rate for the experiments
   double minutes = 0;              ///< time on the rig: planned durations of the motions and rests [min]
 };
 
 /// The reason why the experiment was not completed. The rig is vented, and no files remain.
 struct NotCommissioned {
   ExitCode code = ExitCode::failed;
-  std::string why;  ///< a sentence
+  std::string why;  ///< the reason as a sentence
 };
 
-/// Plays the commissioning experiment twice. First, a gentle motion shows that the finger moves, and its
-/// displacement is compared with the model of the rig file. The largest pressure of the experiments is then
-/// limited to the channel's limit, and to the pressure at which the finger is expected to use 90 % of the
-/// distance from rest to displacement_max_mm. Then the finger is loaded twice to this pressure, so that both
-/// runs begin in the same state.
+/// Plays the commissioning experiments twice. First, a gentle motion checks that the finger moves, and its
+/// displacement is compared with the prediction of the rig file's model. The largest pressure of the
+/// experiments is the smaller of two values: the channel's limit, and the pressure at which the finger is
+/// expected to use 90 % of the distance from rest to displacement_max_mm. Before the first run, the finger is
+/// loaded twice to this pressure, so that both runs begin in equal conditions.
 ///
 /// Every log is checked against the rig file's model of the channel. Returns ExitCode::not_acceptable if the
 /// finger hardly moves or touches an object, if the rig does not play the requested experiment, or if it has
