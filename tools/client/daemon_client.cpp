@@ -18,7 +18,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// A longer line counts as malformed.
+// Largest length of a line from the daemon [bytes]; a longer line counts as malformed.
 constexpr std::size_t longest_line = std::size_t{8} << 20U;
 
 constexpr const char* how_to_start =
@@ -48,7 +48,7 @@ std::string listed(const Json& problems) {
   std::string text;
   for (const Json& problem : problems) {
     text += "\n" + problem.value("file", "");
-    // A problem without a line concerns the whole file.
+    // A problem without the text of a line concerns the whole file, so it is shown without a line number.
     if (problem.value("line_text", Json()) != Json("")) {
       text +=
           ":" + std::to_string(problem.value("line", 0)) + ":" + std::to_string(problem.value("column", 0));
@@ -89,7 +89,7 @@ tl::expected<DaemonClient, ClientFailure> DaemonClient::connect(const std::strin
 
 tl::expected<DaemonClient, ClientFailure> DaemonClient::connect_at_once(const std::string& path) {
   auto client = connect(path, SOCK_NONBLOCK, longest_send);
-  // Only connect() must not block. Afterwards send() may block, so that it writes a line completely.
+  // connect() must not block, but send() may block from here on, so that it sends a line completely.
   if (client) ::fcntl(client->descriptor(), F_SETFL, 0);
   return client;
 }
@@ -119,7 +119,7 @@ void DaemonClient::send(const Json& request) {
     if (count < 0 && errno == EINTR) continue;
     if (count < 0) {
       deaf_ = errno == EAGAIN || errno == EWOULDBLOCK;
-      // A partial request must not become the beginning of the next one.
+      // The daemon must not read a partial request as the beginning of the next request.
       if (deaf_) ::shutdown(socket_.get(), SHUT_RDWR);
       return;
     }

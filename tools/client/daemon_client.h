@@ -1,5 +1,5 @@
 #pragma once
-// A connection to softgripd's socket with one JSON object per line in each direction
+// A connection to softgripd's socket. In each direction, every message is one line with a JSON object
 // (docs/reference/socket-api.md).
 
 #include <chrono>
@@ -17,11 +17,11 @@ namespace softgrip::tools {
 /// Returns the default path of softgripd's socket: $SOFTGRIP_SOCKET, or the path of the packaged service.
 [[nodiscard]] std::string default_socket_path();
 
-/// Returns the text of the problems of a sequence that the daemon reports: "file:line:col: message" for each,
-/// on a new line.
+/// Returns the problems that the daemon found in a sequence as text. Each problem begins a new line:
+/// "file:line:col: message".
 [[nodiscard]] std::string listed(const nlohmann::ordered_json& problems);
 
-/// The reason why a request failed, for the user, and the exit code of the program.
+/// The reason why a request failed, as text for the user, and the exit code of the program.
 struct ClientFailure {
   ExitCode code = ExitCode::io;
   std::string message;
@@ -34,32 +34,32 @@ class DaemonClient {
 
   /// Connects to the daemon. If no daemon runs, the failure explains how to start one.
   [[nodiscard]] static tl::expected<DaemonClient, ClientFailure> connect(const std::string& path);
-  /// Connects without waiting. Fails if the daemon's queue of unaccepted connections is full. A later request
-  /// waits at most `longest_send` until it is sent. With connect(), this limit is `longest_answer`, for
-  /// connecting and for each request.
+  /// Connects without waiting. Fails if the daemon's queue of unaccepted connections is full. Each later
+  /// request waits at most `longest_send` until it is sent. After connect(), the limit for the connection and
+  /// for each request is `longest_answer`.
   [[nodiscard]] static tl::expected<DaemonClient, ClientFailure> connect_at_once(const std::string& path);
   static constexpr std::chrono::milliseconds longest_send{50};
 
-  /// Sends a request without waiting for the response. If sending fails, the next call of next_line() that
-  /// finds no more lines returns the failure. Lines that the daemon sent before it closed the connection are
-  /// still returned, and the last one may state the reason. If the daemon does not accept the request in
-  /// time, the connection ends.
+  /// Sends a request without waiting for the response. If sending fails, next_line() returns the failure
+  /// after all lines that the daemon sent before it closed the connection. The last of these lines may state
+  /// the reason. If the daemon does not accept the request in time, the connection ends.
   void send(const nlohmann::ordered_json& request);
-  /// Returns the `result` of a response from next_line(), or a failure if the daemon refused, like ask().
+  /// Returns the `result` of a response that next_line() returned, or a failure if the daemon refused the
+  /// request.
   [[nodiscard]] static tl::expected<nlohmann::ordered_json, ClientFailure> result_of(
       const nlohmann::ordered_json& answer);
 
-  /// Sends a request and returns the `result` of its response. A refusal of the daemon is a failure with
-  /// ExitCode::state_refused, a refused sequence with ExitCode::input_refused.
+  /// Sends a request and returns the `result` of its response. Returns a failure with ExitCode::state_refused
+  /// if the daemon refuses the request, and with ExitCode::input_refused if it refuses a sequence.
   [[nodiscard]] tl::expected<nlohmann::ordered_json, ClientFailure> ask(
       const nlohmann::ordered_json& request, std::chrono::milliseconds patience = longest_answer);
 
-  /// Returns the next line of the daemon, for example a watched state, or nullopt after `patience`. Each line
-  /// has passed parse_reply(). A line that does not pass ends the connection (ExitCode::io).
+  /// Returns the next line of the daemon, for example a status, or nullopt after `patience`. parse_reply()
+  /// checks each line. A malformed line ends the connection and returns a failure with ExitCode::io.
   [[nodiscard]] tl::expected<std::optional<nlohmann::ordered_json>, ClientFailure> next_line(
       std::chrono::milliseconds patience);
 
-  /// Returns the descriptor for poll().
+  /// Returns the file descriptor of the socket for poll().
   [[nodiscard]] int descriptor() const noexcept { return socket_.get(); }
 
  private:
@@ -75,9 +75,10 @@ class DaemonClient {
   bool deaf_ = false;  // the daemon did not accept a request
 };
 
-/// Returns true if a daemon runs on this socket, even if it does not respond: it then controls the board.
+/// Returns true if a daemon listens on this socket. The daemon then controls the board, even if it does not
+/// respond.
 [[nodiscard]] bool daemon_runs(const std::string& path);
-/// The remedy for a command that cannot run beside the daemon.
+/// Advice after a refusal of a command that cannot run while the daemon runs.
 inline constexpr const char* stop_the_daemon =
     "softgripd runs and holds the board: stop it first (systemctl stop softgripd)";
 

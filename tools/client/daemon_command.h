@@ -1,5 +1,5 @@
 #pragma once
-// The common part of all subcommands that communicate with the daemon.
+// Options, requests and output that all subcommands with a connection to the daemon share.
 
 #include <memory>
 #include <string>
@@ -17,21 +17,23 @@ struct DaemonOptions {
   bool json = false;
 };
 
-/// Adds --socket, --rig (the rig file names the socket) and --json. If the rig file names no socket, the
-/// program prints a sentence and ends with a CLI::RuntimeError.
+/// Adds the options --socket, --rig and --json. With --rig, the rig file names the socket. If it names none,
+/// the program prints a sentence and ends with a CLI::RuntimeError.
 void add_daemon_options(CLI::App& command, DaemonOptions& options);
 
-/// Connects, sends one request and returns the result. Prints the message of a failure.
+/// Connects to the daemon, sends one request and returns its result. Prints the message of a failure.
 [[nodiscard]] tl::expected<nlohmann::ordered_json, ExitCode> ask_daemon(
     const DaemonOptions& options, const nlohmann::ordered_json& request);
 
-/// Adds a subcommand that sends one request without arguments. `name` is also the command of the daemon.
-/// After the daemon has accepted, it prints `done`, or the result as JSON.
+/// Adds a subcommand that sends one request without arguments. `name` is the name of the subcommand and of
+/// the request. After the daemon has accepted the request, the subcommand prints `done`, or the result as
+/// JSON.
 void add_plain_request(CLI::App& program, ExitCode& outcome, const std::string& name,
                        const std::string& meaning, std::string done);
 
-/// Adds a subcommand that ends motion, like add_plain_request(). When the rig is idle, it also prints the
-/// pressurised fingers and the command that vents them. In JSON, this is `under_pressure` in the result.
+/// Adds a subcommand that ends motion, like add_plain_request(). When the rig is idle, the subcommand also
+/// prints the pressurised fingers and the command that vents them. With --json, the result contains them as
+/// `under_pressure`.
 void add_ending_request(CLI::App& program, ExitCode& outcome, const std::string& name,
                         const std::string& meaning, std::string done);
 

@@ -1,5 +1,5 @@
 #pragma once
-// Selects events of the daemon.
+// Selects events of the daemon by id, time, severity and number.
 
 #include <cstdint>
 #include <optional>
@@ -13,10 +13,11 @@
 
 namespace softgrip::tools {
 
-/// The beginning of the selection: after an event, or from a time on.
+/// The first event of a selection: the event after an id, or the first event from a time on.
 struct Since {
   std::uint64_t id = 0;  ///< only events with a larger id
-  std::string at;  ///< only events at or after this UTC time, in the format of the socket API; empty: all
+  std::string at;  ///< only events at or after this UTC time, in the format of the socket API; empty: any
+                   ///< time
 };
 
 /// Parses the number of an event ("1234"), a duration before `now` ("90s", "10min", "2h", "1d"; `now` in
@@ -27,14 +28,14 @@ struct Since {
 struct EventQuery {
   Since since;
   std::string severity = "information";  ///< lowest severity: information, warning, error
-  std::size_t lines = 100;               ///< number of the newest events
+  std::size_t lines = 100;               ///< largest number of events; the newest are selected
 };
 
-/// Returns true if the query selects the event, regardless of `lines`.
+/// Returns true if the event has the required id, time and severity. Ignores the number `lines`.
 [[nodiscard]] bool wanted(const EventQuery& query, const nlohmann::ordered_json& event);
 
-/// Returns the events of a query, newest last. Sets `newest` to the number of the newest event that was
-/// examined.
+/// Returns the events that a query selects, newest last. Sets `newest` to the id of the newest event of the
+/// daemon.
 [[nodiscard]] tl::expected<std::vector<nlohmann::ordered_json>, ClientFailure> events_of(
     DaemonClient& client, const EventQuery& query, std::uint64_t& newest);
 

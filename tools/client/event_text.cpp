@@ -13,7 +13,8 @@ namespace {
 
 constexpr std::size_t longest_text = 1000;
 
-/// Converts a UTC time such as "2026-11-21T08:32:05.123Z" to local time. Returns "" for any other text.
+/// Converts a UTC time such as "2026-11-21T08:32:05.123Z" to local time. Returns "" for a text that is not
+/// such a time.
 std::string local_time(const std::string& utc) {
   tm parts{};
   const char* const end = ::strptime(utc.c_str(), "%Y-%m-%dT%H:%M:%S", &parts);

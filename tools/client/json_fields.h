@@ -1,5 +1,5 @@
 #pragma once
-// Reads fields of the daemon's messages that may be missing, null or of another kind.
+// Reads fields of the daemon's messages that may be missing, null or of an unexpected JSON type.
 
 #include <optional>
 #include <string>
@@ -13,7 +13,7 @@ namespace softgrip::tools {
 [[nodiscard]] std::string text_at(const nlohmann::ordered_json& json, const char* key,
                                   std::size_t most = 200);
 [[nodiscard]] std::optional<double> number_at(const nlohmann::ordered_json& json, const char* key);
-/// Returns the object at `key`, or an empty object.
+/// Returns the object at `key`, or an empty object if the value is missing or is no object.
 [[nodiscard]] const nlohmann::ordered_json& object_at(const nlohmann::ordered_json& json, const char* key);
 
 }  // namespace softgrip::tools

@@ -48,7 +48,8 @@ void KeyDialogue::ask(Json request, std::string question, double time_s) {
 
 KeyDialogue::Outcome KeyDialogue::take(std::string_view typed, double time_s, const std::string& ran) {
   lapse(time_s);
-  // Escape alone is a key. Escape with further characters is an arrow key or a function key.
+  // Escape alone is a key. If characters follow it, they encode an arrow key or a function key, which is
+  // ignored.
   if (typed.size() > 1 && typed.front() == escape_key) return {};
   for (const char one : typed) {
     const Waiting before = waiting_;
@@ -65,7 +66,7 @@ KeyDialogue::Outcome KeyDialogue::key(char key, double time_s, const std::string
   if (waiting_ == Waiting::for_a_yes) {
     waiting_ = Waiting::for_a_key;
     if (key == 'y' || key == 'Y') return {false, std::move(request_)};
-    // Stop and vent are also accepted instead of an answer.
+    // The keys for stop and vent are accepted even while a question waits for an answer.
     if (key != 's' && key != 'v') return {};
   }
   switch (key) {

@@ -1,5 +1,5 @@
 #pragma once
-// Converts the keys of `softgrip watch` to requests to the daemon. It uses no terminal and no socket.
+// Converts the keys of `softgrip watch` to requests to the daemon. Does not access a terminal or a socket.
 
 #include <optional>
 #include <string>
@@ -9,26 +9,27 @@
 
 namespace softgrip::tools {
 
-/// Stop and vent are sent at once. Start and release, which move the fingers, need a confirmation: a key that
-/// is typed after the question and within `patience_s`.
+/// Converts the keys for stop and vent to requests at once. Start and release, which move the fingers, need a
+/// confirmation: a key that the user types within `patience_s` after the question.
 class KeyDialogue {
  public:
   static constexpr double patience_s = 10;
 
   struct Outcome {
     bool leave = false;
-    std::optional<nlohmann::ordered_json> request;  ///< request to the daemon
+    std::optional<nlohmann::ordered_json> request;  ///< request for the daemon; nullopt: none
   };
-  /// Processes the keys that were typed since the last call. `ran` is the sequence that the start key offers
-  /// to run; empty: none. If a key causes a question, the keys typed after it are dropped, so that pasted
-  /// text cannot confirm the question. Arrow keys and function keys are ignored.
+  /// Processes the keys that were typed since the last call. `ran` is the name of the sequence that the start
+  /// key offers; empty: none. If a key causes a question, the keys after it are dropped, so that pasted text
+  /// cannot confirm the question. Arrow keys and function keys are ignored.
   Outcome take(std::string_view typed, double time_s, const std::string& ran);
-  /// Withdraws a question that has waited for `patience_s`. Returns true if this call withdrew it.
+  /// Withdraws the question if it has waited for an answer for `patience_s`. Returns true if this call
+  /// withdrew the question.
   bool lapse(double time_s);
 
   /// Returns the question that waits for an answer, or "".
   [[nodiscard]] std::string question() const;
-  /// Returns the help of the keys in one line of 58 columns.
+  /// Returns the help on the keys as one line of 58 columns.
   [[nodiscard]] static std::string_view help();
 
  private:

@@ -8,9 +8,9 @@
 
 namespace softgrip::tools {
 
-/// Name of the subfolder of the recordings' folder to which softgrip-health.service writes its results.
+/// Name of the subfolder for the results of softgrip-health.service. It lies in the folder of the recordings.
 inline constexpr const char* health_folder = "health";
-/// A result that is older than this is out of date [s].
+/// Age above which a result of `softgrip health` is out of date [s].
 inline constexpr double health_old_s = 3 * 86400.0;
 
 /// Returns the content of health.json in the folder `recordings`/health with the added member `age_s`.

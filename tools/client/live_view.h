@@ -17,9 +17,9 @@ namespace softgrip::tools {
 struct LiveState {
   nlohmann::ordered_json status;
   std::vector<ChannelTrends> trends;          ///< one per channel
-  std::deque<nlohmann::ordered_json> events;  ///< newest last
+  std::deque<nlohmann::ordered_json> events;  ///< newest event last
   std::string question;                       ///< the question that waits for a key; empty: none
-  Span said;                                  ///< result of the last key; empty: no key yet
+  Span said;                                  ///< message about the last key; empty: no key yet
 };
 
 /// Number of events that are kept for the screen.
@@ -27,11 +27,11 @@ inline constexpr std::size_t events_shown = 50;
 
 /// Stores a status and updates the trends.
 void take_status(LiveState& state, nlohmann::ordered_json status);
-/// Stores an event and drops the oldest one beyond `events_shown`.
+/// Stores an event. Drops the oldest event if there are more than `events_shown`.
 void take_event(LiveState& state, nlohmann::ordered_json event);
 
-/// Returns at most `rows` (> 0) lines. The last line is always the key help. If the rest does not fit, the
-/// events are omitted first, and a line says so.
+/// Returns the screen as at most `rows` (> 0) lines. The last line is always the key help. If there are too
+/// few rows, events are omitted first, and a line says so.
 [[nodiscard]] std::vector<std::string> screen_of(const LiveState& state, const ViewStyle& style,
                                                  std::size_t rows);
 

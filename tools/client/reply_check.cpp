@@ -11,14 +11,15 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Names in this namespace are short words, as in the protocol, so they need a namespace of their own.
+// Names in this namespace are short, like the keys of the protocol. The namespace prevents conflicts with
+// other names.
 namespace reply_shape {
 
-/// Largest accepted nesting depth. Messages of the daemon need five levels. A limit is necessary because
-/// copying and printing JSON use the stack for each level.
+/// Largest accepted nesting depth of a line. Messages of the daemon need five levels. The depth is limited
+/// because copying and printing JSON recursively use the stack for each level.
 constexpr std::size_t deepest = 32;
 
-/// The kinds of values as bits, because a field may allow several kinds.
+/// The JSON types of a value as bits, because a field may allow several types.
 enum Kind : unsigned { text = 1, number = 2, count = 4, flag = 8, object = 16, list = 32, null = 64 };
 
 struct Shape;
@@ -26,7 +27,8 @@ struct Shape;
 struct Field {
   const char* key;
   unsigned kinds;
-  const Shape* inside = nullptr;  ///< shape of the object, or of each value of the list
+  const Shape* inside = nullptr;  ///< shape of the value if it is an object, or of each element if it is a
+                                  ///< list
   bool is_required = false;
 };
 
@@ -91,7 +93,8 @@ constexpr Field status_fields[] = {{"version", text},
                                    {"recording", object, &recording},
                                    {"real_time", object | null, &real_time}};
 constexpr Shape status{status_fields};
-/// Shape of a result that can be a status or another object, so no field is required.
+/// Shape of a result that is a status for some requests and another object for others, so no field is
+/// required.
 constexpr Shape perhaps_status{status_fields, false};
 
 constexpr Field parameter_fields[] = {{"name", text},    {"unit", text},      {"lower", number},
@@ -152,7 +155,7 @@ Fault fault_of_field(const Json& owner, const Field& field, bool is_required, co
   return std::nullopt;
 }
 
-/// Checks an object. `value` must be an object.
+/// Checks the fields of an object against a shape. `value` must be an object.
 Fault fault_of(const Json& value, const Shape& shape, const std::string& path) {
   for (const Field& field : shape.fields) {
     const std::string place = path.empty() ? field.key : path + "." + field.key;
@@ -173,7 +176,7 @@ bool nests_too_deep(std::string_view line) {
   bool in_text = false;
   for (std::size_t i = 0; i < line.size(); ++i) {
     const char byte = line[i];
-    if (in_text && byte == '\\') ++i;  // an escaped character does not end a text
+    if (in_text && byte == '\\') ++i;  // skip the escaped character, because it does not end a text
     if (byte == '"') in_text = !in_text;
     if (in_text) continue;
     if (byte == '[' || byte == '{') ++depth;
@@ -187,7 +190,7 @@ bool nests_too_deep(std::string_view line) {
 }  // namespace
 
 tl::expected<Json, std::string> parse_reply(std::string_view line) {
-  // Check this before parsing, because copying and printing JSON use the stack for each level.
+  // Check the nesting depth before parsing, because copying and printing JSON use the stack for each level.
   if (reply_shape::nests_too_deep(line)) {
     return tl::unexpected("a line nests deeper than " + std::to_string(reply_shape::deepest) + " levels");
   }

@@ -9,10 +9,10 @@
 namespace softgrip::tools {
 
 /// Returns one line per sequence, followed by one line per parameter with name, range, unit, default and
-/// description. For a sequence that cannot be started, it states the reason.
+/// description. If a sequence cannot be started, its line states the reason.
 [[nodiscard]] std::vector<std::string> view_of_sequences(const nlohmann::ordered_json& sequences);
 
-/// Returns only the names.
+/// Returns the names of the sequences.
 [[nodiscard]] std::vector<std::string> names_of_sequences(const nlohmann::ordered_json& sequences);
 
 }  // namespace softgrip::tools

@@ -1,5 +1,5 @@
 #pragma once
-// The option `--set NAME=VALUE`: parameters of a sequence on the command line.
+// The option `--set NAME=VALUE`, which sets a parameter of a sequence on the command line.
 
 #include <string>
 #include <vector>
@@ -15,9 +15,9 @@ namespace softgrip::tools {
 /// Adds --set, which may be given several times.
 void add_set_option(CLI::App& command, std::vector<std::string>& settings);
 
-/// Parses the values of --set. If a parameter has no name or its value is not a number, prints a sentence to
-/// the standard error and returns ExitCode::usage. The names and ranges are not checked here, because only
-/// the sequence defines them.
+/// Parses the values of --set. If a value has no name or no number, prints a sentence to the standard error
+/// and returns ExitCode::usage. Names and ranges are not checked here, because only the sequence defines
+/// them.
 [[nodiscard]] tl::expected<std::vector<control::Argument>, ExitCode> arguments_of(
     const std::vector<std::string>& settings);
 

@@ -30,7 +30,7 @@ Tone tone_of_result(const std::string& result) {
   return Tone::bad;
 }
 
-/// The value of a bar and its mark, with the range of their common scale.
+/// The value that a bar shows, the value that its mark shows, and the range of their common scale.
 struct Bar {
   double lower = 0;
   double upper = 1;
@@ -38,7 +38,7 @@ struct Bar {
   std::optional<double> mark;
 };
 
-/// Returns the position of a value on a bar of `cells` cells, in eighths of a cell.
+/// Returns the position of a value on a bar of `cells` characters, in eighths of a character.
 std::optional<std::size_t> eighths(const Bar& bar, std::optional<double> value, std::size_t cells) {
   if (!value || !(bar.upper > bar.lower)) return std::nullopt;
   const double share = std::clamp((*value - bar.lower) / (bar.upper - bar.lower), 0.0, 1.0);
@@ -65,11 +65,13 @@ void add_bar(Line& line, const Bar& bar, std::size_t cells) {
 constexpr std::size_t label_columns = 16;
 constexpr std::size_t numbers_columns = 46;
 constexpr std::size_t shortest_bar = 10;
-/// Column of a trend next to the numbers, and the smallest screen width for it.
+/// Column in which a trend begins to the right of the numbers, and smallest screen width for this
+/// arrangement.
 constexpr std::size_t trend_column = 56;
 constexpr std::size_t columns_beside = 72;
 
-/// Adds "  pressure       [######|   ]  32.10 kPa, command 32.40". The numbers go below if they do not fit.
+/// Adds "  pressure       [######|   ]  32.10 kPa, command 32.40". If the line is too long, the numbers are
+/// on a second line.
 void add_bar_lines(std::vector<std::string>& lines, const ViewStyle& style, std::string_view label,
                    const Bar& bar, const std::string& numbers) {
   Line line(style);
@@ -88,8 +90,8 @@ void add_glyphs(Line& line, const Trend& trend, std::size_t cells, double least_
     line.add_glyph(glyph);
 }
 
-/// Adds "  pressure      32.10 kPa, command 32.40         ▁▂▃▅▇". The trend is omitted if it would be too
-/// short.
+/// Adds "  pressure      32.10 kPa, command 32.40         ▁▂▃▅▇". The trend is omitted if the screen is too
+/// narrow.
 void add_trend_line(std::vector<std::string>& lines, const ViewStyle& style, std::string_view label,
                     const std::string& numbers, const Trend& trend, double least_span) {
   Line line(style);
@@ -101,7 +103,7 @@ void add_trend_line(std::vector<std::string>& lines, const ViewStyle& style, std
   lines.push_back(line.text());
 }
 
-/// Adds "                ▁▂▃▅▇ kPa  ▁▂▃▅▇ mm": both trends below the numbers, for a narrow screen.
+/// Adds "                ▁▂▃▅▇ kPa  ▁▂▃▅▇ mm" for a narrow screen: a line with both trends below the numbers.
 void add_trends_below(std::vector<std::string>& lines, const ViewStyle& style, const ChannelTrends& trends,
                       double least_kpa, double least_mm) {
   constexpr std::size_t units_columns = 9;
@@ -115,7 +117,8 @@ void add_trends_below(std::vector<std::string>& lines, const ViewStyle& style, c
   lines.push_back(line.text());
 }
 
-/// Adds the text of the limit that restricts the pressure, if the status reports one.
+/// Adds a line that names the limit which restricts the pressure of the channel, if the status reports such a
+/// limit.
 void add_limit(std::vector<std::string>& lines, const Json& channel, const ViewStyle& style) {
   const std::string words = text_at(channel, "limit_text");
   if (words == "-") return;
@@ -143,7 +146,8 @@ void add_channel_head(std::vector<std::string>& lines, const Json& channel, cons
   for (const std::string& line : flowed(style, spans, label_columns)) lines.push_back(line);
 }
 
-/// Smallest span of a trend as a share of the range of the limits, so that noise does not look like motion.
+/// Smallest span of a trend, as a share of the channel's permitted range. It prevents that noise looks like
+/// motion.
 constexpr double least_share = 0.1;
 
 void add_channel(std::vector<std::string>& lines, const Json& channel, const ViewStyle& style,
@@ -220,14 +224,14 @@ void add_fault(std::vector<std::string>& lines, const Json& status, const ViewSt
   }
 }
 
-/// Adds the pressurised fingers in a prominent colour, with the command that vents them.
+/// Adds a list of the pressurised fingers in a prominent colour, with the command that vents them.
 void add_pressure(std::vector<std::string>& lines, const Json& status, const ViewStyle& style) {
   const std::string text = text_at(object_at(status, "under_pressure"), "text");
   if (text == "-") return;
   for (const std::string& line : broken(style, text, Tone::bad, 0)) lines.push_back(line);
 }
 
-/// Adds the connection attempts to a board that does not respond: their number and the last failure.
+/// If the board does not respond, adds the number of connection attempts and the last failure.
 void add_silence(std::vector<std::string>& lines, const Json& bus, const ViewStyle& style) {
   const auto attempts = number_at(bus, "attempts");
   const auto retry_s = number_at(bus, "retry_s");

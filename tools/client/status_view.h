@@ -11,18 +11,18 @@
 
 namespace softgrip::tools {
 
-/// The parts of a status that a screen can arrange, as lines. A missing value is shown as "-".
+/// The parts of a status as lines, so that a screen can arrange them. A missing value is shown as "-".
 struct StatusParts {
   std::vector<std::string> head;  ///< state and sequence, pressurised fingers, the fault
   std::vector<std::vector<std::string>> channels;
-  std::vector<std::string> board;      ///< connection to the board, and the attempts to restore it
-  std::vector<std::string> machinery;  ///< control loop and recording
+  std::vector<std::string> board;      ///< connection to the board, and attempts to restore the connection
+  std::vector<std::string> machinery;  ///< state of the control loop and of the recording
 };
-/// Formats the parts. With `trends` (one per channel), bars are replaced by the trends.
+/// Formats the parts of a status. If `trends` contains one element per channel, trends replace the bars.
 [[nodiscard]] StatusParts parts_of(const nlohmann::ordered_json& status, const ViewStyle& style,
                                    const std::vector<ChannelTrends>* trends = nullptr);
 
-/// Returns all parts, one below the other.
+/// Returns the lines of all parts in one list.
 [[nodiscard]] std::vector<std::string> view_of(const nlohmann::ordered_json& status, const ViewStyle& style);
 
 /// Returns the status in one line, for logs and pipes.

@@ -1,6 +1,6 @@
 #pragma once
-// Lines for a terminal with known width in columns. Escapes and multi-byte characters do not count as
-// columns.
+// Formats lines for a terminal of known width. A multi-byte character counts as one column, an escape
+// sequence as none.
 
 #include <cstddef>
 #include <string>
@@ -17,7 +17,7 @@ struct ViewStyle {
 
 enum class Tone : unsigned char { plain, strong, good, doubtful, bad, faint };
 
-/// A text with one tone.
+/// A text with one tone, for example plain, strong or bad.
 struct Span {
   std::string text;
   Tone tone = Tone::plain;
@@ -51,13 +51,13 @@ class Line {
   std::size_t columns_ = 0;
 };
 
-/// Puts spans one after the other. A span that does not fit begins another line, indented by `indent` blanks.
-/// Blanks at the beginning of a line are omitted.
+/// Arranges spans one after the other. A span that does not fit on the line begins another line, indented by
+/// `indent` blanks. Blanks at the beginning of a line are omitted.
 [[nodiscard]] std::vector<std::string> flowed(const ViewStyle& style, const std::vector<Span>& spans,
                                               std::size_t indent);
 
-/// Breaks ASCII text at its line breaks, and at blanks if a line is too long. All lines but the first are
-/// indented by `indent` blanks.
+/// Splits ASCII text at its line breaks. A line that is too long is also split at a blank. All lines after
+/// the first are indented by `indent` blanks.
 [[nodiscard]] std::vector<std::string> broken(const ViewStyle& style, std::string_view text, Tone tone,
                                               std::size_t indent);
 
