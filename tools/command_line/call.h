@@ -10,8 +10,8 @@ class App;
 
 namespace softgrip::tools {
 
-/// Returns the command's name and arguments for its JSON result, without those that select the output (--out,
-/// --json, --figures). `softgrip report --verify` repeats this call.
+/// Returns the command's name and arguments for its JSON result, without the arguments that select the output
+/// (--out, --json, --figures). `softgrip report --verify` repeats this call.
 [[nodiscard]] std::vector<std::string> call_of(const CLI::App& command);
 
 }  // namespace softgrip::tools

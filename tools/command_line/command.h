@@ -24,17 +24,20 @@ namespace softgrip::tools {
 
 using AddCommand = void (*)(CLI::App& program, ExitCode& outcome);
 
-/// Prints "PROGRAM: message" to the standard error and returns `code`: `return fail(ExitCode::io, ...)`.
+/// Prints "PROGRAM: message" to the standard error and returns `code`, so that a command ends with `return
+/// fail(ExitCode::io, ...)`.
 ExitCode fail(ExitCode code, std::string_view message);
 
-/// Prints all problems of the inputs to the standard error, each with its location, and their number. Returns
-/// ExitCode::input_refused.
+/// Prints all problems of the inputs to the standard error, each with its location, and then the number of
+/// problems. Returns ExitCode::input_refused.
 ExitCode refuse(const document::Problems& problems);
 
-/// Returns "" if `path` is a folder or a regular file that can be opened for reading, else the reason.
+/// Returns "" if `path` is a folder or a regular file that can be opened for reading. Otherwise returns the
+/// reason why it cannot be read.
 [[nodiscard]] std::string why_unreadable(const std::string& path);
 
-/// Returns ExitCode::io and prints a sentence to the standard error if `path` is unreadable, else nullopt.
+/// Returns nullopt if `path` is readable. Otherwise prints a sentence to the standard error and returns
+/// ExitCode::io.
 [[nodiscard]] std::optional<ExitCode> unreadable(const std::string& path);
 
 }  // namespace softgrip::tools

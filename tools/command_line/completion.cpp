@@ -8,9 +8,9 @@
 namespace softgrip::tools {
 namespace {
 
-/// An option or a positional argument.
+/// An option or a positional argument of a command, with its allowed values.
 struct Choice {
-  std::vector<std::string> names;  ///< with their dashes; empty for a positional argument
+  std::vector<std::string> names;  ///< names of the option with their dashes; empty: a positional argument
   std::string about;
   bool takes_value = false;
   bool repeats = false;
@@ -22,7 +22,7 @@ struct Command {
   std::string about;
   std::vector<Choice> options;
   std::vector<Choice> places;
-  bool asks_for_sequences = false;  ///< the values are the names of the daemon's sequences
+  bool asks_for_sequences = false;  ///< the allowed values are the names of the daemon's sequences
 };
 
 constexpr const char* ask_for_sequences = "sequences --names 2>/dev/null";
@@ -57,7 +57,7 @@ Choice choice_of(const CLI::Option& option) {
 
 Command command_of(const CLI::App& app);
 
-/// Adds the subcommands of a command: their names, and the options and arguments of each of them.
+/// Adds the subcommands of a command, with the names, options and arguments of each subcommand.
 void add_nested(const CLI::App& app, Command& command) {
   Choice place;
   for (const CLI::App* nested : app.get_subcommands([](const CLI::App*) { return true; })) {
@@ -107,7 +107,7 @@ std::vector<std::string> names_of(const std::vector<Choice>& options) {
   return names;
 }
 
-/// Returns `text` in quotes, with the characters `escaped` preceded by a backslash.
+/// Returns `text` between quotes. Each of the characters `escaped` is preceded by a backslash.
 std::string quoted(const std::string& text, std::string_view escaped, std::string_view quote) {
   std::string out;
   for (const char c : text) {
@@ -123,7 +123,7 @@ std::string quoted(const std::string& text, std::string_view escaped, std::strin
   return out;
 }
 
-// bash: the option `-o default` completes an argument without candidates as a file name.
+// The bash script. Its option `-o default` completes an argument without candidates as a file name.
 
 void bash_values(std::string& out, const std::string& command, const std::vector<Choice>& options) {
   for (const Choice& option : options) {
@@ -180,7 +180,7 @@ std::string bash_script(const std::string& program, const Command& top,
   return out;
 }
 
-// zsh
+// The zsh script.
 
 std::string zsh_value(const Choice& choice) {
   return choice.words.empty() ? ":file:_files" : ":word:(" + joined(choice.words, " ") + ")";
@@ -233,7 +233,7 @@ std::string zsh_script(const std::string& program, const Command& top, const std
          " \"$@\"\nelse\n  compdef _" + program + " " + program + "\nfi\n";
 }
 
-// fish
+// The fish script.
 
 void fish_options(std::string& out, const std::string& begin, const Command& command) {
   for (const Choice& option : command.options) {

@@ -15,8 +15,8 @@ enum class Shell { bash, zsh, fish };
 /// Parses "bash", "zsh" or "fish". Returns nullopt for any other name.
 [[nodiscard]] std::optional<Shell> shell_named(std::string_view name);
 
-/// Returns a script that completes the program's commands, options, allowed values and files. The sequences
-/// of a daemon are completed with the names that the daemon reports.
+/// Returns a script that completes the program's commands, options, allowed values and files. The script
+/// requests the names of sequences from the daemon.
 [[nodiscard]] std::string completion_script(const CLI::App& program, Shell shell);
 
 }  // namespace softgrip::tools

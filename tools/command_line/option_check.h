@@ -9,7 +9,7 @@
 
 namespace softgrip::tools {
 
-/// Accepts a number in [lower, upper]. Unlike CLI::Range, it refuses NaN.
+/// Accepts a number between `lower` and `upper`, bounds included. Unlike CLI::Range, it refuses NaN.
 [[nodiscard]] inline CLI::Validator number_between(double lower, double upper) {
   const std::string range = "a number from " + significant(lower) + " to " + significant(upper);
   const auto check = [=](const std::string& text) {

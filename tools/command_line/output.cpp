@@ -21,7 +21,7 @@ bool put(std::FILE* file, std::string_view text) {
 
 namespace fs = std::filesystem;
 
-/// Returns the files that a command reads for the given `input`.
+/// Returns the files that a command reads if its input is the file or folder `input`.
 std::vector<std::string> files_of(const std::string& input) {
   if (!is_folder(input)) return {input};
   return {input + "/run.csv", input + "/run.json"};
@@ -59,7 +59,7 @@ std::vector<std::string> files_in(const std::string& folder, const std::vector<s
   return found;
 }
 
-// A rename would replace the stream instead of writing into it.
+// write_output() opens a stream for writing, because a rename would replace the stream by a file.
 bool is_stream(const std::string& path) {
   if (path == "-") return true;
   std::error_code error;

@@ -16,7 +16,7 @@ bool is_digit(char c) {
   return c >= '0' && c <= '9';
 }
 
-/// Returns the numbers of the first "3 of 20" in a text.
+/// Returns the two numbers of the first progress such as "3 of 20" in a text, or nullopt.
 std::optional<std::pair<std::size_t, std::size_t>> share_in(std::string_view text) {
   constexpr std::string_view between = " of ";
   for (std::size_t at = text.find(between); at != std::string_view::npos; at = text.find(between, at + 1)) {
@@ -54,7 +54,7 @@ double RestEstimate::left_s(const std::string& text, double now_s) {
 
 ProgressLine::ProgressLine(std::FILE* to, std::chrono::milliseconds every)
     : to_(to), every_(every), terminal_(::isatty(::fileno(to)) == 1) {
-  // This thread blocks all signals, so that the main thread receives them.
+  // The thread that shows the progress blocks all signals, so that the main thread receives them.
   sigset_t all, before;
   sigfillset(&all);
   pthread_sigmask(SIG_SETMASK, &all, &before);
@@ -80,7 +80,7 @@ std::function<void(const std::string&)> ProgressLine::show() {
 std::string ProgressLine::latest() const {
   const double now_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - began_).count();
   std::string line = seconds_text(now_s) + ": " + text_;
-  // Subtract the time since the estimate was made. A remaining time below 1 s is not shown.
+  // Subtract the time since the remaining time was estimated. A remaining time below 1 s is not shown.
   const double rest_s = left_s_ - (now_s - said_s_);
   if (rest_s >= 1) line += ", about " + seconds_text(rest_s) + " left";
   return line;

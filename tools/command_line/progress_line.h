@@ -11,8 +11,8 @@
 
 namespace softgrip::tools {
 
-/// Estimates the remaining time of a stage from its elapsed time. The texts state the progress as "3 of 20".
-/// A text without such a progress, or with another total, begins a new stage.
+/// Estimates the remaining time of a computation from its elapsed time. The texts state the progress as "3 of
+/// 20". A new estimate begins with a text that states no progress or another total.
 class RestEstimate {
  public:
   /// Returns the remaining time [s] after `text`, which was shown at `now_s`. A negative value means unknown.
@@ -24,8 +24,8 @@ class RestEstimate {
   double began_s_ = 0;
 };
 
-/// On a terminal, it overwrites one line and clears it at the end. Elsewhere it prints a line every 10 s with
-/// the latest text, the elapsed time and the estimated remaining time.
+/// Shows the progress. On a terminal, it overwrites one line and clears it at the end. Elsewhere, it prints a
+/// line every 10 s with the latest text, the elapsed time and the estimated remaining time.
 class ProgressLine {
  public:
   explicit ProgressLine(std::FILE* to = stderr, std::chrono::milliseconds every = std::chrono::seconds(10));
@@ -35,14 +35,14 @@ class ProgressLine {
   ProgressLine(ProgressLine&&) = delete;
   ProgressLine& operator=(ProgressLine&&) = delete;
 
-  /// Returns a function that shows a text; "" hides the line until the next text. It may be called from any
-  /// thread during the lifetime of this object.
+  /// Returns a function that shows a text; "" hides the line until the next text. Any thread may call the
+  /// function during the lifetime of this object.
   [[nodiscard]] std::function<void(const std::string&)> show();
 
  private:
   void say(const std::string& text);
   void repeat();
-  [[nodiscard]] std::string latest() const;  ///< call with the lock held
+  [[nodiscard]] std::string latest() const;  ///< the caller must hold the lock
 
   std::FILE* to_;
   std::chrono::milliseconds every_;

@@ -1,5 +1,5 @@
 #pragma once
-// Reads an input file of a command with a reader that collects problems.
+// Reads an input file of a command with a function that collects the problems of the file.
 
 #include <string>
 #include <utility>

@@ -33,7 +33,8 @@ void put(std::string_view text) {
   }
 }
 
-constexpr std::string_view enter_screen = "\x1b[?1049h\x1b[?25l";  // alternate screen, cursor hidden
+constexpr std::string_view enter_screen = "\x1b[?1049h\x1b[?25l";  // selects the alternate screen and hides
+                                                                   // the cursor
 constexpr std::string_view leave_screen = "\x1b[?25h\x1b[?1049l";
 
 constexpr std::array<int, 6> crashes{SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGSYS};
@@ -44,7 +45,7 @@ volatile std::sig_atomic_t keyboard_to_restore = 0;
 extern "C" void softgrip_restore_terminal(int signal) {
   put(leave_screen);
   if (keyboard_to_restore != 0) ::tcsetattr(STDIN_FILENO, TCSANOW, &keyboard_before);
-  ::raise(signal);  // SA_RESETHAND has restored the default action
+  ::raise(signal);  // ends the program, because SA_RESETHAND has restored the default action of the signal
 }
 
 }  // namespace

@@ -10,27 +10,28 @@
 
 namespace softgrip::tools {
 
-/// Returns true if the standard output is a terminal that can move its cursor.
+/// Returns true if the standard output is a terminal on which the program can move the cursor.
 [[nodiscard]] bool on_terminal();
-/// Returns true unless NO_COLOR is set (https://no-color.org) or the output is not a terminal.
+/// Returns true if the output is a terminal and the variable NO_COLOR is not set (https://no-color.org).
 [[nodiscard]] bool wants_colour();
 /// Returns true if the character encoding of the locale is UTF-8.
 [[nodiscard]] bool has_unicode();
 /// Replaces characters by their usual ASCII form if the locale is not UTF-8: ± becomes +-.
 [[nodiscard]] std::string on_screen(std::string text);
-/// Returns the columns and rows of the standard output, or 80 and 24.
+/// Returns the number of columns or rows of the terminal at the standard output. Without a terminal, returns
+/// 80 columns and 24 rows.
 [[nodiscard]] std::size_t terminal_columns();
 [[nodiscard]] std::size_t terminal_rows();
 
-/// Blocks the default action of SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGTSTP and SIGWINCH and returns a
-/// descriptor that reports these signals.
+/// Blocks SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGTSTP and SIGWINCH, so that they have no default action.
+/// Returns a descriptor that reports these signals.
 [[nodiscard]] Descriptor take_ending_signals();
 
-/// Returns the next signal of the descriptor, or 0 if there is none.
+/// Returns the next signal that the descriptor reports, or 0 if there is none.
 [[nodiscard]] int next_signal(const Descriptor& signals);
 
-/// Full-screen drawing. The destructor restores screen, cursor and keyboard. Signal handlers do this after a
-/// crash. At most one object may exist at a time.
+/// Draws on the full screen of the terminal. The destructor restores screen, cursor and keyboard; after a
+/// crash, signal handlers restore them. At most one object may exist at a time.
 class Screen {
  public:
   Screen();
@@ -40,7 +41,7 @@ class Screen {
   Screen& operator=(Screen&&) = delete;
   ~Screen();
 
-  /// Replaces the displayed lines. Lines that do not fit are omitted.
+  /// Replaces the displayed lines. Omits the lines that do not fit on the screen.
   void draw(const std::vector<std::string>& lines);
 
  private:

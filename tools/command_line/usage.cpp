@@ -11,7 +11,7 @@
 namespace softgrip::tools {
 namespace {
 
-/// Returns the innermost command on the command line, or the program itself.
+/// Returns the last subcommand of the command line, or the program if the command line has no subcommand.
 const CLI::App& innermost(const CLI::App& program) {
   const auto chosen = program.get_subcommands();
   return chosen.empty() ? program : innermost(*chosen.front());
@@ -38,7 +38,7 @@ std::string did_you_mean(const std::string& word, const std::vector<std::string>
   return near.empty() ? std::string() : "did you mean `" + near + "`?";
 }
 
-/// Returns the first word that is not a known command, or "".
+/// Returns the first word of the command line that should be a command but is unknown, or "".
 std::string unknown_command(const CLI::App& program, int argc, char** argv) {
   if (command_names_of(program).empty() || !program.get_subcommands().empty()) return {};
   for (int i = 1; i < argc; ++i) {
@@ -52,7 +52,7 @@ std::string unknown_command(const CLI::App& program, int argc, char** argv) {
 
 int end_of(const CLI::App& program, const CLI::ParseError& error, int argc, char** argv) {
   const auto usage = static_cast<int>(ExitCode::usage);
-  // The callback has already printed its message.
+  // A RuntimeError comes from a callback that has already printed its message.
   if (error.get_name() == "RuntimeError") return error.get_exit_code();
   if (const std::string word = unknown_command(program, argc, argv);
       !word.empty() && error.get_exit_code() != 0) {

@@ -8,8 +8,8 @@ class ParseError;
 
 namespace softgrip::tools {
 
-/// Prints help or version if requested. Otherwise prints the error with the nearest existing command or
-/// option. Returns the exit code of the program: 0, 2, or the code that an option's callback passed with a
+/// Prints help or version if the user requested it. Otherwise prints the error and the existing command or
+/// option with the most similar name. Returns the exit code of the program: 0, 2, or the code of a
 /// CLI::RuntimeError.
 [[nodiscard]] int end_of(const CLI::App& program, const CLI::ParseError& error, int argc, char** argv);
 
