@@ -39,7 +39,7 @@ struct BaselineOptions {
   std::vector<std::string> data;
   std::vector<std::string> check;
   std::string rig;
-  std::string rig_channel;  ///< channel of the rig; "": the channel given by --channel
+  std::string rig_channel;  ///< channel of the rig; "": the value of --channel
   std::vector<std::string> experiments = usual_commissioning();
   double rest_s = CommissioningOptions{}.rest_s;
   std::string gauge;
@@ -52,11 +52,11 @@ struct BaselineOptions {
   bool json = false;
 };
 
-/// Logs of a healthy finger: the first run, and the second run if there is one.
+/// Logs of a healthy finger: a first run and, if recorded, a second run.
 struct Runs {
   std::vector<sysid::Log> healthy, again;
   BaselineContents contents;
-  Json rig;  ///< the rig that played the logs; null: the logs were recorded before
+  Json rig;  ///< the rig that played the logs; null: the logs come from files
 };
 
 tl::expected<model::Model, ExitCode> model_of(const BaselineOptions& options,
@@ -114,7 +114,7 @@ tl::expected<Json, ExitCode> checked(const BaselineOptions& options, const Runs&
                 {"second_run", left_mm(options, model, runs.again)}}}};
 }
 
-/// Returns a text such as "The second run: ..." with the RMS errors of the model.
+/// Returns the comparison of the two runs as text, with the RMS errors of the model: "The second run: ...".
 std::string text_of_check(const Json& check) {
   if (check.is_null())
     return "There is no second run (--check), so the repeatability of the finger is unknown.";
@@ -146,7 +146,7 @@ tl::expected<Runs, ExitCode> recorded(const BaselineOptions& options) {
   return runs;
 }
 
-/// The log of one channel for each experiment, for the baseline folder.
+/// Returns the files of the baseline folder that contain the played logs, one log per experiment.
 std::vector<BaselineFile> files_of_played(const std::vector<sysid::Log>& logs, const std::string& rig) {
   std::vector<BaselineFile> files;
   files.reserve(logs.size());
@@ -219,7 +219,7 @@ ExitCode keep(const BaselineOptions& options, Runs runs, const std::vector<std::
   return holds ? ExitCode::done : ExitCode::not_acceptable;
 }
 
-/// Checks the files of an existing baseline and compares its second run with its first run again.
+/// Checks the files of an existing baseline and repeats the comparison of its second run with its first run.
 ExitCode checked_again(BaselineOptions options) {
   const std::string folder = options.check.front();
   const auto baseline = sysid::read_baseline(folder);
@@ -261,7 +261,7 @@ ExitCode run(const BaselineOptions& options, const std::vector<std::string>& cal
   return keep(options, std::move(*runs), call);
 }
 
-/// Adds the options that apply to a rig file.
+/// Adds the options of a baseline that is recorded on a rig.
 void add_rig_options(CLI::App& command, BaselineOptions& options) {
   CLI::Option* const data = command.get_option("--data");
   CLI::Option* const rig = command.add_option(

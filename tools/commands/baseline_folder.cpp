@@ -24,7 +24,7 @@ std::string file_of(const sysid::Log& log) {
   return is_folder(log.path) ? (fs::path(log.path) / "run.csv").string() : log.path;
 }
 
-/// Writes files one by one and collects their entries for baseline.json, until the first failure.
+/// Writes files one by one until the first failure, and collects their entries for baseline.json.
 class FolderWriter {
  public:
   explicit FolderWriter(std::string folder) : folder_(std::move(folder)) {}

@@ -13,7 +13,7 @@
 
 namespace softgrip::tools {
 
-/// A file for the folder.
+/// A file for the baseline folder, with its origin.
 struct BaselineFile {
   std::string source;  ///< origin of the file, as text
   std::string bytes;
@@ -26,17 +26,18 @@ struct BaselineContents {
   model::Model model;
 };
 
-/// Reads the files of logs unchanged.
+/// Reads log files and returns their content unchanged.
 [[nodiscard]] tl::expected<std::vector<BaselineFile>, std::string> files_of(
     const std::vector<sysid::Log>& logs);
-/// Reads one file of any kind unchanged.
+/// Reads one file of any format and returns its content unchanged.
 [[nodiscard]] tl::expected<BaselineFile, std::string> baseline_file(const std::string& path);
 
-/// Returns the names of the files that write_baseline() writes or replaces. `*` stands for a number.
+/// Returns the names of the files that write_baseline() writes or replaces. In a name, `*` represents a
+/// number.
 [[nodiscard]] std::vector<std::string> baseline_files();
 
-/// Writes the folder. A new folder appears completely or not at all, and Ctrl-C takes effect only after the
-/// folder is written. Returns the text of baseline.json.
+/// Writes the baseline folder. A new folder appears completely or not at all. Ctrl-C takes effect only after
+/// the folder is written. Returns the text of baseline.json.
 /// @param about  further members of baseline.json.
 [[nodiscard]] tl::expected<std::string, std::string> write_baseline(const std::string& folder,
                                                                     const BaselineContents& contents,

@@ -76,7 +76,7 @@ std::string names_of(const rig::RigFile& rig) {
   return with_commas(rig.settings.channels, &control::ChannelSettings::name);
 }
 
-/// Sets the pressures of the two positions to the values of --at-kpa, or to the default of set_places().
+/// Sets the pressures of the two calibration positions to the values of --at-kpa or to their defaults.
 /// Refuses values outside the limits.
 std::optional<ExitCode> set_pressures(const CalibrateOptions& options, const control::LimitSettings& limits,
                                       calibrate::Settings& settings) {
@@ -93,7 +93,8 @@ std::optional<ExitCode> set_pressures(const CalibrateOptions& options, const con
       "--at-kpa LOW HIGH: LOW must be below HIGH, and both must be within the limits of the rig file");
 }
 
-/// Returns the prepared answers, one per visit. Two answers are repeated for all visits to the two positions.
+/// Returns the prepared answers, one per visit to a position. If there are two answers, they are repeated for
+/// all visits.
 std::vector<std::string> spread(const std::vector<std::string>& answers, std::size_t repeats) {
   std::vector<std::string> all;
   if (answers.size() != 2) return answers;
@@ -101,7 +102,7 @@ std::vector<std::string> spread(const std::vector<std::string>& answers, std::si
   return all;
 }
 
-/// Returns an exit code if a daemon uses the board.
+/// Returns an exit code if a daemon uses the board of the rig, else nullopt.
 std::optional<ExitCode> refuse_beside_daemon(const CalibrateOptions& options, const rig::RigFile& rig) {
   if (!daemon_runs(options.socket.empty() ? rig.socket.path : options.socket)) return std::nullopt;
   return fail(ExitCode::state_refused, stop_the_daemon);
@@ -157,7 +158,7 @@ bool confirmed(calibrate::TerminalOperator& terminal, const Clock& clock, const 
   }
 }
 
-/// Prints the warnings about the results. Returns true if the results may be written.
+/// Prints the warnings about the results. Returns true if the results may be written to the files.
 bool accepted(const rig::RigFile& rig, const calibrate::Results& results, const CalibrateOptions& options,
               calibrate::TerminalOperator& terminal, const Clock& clock, const StopRequest& stop) {
   const std::vector<std::string> odd = calibrate::doubts(rig, results);
@@ -190,7 +191,7 @@ ExitCode write_results(const rig::RigFile& rig, const calibrate::Results& result
   return ExitCode::done;
 }
 
-/// Checks the options before any motion. Returns the settings or an exit code.
+/// Checks the options before any motion. Returns the settings of the calibration or an exit code.
 tl::expected<calibrate::Settings, ExitCode> prepare(CalibrateOptions& options, const rig::RigFile& rig) {
   const auto channel = channel_of(rig, options.channel);
   if (!channel) {
@@ -232,7 +233,7 @@ tl::expected<calibrate::Settings, ExitCode> prepare(CalibrateOptions& options, c
   return settings;
 }
 
-/// Connects, measures, returns the channels to their rest pressures and writes the results.
+/// Connects to the rig, measures, sets the channels to their rest pressures and writes the results.
 ExitCode carry_out(const rig::RigFile& rig, const CalibrateOptions& options,
                    const calibrate::Settings& settings) {
   const auto lock = daemon::BoardLock::take(rig);
@@ -267,7 +268,7 @@ ExitCode run(CalibrateOptions options) {
   document::Problems problems;
   const auto rig = rig::load_rig(path, problems);
   if (!rig) return refuse(problems);
-  std::fputs(problems.format().c_str(), stderr);  // warnings
+  std::fputs(problems.format().c_str(), stderr);  // the rig file is valid, so these problems are warnings
   const auto settings = prepare(options, *rig);
   if (!settings) return settings.error();
   if (const auto code = refuse_beside_daemon(options, *rig)) return *code;

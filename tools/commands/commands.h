@@ -1,5 +1,5 @@
 #pragma once
-// The list of subcommands in the order of `softgrip --help`, one line each. No other list of them exists.
+// The list of subcommands in the order of `softgrip --help`, one line each. All other code uses this list.
 
 #include "tools/command_line/command.h"
 

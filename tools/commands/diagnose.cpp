@@ -1,4 +1,5 @@
-// softgrip diagnose: finds the error of a model on measured data, its cause, the extension and its benefit.
+// softgrip diagnose: finds the error of a model on measured data and its cause. Extends the model and
+// measures the benefit.
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -32,7 +33,7 @@
 namespace softgrip::tools {
 namespace {
 
-/// For causes with more parameters than this, those that the logs do not determine are not printed.
+/// Number of parameters of a cause above which the parameters that the logs do not determine are not printed.
 constexpr std::size_t most_undetermined = 5;
 
 struct DiagnoseOptions {
@@ -47,7 +48,7 @@ struct DiagnoseOptions {
   LogInput logs;
   sysid::DiagnosisOptions diagnosis;
   ConsequenceOptions consequences;
-  double pressure_max_kpa = 0;  ///< 0: the largest of the logs
+  double pressure_max_kpa = 0;  ///< 0: the largest pressure in the logs
   double slew_kpa_per_s = 300;
   bool no_closed_loop = false;
   bool json = false;
@@ -64,7 +65,7 @@ tl::expected<sysid::Diagnosis, std::string> diagnosed(const std::vector<sysid::L
   return diagnosis;
 }
 
-/// Computes the next experiment and the closed loop, and shows the progress.
+/// Computes the next experiment and the result of the closed loop, and shows the progress.
 Consequences followed(const sysid::Diagnosis& diagnosis, const ConsequenceOptions& options) {
   ProgressLine line;
   line.show()("simulates experiments and the closed loop");
@@ -78,7 +79,7 @@ void print_cause(const sysid::NamedCause& named) {
               fixed(named.heldout_gain_percent.upper, 1).c_str());
   std::size_t passed_over = 0;
   for (const sysid::CauseParameter& p : named.parameters) {
-    // If there are many parameters, print only those that the logs determine.
+    // If a cause has many parameters, print only those that the logs determine.
     if (named.parameters.size() > most_undetermined && !p.determined()) {
       ++passed_over;
       continue;
@@ -146,7 +147,7 @@ ConsequenceOptions consequence_options(const DiagnoseOptions& options, const std
   return wanted;
 }
 
-/// Returns the next experiment for the report.
+/// Returns the next experiment in the form that the report shows, or nullopt if there is none.
 std::optional<sysid::ProposedExperiment> proposed_experiment(const Consequences& consequences) {
   const sysid::NextExperiment& next = consequences.experiment;
   if (!next.best) return std::nullopt;
@@ -154,7 +155,7 @@ std::optional<sysid::ProposedExperiment> proposed_experiment(const Consequences&
                                    next.best->minutes, next.best->waveform.about};
 }
 
-/// Returns the curves of the closed loop for the report. A model without feedforward has no curve.
+/// Returns the curves of the closed loop that the report shows. A model without feedforward has no curve.
 std::optional<sysid::ClosedLoopCurves> closed_loop_curves(const Consequences& consequences) {
   if (!consequences.closed_loop) return std::nullopt;
   const ClosedLoopGain& gain = *consequences.closed_loop;

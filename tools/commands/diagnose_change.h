@@ -18,10 +18,10 @@ struct ChangeQuestion {
   std::string figures;  ///< folder for the figures as files; "": no figures
   std::vector<std::string> call;
   bool json = false;
-  bool explain = false;  ///< prints the comparison on which each reported cause is based
+  bool explain = false;  ///< also prints the comparison that led to each reported cause
 };
 
-/// Diagnoses the change, writes diagnosis.json and report.html, and prints the result.
+/// Diagnoses the change of the finger, writes diagnosis.json and report.html, and prints the result.
 [[nodiscard]] ExitCode run_change(ChangeQuestion question);
 
 }  // namespace softgrip::tools

@@ -29,7 +29,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// The folder in which systemd keeps the enabled units.
+/// The folder in which systemd lists the enabled units.
 constexpr const char* enabled_units = "/etc/systemd/system/multi-user.target.wants";
 constexpr const char* daemon_holds_the_board =
     "softgripd runs and controls the board: stop softgripd, or omit --move";
@@ -45,8 +45,8 @@ bool is_simulated(const rig::RigFile& rig) {
   return std::holds_alternative<simulation::SimulatedBoardSettings>(rig.board);
 }
 
-/// Examines the rig through the daemon, and the programs that connect clients to the daemon. The caller then
-/// has only the disk and the clock left to examine. Returns the daemon's status, or null.
+/// Checks the rig by means of the daemon, and checks the programs that connect clients to the daemon. Disk
+/// and clock are not checked. Returns the daemon's status, or null.
 Json ask_running(DaemonClient& client, const std::string& rig, doctor::Findings& findings) {
   const auto status = client.ask({{"command", "status"}});
   const auto statistics = status ? client.ask({{"command", "statistics"}}) : status;
@@ -61,7 +61,7 @@ Json ask_running(DaemonClient& client, const std::string& rig, doctor::Findings&
   return *status;
 }
 
-/// Reports the last result of `softgrip health`. Adds no finding if there is none.
+/// Adds the last result of `softgrip health` to the findings. Adds nothing if there is no result.
 void examine_health(const rig::RigFile& rig, doctor::Findings& findings) {
   for (const HealthLine& line : health_lines(last_health(rig.recorder.directory))) {
     if (line.good)
@@ -107,7 +107,7 @@ ExitCode conclude(const DoctorOptions& options, const doctor::Examination& exami
   return findings.worst() == doctor::Verdict::fail ? ExitCode::not_acceptable : ExitCode::done;
 }
 
-/// Prints that the user must name the rig. A rig file in the present folder is not used, because it may
+/// Prints that the user must name the rig file. A rig file in the current folder is not used, because it may
 /// belong to another rig.
 ExitCode ask_for_a_name(const std::string& socket) {
   const std::string near = configuration_path("rig.yaml");
@@ -123,7 +123,7 @@ ExitCode ask_for_a_name(const std::string& socket) {
                                    hint);
 }
 
-/// Examines the running daemon if no rig file is given.
+/// Checks the rig of the running daemon if the user gave no rig file.
 ExitCode run_unnamed(const DoctorOptions& options) {
   const std::string socket = options.socket.empty() ? default_socket_path() : options.socket;
   auto client = DaemonClient::connect(socket);
@@ -158,7 +158,7 @@ ExitCode run(const DoctorOptions& options) {
   document::Problems problems;
   const auto rig = rig::load_rig(path, problems);
   if (!rig) return refuse(problems);
-  std::fputs(problems.format().c_str(), stderr);  // warnings
+  std::fputs(problems.format().c_str(), stderr);  // the rig file is valid, so these problems are warnings
 
   doctor::Findings findings;
   auto client = DaemonClient::connect(options.socket.empty() ? rig->socket.path : options.socket);

@@ -38,7 +38,8 @@ const std::vector<std::string>& formats() {
   return names;
 }
 
-/// Returns the requested format, or that of the file's extension, or "" if neither is known.
+/// Returns the requested format. Without a request, returns the format for the file's extension, or "" if the
+/// extension is unknown.
 std::string format_of(const ExportOptions& options) {
   if (!options.format.empty()) return options.format;
   std::string ending = std::filesystem::path(options.out).extension().string();

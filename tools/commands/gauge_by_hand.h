@@ -7,7 +7,8 @@
 
 namespace softgrip::tools {
 
-/// Reads the sensor through the board. The outputs stay at their lowest values, and the rig moves nothing.
+/// Returns a function that reads the sensor through the board. The outputs stay at their lowest values, so
+/// the rig moves nothing.
 [[nodiscard]] GaugeTaker gauge_by_hand(ExperimentRig rig, Consent consent);
 
 }  // namespace softgrip::tools

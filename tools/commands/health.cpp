@@ -45,7 +45,7 @@ tl::expected<std::vector<health::Note>, ExitCode> notes_of(const HealthOptions& 
   return *std::move(notes);
 }
 
-/// Prints the reasons and returns the exit code.
+/// Prints the reasons why baselines were refused and returns the exit code.
 ExitCode refuse_baselines(const std::vector<health::RefusedBaseline>& baselines) {
   ExitCode code = ExitCode::input_refused;
   for (const health::RefusedBaseline& baseline : baselines) {

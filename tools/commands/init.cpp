@@ -27,7 +27,7 @@ struct InitOptions {
   std::string name;
   double rate_hz = 0;
   bool service = false;
-  std::map<std::string, std::vector<std::string>> facts;  ///< values by key
+  std::map<std::string, std::vector<std::string>> facts;  ///< values that the options give, by key
 };
 
 std::string joined(const std::vector<std::string>& words) {
@@ -36,7 +36,7 @@ std::string joined(const std::vector<std::string>& words) {
   return text;
 }
 
-/// Waits for a line. Returns nullopt at the end of the input.
+/// Waits for a line of the user. Returns nullopt at the end of the input.
 std::optional<std::string> wait_for_line(calibrate::TerminalOperator& person) {
   for (;;) {
     if (auto line = person.answer()) return line;
@@ -46,7 +46,7 @@ std::optional<std::string> wait_for_line(calibrate::TerminalOperator& person) {
   }
 }
 
-/// Repeats the question until the answer is valid. Returns false at the end of the input.
+/// Repeats the question about a value until the answer is valid. Returns false at the end of the input.
 bool ask(const Fact& fact, const Fact::Question& question, RigDraft& draft,
          calibrate::TerminalOperator& person) {
   for (;;) {
@@ -60,8 +60,8 @@ bool ask(const Fact& fact, const Fact::Question& question, RigDraft& draft,
   }
 }
 
-/// Takes the value of a fact from its option, from the user's answer or from its default. Returns an exit
-/// code if none of these is available.
+/// Takes the value of one entry of the rig file from its option, from the user's answer or from its default.
+/// Returns an exit code if there is no value.
 std::optional<ExitCode> settle(const Fact& fact, const InitOptions& options, RigDraft& draft,
                                calibrate::TerminalOperator& person) {
   const auto given = options.facts.find(fact.key);

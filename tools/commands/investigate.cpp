@@ -1,5 +1,5 @@
-// softgrip investigate: diagnoses, plays the experiment that separates the causes and diagnoses again. Then
-// it extends the model, retunes the gains and measures the result.
+// softgrip investigate: diagnoses a model, plays the experiment that separates the possible causes and
+// diagnoses again. Afterwards it extends the model, retunes the gains and measures the result.
 
 #include <unistd.h>
 
@@ -42,10 +42,10 @@ struct InvestigateOptions {
   std::string gauge;
   std::string out;
   LogInput logs;
-  std::string rig_channel;  ///< channel of the rig; "": that of the logs
+  std::string rig_channel;  ///< channel of the rig; "": the channel of the logs
   sysid::DiagnosisOptions diagnosis;
   double budget_minutes = 30;
-  double pressure_max_kpa = 0;  ///< with --rig-command; 0: the largest of the logs
+  double pressure_max_kpa = 0;  ///< with --rig-command; 0: the largest pressure in the logs
   double slew_kpa_per_s = 300;
   bool yes = false;
   bool no_closed_loop = false;
@@ -76,12 +76,12 @@ CampaignScales scales_of(const std::vector<sysid::Log>& logs) {
 /// The rig on which experiments are played, and its limits.
 struct Playground {
   Player play;
-  GaugeTaker take_gauge;  ///< empty: no person or program can move the sensor's target
+  GaugeTaker take_gauge;  ///< empty: neither a person nor a program can move the sensor's target
   sysid::RigLimits limits;
   std::string name;
   std::string channel;
   std::optional<ExperimentRig> rig;  ///< the rig of the rig file, on which the closed loop can be measured;
-                                     ///< nullopt: --rig-command is used
+                                     ///< nullopt: the rig is a program (--rig-command)
 };
 
 tl::expected<Playground, ExitCode> playground_of(const InvestigateOptions& options,
@@ -112,8 +112,8 @@ tl::expected<Playground, ExitCode> playground_of(const InvestigateOptions& optio
   return ground;
 }
 
-/// Measures the benefit of the extension on the rig itself. If this is impossible, it prints the reason and
-/// returns nullopt. This is no failure of the command.
+/// Measures the benefit of the extended model on the rig. If the measurement is impossible, prints the reason
+/// and returns nullopt. The command then continues.
 std::optional<RigTracking> on_rig(const InvestigateOptions& options, const Playground& ground,
                                   const Investigation& investigation,
                                   const std::optional<ClosedLoopGain>& gain) {
@@ -162,11 +162,12 @@ ExitCode exit_code_of(const Investigation& investigation) {
   return ExitCode::failed;
 }
 
-/// Extends the model, retunes, measures, and writes the results.
+/// Extends the model, retunes the gains, measures the benefit, and writes the results.
 ExitCode conclude(const InvestigateOptions& options, const model::Model& given, const Playground& ground,
                   const Investigation& investigation) {
   ConsequenceOptions wanted;
-  wanted.experiment.most_minutes = 0;  // the last step has already searched for an experiment
+  wanted.experiment.most_minutes = 0;  // no new search, because the last step has already searched for an
+                                       // experiment
   wanted.closed_loop = !options.no_closed_loop && investigation.end != InvestigationEnd::stopped;
   wanted.seed = options.diagnosis.seed;
   const Consequences consequences = consequences_of(investigation.last, wanted);

@@ -1,4 +1,4 @@
-// softgrip report: recomputes the numbers of a report.
+// softgrip report: recomputes the numbers of a report from its logs.
 
 #include <CLI/CLI.hpp>
 #include <cstdio>

@@ -1,5 +1,5 @@
 #pragma once
-// The checks of every command that plays experiments on the rig of a rig file, before any motion.
+// Checks that precede any motion in a command that plays experiments on the rig of a rig file.
 
 #include <string>
 
@@ -10,13 +10,13 @@
 
 namespace softgrip::tools {
 
-/// Requests consent on the terminal. With `yes`, everything is allowed.
+/// Returns a function that requests consent on the terminal. With `yes`, the function always consents.
 [[nodiscard]] Consent consent_on_terminal(bool yes);
 
-/// Opens the rig of a file and selects a channel ("" selects the only channel). Prints the reason and returns
-/// an exit code in these cases: the file is unreadable or invalid, the channel does not exist, no terminal is
-/// available for the consent, or softgripd or another program uses the board. A rig that is simulated in the
-/// process is always free.
+/// Opens the rig of a file and selects a channel; "" selects the only channel. Prints the reason and returns
+/// an exit code in four cases. The file is unreadable or invalid. The channel does not exist. No terminal is
+/// available for the consent. softgripd or another program uses the board, which is impossible for a rig that
+/// is simulated in the process.
 [[nodiscard]] tl::expected<ExperimentRig, ExitCode> rig_to_move(const std::string& path,
                                                                 const std::string& channel, bool yes);
 

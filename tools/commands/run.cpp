@@ -77,7 +77,7 @@ ExitCode run(const RunOptions& options) {
   document::Problems problems;
   auto rig = rig::load_rig(path, problems);
   if (!rig) return refuse(problems);
-  std::fputs(problems.format().c_str(), stderr);  // warnings
+  std::fputs(problems.format().c_str(), stderr);  // the rig file is valid, so these problems are warnings
   if (options.seed && !rig::reseed(*rig, *options.seed))
     return fail(ExitCode::usage, "--seed needs a simulated board");
   auto sequence = daemon::SequenceLoader(rig->settings, "").load_file(options.sequence, *arguments);

@@ -18,20 +18,21 @@ class App;
 
 namespace softgrip::tools {
 
-/// Returns the measured and predicted series of logs. `records` contains the scores of the prediction.
-/// `held_out` states that the model was fitted to none of these logs.
+/// Returns the measured and predicted series of logs. `records` contains the scores of the predictions.
+/// `held_out` is true if none of these logs was used to fit the model.
 [[nodiscard]] std::vector<sysid::LogSeries> series_of(const std::vector<sysid::Log>& logs,
                                                       const std::vector<sysid::Record>& records,
                                                       const std::vector<sysid::Score>& scores,
                                                       const std::string& model, bool held_out);
 
-/// Returns the series of a diagnosis: the given, the refitted and, if it exists, the extended model. Each was
-/// fitted to all readings. The held-out results in diagnosis.json come from other fits.
+/// Returns the series of a diagnosis: the given, the refitted and, if it exists, the extended model. Both
+/// fitted models use all readings. The held-out results in diagnosis.json come from fits without the held-out
+/// readings.
 [[nodiscard]] std::vector<sysid::LogSeries> series_of(const sysid::Diagnosis& diagnosis,
                                                       const std::vector<sysid::Log>& logs);
 
-/// Returns the files in the folders of --out and --figures that a report with these names, its series and its
-/// figures would replace. Use it with refuse_overwriting().
+/// Returns the files in the folders of --out and --figures that a report, its series and its figures would
+/// replace. Pass the result to refuse_overwriting().
 [[nodiscard]] std::vector<std::string> replaced_by_report(const std::string& out, const std::string& figures,
                                                           std::vector<std::string> names);
 

@@ -39,7 +39,7 @@ std::string signal_names() {
   return names;
 }
 
-/// Returns the command to simulate, or an exit code.
+/// Returns a log with the command to simulate, or an exit code.
 tl::expected<sysid::Log, ExitCode> read_input(const SimulateOptions& options) {
   if (const auto signal = model::signal_named(options.input)) {
     return sysid::sampled_signal(*signal, options.rate_hz.value_or(default_rate_hz));
@@ -59,7 +59,7 @@ tl::expected<sysid::Log, ExitCode> read_input(const SimulateOptions& options) {
   }
   if (campaign.logs.empty()) return tl::unexpected{refuse_logs(problems)};
   sysid::Log log = std::move(campaign.logs.front());
-  // Remove the measured signals, because they would be mistaken for results of the model.
+  // Remove the measured signals, because a reader would mistake them for results of the model.
   log.pressure_kpa.clear();
   log.others.clear();
   return log;

@@ -34,24 +34,26 @@ struct StartOptions {
   bool wait = false;
 };
 
-/// Returns the number of the daemon's latest event, so that only later events are shown.
+/// Returns the id of the daemon's latest event, so that the program shows only the events after it.
 tl::expected<std::uint64_t, ClientFailure> newest_event(DaemonClient& client) {
   const auto result = client.ask({{"command", "events"}, {"since", 0}, {"limit", 1}});
   if (!result) return tl::unexpected{result.error()};
   return result->value("newest", std::uint64_t{0});
 }
 
-/// Time limit of the response to a start, because the daemon may have to plan the motion first.
+/// Time limit for the response to a start. It is long because the daemon may have to plan the motion first.
 constexpr std::chrono::seconds longest_planning{90};
 
-/// The reason why a start is no longer followed: a signal, or a failure of the daemon or the standard output.
+/// The reason why the program stops following a start: a signal, a failure of the daemon, or a failure of the
+/// standard output.
 struct Break {
   int signal = 0;
   ClientFailure failure;
 };
 
-/// Follows one start from the request until the sequence ends or the wait is over. If following ends early
-/// for any reason, the sequence is stopped, because it must not continue after the program has ended.
+/// Follows one start from the request until the sequence ends or the time limit of the user is over. If the
+/// program ends earlier for another reason, it stops the sequence, which must not continue without the
+/// program.
 class FollowedStart {
  public:
   FollowedStart(const StartOptions& options, DaemonClient& client)
@@ -72,10 +74,10 @@ class FollowedStart {
   DaemonClient& client_;
   std::string id_;
   Descriptor signals_;
-  bool pipe_ends_ = true;  ///< true unless the calling program ignores SIGPIPE
+  bool pipe_ends_ = true;  ///< a closed pipe ends the program; false if the calling program ignores SIGPIPE
 };
 
-/// Waits until the descriptor is readable or a signal ends the program. Returns this signal, otherwise 0.
+/// Waits until the descriptor is readable or a signal arrives. Returns the signal, or 0 if there was none.
 int FollowedStart::signal_within(std::chrono::milliseconds patience, int descriptor) {
   std::array<pollfd, 2> watched{{{signals_.get(), POLLIN, 0}, {descriptor, POLLIN, 0}}};
   if (::poll(watched.data(), watched.size(), static_cast<int>(patience.count())) <= 0) return 0;
@@ -118,7 +120,8 @@ tl::expected<void, Break> FollowedStart::print(const Json& event) const {
 /// Prints the events until the sequence that `request` started has ended.
 tl::expected<ExitCode, Break> FollowedStart::follow(std::uint64_t request, std::uint64_t since) {
   constexpr std::chrono::milliseconds pause{50};
-  // A closed pipe is detected when the output is flushed. The sequence is stopped before the program ends.
+  // Ignore SIGPIPE, so that flushing the output detects a closed pipe. The sequence is stopped before the
+  // program ends.
   pipe_ends_ = std::signal(SIGPIPE, SIG_IGN) != SIG_IGN;
   while (true) {
     const auto line = reply(client_, {{"command", "events"}, {"since", since}, {"limit", 1000}},
@@ -138,7 +141,7 @@ tl::expected<ExitCode, Break> FollowedStart::follow(std::uint64_t request, std::
   }
 }
 
-/// Requests the stop over a separate connection, because a response may still be pending on the other
+/// Requests the stop over a separate connection, because a response may still be pending on the first
 /// connection. Returns true if the daemon confirms the stop.
 bool FollowedStart::stop_confirmed() {
   auto client = DaemonClient::connect(options_.daemon.socket);
@@ -187,7 +190,7 @@ ExitCode run(const StartOptions& options) {
   if (!arguments) return arguments.error();
   Json request{{"command", "start"}, {"sequence", options.sequence}};
   if (!arguments->empty()) request["parameters"] = json_of(*arguments);
-  // Send the text of a local file. The daemon resolves any other name.
+  // If the name is a local file, send its text. Otherwise the daemon finds the sequence by its name.
   if (::access(options.sequence.c_str(), R_OK) == 0) {
     const auto text = read_file(options.sequence, longest_sequence);
     if (!text) return fail(ExitCode::io, text.error());

@@ -16,7 +16,7 @@
 namespace softgrip::tools {
 namespace {
 
-/// Returns the last health result of the running rig, or null if its rig file cannot be read.
+/// Returns the last health result of the rig that the daemon runs, or null if the rig file cannot be read.
 nlohmann::ordered_json health_of(const nlohmann::ordered_json& status) {
   const auto file = status.find("rig_file");
   if (file == status.end() || !file->is_string()) return nullptr;
@@ -39,7 +39,8 @@ ExitCode run(const DaemonOptions& options) {
   const ViewStyle style{on_terminal() ? terminal_columns() : 100, wants_colour(),
                         on_terminal() && has_unicode()};
   for (const std::string& line : view_of(*status, style)) std::printf("%s\n", line.c_str());
-  // Show the state even if the recordings are on a network mount that does not respond.
+  // Print the status first, because reading the health result can block on a network mount that does not
+  // respond.
   std::fflush(stdout);
   for (const HealthLine& line : health_lines(health_of(*status)))
     std::printf("health       %s\n", line.text.c_str());

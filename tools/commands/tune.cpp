@@ -39,7 +39,8 @@ constexpr double default_pressure_max_kpa = 60;
 constexpr double default_slew_kpa_per_s = 400;
 constexpr double ahead_of_any_mm = 1e4;
 
-/// Copies the settings of the channel from the rig file to the task. Returns an exit code if this fails.
+/// Copies the settings of the channel from the rig file to the task. Returns an exit code if the file or
+/// channel is refused.
 std::optional<ExitCode> take_rig(const TuneOptions& options, control::TuneTask& task) {
   if (const auto code = unreadable(options.rig)) return code;
   document::Problems problems;

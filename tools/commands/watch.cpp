@@ -35,7 +35,7 @@ constexpr std::chrono::milliseconds whole_line{1000};
 struct WatchOptions {
   DaemonOptions daemon;
   double rate_hz = 10;
-  std::uint64_t count = 0;  ///< 0: until interrupted
+  std::uint64_t count = 0;  ///< number of updates; 0: until a signal ends the program
 };
 
 void print(const Json& status, bool json) {
@@ -47,8 +47,8 @@ void print(const Json& status, bool json) {
   std::fflush(stdout);
 }
 
-/// Returns the exit code after a signal. A signal is the normal end, except if the user requested a number of
-/// updates: then it is an interruption.
+/// Returns the exit code after a signal. A signal is the normal end if `count` is 0. Otherwise the user
+/// requested a number of updates, and the signal is an interruption.
 ExitCode ended_by(int signal, std::uint64_t count) {
   if (count > 0) note_ending_signal(signal);
   return ExitCode::done;
@@ -66,7 +66,7 @@ ExitCode print_updates(DaemonClient& client, const WatchOptions& options) {
       if (signal != 0 && signal != SIGTSTP && signal != SIGWINCH) return ended_by(signal, options.count);
     }
     if (watched[0].revents == 0) continue;
-    // Read all lines, because poll() does not report lines that are already buffered here.
+    // Read all lines, because poll() does not report lines that the client has already buffered.
     auto line = client.next_line(whole_line);
     for (; line && *line; line = client.next_line(std::chrono::milliseconds{0})) {
       if (!(*line)->contains("watch") || (options.count > 0 && lines == options.count)) continue;
@@ -87,7 +87,7 @@ double now_s() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-/// Returns the message for a command that the daemon has accepted: "stopping", "started pick_stone" or
+/// Returns the message after the daemon has accepted a command: "stopping", "started pick_stone" or
 /// "acknowledged F202 reading_out_of_range of left".
 std::string done_of(const Json& request, const Json& result) {
   const std::string command = request.value("command", "");
@@ -98,9 +98,9 @@ std::string done_of(const Json& request, const Json& result) {
   return sentence_of_acknowledged(result);
 }
 
-/// Shows the screen and processes keys until the user presses `q`, a signal ends the program, the daemon
-/// ends, or `count` updates were shown (0: no limit). The terminal is restored in each case, and also while
-/// Ctrl-Z has stopped the program.
+/// Shows the screen and processes keys. Ends when the user presses `q`, a signal ends the program, the daemon
+/// ends, or `count` updates were shown (0: no limit). Restores the terminal at the end and while Ctrl-Z has
+/// stopped the program.
 class LiveWatch {
  public:
   explicit LiveWatch(DaemonClient& client)
@@ -130,14 +130,14 @@ class LiveWatch {
   bool keyboard_;
   LiveState state_;
   KeyDialogue dialogue_;
-  std::map<std::uint64_t, Json> asked_;  ///< requests without a response, by id
+  std::map<std::uint64_t, Json> asked_;  ///< sent requests without a response so far, by id
   std::uint64_t last_id_ = 0;
   std::uint64_t newest_event_ = 0;
-  bool events_known_ = false;  ///< newest_event_ is valid
+  bool events_known_ = false;  ///< true if newest_event_ is valid
   bool events_asked_ = false;
   double events_due_s_ = 0;
   std::uint64_t updates_ = 0;
-  std::string started_;  ///< the sequence that this program started last
+  std::string started_;  ///< the sequence that this program started most recently
 };
 
 void LiveWatch::ask(Json request) {
@@ -151,7 +151,7 @@ void LiveWatch::ask_for_events() {
   if (events_asked_ || now_s() < events_due_s_) return;
   events_asked_ = true;
   events_due_s_ = now_s() + event_pause_s;
-  // The first request only fetches the id of the newest event, because events from before the start of the
+  // The first request fetches only the id of the newest event, because events from before the start of the
   // program are not shown.
   ask({{"command", "events"}, {"since", newest_event_}, {"limit", events_known_ ? event_page : 1}});
 }
@@ -197,7 +197,7 @@ void LiveWatch::take_line(const Json& line) {
   take_answer(request, line);
 }
 
-/// Reads all lines, because poll() does not report lines that are already buffered here.
+/// Reads all lines, because poll() does not report lines that the client has already buffered.
 std::optional<ClientFailure> LiveWatch::hear_daemon() {
   auto line = client_.next_line(whole_line);
   for (; line && *line; line = client_.next_line(std::chrono::milliseconds{0})) take_line(**line);
@@ -221,7 +221,7 @@ bool LiveWatch::hear_keys() {
   std::array<char, 256> typed{};
   const ssize_t count = ::read(STDIN_FILENO, typed.data(), typed.size());
   if (count <= 0) {
-    keyboard_ = false;  // the keyboard is lost, but the screen stays
+    keyboard_ = false;  // the keyboard is lost, but the program continues to show the screen
     return true;
   }
   const std::string_view keys(typed.data(), static_cast<std::size_t>(count));
@@ -248,8 +248,8 @@ void LiveWatch::draw() {
   screen_->draw(screen_of(state_, style, terminal_rows()));
 }
 
-/// Restores the terminal and reports each start without a response, because such a start may still begin
-/// after the program has ended.
+/// Restores the terminal and reports each start without a response, because the daemon may still begin such a
+/// start.
 void LiveWatch::leave() {
   screen_.reset();
   for (const auto& [id, request] : asked_) {
