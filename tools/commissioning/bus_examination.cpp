@@ -25,8 +25,8 @@ using drivers::BusStatus;
 using drivers::ModbusAddress;
 using drivers::WordOrder;
 
-// Function codes that read registers, and exception codes that suggest what to try next (Modbus Application
-// Protocol V1.1b3, sections 6 and 7).
+// Function codes that read registers, and exception codes that show which other setting to try (Modbus
+// Application Protocol V1.1b3, sections 6 and 7).
 constexpr std::uint8_t read_holding = 3;
 constexpr std::uint8_t read_input = 4;
 constexpr unsigned illegal_function = 1;
@@ -43,7 +43,7 @@ constexpr unsigned unit_of_many_gateways = 255;
 constexpr std::array orders{WordOrder::high_first, WordOrder::low_first, WordOrder::high_first_bytes_swapped,
                             WordOrder::low_first_bytes_swapped};
 
-/// A read request and its result.
+/// A read request and the response of the module.
 struct RegisterRead {
   unsigned unit = 1;
   std::uint8_t function = 0;
@@ -95,8 +95,8 @@ class BusInquiry {
   }
 
  private:
-  /// Sends the request. Opens a session first if none is open, because a time-out or a wrong response closes
-  /// the session.
+  /// Sends the request. Opens a session first if none is open. The session may be closed, because a time-out
+  /// or a wrong response closes it.
   Heard ask(const RegisterRead& question) {
     const double patience_s = std::max(rig_.loop.exchange_deadline_s, shortest_patience_s);
     Heard heard{BusStatus::timed_out, 0, {}, {}};
@@ -156,8 +156,8 @@ class BusInquiry {
         "compare the function code, address and count in the board map with the manual of the board");
   }
 
-  /// Tries the other function for reading. A board offers its inputs either as holding registers (function 3)
-  /// or as input registers (function 4).
+  /// Sends the request with the other read function. A board offers its inputs either as holding registers
+  /// (function 3) or as input registers (function 4).
   bool try_other_function(const Heard& heard, Findings& findings) {
     const drivers::RegisterBlock& inputs = map_.inputs.registers;
     const int left = inputs.address + static_cast<int>(inputs.registers()) - asked_.address;
@@ -228,7 +228,8 @@ class BusInquiry {
     return false;
   }
 
-  /// Handles a time-out or a malformed response: tries another framing, then another unit id.
+  /// Searches for the cause of a time-out or a malformed response: tries another framing, then another unit
+  /// id.
   void judge_silence(const Heard& heard, Findings& findings) {
     if (const auto* tcp = std::get_if<drivers::TcpAddress>(&address_)) {
       drivers::TcpAddress other = *tcp;
@@ -265,7 +266,7 @@ class BusInquiry {
     return status == BusStatus::ok || status == BusStatus::exception;
   }
 
-  /// Returns the readings of the wired inputs, or nullopt if one of them is not valid.
+  /// Returns the readings of the wired inputs as text, or nullopt if a reading is not valid.
   [[nodiscard]] std::optional<std::string> read_as(const std::vector<std::uint16_t>& words,
                                                    WordOrder order) const {
     const drivers::RegisterKind kind = map_.inputs.registers.kind;
@@ -299,7 +300,7 @@ class BusInquiry {
         if (auto shown = read_as(there, order)) fits.push_back({order, by, std::move(*shown)});
       }
     }
-    // If more than one interpretation fits, the cause is not certain.
+    // If several interpretations of the registers give valid readings, the cause is not certain.
     if (fits.size() != 1) return;
     const Fit& fit = fits.front();
     const std::string name(drivers::name_of(fit.order));

@@ -14,7 +14,8 @@ namespace {
 
 using CrossingKind = Crossing::Kind;
 
-/// A pressure monitor has followed a valve if it changed by at least this share of the commanded step.
+/// A pressure monitor has followed a valve if its reading changed by at least this share of the commanded
+/// step.
 constexpr double share_of_step = 0.5;
 
 bool sensor_followed(const rig::RigFile& rig, const ChannelSample& rest, const Motion& motion,
@@ -32,7 +33,8 @@ bool monitor_followed(const rig::RigFile& rig, const ChannelSample& rest, const 
   return (seen.mean - rest.pressure_kpa.mean) / step_kpa >= share_of_step;
 }
 
-/// Element i: the only channel that responded when channel i was moved, or nullopt if none or several did.
+/// Element i is the only channel whose sensor responded when channel i was moved. It is nullopt if no channel
+/// or several channels responded.
 using Shown = std::vector<std::optional<std::size_t>>;
 
 template <class Followed>
@@ -52,8 +54,9 @@ Shown who_showed(std::span<const Motion> motions, const Followed& followed) {
   return shown;
 }
 
-/// Returns the cycle that begins at `first` and continues with the channel that responded to each motion.
-/// Returns an empty vector if this sequence does not return to `first` through other channels.
+/// Follows a sequence of channels that begins at `first`: the next channel is always the one that responded
+/// to the motion of the last. Returns the sequence if it returns to `first` through other channels, else an
+/// empty vector.
 std::vector<std::size_t> circle_from(const Shown& shown, std::size_t first) {
   std::vector<std::size_t> circle{first};
   for (auto next = shown[first]; next && *next != first; next = shown[*next]) {
@@ -68,7 +71,8 @@ std::vector<std::vector<std::size_t>> circles_of(const Shown& shown) {
   std::vector<std::vector<std::size_t>> circles;
   for (std::size_t i = 0; i < shown.size(); ++i) {
     const std::vector<std::size_t> circle = circle_from(shown, i);
-    // Report each cycle once, when the search begins at its lowest channel.
+    // Report each cycle once: the search finds it from each of its channels, but reports it only from the
+    // lowest.
     if (!circle.empty() && *std::min_element(circle.begin(), circle.end()) == i) circles.push_back(circle);
   }
   return circles;

@@ -48,7 +48,8 @@ void judge_state(const Json& status, const std::string& rig, Findings& findings)
   }
 }
 
-/// Returns the name of the finding that explains the latched fault if its cause is still present, else "".
+/// Returns the name of the finding that explains the latched fault, or "" if the cause of the fault is no
+/// longer present.
 std::string judged_elsewhere(const Json& status, const Json& fault) {
   const Json present = part(fault, "present");
   const std::string code = text_in(present, "code");

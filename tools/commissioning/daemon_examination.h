@@ -1,6 +1,6 @@
 #pragma once
-// Examines a rig through its running daemon. The daemon owns the board, so this module does not access the
-// board.
+// Examines a rig through its running daemon. The daemon owns the board, so this module only reads the
+// daemon's responses.
 
 #include "tools/commissioning/finding.h"
 

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double step_s = 0.01;
 
-/// Warns if the new line deviates too far from the old line at the lower or the upper limit.
+/// Warns if the new calibration line deviates too far from the old line at the lower or the upper limit.
 void compare_lines(const std::string& what, const drivers::TwoPoints& before, const drivers::TwoPoints& now,
                    double lowest, double highest, const std::string& unit, std::vector<std::string>& doubts) {
   double worst = 0;
@@ -33,7 +33,8 @@ void compare_lines(const std::string& what, const drivers::TwoPoints& before, co
                   what, at, unit, at + worst, unit, 100 * share));
 }
 
-/// Returns the displacement of the model in free motion, after the ramp from rest to `kpa` and the wait [mm].
+/// Returns the displacement that the model predicts in free motion, after the ramp from rest to `kpa` and the
+/// wait [mm].
 double model_mm(const control::ChannelSettings& channel, double kpa, const Motion& motion) {
   control::RunningModel model(channel.model, step_s, 0, step_s);
   double command_kpa = control::resting_kpa(channel.limits);

@@ -1,5 +1,6 @@
 #pragma once
-// Warns if a valid calibration deviates so far from the previous one that a gauge may have been misread.
+// Warns if a valid calibration deviates so far from the previous calibration that a gauge may have been
+// misread.
 
 #include <string>
 #include <vector>
@@ -8,12 +9,13 @@
 
 namespace softgrip::tools::calibrate {
 
-/// Largest tolerated deviation, as a share of the range that the limits allow or of the model's motion.
+/// Largest deviation that causes no warning, as a share of the range between the limits or of the motion that
+/// the model predicts.
 inline constexpr double most_share_off = 0.2;
 
 /// Compares each calibrated line with the line in the rig file. Returns one warning for each line whose
-/// deviation exceeds `most_share_off`. Also warns if the motion of the finger between the two pressures
-/// deviates by more than this share from the motion of its model. The list is empty if there is no warning.
+/// deviation exceeds `most_share_off`. Also compares the motion of the finger between the two pressures with
+/// the prediction of its model, and warns if the deviation exceeds this share.
 [[nodiscard]] std::vector<std::string> doubts(const rig::RigFile& rig, const Results& results);
 
 }  // namespace softgrip::tools::calibrate

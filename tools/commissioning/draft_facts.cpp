@@ -48,12 +48,13 @@ std::vector<std::string> names_in(const std::string& folder) {
   return names;
 }
 
-/// Returns the available names in brackets, or "" if there are none.
+/// Returns the names in brackets, or "" if the list is empty.
 std::string in_brackets(const std::vector<std::string>& names) {
   return names.empty() ? "" : " (" + with_commas(names) + ")";
 }
 
-/// Resolves a path or a name in a configuration folder. Returns "" if it is neither.
+/// Returns the path for a word that is a path or the name of a file in a configuration folder. Returns "" if
+/// the word is neither a path nor a name.
 std::string path_of(const std::string& word, const std::string& folder) {
   std::error_code error;
   if (std::filesystem::is_regular_file(word, error)) return word;
@@ -87,7 +88,7 @@ std::optional<std::pair<double, double>> two_numbers(const std::string& text) {
   return std::pair{*first, *second};
 }
 
-// --- The facts
+// --- Questions about the values, and checks of the answers
 
 std::optional<Question> ask_board(const RigDraft&) {
   return Question{"board map, one or several, each as a file or a name" + in_brackets(names_in("boards")) +

@@ -1,6 +1,6 @@
 #pragma once
-// Lists the facts that a rig-file template needs. The user states each fact by an option or by the answer to
-// a question.
+// Lists the values that the template of a rig file needs, for example the board. The user gives each value by
+// an option or by the answer to a question.
 
 #include <optional>
 #include <string>
@@ -10,23 +10,24 @@
 
 namespace softgrip::tools {
 
-/// One fact of the rig.
+/// One value that the template of the rig file needs.
 struct Fact {
-  std::string key;    ///< the option's name: "board"
-  std::string about;  ///< the option's help
-  int words = 1;      ///< number of values; an option with one value may be given several times
-  /// Returns the question, whose text depends on the facts known so far, and the default answer. Returns
-  /// nullopt if no question is needed.
+  std::string key;    ///< name of the option, for example "board"
+  std::string about;  ///< help text of the option
+  int words = 1;      ///< number of words after the option; an option with one word may be given several
+                      ///< times
+  /// Returns the question and its default answer. Both depend on the values that are already in the draft.
+  /// Returns nullopt if no question is needed.
   struct Question {
     std::string text;
-    std::string otherwise;  ///< default value; empty: there is none
+    std::string otherwise;  ///< default value; empty: the value has no default
   };
   std::optional<Question> (*question)(const RigDraft& draft);
-  /// Stores the value in `draft`. Returns an error message, or "" if the value is valid.
+  /// Stores the value in `draft`. Returns "" if the value is valid, else an error message.
   std::string (*take)(const std::string& words, RigDraft& draft);
 };
 
-/// Returns all facts, ordered so that each depends only on earlier ones.
+/// Returns all values in an order in which each value depends only on values before it.
 [[nodiscard]] const std::vector<Fact>& draft_facts();
 
 }  // namespace softgrip::tools

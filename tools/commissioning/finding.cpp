@@ -26,7 +26,7 @@ std::string mark(Verdict verdict, bool colour) {
   return "?";
 }
 
-/// Wraps `text` at spaces into lines of at most `width` characters. All lines but the first are indented.
+/// Wraps `text` at spaces into lines of at most `width` characters. Indents all lines after the first.
 std::string wrapped(const std::string& text, std::size_t indent, std::size_t width) {
   std::string result;
   std::size_t at = 0;

@@ -9,13 +9,14 @@
 
 namespace softgrip::tools::doctor {
 
-/// Result of a check. `not_judged`: not checked, because another finding that it depends on has failed.
+/// Result of a check. `not_judged`: the check was omitted, because it depends on another check that has
+/// failed.
 enum class Verdict { ok, not_judged, warn, fail };
-/// "ok", "not_judged", "warn", "fail"
+/// Returns the name of a verdict: "ok", "not_judged", "warn" or "fail".
 [[nodiscard]] std::string_view name_of(Verdict verdict) noexcept;
 
 struct Finding {
-  std::string name;  ///< "board", "sensor left"; part of the public format
+  std::string name;  ///< name of the check, for example "board" or "sensor left"; part of the public format
   Verdict verdict = Verdict::ok;
   std::string text;    ///< the observation
   std::string advice;  ///< the next step; empty if none is needed
@@ -30,7 +31,7 @@ class Findings {
   void fail(std::string name, std::string text, std::string advice) {
     add({std::move(name), Verdict::fail, std::move(text), std::move(advice)});
   }
-  /// Adds a finding that was not checked. `because` names the problem that must be corrected first.
+  /// Adds a check that was omitted. `because` names the problem that must be corrected first.
   void not_judged(std::string name, const std::string& because) {
     add({std::move(name), Verdict::not_judged, "not judged: " + because, ""});
   }
@@ -44,22 +45,22 @@ class Findings {
   std::vector<Finding> list_;
 };
 
-/// The data of the title line above the findings and of the verdict below them.
+/// The data for the title line above the findings and for the overall verdict below them.
 struct Examination {
   std::string rig;       ///< name of the rig
   std::string rig_file;  ///< path of the rig file
   bool daemon_runs = false;
-  bool moved = false;      ///< the fingers were moved for the examination
-  bool simulated = false;  ///< the board is simulated: no hardware was examined
+  bool moved = false;      ///< true: the fingers were moved during the examination
+  bool simulated = false;  ///< true: the board is simulated, so no hardware was examined
 };
 
-/// Formats the findings in columns for a terminal of `columns` characters, with optional colours. The verdict
-/// is last.
+/// Formats the findings in columns for a terminal of `columns` characters, with optional colours. The last
+/// line states the overall verdict.
 [[nodiscard]] std::string text_of(const Examination& examination, const Findings& findings,
                                   std::size_t columns, bool colour);
 [[nodiscard]] nlohmann::ordered_json json_of(const Examination& examination, const Findings& findings);
 
-/// "1 warning", "2 warnings"
+/// Returns a number with its noun in singular or plural: "1 warning", "2 warnings".
 [[nodiscard]] std::string counted(std::size_t count, std::string_view noun);
 
 }  // namespace softgrip::tools::doctor

@@ -34,7 +34,8 @@ bool somebody_listens(const Place& place) {
     return false;
   const std::unique_ptr<addrinfo, decltype(&::freeaddrinfo)> list(found, &::freeaddrinfo);
   const Descriptor socket{::socket(list->ai_family, SOCK_STREAM | SOCK_CLOEXEC, 0)};
-  // The address belongs to this computer, so a listening program accepts the connection at once.
+  // 1 s is long enough: the address belongs to this computer, so a listening program accepts the connection
+  // at once.
   const timeval patience{1, 0};
   return socket && ::setsockopt(socket.get(), SOL_SOCKET, SO_SNDTIMEO, &patience, sizeof patience) == 0 &&
          ::connect(socket.get(), list->ai_addr, list->ai_addrlen) == 0;

@@ -8,13 +8,13 @@
 namespace softgrip::tools::calibrate {
 namespace {
 
-/// A bend is significant if the sum of squared residuals of the straight line is at least this multiple of
-/// that of the fit with a bend. With hundreds of readings, a ratio of 1.5 is far beyond chance (F test with
-/// two extra parameters).
+/// Smallest ratio of two sums of squared residuals at which a bend is significant: that of a straight line
+/// divided by that of a line with a bend. For hundreds of readings, noise does not cause a ratio of 1.5 (F
+/// test with two extra parameters).
 constexpr double improvement = 1.5;
-/// Number of candidate bends along the ramp.
+/// Number of positions along the ramp at which the fit tries a bend.
 constexpr int bends = 200;
-/// The response must rise by at least this multiple of its scatter.
+/// Smallest rise of the response, as a multiple of its scatter about the fit.
 constexpr double least_rise = 5;
 
 struct Means {
@@ -67,7 +67,8 @@ double largest(const std::vector<Visit>& visits, double Visit::*of) {
   return value;
 }
 
-/// Returns the standard uncertainty of one point, from the noise of a mean, the drift and the repeatability.
+/// Returns the standard uncertainty of one point of the line. It combines the noise of a mean, the drift and
+/// the repeatability.
 double uncertainty(const std::vector<Visit>& visits, const Line& line) {
   double of_means = 0;
   for (const Visit& visit : visits) {
@@ -78,8 +79,8 @@ double uncertainty(const std::vector<Visit>& visits, const Line& line) {
   return std::hypot(of_means, drift, line.repeat_spread.value_or(0) / 2);
 }
 
-/// Fits a constant up to the bend and a ramp beyond it by least squares. Returns the sum of squared
-/// residuals.
+/// Fits a response that is constant up to the bend and rises linearly beyond it, by least squares. Returns
+/// the sum of squared residuals.
 double fit_bend(const std::vector<double>& command, const std::vector<double>& response, double bend,
                 double& gain) {
   const auto count = static_cast<double>(command.size());

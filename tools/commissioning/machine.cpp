@@ -29,7 +29,7 @@ using daemon::RealTimeStep;
 
 constexpr double us_per_ns = 1e-3;
 constexpr double probe_s = 1;
-/// Size of one row of run.csv with its line break, for the rig files in config/rigs [bytes].
+/// Size of one row of run.csv with its line break [bytes], measured for the rig files in config/rigs.
 constexpr double bytes_per_row = 125;
 constexpr double s_per_hour = 3600;
 constexpr double h_per_day = 24;
@@ -41,8 +41,8 @@ std::string user() {
   return entry == nullptr ? std::to_string(::geteuid()) : entry->pw_name;
 }
 
-/// Reports one real-time preparation step of the daemon. A missing step is a failure if the daemon requires
-/// it to start.
+/// Adds a finding about one real-time setting of the daemon. If the setting is missing, this is a failure if
+/// the daemon requires the setting, else a warning.
 void take(const RealTimeStep& step, bool required, Findings& findings) {
   switch (step.outcome) {
     case RealTimeStep::Outcome::verified:
@@ -63,7 +63,7 @@ void take(const RealTimeStep& step, bool required, Findings& findings) {
   }
 }
 
-/// Wakes up at the rig's period, as the control loop does, and records the latencies.
+/// Wakes up once per period of the rig, as the control loop does, and records the wake-up latencies.
 void probe_timer(const rig::RigFile& rig, daemon::Histogram& wake_up) {
   const MonotonicClock clock;
   const Nanoseconds period = nanoseconds(1 / rig.settings.rate_hz);
@@ -91,7 +91,8 @@ void judge_timer(const rig::RigFile& rig, const daemon::Histogram& wake_up, Find
   if (resolution.tv_sec > 0 || resolution.tv_nsec > 1000) {
     findings.fail("timer", text, "this kernel has no high-resolution timers (CONFIG_HIGH_RES_TIMERS)");
   } else if (static_cast<double>(wake_up.quantile_ns(0.95)) * us_per_ns > period_us / 2) {
-    // One late wake-up per second is tolerable. If one wake-up in 20 is late, the set-up is faulty.
+    // One late wake-up per second is tolerable. If 5 % of the wake-ups are late, the set-up of the computer
+    // is faulty.
     findings.fail(
         "timer", text,
         "cycles will be missed: grant SCHED_FIFO, lower rate_hz, or reduce the load of the processor");
@@ -105,7 +106,7 @@ void judge_timer(const rig::RigFile& rig, const daemon::Histogram& wake_up, Find
   }
 }
 
-/// Returns the nearest existing parent folder, in which a new folder would be created.
+/// Returns the path, or its nearest parent folder that exists.
 std::filesystem::path existing(std::filesystem::path path) {
   std::error_code error;
   path = std::filesystem::absolute(path, error);
@@ -178,7 +179,7 @@ void examine_clock(Findings& findings) {
 
 namespace {
 
-/// "12.5 h" up to two days, then whole days.
+/// Returns hours as text: "12.5 h" up to two days, whole days above.
 std::string in_hours_or_days(double hours) {
   if (hours < 2 * h_per_day) return significant(hours, 3) + " h";
   return fixed(hours / h_per_day, 0) + " days";

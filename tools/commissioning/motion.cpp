@@ -13,17 +13,18 @@
 namespace softgrip::tools::doctor {
 namespace {
 
-/// A finger counts as moved if its displacement is at least this multiple of the noise of a reading ...
+/// Smallest displacement that counts as a motion, as a multiple of the noise of a reading.
 constexpr double noises = 6;
-/// ... and at least this share of the displacement of the model.
+/// Smallest displacement that counts as a motion, as a share of the displacement that the model predicts.
 constexpr double share_of_model = 0.2;
-/// Largest tolerated deviation of a pressure monitor from the command, as a share of the step. Ordinary
-/// valves and boards have linearity errors of this size.
+/// Largest tolerated difference between pressure monitor and command, as a share of the commanded step.
+/// Ordinary valves and boards have linearity errors of this size.
 constexpr double allowed_share_of_step = 0.1;
-/// Smallest value of this tolerance [kPa], because valves cannot control the lowest pressures accurately.
+/// Smallest tolerance of the pressure [kPa]. It is needed because valves cannot control the lowest pressures
+/// accurately.
 constexpr double pressure_floor_kpa = 1;
 
-/// Simulates the model in parallel with the finger, from rest.
+/// Simulates the model from rest while the finger moves, with the same commands.
 class Beside {
  public:
   Beside(const control::ChannelSettings& channel, double tick_s, double rest_mm)
@@ -35,7 +36,8 @@ class Beside {
     origin_mm_ = model_.reading_mm(0);
   }
 
-  /// Processes the result of one exchange. The reading was taken before the command was written.
+  /// Processes the result of one exchange with the board. The reading is older than the command, which was
+  /// written after it.
   void take(const model::Reading& reading, double command_kpa) {
     pass_time(reading.sampled_at);
     const double moved_mm = model_.reading_mm(0) - origin_mm_;
@@ -53,14 +55,14 @@ class Beside {
     sum_mm_ = 0;
     taken_ = 0;
   }
-  /// Returns the mean displacement of the model from its rest position [mm].
+  /// Returns the mean displacement of the model relative to its rest position [mm].
   [[nodiscard]] double mean_mm() const { return taken_ > 0 ? sum_mm_ / static_cast<double>(taken_) : 0; }
   [[nodiscard]] double rms_mm() const {
     return count_ > 0 ? std::sqrt(squares_ / static_cast<double>(count_)) : 0;
   }
 
  private:
-  /// Advances the model by the measured time, because a cycle can take longer on a busy computer.
+  /// Advances the model by the measured time. On a busy computer, a cycle can take longer than planned.
   void pass_time(Nanoseconds now) {
     if (first_ == 0) first_ = now;
     const auto due = std::llround(seconds(now - first_) / tick_s_);
@@ -138,7 +140,7 @@ bool has_moved(const Sample& rest, const Sample& seen, double model_mm) {
 
 namespace {
 
-/// Checks that the pressure follows the command. Returns false if it does not. The caller then skips all
+/// Checks that the pressure follows the command. Returns false if it does not, so that the caller skips all
 /// checks that depend on the pressure.
 bool judge_valve(const control::ChannelSettings& of, const Sample& monitor, double command_kpa,
                  Findings& findings) {

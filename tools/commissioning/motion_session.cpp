@@ -19,7 +19,7 @@ namespace {
 
 using FailureKind = MotionFailure::Kind;
 
-/// Time that the board may take to confirm the rest pressures, in addition to the ramp [s].
+/// Time after the ramp within which the board must confirm the rest pressures [s].
 constexpr double confirmation_s = 1;
 
 /// Running mean and standard deviation (Welford, Technometrics 4, 1962).
@@ -68,7 +68,8 @@ Nanoseconds period_of(const rig::RigFile& rig, const drivers::Board& board) {
   return std::max(nanoseconds(1 / rig.settings.rate_hz), nanoseconds(board.budget().exchange_s));
 }
 
-/// Returns settings with a constant pause between connection attempts, because a person waits for the result.
+/// Returns `reconnect` with a constant pause between connection attempts. A growing pause would be too long
+/// for a person who waits for the result.
 rig::ReconnectSettings steady(rig::ReconnectSettings reconnect) {
   reconnect.longest_pause = reconnect.first_pause;
   return reconnect;
@@ -128,7 +129,8 @@ MotionSession::Expected<void> MotionSession::connect() {
       MotionFailure{FailureKind::bus, board_.describe() + ": " + complaint(), line_->failed.status});
 }
 
-/// Publishes the commands as the control loop does, and runs the bus for one step at the next scheduled time.
+/// Passes the commands to the bus, as the control loop does, and runs one cycle of the bus at the next
+/// scheduled time.
 void MotionSession::exchange(bool may_rise, bool last) noexcept {
   clock_.sleep_until(schedule_.due());
   daemon::Commands& commands = line_->shared.commands.write_slot();
@@ -144,8 +146,8 @@ void MotionSession::exchange(bool may_rise, bool last) noexcept {
   take_report(schedule_.advance(clock_.now()));
 }
 
-/// Evaluates the report of the bus. Cycles that were missed because an exchange took too long count as cycles
-/// without data, as in daemon/loop/loop.cpp.
+/// Evaluates the report of the bus about one exchange. If an exchange takes so long that cycles are missed,
+/// these cycles count as cycles without data, as in daemon/loop/loop.cpp.
 void MotionSession::take_report(std::uint64_t skipped_cycles) noexcept {
   line_->shared.bus.fetch();
   line_->take_events();
@@ -157,8 +159,8 @@ void MotionSession::take_report(std::uint64_t skipped_cycles) noexcept {
   }
 }
 
-/// Returns the text of the latest failure. The bus describes a gap in communication. The board describes all
-/// other failures.
+/// Returns the text of the latest failure. For a gap in communication, this is the text of the bus. For any
+/// other failure, it is the text of the board.
 std::string MotionSession::complaint() const {
   const bool gap = line_->failed.status == drivers::BusStatus::watchdog_tripped;
   const std::string text = gap ? line_->failed.detail.data() : board_.detail();
@@ -270,8 +272,8 @@ MotionSession::Expected<void> MotionSession::ramp(std::size_t channel, double to
   }
   moved_ = true;
   while (commands_[channel] != targets_[channel] || silent_cycles_ > 0) {
-    // If the last write was not confirmed, write the same commands again, so that the pressure does not jump
-    // after a reconnection.
+    // If the last write was not confirmed, write the same commands again instead of new ones, so that the
+    // pressure does not jump after a reconnection.
     if (silent_cycles_ == 0) follow_targets(speed_kpa_per_s);
     if (auto done = step(true, watch); !done) return done;
     if (auto failure = beyond()) return end(std::move(*failure));
@@ -294,8 +296,8 @@ bool MotionSession::leave() noexcept {
     fastest = std::max({fastest, channel.limits.slew_down_kpa_per_s, channel.limits.slew_up_kpa_per_s});
   }
   Nanoseconds give_up = 0;
-  // Ramp to rest even if the board does not respond, so that a board that reconnects late receives the final
-  // rest pressures.
+  // Ramp to rest even if the board does not respond, so that a board that reconnects during or after the ramp
+  // receives the rest pressures.
   while (!line_->shared.safe_state_confirmed.load(std::memory_order_relaxed)) {
     follow_targets(fastest);
     const bool rested = commands_ == targets_;

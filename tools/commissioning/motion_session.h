@@ -1,6 +1,6 @@
 #pragma once
-// Manual motion of a rig by one command, without control loop or controller, in one thread. `softgrip doctor`
-// and `softgrip calibrate` use it to move fingers and read sensors.
+// Moves a rig in manual mode for one command, in one thread, without the control loop and its controllers.
+// `softgrip doctor` and `softgrip calibrate` use it to move fingers and read sensors.
 
 #include <cstddef>
 #include <cstdint>
@@ -23,7 +23,7 @@ struct RigFile;
 
 namespace softgrip::tools {
 
-/// Returns true once the user has requested to stop the command.
+/// Returns true after the user has requested that the command stops.
 using StopRequest = std::function<bool()>;
 
 /// Mean and standard deviation of the readings during an interval.
@@ -40,28 +40,28 @@ struct Sample {
 /// The readings of one channel during an interval.
 struct ChannelSample {
   Sample displacement_mm;
-  Sample pressure_kpa;  ///< count 0 without a pressure monitor
-  Sample readback_kpa;  ///< count 0 if the board does not read its outputs back
+  Sample pressure_kpa;  ///< count is 0 if the channel has no pressure monitor
+  Sample readback_kpa;  ///< count is 0 if the board cannot read its outputs back
 };
 
 /// The reason why a motion has ended.
 struct MotionFailure {
   enum class Kind : std::uint8_t {
     stopped,  ///< stopped by the user
-    bus,      ///< the board did not respond, or its outputs are not those of the session
+    bus,      ///< the board did not respond, or its outputs differ from the values that the session wrote
     beyond,   ///< the finger left its displacement limits
-    blind,    ///< a sensor that the motion needs gives no valid readings
+    blind,    ///< a sensor that the motion requires gives no valid readings
   };
   Kind kind = Kind::bus;
   std::string text;
-  drivers::BusStatus status = drivers::BusStatus::ok;  ///< for `bus`: the status that failed
+  drivers::BusStatus status = drivers::BusStatus::ok;  ///< for `bus`: the status of the failed exchange
 };
 
 /// The sensors of a channel that must give valid readings while the channel moves.
 struct Sight {
   std::size_t channel = 0;
   bool displacement = false;
-  bool pressure = false;  ///< the pressure monitor
+  bool pressure = false;  ///< the pressure monitor must give valid readings
 };
 
 /// Drives a board with the daemon's own bus (daemon/loop/bus.h) instead of the control loop. As in the
@@ -81,12 +81,13 @@ class MotionSession {
  public:
   template <class T>
   using Expected = tl::expected<T, MotionFailure>;
-  /// Called after every successful exchange with the commands that were written and the readings.
+  /// Called after every successful exchange, with the commands that were written and the readings of the
+  /// exchange.
   using Watch = std::function<void(const std::vector<double>& commands_kpa,
                                    const std::vector<model::Reading>& readings)>;
 
-  /// `board` is not connected yet. The session sleeps and measures gaps only with `clock`. All references
-  /// must outlive the session.
+  /// Creates a session for `board`, which is not connected yet. The session uses `clock` for all waits and
+  /// for the duration of gaps. All references must outlive the session.
   MotionSession(const rig::RigFile& rig, drivers::Board& board, const Clock& clock, StopRequest stop);
   MotionSession(const MotionSession&) = delete;
   MotionSession& operator=(const MotionSession&) = delete;
@@ -95,13 +96,13 @@ class MotionSession {
   ~MotionSession();
 
   [[nodiscard]] Expected<void> connect();
-  /// Prevents motion away from rest until these sensors have given a valid reading. Afterwards, the session
-  /// ends after `invalid_reading_cycles` consecutive invalid readings.
+  /// Prevents motion away from rest until the given sensors have given a valid reading. From then on, the
+  /// session ends after `invalid_reading_cycles` consecutive invalid readings.
   void require(Sight sight);
-  /// Holds the commands for `duration_s` and returns the readings of every channel.
+  /// Holds the commands for `duration_s` and returns the statistics of the readings of every channel.
   [[nodiscard]] Expected<std::vector<ChannelSample>> sample(double duration_s, const Watch& watch = {});
-  /// Ramps one channel to a command at `speed_kpa_per_s`, within the slew limits. The session also ends if a
-  /// finger leaves its displacement limits.
+  /// Changes the command of one channel to `to_kpa` at `speed_kpa_per_s`, within the slew limits. The session
+  /// ends if a finger leaves its displacement limits.
   [[nodiscard]] Expected<void> ramp(std::size_t channel, double to_kpa, double speed_kpa_per_s,
                                     const Watch& watch = {});
   /// Holds all commands and exchanges data with the board until `done` returns true, for example while a
@@ -113,11 +114,11 @@ class MotionSession {
 
   [[nodiscard]] double command_kpa(std::size_t channel) const { return commands_[channel]; }
   [[nodiscard]] Nanoseconds period() const noexcept { return schedule_.period(); }
-  /// Returns the durations of the successful exchanges so far.
+  /// Returns the durations of all successful exchanges since the session began.
   [[nodiscard]] const daemon::Histogram& exchange_times() const noexcept;
 
  private:
-  struct Line;  // the bus, and the state that the session shares with it as the control loop does
+  struct Line;  // the bus, and the data that the session shares with the bus in place of the control loop
 
   [[nodiscard]] Expected<void> step(bool may_rise, const Watch& watch);
   void exchange(bool may_rise, bool last) noexcept;
@@ -138,14 +139,15 @@ class MotionSession {
   PeriodicSchedule schedule_;
   bool moved_ = false;
   std::optional<MotionFailure> ended_;
-  std::vector<double> commands_;  // the present outputs, then the values of the next write
+  std::vector<double> commands_;  // the present outputs; during an exchange, the values that it writes
   std::vector<double> targets_;
   std::vector<double> rest_;
   std::vector<model::Reading> readings_;
-  std::uint64_t silent_cycles_ = 0;  // since the last successful exchange
+  std::uint64_t silent_cycles_ = 0;  // cycles since the last successful exchange
   std::optional<Sight> required_;
-  std::uint32_t blind_cycles_ = 0;  // since all required sensors were last valid
-  bool may_rise_ = true;            // all required sensors have been valid since require()
+  std::uint32_t blind_cycles_ = 0;  // cycles since all required sensors last had valid readings
+  bool may_rise_ = true;            // false: since require(), not all required sensors have had valid
+                                    // readings
 };
 
 }  // namespace softgrip::tools

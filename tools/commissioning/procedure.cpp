@@ -13,20 +13,20 @@
 namespace softgrip::tools::calibrate {
 namespace {
 
-/// Smallest distance of the two positions, as a share of the span that the limits allow. The line through
-/// closer points has a large error outside them.
+/// Smallest distance between the two positions, as a share of the span between the limits. If the positions
+/// were closer, the line would have a large error outside them.
 constexpr double least_share_of_span = 0.1;
 constexpr double least_share_of_signal = 0.02;
-/// Largest number of times that a question is put to a script. After an invalid answer, the script may
-/// continue with the next answer or have none left.
+/// Largest number of times that a script is asked the same question. After an invalid answer, the script may
+/// give its next answer, or it may have no answer left.
 constexpr int questions_at_most = 5;
-/// A signal counts as saturated if it is closer than this to an end of its valid electrical range, as a share
-/// of that range.
+/// A signal counts as saturated if its distance to an end of its valid electrical range is smaller than this
+/// share of the range.
 constexpr double share_of_end = 0.002;
-/// Speed of a motion [1/s], as a share of the pressure range. It is slow enough for the line pressure to
-/// follow.
+/// Speed of a motion, as a share of the pressure range per second [1/s]. It is so low that the line pressure
+/// follows the command.
 constexpr double share_per_s = 0.2;
-/// End of the ramp for the dead zone, as a share of the pressure range.
+/// Pressure at the end of the ramp that searches the dead zone, as a share of the pressure range.
 constexpr double ramp_share = 0.3;
 
 Refusal nonsense(std::string text) {
@@ -46,7 +46,8 @@ Refusal refusal_of(const MotionFailure& failure) {
   return {};
 }
 
-/// Asks a question. Exchanges data with the board meanwhile, so that its watchdog does not trip.
+/// Asks a question. Until the answer arrives, exchanges data with the board, so that its watchdog does not
+/// trip.
 Expected<std::string> ask(MotionSession& session, Operator& person, const std::string& question) {
   person.ask(question);
   std::optional<std::string> answer;
@@ -56,7 +57,7 @@ Expected<std::string> ask(MotionSession& session, Operator& person, const std::s
   return *answer;
 }
 
-/// Repeats the question until the answer is a number.
+/// Asks the question again until the answer is a number.
 Expected<double> ask_number(MotionSession& session, Operator& person, const std::string& question) {
   for (int i = 0; person.patient() || i < questions_at_most; ++i) {
     const auto answer = ask(session, person, question);
@@ -67,7 +68,8 @@ Expected<double> ask_number(MotionSession& session, Operator& person, const std:
   return tl::unexpected(Refusal{ExitCode::input_refused, "no number was given: " + question});
 }
 
-/// Enter confirms the requested position, a number gives the actual position, and `-` skips the position.
+/// Asks a question about a position. Enter confirms the requested position, a number states the actual
+/// position, and `-` skips the position.
 Expected<std::optional<double>> ask_position(MotionSession& session, Operator& person,
                                              const std::string& question, double asked_mm) {
   for (int i = 0; person.patient() || i < questions_at_most; ++i) {
@@ -86,7 +88,7 @@ Expected<std::optional<double>> ask_position(MotionSession& session, Operator& p
 
 Expected<void> move_to(const rig::RigFile& rig, MotionSession& session, Operator& person,
                        const Settings& settings, double kpa) {
-  if (session.command_kpa(settings.channel) == kpa) return {};  // it already rests there
+  if (session.command_kpa(settings.channel) == kpa) return {};  // the channel is already at this pressure
   const double speed = ramp_speed_kpa_per_s(rig, settings.channel);
   person.tell(fmt::format("moving `{}` to {:.4g} kPa", rig.settings.channels[settings.channel].name, kpa));
   if (const auto moved = session.ramp(settings.channel, kpa, speed); !moved) {
@@ -98,8 +100,8 @@ Expected<void> move_to(const rig::RigFile& rig, MotionSession& session, Operator
   return {};
 }
 
-/// The readings of the first and of the second half of an averaging interval. The difference of their means
-/// is the drift.
+/// The readings of the first half and of the second half of an averaging interval. The difference between
+/// their means is the drift.
 struct Halves {
   ChannelSample first;
   ChannelSample second;
@@ -113,8 +115,8 @@ Expected<Halves> average(MotionSession& session, const Settings& settings) {
   return Halves{(*first)[settings.channel], (*second)[settings.channel]};
 }
 
-/// Combines the two halves to a visit. Converts the readings back to electrical units by inverting the
-/// scaling of the board.
+/// Combines the two halves of an averaging interval to a visit. Converts the readings to electrical units
+/// with the inverse of the board's scaling.
 Visit visit_of(const Sample& first, const Sample& second, const drivers::TwoPoints& scaling, bool upper) {
   Visit visit;
   visit.upper = upper;
@@ -146,8 +148,8 @@ Expected<Visit> visit_sensor(const rig::RigFile& rig, MotionSession& session, Op
                              const Settings& settings, bool upper) {
   const drivers::InputWiring& wiring = rig.wiring[settings.channel].displacement;
   if (settings.may_move) {
-    // Always start from rest, so that the hysteresis of the finger does not appear as hysteresis of the
-    // sensor.
+    // Always start from rest, because the hysteresis of the finger would otherwise look like hysteresis of
+    // the sensor.
     for (const double kpa : {control::resting_kpa(rig.settings.channels[settings.channel].limits),
                              upper ? settings.high_kpa : settings.low_kpa}) {
       if (const auto moved = move_to(rig, session, person, settings, kpa); !moved)
@@ -217,7 +219,7 @@ Expected<ValveVisit> visit_valve(const rig::RigFile& rig, MotionSession& session
   visit.valve.reference = by_monitor ? (first.mean + second.mean) / 2 : reference;
   visit.valve.count = 1;
   if (by_monitor) {
-    // Convert the noise of the pressure monitor to electrical units of the valve.
+    // Convert the noise of the pressure monitor from kPa to electrical units of the valve.
     const double per_unit = std::abs(wiring.valve.scaling.x_at(1) - wiring.valve.scaling.x_at(0));
     visit.valve.noise = std::hypot(first.deviation, second.deviation) / std::sqrt(2.0) * per_unit;
     visit.valve.drift = std::abs(second.mean - first.mean) * per_unit;
@@ -252,7 +254,8 @@ std::optional<double> typed_number(std::string text) {
 
 Expected<Line> calibrate_sensor(const rig::RigFile& rig, MotionSession& session, Operator& person,
                                 const Settings& settings) {
-  // While a person moves the target by hand, it may leave the sensor's range.
+  // If a person moves the target by hand, the target may leave the sensor's range, so valid readings are not
+  // required.
   if (settings.may_move) session.require({settings.channel, true, false});
   std::vector<Visit> visits;
   for (std::size_t i = 0; i < settings.repeats; ++i) {

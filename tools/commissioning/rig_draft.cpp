@@ -24,9 +24,10 @@ using calibrate::suffix_of;
 using drivers::ElectricalUnit;
 
 constexpr std::array<double, 8> usual_rates_hz{200, 100, 50, 40, 20, 10, 5, 2};
-constexpr double bus_lag = 0.25;  // equals LoopSettings::bus_offset_fraction
+constexpr double bus_lag = 0.25;  // same value as LoopSettings::bus_offset_fraction
 constexpr double simulated_watchdog_s = 0.5;
-/// Allowed range of a valid signal beyond each of its two end points, as a share of their distance.
+/// Range of valid signals beyond each of the two end points, as a share of the distance between the end
+/// points.
 constexpr double beyond_ends = 0.01;
 
 ElectricalRange usual_range(ElectricalUnit unit) noexcept {
@@ -52,7 +53,8 @@ std::string pair_text(double first, double second) {
 /// Largest number of fingers in one rig file.
 constexpr std::size_t max_fingers = 16;
 
-/// Returns the path as it is written in the rig file: relative if it is below the file's folder.
+/// Returns the path for the rig file: relative to the file's folder if it is below this folder, else
+/// unchanged.
 std::string named(const std::string& path, const std::filesystem::path& folder) {
   const auto relative = std::filesystem::proximate(path, folder);
   if (relative.empty() || relative.begin()->string() == "..")
@@ -87,7 +89,7 @@ control::LimitSettings limits_of(const RigDraft& draft) {
   return limits;
 }
 
-/// Returns the best feedforward that the model allows.
+/// Returns the best kind of feedforward for which the model can be used.
 control::FeedforwardKind feedforward_of(const RigDraft& draft, const control::LimitSettings& limits,
                                         double period_s) {
   for (const auto kind : {control::FeedforwardKind::full_model, control::FeedforwardKind::planned}) {
@@ -151,7 +153,8 @@ std::string board_text(const RigDraft& draft, double rate_hz, const std::filesys
   return text;
 }
 
-/// Returns "module: module_2, " if the board has more than one candidate module, else "".
+/// Returns the `module` key, for example "module: module_2, ", if several modules of the board are possible.
+/// Otherwise returns "".
 std::string module_key(const RigDraft& draft, bool output) {
   std::size_t candidates = 0;
   std::size_t first = 0;
@@ -207,7 +210,7 @@ std::string pressure_fault_text(const RigDraft& draft, double rate_hz) {
 }
 
 /// Returns bus_down_cycles: the number of cycles without an exchange after which the daemon reports a bus
-/// fault. It is chosen so that the daemon does so before the board's watchdog trips, if possible.
+/// fault. If possible, the fault is reported before the board's watchdog trips.
 int bus_patience(const RigDraft& draft, double rate_hz) {
   const double watchdog = watchdog_s(draft);
   if (watchdog <= 0) return 5;
@@ -218,7 +221,7 @@ int bus_patience(const RigDraft& draft, double rate_hz) {
 
 using Values = std::vector<std::pair<std::string_view, std::string>>;
 
-/// Replaces every `$key$` by its value.
+/// Replaces every `$key$` in the text by the value of the key.
 std::string filled(std::string text, const Values& values) {
   for (const auto& [key, value] : values) {
     const std::string mark = "$" + std::string(key) + "$";

@@ -1,5 +1,5 @@
 #pragma once
-// Creates the rig-file template of `softgrip init` from a few facts.
+// Creates the rig-file template of `softgrip init` from the answers of the user.
 
 #include <cstddef>
 #include <optional>
@@ -15,44 +15,45 @@
 
 namespace softgrip::tools {
 
-/// A module of the board: its board map and its position.
+/// A module of the board: its board file and its position in the rig.
 struct DraftModule {
   std::string path;
   drivers::BoardMap map;
 };
 
-/// The facts of the rig. Terminals are numbered in order: valve i on output i, sensor i on input i, the
-/// monitors on the last inputs.
+/// The answers of the user. Terminals are used in order: valve i is connected to output i, sensor i to input
+/// i, and the pressure monitors to the last inputs.
 struct RigDraft {
   std::string name = "my_rig";
-  std::optional<double> rate_hz;     ///< nullopt: the highest usual rate that the rig-file reader accepts
+  std::optional<double> rate_hz;     ///< nullopt: the highest of the usual rates that is valid for the rig
   std::vector<DraftModule> modules;  ///< empty: a board simulated in the process
-  std::string host;                  ///< numeric address of a network board; empty: on a serial line
+  std::string host;                  ///< numeric address of a network board; empty: the board is on a serial
+                                     ///< line
   int port = 502;
   std::string device;  ///< path of the serial device
   int baud = 9600;
-  int unit = 1;  ///< unit id of the first module; the others follow in order
+  int unit = 1;  ///< unit id of the first module; each further module has the next id
   std::vector<std::string> fingers{"left", "right"};
   std::string model_path;
   model::Model model;
   drivers::TwoPoints valve{0, 0, 10, 100};   ///< x: electrical value at the terminal, y: kPa
   drivers::TwoPoints sensor{0, -5, 10, 45};  ///< x: electrical value at the terminal, y: mm
   double pressure_max_kpa = 60;
-  bool monitor = true;  ///< each finger has a pressure monitor, with the same line as the valve
+  bool monitor = true;  ///< true: each finger has a pressure monitor with the scaling of its valve
   bool accepts_no_watchdog = false;
   std::string sequences_path;
-  bool service = false;  ///< use the folders of the system service
+  bool service = false;  ///< true: the rig file uses the folders of the system service
 };
 
-/// Returns the module whose outputs (or inputs) are used, or null if no module has any or the board is
-/// simulated.
+/// Returns the module whose outputs are connected to the valves. Returns null if no module has outputs or the
+/// board is simulated. input_module() does the same for the inputs.
 [[nodiscard]] const DraftModule* output_module(const RigDraft& draft) noexcept;
 [[nodiscard]] const DraftModule* input_module(const RigDraft& draft) noexcept;
-/// Returns the largest number of fingers for which the board has enough terminals, with or without pressure
-/// monitors.
+/// Returns the largest number of fingers for which the board has enough terminals. With `monitor`, each
+/// finger needs one more input.
 [[nodiscard]] std::size_t most_fingers(const RigDraft& draft, bool monitor) noexcept;
-/// Range of the signal of a valve or sensor at a terminal. It is the usual range, 0 to 10 V or 4 to 20 mA.
-/// For a terminal in kilopascals, it is the range that the terminal can deliver.
+/// Signal range of a valve or sensor at a terminal. The usual range is 0 to 10 V or 4 to 20 mA. For a
+/// terminal in kilopascals, it is the range of the terminal.
 struct ElectricalRange {
   double lowest = 0;
   double highest = 10;
@@ -61,11 +62,12 @@ struct ElectricalRange {
 [[nodiscard]] ElectricalRange input_range(const RigDraft& draft);
 [[nodiscard]] drivers::ElectricalUnit output_unit(const RigDraft& draft) noexcept;
 [[nodiscard]] drivers::ElectricalUnit input_unit(const RigDraft& draft) noexcept;
-/// Returns true if every module vents when communication stops. This is true for a simulated board.
+/// Returns true if every module of the board vents when communication stops. Returns true for a simulated
+/// board.
 [[nodiscard]] bool has_watchdog(const RigDraft& draft) noexcept;
 
-/// Returns the text of a commented rig file for `path` that the rig-file reader accepts, or the problems that
-/// the reader reports. Paths below the file's folder are written relative to it.
+/// Returns the text of a commented rig file for `path`. The text passes the rig-file reader; otherwise the
+/// problems that the reader reports are returned. Paths below the file's folder are relative to it.
 [[nodiscard]] tl::expected<std::string, document::Problems> draft_text(const RigDraft& draft,
                                                                        const std::string& path);
 

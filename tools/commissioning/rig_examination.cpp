@@ -27,8 +27,8 @@ std::string advice_for_silence(const rig::RigFile& rig, drivers::BusStatus statu
   return std::string(bus_advice(drivers::name_of(status)));
 }
 
-/// Returns true if the examination could drop a part. Even an examination that only reads sensors writes the
-/// rest pressures.
+/// Returns true if a finger could drop a part during the examination. An examination writes the rest
+/// pressures even if it moves no finger.
 bool may_hold_a_part(const rig::RigFile& rig) {
   const auto& safety = rig.settings.safety;
   const bool holds =
@@ -139,7 +139,7 @@ void failed(const MotionFailure& failure, const rig::RigFile& rig, const std::st
   }
 }
 
-/// Warns of other clients of a board that counts its clients.
+/// Warns if a board that counts its clients has other clients.
 void judge_clients(const drivers::Board& board, Findings& findings) {
   const unsigned clients = board.clients();
   if (clients > 1 && board.fed_by_readers()) {
@@ -160,7 +160,8 @@ void leave_channels(const rig::RigFile& rig, const std::string& because, Finding
   }
 }
 
-/// Returns the known problems of a channel before its motion is judged.
+/// Returns the reasons why the motion of a channel cannot be checked, from the problems that are already
+/// known.
 NotJudged known_of(const rig::RigFile& rig, std::span<const Crossing> crossings, const ChannelSample& rest,
                    std::size_t channel) {
   using Kind = Crossing::Kind;
@@ -184,8 +185,8 @@ Sight sight_of(const rig::RigFile& rig, std::size_t channel) {
   return {channel, displacement, !displacement && rig.wiring[channel].pressure.has_value()};
 }
 
-/// Returns the name of the finding that forbids a motion of the channel because its sensor has no valid
-/// reading, or "".
+/// Returns the name of the finding that prevents a motion of the channel because its sensor has no valid
+/// reading. Returns "" if the channel may move.
 std::string blind_at(const rig::RigFile& rig, const ChannelSample& rest, std::size_t channel) {
   const Sight sight = sight_of(rig, channel);
   const std::string& name = rig.settings.channels[channel].name;
@@ -194,8 +195,8 @@ std::string blind_at(const rig::RigFile& rig, const ChannelSample& rest, std::si
   return {};
 }
 
-/// Moves one finger after the other and reads all sensors during each motion. All responses are needed to
-/// find swapped wires.
+/// Moves the fingers one at a time and reads all sensors during each motion. The responses of all sensors are
+/// needed to find swapped wires.
 void move_all(const rig::RigFile& rig, MotionSession& session, const std::vector<ChannelSample>& rest,
               const MoveSettings& settings, Findings& findings) {
   std::vector<Motion> motions(rest.size());

@@ -12,23 +12,25 @@ namespace softgrip::tools::doctor {
 
 /// Sizes and durations of the motions.
 struct MoveSettings {
-  double share = 0.25;    ///< commanded step, as a share of the pressure range on the larger side of rest
-  double duration_s = 1;  ///< duration of the ramp up, if the slew limits allow it, and of the ramp down
-  double settle_s = 1;    ///< wait after the ramp up, and after the ramp down
-  double look_s = 1;      ///< duration of the readings at rest, before the first motion
+  double share = 0.25;    ///< commanded step, as a share of the pressure range on that side of the rest
+                          ///< pressure where the range is larger
+  double duration_s = 1;  ///< duration of the ramp up and of the ramp down [s]; longer if the slew limits
+                          ///< require it
+  double settle_s = 1;    ///< wait after the ramp up and after the ramp down [s]
+  double look_s = 1;      ///< duration of the readings at rest before the first motion [s]
 };
 
 /// Examines board, watchdog, bus budget and sensors. With `move`, moves each finger a little and compares the
-/// motion with the finger's model. Leaves the channels at their rest pressures. An examination that the user
-/// stops counts as a failure.
+/// motion with the finger's model. At the end, the channels are at their rest pressures. If the user stops
+/// the examination, this counts as a failure.
 void examine_rig(const rig::RigFile& rig, drivers::Board& board, const Clock& clock, StopRequest stop,
                  bool move, const MoveSettings& settings, Findings& findings);
 
-/// Examines the digital lines: requests them from the system, reads them and releases them. The outputs are
-/// inactive during this time.
+/// Examines the digital lines: requests them from the operating system, reads them and releases them. The
+/// digital outputs are inactive during this time.
 void examine_gpio(const rig::RigFile& rig, Findings& findings);
 
-/// Examines the bus budget and the watchdog from the files alone, without an exchange with the board.
+/// Examines the bus budget and the watchdog from the rig and board files, without an exchange with the board.
 void examine_description(const rig::RigFile& rig, const drivers::Board& board, Findings& findings);
 
 }  // namespace softgrip::tools::doctor

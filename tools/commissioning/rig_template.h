@@ -1,5 +1,5 @@
 #pragma once
-// The rig file that `softgrip init` writes. `$NAME$` marks a value to fill in.
+// The text from which `softgrip init` creates a rig file. `$NAME$` marks a value that softgrip inserts.
 
 #include <string_view>
 

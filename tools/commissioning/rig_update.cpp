@@ -20,10 +20,10 @@ using document::Node;
 constexpr std::size_t most_bytes = 256 * 1024;
 constexpr std::string_view mark = "# softgrip calibrate";
 
-/// One map of the channel and its new points.
+/// One map of the channel that gets new points.
 struct Target {
-  std::string map;  ///< "sensor"
-  std::string is;   ///< "is_mm"
+  std::string map;  ///< key of the map, for example "sensor"
+  std::string is;   ///< key of the values in the map, for example "is_mm"
   drivers::ElectricalUnit unit = drivers::ElectricalUnit::volt;
   const Line* line = nullptr;
 };
@@ -39,7 +39,7 @@ std::vector<Target> targets_of(const rig::RigFile& rig, const Results& results) 
   return targets;
 }
 
-/// Returns the map of the channel. For a rig with one channel, this can be the map of the defaults.
+/// Returns the map of the channel. If the rig has one channel, the map may be in `channel_defaults`.
 const Node::Entry* map_of(const document::Document& document, std::size_t channel, const std::string& map) {
   const Node* const channels = document::below(&document.root, {"channels"});
   if (channels == nullptr || channel >= channels->items.size()) return nullptr;
@@ -73,7 +73,8 @@ const drivers::TwoPoints* points_of(const drivers::ChannelWiring& wiring, const 
   return wiring.pressure ? &wiring.pressure->scaling : nullptr;
 }
 
-/// Returns true if the changed file `now` contains the new points and all other points of `before`.
+/// Returns true if the changed file `now` contains the new points, and if all other points equal those of
+/// `before`.
 bool says(const rig::RigFile& now, const rig::RigFile& before, const std::vector<Target>& targets,
           std::size_t channel) {
   if (now.wiring.size() != before.wiring.size()) return false;

@@ -16,7 +16,7 @@ std::string pair(double first, double second, int decimals) {
   return "[" + rounded(first, decimals) + ", " + rounded(second, decimals) + "]";
 }
 
-/// `at_v: [1.2, 7.8], is_mm: [3, 21]`
+/// Returns the keys of two points for a map: `at_v: [1.2, 7.8], is_mm: [3, 21]`.
 std::string scaling(const drivers::TwoPoints& points, const std::string& electrical,
                     const std::string& unit) {
   const LineText text = text_of(points);

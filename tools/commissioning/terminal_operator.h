@@ -1,5 +1,5 @@
 #pragma once
-// Asks a person at the terminal, or a script on the standard input.
+// Asks a person at the terminal, or a script that writes to the standard input.
 
 #include <deque>
 #include <optional>
@@ -10,8 +10,8 @@
 
 namespace softgrip::tools::calibrate {
 
-/// Writes questions to the standard error. Uses the prepared answers first, then reads answers line by line
-/// from the standard input.
+/// Writes questions to the standard error. Takes the prepared answers first. After the last of them, reads
+/// answers line by line from the standard input.
 class TerminalOperator final : public Operator {
  public:
   TerminalOperator();
