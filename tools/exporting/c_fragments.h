@@ -1,32 +1,34 @@
 #pragma once
-// The C99 source text of the parts of an exported model. The C code computes the same as the classes in
+// C99 source text of the parts of an exported model. The C code computes the same values as the classes in
 // model/, but for one fixed sampling interval and without templates.
 
 #include <string_view>
 
 namespace softgrip::tools::c_text {
 
-/// Segments and linear responses (model/segment.h, model/exponential.h). All other fragments use them.
+/// Segments and linear responses, as in model/segment.h and model/exponential.h. All other fragments use
+/// them.
 extern const std::string_view common;
-/// model/blocks/transport_delay.h; needs DELAY_PIECES, a power of two.
+/// Dead time, as in model/blocks/transport_delay.h. Needs the macro DELAY_PIECES, a power of two.
 extern const std::string_view transport_delay;
-/// model/blocks/valve_lag.h
+/// First-order lag of the valve, as in model/blocks/valve_lag.h.
 extern const std::string_view valve_lag;
-/// model/two_way_lag.h
+/// Lag with one time constant per direction, as in model/two_way_lag.h.
 extern const std::string_view two_way_lag;
-/// model/blocks/rate_limit.h
+/// Rate limit, as in model/blocks/rate_limit.h.
 extern const std::string_view rate_limit;
-/// model/blocks/bouc_wen.h, exponent 1
+/// Bouc-Wen hysteresis of exponent 1, as in model/blocks/bouc_wen.h.
 extern const std::string_view bouc_wen;
-/// model/play.h and model/blocks/prandtl_ishlinskii.h
+/// Sum of play operators, as in model/play.h and model/blocks/prandtl_ishlinskii.h.
 extern const std::string_view prandtl_ishlinskii;
-/// model/blocks/kelvin_voigt.h
+/// Viscoelastic creep, as in model/blocks/kelvin_voigt.h.
 extern const std::string_view kelvin_voigt;
-/// model/blocks/pressure_dependent_creep.h
+/// Creep above a pressure, as in model/blocks/pressure_dependent_creep.h.
 extern const std::string_view pressure_dependent_creep;
-/// model/characteristic_map.h and model/blocks/characteristic.h
+/// Characteristic map, as in model/characteristic_map.h and model/blocks/characteristic.h.
 extern const std::string_view characteristic;
-/// Computes the pressure at which the blocks behind the valve reach a given displacement one tick from now.
+/// Computes the pressure at which the blocks behind the valve reach a given displacement one sampling
+/// interval later.
 extern const std::string_view inverse;
 
 }  // namespace softgrip::tools::c_text

@@ -1,4 +1,4 @@
-// The valve's fragments of tools/exporting/c_fragments.h.
+// Fragments of the valve blocks, which tools/exporting/c_fragments.h declares.
 
 #include "tools/exporting/c_fragments.h"
 

@@ -29,7 +29,7 @@
 namespace softgrip::tools {
 namespace {
 
-/// Fragments that divide segments need these functions, in this order.
+/// C functions with which fragments divide segments, in the order of the C file.
 constexpr std::string_view cutting = R"(
 static double at_share(segment s, double share) {
   return s.begin + (s.end - s.begin) * share + bend_of(s) * (share * (1.0 - share));
@@ -66,14 +66,15 @@ static double phi_one(double w) {
 }
 )";
 
-/// The C source of a block. `#` is replaced by the index of the block.
+/// The C source of a block. Each `#` in a text is replaced by the index of the block.
 struct CBlock {
   std::string_view text;
-  std::string_view state;  ///< declaration
-  std::string_view reset;  ///< an expression: the output at rest
-  std::string_view step;   ///< for a valve block, a statement that calls the next block; otherwise an
-                           ///< expression: the output segment
-  std::string_view lead;   ///< for a valve block, the time constant that the inverse compensates; empty: none
+  std::string_view state;  ///< C declaration of the block's state
+  std::string_view reset;  ///< C expression for the output at rest
+  std::string_view step;   ///< for a valve block, a C statement that calls the next block; otherwise a C
+                           ///< expression for the output segment
+  std::string_view lead;   ///< for a valve block, the name of the time constant that the inverse compensates;
+                           ///< empty: none
 };
 
 template <template <class> class Block>
@@ -198,8 +199,8 @@ class Generator {
     }
   }
 
-  /// Returns the size of the delay buffer [segments], a power of two. A tick needs two segments, and more if
-  /// a lag before the delay divides them.
+  /// Returns the size of the delay buffer [segments], a power of two. A sampling interval needs two segments,
+  /// or more if a lag before the delay divides segments.
   [[nodiscard]] std::size_t delay_pieces() const {
     std::size_t needed = 16;
     for (const std::size_t i : valve_) {
@@ -211,7 +212,8 @@ class Generator {
     return pieces;
   }
 
-  /// Adds the blocks behind the valve: the sum of the elements' outputs, followed by the characteristic maps.
+  /// Adds the blocks behind the valve. The sum of the elements' outputs passes through the characteristic
+  /// maps.
   void add_body() {
     text_ += "\n/* Behind the valve. */\ntypedef struct {\n";
     for (const auto* list : {&elements_, &maps_}) {
@@ -295,7 +297,7 @@ class Generator {
         "highest_kpa);\n  double led = pressure_kpa;\n  body_step(&s->body, straight(TICK_S, "
         "s->pressure_kpa, "
         "pressure_kpa));\n  s->pressure_kpa = pressure_kpa;\n";
-    // Go from the actuator back to the command. For each lag, compute the required output and its rate.
+    // Compute backwards from the actuator to the command: for each lag, the required output and its rate.
     for (std::size_t k = valve_.size(); k-- > 0;) {
       const CBlock& lag = block(valve_[k]);
       if (lag.lead.empty()) continue;

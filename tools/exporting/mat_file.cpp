@@ -23,7 +23,7 @@ using MatVariable = std::unique_ptr<matvar_t, void (*)(matvar_t*)>;
 
 bool put(mat_t* file, const std::string& name, const std::vector<double>& values) {
   std::array<std::size_t, 2> size{values.size(), 1};
-  // libmatio only reads through this pointer, although it is not const.
+  // The pointer must not be const, but libmatio only reads through it.
   const MatVariable variable{Mat_VarCreate(name.c_str(), MAT_C_DOUBLE, MAT_T_DOUBLE, 2, size.data(),
                                            const_cast<double*>(values.data()), MAT_F_DONT_COPY_DATA),
                              Mat_VarFree};
@@ -35,7 +35,7 @@ struct Column {
   const std::vector<double>* values;
 };
 
-/// Returns the columns with names that MATLAB accepts. Texts are omitted.
+/// Returns the columns under names that MATLAB accepts. Columns of texts are omitted.
 std::vector<Column> columns_of(const SignalGroup& group, std::vector<std::string>& left_out) {
   std::vector<Column> columns{{"time_s", &group.time_s}};
   std::set<std::string> used{"time_s"};
@@ -52,7 +52,7 @@ std::vector<Column> columns_of(const SignalGroup& group, std::vector<std::string
 }
 
 bool put_all(const std::string& path, const std::vector<Column>& columns) {
-  // Use a fixed header, because the default header of libmatio contains the time of day.
+  // Use a fixed header, because the default header of libmatio contains the current time.
   const MatFile file{Mat_CreateVer(path.c_str(), "MATLAB 5.0 MAT-file, softgrip export", MAT_FT_MAT5),
                      Mat_Close};
   return file && std::all_of(columns.begin(), columns.end(), [&](const Column& column) {
@@ -60,8 +60,8 @@ bool put_all(const std::string& path, const std::vector<Column>& columns) {
          });
 }
 
-/// Returns true if the file contains exactly these values in this order. libmatio 1.5 does not check its
-/// writes.
+/// Returns true if the file contains exactly these values in this order. This check is needed because
+/// libmatio 1.5 does not check its writes.
 bool holds(const std::string& path, const std::vector<Column>& columns) {
   const MatFile file{Mat_Open(path.c_str(), MAT_ACC_RDONLY), Mat_Close};
   if (!file) return false;
@@ -88,7 +88,7 @@ std::string matlab_name(const std::string& name) {
 tl::expected<MatBytes, std::string> mat_bytes(const SignalGroup& group) {
   MatBytes mat;
   const std::vector<Column> columns = columns_of(group, mat.left_out);
-  // libmatio writes only to a path and does not check its writes, so it gets a file in memory.
+  // libmatio writes only to a path and does not detect a failed write, so it writes to a file in memory.
   const Descriptor memory(::memfd_create("softgrip-export", MFD_CLOEXEC));
   const std::string path = "/proc/self/fd/" + std::to_string(memory.get());
   constexpr std::size_t unbounded = std::numeric_limits<std::size_t>::max() - 1;

@@ -10,17 +10,18 @@
 
 namespace softgrip::tools {
 
-/// The bytes of a .mat file, and the names of the signals that were omitted because they are texts.
+/// The bytes of a .mat file, and the names of the omitted signals, whose values are texts.
 struct MatBytes {
   std::string bytes;
   std::vector<std::string> left_out;
 };
 
-/// Returns a compressed file of version 5: time_s, and a column vector per numeric signal. The bytes are read
-/// back and compared with the signals. Equal signals give equal bytes. The error is a sentence.
+/// Returns a compressed file of version 5 with time_s and one column vector per numeric signal. The bytes are
+/// read back and compared with the signals. Equal signals give equal bytes. The error is a sentence.
 [[nodiscard]] tl::expected<MatBytes, std::string> mat_bytes(const SignalGroup& group);
 
-/// Returns a name that MATLAB accepts: at most 63 letters, digits and underscores that begin with a letter.
+/// Returns `name` as a name that MATLAB accepts: at most 63 letters, digits and underscores. The first
+/// character is a letter.
 [[nodiscard]] std::string matlab_name(const std::string& name);
 
 }  // namespace softgrip::tools

@@ -48,7 +48,7 @@ std::string json_text(const std::string& text) {
   return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
-/// The samples of all groups in order of time.
+/// One sample of a group. The samples of all groups are sorted by time.
 struct Sample {
   std::uint64_t time_ns = 0;
   std::size_t group = 0;
@@ -143,7 +143,7 @@ class Writer {
 
   void add(const Sample& sample) {
     if (chunk_.empty()) {
-      // Repeat the schemas in every chunk, so that it can be read alone.
+      // Repeat the schemas in every chunk, so that a reader can read each chunk alone.
       for (std::size_t g = 0; g < groups_.size(); ++g) chunk_ += schema_record(g) + channel_record(g);
       begin_ns_ = sample.time_ns;
     }
@@ -212,8 +212,8 @@ class Writer {
     put(content, messages);
     put(content, static_cast<std::uint16_t>(groups_.size()));
     put(content, static_cast<std::uint32_t>(groups_.size()));
-    put(content, std::uint32_t{0});  // attachments
-    put(content, std::uint32_t{0});  // metadata
+    put(content, std::uint32_t{0});  // number of attachments
+    put(content, std::uint32_t{0});  // number of metadata records
     put(content, chunks_);
     put(content, first_ns_);
     put(content, end_ns_);
@@ -250,7 +250,7 @@ class Writer {
     put(footer, offsets_start);
     put(footer, std::uint32_t{0});
     footer = record(Opcode::footer, footer);
-    // The checksum covers the footer up to the checksum itself.
+    // The checksum covers the footer up to, but without, the checksum.
     footer.resize(footer.size() - sizeof(std::uint32_t));
     bytes_ += footer;
     put(bytes_, checksum(std::string_view(bytes_).substr(start)));

@@ -1,5 +1,5 @@
 #pragma once
-// Writes signals as MCAP, the container of Foxglove (https://mcap.dev/spec), version 0.
+// Writes signals as MCAP version 0, the file format of Foxglove (https://mcap.dev/spec).
 
 #include <string>
 #include <vector>
@@ -8,10 +8,10 @@
 
 namespace softgrip::tools {
 
-/// Returns the bytes of a file with one topic per group ("/left"; "/signals" without a name) and one JSON
-/// object per sample. Its keys are time_s, counted from the start of the recording, and the names of the
-/// signals. Missing values have no key. The file is uncompressed, indexed by chunks of at most 4 MiB, and has
-/// checksums.
+/// Returns the bytes of a file with one topic per group and one JSON object per sample. The topic is "/left"
+/// for the group "left" and "/signals" for a group without a name. The keys of an object are the names of the
+/// signals and time_s, which is 0 at the start of the recording. A missing value has no key. The file is
+/// uncompressed, indexed by chunks of at most 4 MiB, and has checksums.
 [[nodiscard]] std::string mcap_bytes(const std::vector<SignalGroup>& groups, const std::string& library);
 
 }  // namespace softgrip::tools

@@ -19,7 +19,7 @@ namespace {
 
 constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 
-/// Converts a column to numbers if every cell is a number or empty, otherwise to texts.
+/// Converts a column to numbers if each cell is a number or empty. Otherwise converts it to texts.
 Signal signal_of(const sysid::OtherColumn& column) {
   Signal signal{column.name, {}, {}};
   for (const std::string& cell : column.cells) {
@@ -41,7 +41,8 @@ SignalGroup group_of(const sysid::Log& log) {
   return group;
 }
 
-/// Converts a table that is not a log. Returns an empty list if the table has no column time_s.
+/// Converts a table that is not a log to groups of signals. Returns an empty list if the table has no column
+/// time_s.
 std::vector<SignalGroup> groups_of(const sysid::ForeignTable& table) {
   const std::size_t time = sysid::column_index(table, "time_s");
   if (time == table.columns.size()) return {};

@@ -10,26 +10,26 @@
 
 namespace softgrip::tools {
 
-/// Numbers or texts, one per sample.
+/// A signal with one number or one text per sample.
 struct Signal {
-  std::string name;                ///< "displacement_mm", "state"
-  std::vector<double> values;      ///< NaN: missing; empty for texts
-  std::vector<std::string> texts;  ///< empty for numbers
+  std::string name;                ///< name of the column, for example "displacement_mm" or "state"
+  std::vector<double> values;      ///< NaN: no value; empty if the signal consists of texts
+  std::vector<std::string> texts;  ///< empty if the signal consists of numbers
 };
 
 /// The signals of one finger, or all signals of a file without channels.
 struct SignalGroup {
-  std::string name;            ///< name of the channel; empty: there are no channels
-  std::vector<double> time_s;  ///< rising
+  std::string name;            ///< name of the channel; empty: the file has no channels
+  std::vector<double> time_s;  ///< strictly rising
   std::vector<Signal> signals;
 };
 
-/// Reads a recording's folder, a log, or another table with a column time_s (series.csv). On failure, prints
-/// the reason and returns the exit code.
+/// Reads the folder of a recording, a log, or another table with a column time_s, for example series.csv. On
+/// failure, prints the reason and returns the exit code.
 [[nodiscard]] tl::expected<std::vector<SignalGroup>, ExitCode> read_signals(const std::string& path);
 
-/// Merges all groups on one time axis that contains every time of any group. The result has one column per
-/// signal and finger, named "left_displacement_mm". Missing samples are NaN or an empty text.
+/// Merges all groups on one time axis that contains the times of all groups. The result has one column per
+/// signal and finger, for example "left_displacement_mm". A missing sample is NaN or an empty text.
 [[nodiscard]] SignalGroup wide(const std::vector<SignalGroup>& groups);
 
 /// Returns the CSV text of a group: time_s and its signals. Missing values are empty cells.
