@@ -32,7 +32,7 @@ tl::expected<Picture, std::string> read(std::string_view svg) {
       g_memory_input_stream_new_from_data(svg.data(), static_cast<gssize>(svg.size()), nullptr));
   GError* error = nullptr;
   Picture picture;
-  // Without this flag, librsvg refuses the path of a long log.
+  // Without this flag, librsvg refuses a very long path, such as the curve of a long log.
   picture.handle.reset(
       rsvg_handle_new_from_stream_sync(stream.get(), nullptr, RSVG_HANDLE_FLAG_UNLIMITED, nullptr, &error));
   if (!picture.handle) {
@@ -50,7 +50,7 @@ cairo_status_t append(void* text, const unsigned char* bytes, unsigned int count
   return CAIRO_STATUS_SUCCESS;
 }
 
-/// Draws the picture on an area of width x height of a surface.
+/// Draws the picture on a surface, scaled to `width` x `height`.
 tl::expected<void, std::string> draw(const Picture& picture, cairo_surface_t* surface, double width,
                                      double height) {
   const Held<cairo_t> context(cairo_create(surface));
@@ -78,8 +78,8 @@ Bytes pdf_of(std::string_view svg) {
   const double height = points_per_pixel * picture->height;
   {
     const Held<cairo_surface_t> surface(cairo_pdf_surface_create_for_stream(append, &bytes, width, height));
-    // Version 1.4 has no compressed objects, so all versions of cairo write equal files. Newer versions of
-    // cairo would write PDF 1.7 by default.
+    // PDF 1.4 has no compressed objects, so all versions of cairo write equal files. The default of newer
+    // cairo versions is PDF 1.7.
     cairo_pdf_surface_restrict_to_version(surface.get(), CAIRO_PDF_VERSION_1_4);
     if (const auto drawn = draw(*picture, surface.get(), width, height); !drawn)
       return tl::unexpected(drawn.error());

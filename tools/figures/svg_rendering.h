@@ -8,8 +8,8 @@
 
 namespace softgrip::tools {
 
-/// Returns a PDF with one page of the size of the picture, at 0.75 points per pixel. Texts are stored as
-/// text, not as outlines. The error is a sentence.
+/// Returns a PDF with one page of the size of the picture, at 0.75 points per pixel. The PDF contains texts
+/// as text, not as outlines. The error is a sentence.
 [[nodiscard]] tl::expected<std::string, std::string> pdf_of(std::string_view svg);
 
 /// Returns a PNG on a white background, with twice as many pixels in each direction as the picture.
