@@ -1,4 +1,4 @@
-// Interpretation of the options of `softgrip import`: mapping_of() and import_targets() of
+// Interprets the options of `softgrip import`: mapping_of() and import_targets() of
 // tools/importing/import_run.h.
 
 #include <algorithm>
@@ -17,7 +17,8 @@ namespace {
 namespace fs = std::filesystem;
 using Taken = std::function<bool(sysid::ColumnMapping&, const std::string&)>;
 
-/// Applies "ROLE=VALUE" words to a mapping. The error names the first invalid word.
+/// Adds settings such as "pressure=psi" from the words of an option to a mapping. The error names the first
+/// invalid word.
 tl::expected<void, std::string> apply(const std::vector<std::string>& words, const char* option,
                                       sysid::Mapping& mapping, const Taken& take) {
   for (const std::string& word : words) {
@@ -54,7 +55,8 @@ bool take_zero(sysid::ColumnMapping& column, const std::string& text) {
   return true;
 }
 
-/// Returns the name of the log of a file: day1.csv for "day1.csv.gz" and for the folder "day1".
+/// Returns the name of the log that is imported from a file or folder: day1.csv for "day1.csv.gz" and for the
+/// folder "day1".
 std::string log_name(const std::string& file) {
   fs::path path = fs::path(file).lexically_normal();
   if (!path.has_filename()) path = path.parent_path();

@@ -40,13 +40,13 @@ struct Job {
   sysid::ForeignTable table;
   sysid::Mapping mapping;
   std::vector<sysid::Role> guessed;
-  bool is_log = false;  ///< the file is a log already and is copied
+  bool is_log = false;  ///< true: the file is already a log, so it is copied
   sysid::ImportedLog result;
   std::vector<std::string> warnings;
   std::vector<std::string> plausibility;
 };
 
-/// Accepts a file that is already a log, with its additional columns. Returns false for any other file.
+/// Accepts a file that is already a log, including its additional columns. Returns false for any other file.
 bool take_as_it_is(Job& job) {
   namespace fs = std::filesystem;
   if (sysid::column_index(job.table, "pressure_command_kpa") == job.table.columns.size()) return false;
@@ -76,8 +76,8 @@ bool says_columns(const sysid::Mapping& mapping) {
          std::isfinite(mapping.to_s);
 }
 
-/// Returns the words of --missing that are not numbers. The numbers are omitted because convert() compares
-/// them by value.
+/// Returns the words of --missing that are not numbers. Numbers are omitted, because convert() compares
+/// numbers by value.
 std::vector<std::string> missing_words(const sysid::Mapping& mapping) {
   std::vector<std::string> words;
   for (const std::string& word : mapping.missing) {
@@ -127,7 +127,7 @@ std::string command_line(const Job& job, const ImportOptions& options) {
          shell_word(options.out);
 }
 
-/// Prints the guessed roles of the columns. Returns false if no role was guessed.
+/// Prints the guessed roles of the columns. Returns false if no role of any column was guessed.
 bool show_guesses(const std::vector<Job>& jobs) {
   bool guessed = false;
   for (const Job& job : jobs) {
@@ -139,7 +139,8 @@ bool show_guesses(const std::vector<Job>& jobs) {
   return guessed;
 }
 
-/// Returns true if the guessed roles may be used: nothing was guessed, --yes is given, or the user confirms.
+/// Returns true if the mapping may be used. This is so if no role was guessed, if --yes is given, or if the
+/// user confirms.
 bool agreed(const std::vector<Job>& jobs, const ImportOptions& options) {
   if (!show_guesses(jobs)) return true;
   for (const Job& job : jobs) {
@@ -259,8 +260,8 @@ void report(const std::vector<Job>& jobs, const ImportOptions& options) {
   }
 }
 
-/// Refuses output paths that would overwrite an input. The file of --map may be overwritten by a mapping
-/// file, because the new mapping has the same meaning.
+/// Refuses output paths that would overwrite an input. The new mapping file may overwrite the file of --map,
+/// because both have the same meaning.
 std::optional<ExitCode> refuse_own_inputs(const ImportOptions& options,
                                           const std::vector<std::string>& targets) {
   std::vector<std::string> outputs = targets;
@@ -295,7 +296,7 @@ ExitCode run_import(const ImportOptions& options) {
     jobs[i].out = (*targets)[i];
     (void)prepare(jobs[i], *mapping, problems, unreadable_file);
   }
-  // Convert all files first, so that the user is asked to confirm only if there was no problem.
+  // Convert all files first, so that the user must confirm the mapping only if no file has a problem.
   for (Job& job : jobs) {
     if (problems.empty() && !finish(job, problems)) (void)show_guesses(jobs);
   }

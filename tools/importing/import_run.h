@@ -1,5 +1,5 @@
 #pragma once
-// The command `softgrip import`: reading, confirmation, conversion and output.
+// Runs `softgrip import`: reads and converts files, requests confirmation and writes logs.
 
 #include <array>
 #include <optional>
@@ -13,14 +13,14 @@
 
 namespace softgrip::tools {
 
-/// The options of the command line, before they are interpreted.
+/// The options of the command line as text, before they are interpreted.
 struct ImportOptions {
   std::vector<std::string> files;
   std::string out;
   std::array<std::vector<std::string>, sysid::role_count> columns;
-  std::vector<std::string> units;   ///< "pressure=psi"
-  std::vector<std::string> scales;  ///< "displacement=-2.5"
-  std::vector<std::string> zeros;   ///< "displacement=first"
+  std::vector<std::string> units;   ///< units by role, for example "pressure=psi"
+  std::vector<std::string> scales;  ///< factors by role, for example "displacement=-2.5"
+  std::vector<std::string> zeros;   ///< zeros by role, for example "displacement=first"
   std::optional<double> rate_hz;
   std::vector<std::string> missing;
   std::string separator;
@@ -34,17 +34,17 @@ struct ImportOptions {
   bool json = false;
 };
 
-/// Imports the files. It reads all files before it writes any. If there is a problem, nothing is written. If
-/// column roles were guessed, the mapping is shown with the equivalent options. Without --yes, the user must
-/// confirm the mapping on a terminal. If there is no terminal, the exit code is 2.
+/// Imports the files. Reads all files before it writes any; if there is a problem, it writes nothing. If
+/// column roles were guessed, it shows the mapping and the equivalent options. Without --yes, the user must
+/// confirm this mapping on a terminal. If there is no terminal, the exit code is 2.
 ExitCode run_import(const ImportOptions& options);
 
-/// Returns the output paths of the logs of `files`. For one file, this is `out` itself, unless `out` is a
-/// folder. Otherwise it is one path per log in the folder `out`. The error is a sentence.
+/// Returns the output paths of the logs. For one file, the path is `out`, if `out` is not a folder. Otherwise
+/// the folder `out` gets one path per log. The error is a sentence.
 [[nodiscard]] tl::expected<std::vector<std::string>, std::string> import_targets(
     const std::vector<std::string>& files, const std::string& out);
 
-/// Returns the mapping `begun` with the settings of the options applied. The error is a sentence.
+/// Returns the mapping `begun`, completed with the settings of the options. The error is a sentence.
 [[nodiscard]] tl::expected<sysid::Mapping, std::string> mapping_of(const ImportOptions& options,
                                                                    sysid::Mapping begun);
 
