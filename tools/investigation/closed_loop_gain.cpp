@@ -28,18 +28,20 @@ using control::FeedforwardKind;
 using Json = nlohmann::ordered_json;
 
 constexpr double rate_hz = 100;
-/// Number of simulated rigs for the search of the gains, and number of further rigs for the evaluation.
+/// Number of simulated rigs with which the gains are searched, and number of further rigs with which they are
+/// evaluated.
 constexpr std::uint64_t searched_rigs = 2;
 constexpr std::uint64_t judged_rigs = 5;
 constexpr double largest_sensitivity = 2;
 constexpr double mean_mm = 13;
 constexpr double amplitude_mm = 7;
-/// Smallest span at which the reference is not scaled down [mm]. The published reference reaches 20 mm. A
-/// finger with a span of 22 mm reaches it with a reserve for creep.
+/// Span of the finger below which the reference is scaled down [mm]. The published reference reaches 20 mm. A
+/// finger with a span of 22 mm reaches 20 mm with a reserve for creep.
 constexpr double span_needed_mm = 22;
 constexpr control::GainSearch gain_search{.iterations = 25, .coarseness = 2};
 
-/// Removes the random errors of the sensor from the model, because the simulation adds its noise separately.
+/// Returns the model without the random errors of its sensor. The simulation adds the noise of the sensor
+/// separately.
 model::Model body_of(const model::Model& model) {
   return model::only(model, [](const model::BlockInfo& info) {
     return !model::is<model::SensorNoise, model::Quantisation, model::Outliers>(info);
@@ -61,9 +63,9 @@ class Rigs {
   [[nodiscard]] double mean() const { return mean_mm_; }
   [[nodiscard]] double amplitude() const { return amplitude_mm_; }
 
-  /// Returns the result with a feedforward from this model: the inverse of the whole model if it exists.
-  /// Otherwise the better of two is used: a plan with the model, or the inverse of its invertible part. The
-  /// error is infinite if neither exists.
+  /// Returns the result with a feedforward from this model. This is the inverse of the whole model, if it
+  /// exists. Otherwise, it is the better of a plan with the model and the inverse of the model's invertible
+  /// part. The error is infinite if neither exists.
   [[nodiscard]] ClosedLoopScheme with_model(const model::Model& believed) const {
     ClosedLoopScheme whole = measured(believed, FeedforwardKind::full_model);
     if (whole.refused.empty()) return whole;

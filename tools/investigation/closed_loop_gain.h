@@ -1,7 +1,7 @@
 #pragma once
-// Computes the benefit of an extended model in closed loop. Simulated rigs track the same reference, once
-// with the refitted and once with the extended model in the feedforward. The PID gains of both are tuned by
-// the same search.
+// Computes the benefit of an extended model in closed loop. Simulated rigs track the same reference twice:
+// with the refitted and with the extended model in the feedforward. One search method tunes the PID gains for
+// both.
 
 #include <cstdint>
 #include <optional>
@@ -18,31 +18,33 @@
 
 namespace softgrip::tools {
 
-/// Input of the comparison.
+/// The models, logs and settings that the comparison needs.
 struct ClosedLoopQuestion {
   model::Model recalibrated;
-  model::Model extended;  ///< this model, with its parameters changed by up to `rig_scatter`, is also the
-                          ///< simulated rig
+  model::Model extended;  ///< the extended model; with parameters changed by up to `rig_scatter`, it is also
+                          ///< the simulated rig
   double noise_mm = 0.03;
-  double span_mm = 0;  ///< span of the logs; the reference of 13 ± 7 mm is scaled down if the span is too
-                       ///< small for it; 0: unknown
+  double span_mm = 0;  ///< displacement span of the logs [mm]; the reference of 13 ± 7 mm is scaled down if
+                       ///< it exceeds the span; 0: unknown
   double pressure_max_kpa = 60;
   double frequency_hz = 0.2;
-  double rig_scatter = 0.02;  ///< largest relative deviation of a parameter of the simulated rig
+  double rig_scatter = 0.02;  ///< largest relative difference between a parameter of the simulated rig and
+                              ///< that of the extended model
   std::uint64_t seed = 1;
 };
 
-/// The result of one controller on the simulated rigs.
+/// The tracking result of one controller on the simulated rigs.
 struct ClosedLoopScheme {
   double rmse_mm = 0;  ///< median of the RMSE over the simulated rigs
   control::PidSettings pid;
-  /// full_model if the model has a causal inverse. Otherwise the better of two: planned, or full_model of the
-  /// invertible part. If neither has a smaller error than the PID alone, the value is none, and all numbers
-  /// are those of the PID alone.
+  /// Kind of the feedforward. It is full_model if the model has a causal inverse. Otherwise it is the better
+  /// of planned and full_model of the invertible part. If both have at least the error of the PID alone, the
+  /// value is none, and all results are those of the PID alone.
   control::FeedforwardKind feedforward = control::FeedforwardKind::none;
-  std::string refused;  ///< reason why the feedforward is not full_model of the whole model; empty: it is
-  std::optional<control::InvertiblePart> part;  ///< the part that is inverted, if it is not the whole model
-  control::TrackingTrace trace;                 ///< trace on the rig with the median error
+  std::string refused;  ///< reason why the whole model is not used as full_model; empty: it is used
+  std::optional<control::InvertiblePart> part;  ///< the part of the model that is inverted; nullopt: the
+                                                ///< whole model
+  control::TrackingTrace trace;                 ///< trace of the simulated rig that has the median error
 };
 
 struct ClosedLoopGain {
@@ -57,13 +59,15 @@ struct ClosedLoopGain {
   int rigs = 0;
   double wall_s = 0;
 
-  [[nodiscard]] std::string reference() const;           ///< "13 ± 7 mm at 0.2 Hz"
-  [[nodiscard]] std::vector<std::string> notes() const;  ///< remarks on the conditions of the comparison
+  [[nodiscard]] std::string reference() const;  ///< Returns the reference as text, for example "13 ±
+                                                ///< 7 mm at 0.2 Hz".
+  [[nodiscard]] std::vector<std::string> notes() const;  ///< Returns remarks on the conditions of the
+                                                         ///< comparison.
 };
 
 [[nodiscard]] ClosedLoopGain measure_closed_loop(const ClosedLoopQuestion& question);
 
-/// Adds "closed_loop" to a diagnosis.json or investigation.json.
+/// Adds the member "closed_loop" to the JSON of diagnosis.json or investigation.json.
 void add_closed_loop(nlohmann::ordered_json& json, const ClosedLoopGain& gain);
 
 }  // namespace softgrip::tools

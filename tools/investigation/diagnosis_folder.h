@@ -28,18 +28,18 @@ struct ConsequenceOptions {
 [[nodiscard]] Consequences consequences_of(const sysid::Diagnosis& diagnosis,
                                            const ConsequenceOptions& options);
 
-/// The input of a diagnosis.
+/// The model, the logs and the options of a diagnosis.
 struct DiagnosisSource {
   const std::vector<sysid::Log>& logs;
   const model::Model& given;
-  std::vector<std::string> call;  ///< command line; empty: not called as a command
+  std::vector<std::string> call;  ///< command line; empty: the diagnosis was not started by a command
 };
 
 /// Returns the names of the files that write_diagnosis_folder() writes, replaces or removes.
 [[nodiscard]] std::vector<std::string> diagnosis_files();
 
 /// Writes the files into `folder` and returns the text of diagnosis.json. Removes the next_experiment.yaml or
-/// feedforward_model.yaml of an earlier diagnosis if there is no new one.
+/// feedforward_model.yaml of an earlier diagnosis if this diagnosis has no such file.
 /// @param channel  channel for which the experiment is written; "": all channels of the rig.
 [[nodiscard]] tl::expected<std::string, std::string> write_diagnosis_folder(const std::string& folder,
                                                                             const sysid::Diagnosis& diagnosis,
@@ -50,7 +50,7 @@ struct DiagnosisSource {
 /// Returns the input of the closed-loop comparison for a diagnosis.
 [[nodiscard]] ClosedLoopQuestion closed_loop_question(const sysid::Diagnosis& diagnosis, std::uint64_t seed);
 
-/// Returns sentences about the consequences, one per line.
+/// Returns sentences about the next experiment and the closed loop, one per line.
 [[nodiscard]] std::string text_of(const Consequences& consequences, const std::string& folder);
 
 }  // namespace softgrip::tools

@@ -11,13 +11,14 @@
 namespace softgrip::tools {
 
 /// Returns a sentence if the command of the log differs from the waveform in duration, largest pressure or
-/// total travel.
+/// total travel. Returns nullopt if it does not.
 [[nodiscard]] std::optional<std::string> broken_promise(const sysid::Waveform& asked, const sysid::Log& log);
 
-/// Returns a sentence if an object blocked the finger. The check uses pressures up to `known_kpa`. A blocked
-/// finger moves as predicted in the lower part of its stroke, and far less than predicted in the upper part.
-/// @param predicted  the prediction for the log by a model without contact
-/// @param known_kpa  the largest pressure to which the model was fitted
+/// Returns a sentence if an object blocked the finger, else nullopt. The check uses pressures up to
+/// `known_kpa`. A blocked finger moves as predicted in the lower part of its stroke, and far less than
+/// predicted in the upper part.
+/// @param predicted  prediction for the log by a model without contact
+/// @param known_kpa  largest pressure of the logs to which the model was fitted
 [[nodiscard]] std::optional<std::string> touched(const sysid::Validation& predicted, const sysid::Log& log,
                                                  double known_kpa);
 

@@ -23,9 +23,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Largest share of the displacement range that the finger may use, predicted from the gain of the logs. The
-/// first value applies at pressures that the logs contain. The second applies at higher pressures, where
-/// creep and softening may add displacement.
+/// Largest share of the displacement range that the finger may use. The displacement is predicted with the
+/// gain of the finger in the logs. The first value applies at pressures that the logs contain. The second
+/// applies at higher pressures, where creep and softening may increase the displacement.
 constexpr double known_range_share = 0.95;
 constexpr double predicted_range_share = 0.85;
 
@@ -56,13 +56,13 @@ tl::expected<sysid::Log, NotPlayed> log_of(const std::string& path, const std::s
   return std::move(campaign.logs.front());
 }
 
-/// Calls `command IN OUT` and waits until it has ended.
+/// Runs `command IN OUT` in a shell and waits until it ends.
 tl::expected<void, NotPlayed> call(const std::string& command, const std::string& in,
                                    const std::string& out) {
   std::fflush(nullptr);
   const int status = std::system((command + " " + shell_word(in) + " " + shell_word(out)).c_str());
   const bool by_signal = WIFSIGNALED(status) || (WIFEXITED(status) && WEXITSTATUS(status) == 128 + SIGINT);
-  // Ctrl-C is also sent to this process, but system() ignores it meanwhile.
+  // Ctrl-C reaches this process as well, but system() ignores it until the command ends.
   const bool by_user =
       (WIFEXITED(status) && by_signal) || (WIFSIGNALED(status) && WTERMSIG(status) == SIGINT);
   if (by_user) note_ending_signal(SIGINT);
@@ -140,13 +140,13 @@ tl::expected<std::string, NotPlayed> run_on(const ExperimentRig& rig, const std:
   options.sequence = std::move(*sequence);
   options.record_folder = (fs::path(folder) / name).string();
   options.listen = false;
-  std::string fault;  // the first fault
+  std::string fault;  // the first fault of the run; empty: none
   options.on_event = [&fault](const daemon::EventEntry& event) {
     if (fault.empty() && event.severity == daemon::Severity::error) fault = event.text;
   };
   const auto outcome = rig.run(rig.rig, options);
   if (!outcome) return failed(outcome.error());
-  // A signal at the very end of an experiment must prevent the next experiment.
+  // A signal at the very end of an experiment does not end the experiment, but must prevent the next one.
   if (outcome->signal != 0) return stopped("stopped by the user; the rig is vented");
   if (outcome->ending != daemon::Ending::sequence_ended || !outcome->sequence_end ||
       *outcome->sequence_end != control::SequenceEnd::done) {

@@ -1,5 +1,5 @@
 #pragma once
-// The rigs on which an investigation plays its experiments. This is either the rig of a rig file, through the
+// Plays the experiments of an investigation on a rig. This is either the rig of a rig file, controlled by the
 // daemon's own code, or a command that the user provides.
 
 #include <cstdint>
@@ -20,54 +20,59 @@ namespace softgrip::tools {
 struct ExperimentRig {
   rig::RigFile rig;
   std::size_t channel = 0;
-  bool simulated = false;  ///< simulated in the process: nothing moves, and time is virtual
-  /// Plays the sequences. A test may replace it with another clock and another board.
+  bool simulated = false;  ///< true: the rig is simulated in the process, so nothing moves and time is
+                           ///< virtual
+  /// Runs a sequence on the rig. A test may use a function with another clock and another board.
   daemon::DaemonRunner run = daemon::run_daemon;
 
   [[nodiscard]] const std::string& channel_name() const { return rig.settings.channels[channel].name; }
-  /// Returns the rig for another run. If it is simulated, its noise has another seed.
+  /// Returns the rig for run number `occasion`. A simulated rig gets another noise seed for each run.
   [[nodiscard]] ExperimentRig at(std::uint64_t occasion) const;
   /// Returns the limits of the rig for the menu of experiments.
-  /// @param gain_mm_per_kpa  gain of the finger in the logs; it limits the displacement; 0: unknown.
-  /// @param known_kpa  the largest pressure of the logs. At higher pressures, a smaller share of the
-  /// displacement range is used.
+  /// @param gain_mm_per_kpa  gain of the finger in the logs, with which the displacement is limited; 0:
+  /// unknown.
+  /// @param known_kpa  largest pressure of the logs. At higher pressures, a smaller share of the displacement
+  /// range is used.
   [[nodiscard]] sysid::RigLimits limits(double gain_mm_per_kpa, double known_kpa) const;
 };
 
-/// Returns the channel with this name, or the only channel if the name is empty. The error is a sentence.
+/// Returns the rig with the channel of this name. An empty name selects the only channel. The error is a
+/// sentence.
 [[nodiscard]] tl::expected<ExperimentRig, std::string> experiment_rig(rig::RigFile rig,
                                                                       const std::string& channel);
 
-/// Plays one sequence text and returns the path of its recording: `folder`/NAME.
+/// Plays a sequence given as YAML text. Returns the path of its recording: `folder`/NAME.
 [[nodiscard]] tl::expected<std::string, NotPlayed> run_on(const ExperimentRig& rig, const std::string& name,
                                                           const std::string& sequence_yaml,
                                                           const std::string& folder);
 
-/// Plays one sequence text and returns the log of the rig's channel.
+/// Plays a sequence given as YAML text. Returns the log of the rig's channel.
 [[nodiscard]] tl::expected<sysid::Log, NotPlayed> played_on(const ExperimentRig& rig, const std::string& name,
                                                             const std::string& sequence_yaml,
                                                             const std::string& folder);
 
-/// Called before any motion with a sentence that describes it. The motion is allowed only if it returns true.
+/// Function that is called before any motion with a sentence that describes the motion. The motion is allowed
+/// if the function returns true.
 using Consent = std::function<bool(const std::string& what)>;
 
-/// Returns a player that runs the experiments in the foreground as `softgrip run` does. A signal vents the
+/// Returns a player that runs the experiments in the foreground, as `softgrip run` does. A signal vents the
 /// rig and stops the investigation.
 [[nodiscard]] Player rig_player(ExperimentRig rig, Consent consent);
 
-/// Returns a player that calls `COMMAND COMMAND_CSV LOG_OUT`. The file COMMAND_CSV has the columns time_s and
-/// pressure_command_kpa with one row per `interval_s`. The command writes a log to LOG_OUT.
+/// Returns a player that runs `COMMAND COMMAND_CSV LOG_OUT`. The file COMMAND_CSV has the columns time_s and
+/// pressure_command_kpa with one row per `interval_s`. The command must write a log to LOG_OUT.
 [[nodiscard]] Player command_player(std::string command, double interval_s, Consent consent);
 
-/// Returns a function that checks the sensor of a simulated rig. Known lengths pass through the sensor blocks
-/// of the simulated model, with the rig's noise and quantisation. Lengths outside the range of the sensor are
-/// omitted.
+/// Returns a function that checks the sensor of a simulated rig. It applies known lengths to the sensor
+/// blocks of the simulated model and adds the rig's noise and quantisation. Lengths outside the range of the
+/// sensor are omitted.
 [[nodiscard]] GaugeTaker simulated_gauge(ExperimentRig rig);
 
-/// Returns a function that checks a sensor by calling `COMMAND POSITIONS_CSV GAUGE_OUT`.
+/// Returns a function that checks a sensor: it runs `COMMAND POSITIONS_CSV GAUGE_OUT` and reads the file
+/// GAUGE_OUT.
 [[nodiscard]] GaugeTaker command_gauge(std::string command, Consent consent);
 
-/// Writes the readings to `folder`/gauge.csv and reads this file in the same way as any other gauge file.
+/// Writes the readings to `folder`/gauge.csv and reads this file as it reads the gauge file of a user.
 [[nodiscard]] tl::expected<sysid::GaugeFile, NotPlayed> gauge_file_of(
     const std::vector<sysid::GaugeReading>& readings, const std::string& folder);
 

@@ -17,7 +17,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 using sysid::Verdict;
 
-/// Largest number of steps. It exceeds the number of experiments in any menu.
+/// Largest number of steps of an investigation. It exceeds the number of experiments in any menu.
 constexpr std::size_t most_steps = 20;
 
 InvestigationStep step_of(const sysid::Diagnosis& diagnosis, const std::string& folder) {
@@ -55,7 +55,7 @@ class Investigator {
   }
 
  private:
-  /// Makes one diagnosis and, if it proposes one, one experiment. Returns false at the end of the
+  /// Makes one diagnosis, and plays the experiment that it proposes, if any. Returns false at the end of the
   /// investigation.
   tl::expected<bool, NotInvestigated> step() {
     const std::string name = "step_" + std::to_string(result_.steps.size() + 1);
@@ -99,8 +99,8 @@ class Investigator {
     return end(why.stopped ? InvestigationEnd::stopped : InvestigationEnd::failed, why.why);
   }
 
-  /// Sets the reason for the end if no experiment was proposed: either the budget is too small, or no
-  /// experiment separates the causes.
+  /// Sets the reason for the end if the diagnosis proposed no experiment. Either the budget is too small, or
+  /// no experiment separates the causes.
   bool end_without_experiment(const sysid::NextExperiment& none) {
     sysid::ExperimentOptions unbounded = plan_;
     unbounded.most_minutes = 1e9;
@@ -138,7 +138,8 @@ class Investigator {
     return true;
   }
 
-  /// Returns a sentence if the log shows a contact that the diagnosis does not already regard as possible.
+  /// Returns a sentence if the log shows a contact. Returns nullopt if the diagnosis already names contact as
+  /// a cause or an alternative.
   [[nodiscard]] std::optional<std::string> contact_in(const sysid::Log& log) const {
     for (const sysid::NamedCause& named : result_.last.causes) {
       const auto is_contact = [](const sysid::Cause& cause) {
@@ -151,8 +152,8 @@ class Investigator {
     return touched(*result_.steps.back().answer, log, sysid::campaign_size(result_.last.records).largest_kpa);
   }
 
-  /// Checks the sensor against a gauge. This is done if no waveform separates the alternatives but a gauge
-  /// does, because they differ in the sensor.
+  /// Checks the sensor against a gauge. The check is needed if the alternatives differ in the sensor, so that
+  /// no waveform separates them.
   bool check_sensor(const sysid::ProposedGaugeCheck& check, const std::string& folder) {
     if (check.minutes > result_.budget_minutes - result_.spent_minutes) {
       return end(InvestigationEnd::budget_spent,

@@ -1,6 +1,6 @@
 #pragma once
-// Repeats diagnosis and experiment until one cause remains, the budget is spent, or no experiment separates
-// the alternatives.
+// Repeats diagnosis and experiment until one cause remains, the time budget is spent, or no experiment
+// separates the alternatives.
 
 #include <functional>
 #include <optional>
@@ -21,19 +21,19 @@ namespace softgrip::tools {
 
 /// The reason why an experiment produced no log.
 struct NotPlayed {
-  bool stopped = false;  ///< stopped by the user, who refused consent or pressed Ctrl-C
-  std::string why;       ///< a sentence
+  bool stopped = false;  ///< true: the user refused consent or pressed Ctrl-C
+  std::string why;       ///< the reason as a sentence
   /// not_acceptable: the rig had a fault during the experiment, and its outputs are safe. io: the board
   /// cannot be reached, or another program uses it.
   ExitCode code = ExitCode::failed;
 };
 
-/// Plays one experiment on a rig. `folder` exists and receives the recordings.
+/// Function that plays one experiment on a rig. `folder` exists and receives the recordings.
 using Player = std::function<tl::expected<sysid::Log, NotPlayed>(const sysid::NextExperiment& experiment,
                                                                  const std::string& folder)>;
 
-/// Moves the sensor's target to known positions and reads the sensor. `folder` exists and receives the gauge
-/// file.
+/// Function that moves the sensor's target to known positions and reads the sensor. `folder` exists and
+/// receives the gauge file.
 using GaugeTaker = std::function<tl::expected<sysid::GaugeFile, NotPlayed>(
     const std::vector<double>& positions_mm, const std::string& folder)>;
 
@@ -41,40 +41,44 @@ struct InvestigationOptions {
   model::Model given;
   std::vector<sysid::Log> logs;
   sysid::DiagnosisOptions diagnosis;
-  sysid::ExperimentOptions experiment;  ///< includes the limits of the rig
-  double budget_minutes = 30;           ///< time on the rig
-  std::string out;                      ///< folder in which step_1/, step_2/ ... are created
-  std::string channel;                  ///< "": all channels of the rig
+  sysid::ExperimentOptions experiment;  ///< settings of the search for the next experiment, with the limits
+                                        ///< of the rig
+  double budget_minutes = 30;           ///< largest time on the rig [min]
+  std::string out;                      ///< folder in which the folders step_1, step_2, ... are created
+  std::string channel;                  ///< channel on which the experiments are played; "": all channels of
+                                        ///< the rig
   Player play;
-  GaugeTaker take_gauge;                         ///< empty: no person or program can move the target
-  std::function<void(const std::string&)> tell;  ///< reports one line of progress
+  GaugeTaker take_gauge;                         ///< checks the sensor; empty: neither a person nor a program
+                                                 ///< can move its target
+  std::function<void(const std::string&)> tell;  ///< prints one line of progress
 };
 
 enum class InvestigationEnd {
   settled,       ///< one cause per effect remains, or the model needs no cause
   unexplained,   ///< an error remains that no cause in the library explains, so no experiment helps
   nothing_left,  ///< no experiment separates the alternatives
-  budget_spent,  ///< an experiment separates the alternatives, but it exceeds the remaining budget
+  budget_spent,  ///< an experiment separates the alternatives, but needs more time than is left in the budget
   contact,       ///< the finger touched an object during an experiment
-  not_as_asked,  ///< the rig did not play the requested experiment (its command differs)
-  stopped,       ///< stopped by the user
+  not_as_asked,  ///< the rig did not play the requested experiment, because its command differs from the
+                 ///< request
+  stopped,       ///< the user stopped the investigation
   failed,        ///< an experiment could not be played, or its log could not be read
 };
 [[nodiscard]] const char* name_of(InvestigationEnd end);
 
-/// The name of a step that checks the sensor against a gauge instead of playing a waveform.
+/// Name of a step that checks the sensor against a gauge and plays no waveform.
 inline constexpr const char* gauge_check_name = "gauge_check";
 
-/// One diagnosis and the step that followed it.
+/// One diagnosis and the experiment or gauge check after it.
 struct InvestigationStep {
-  std::string folder;  ///< inside `out`
+  std::string folder;  ///< folder of the step inside `out`
   sysid::Verdict verdict = sysid::Verdict::unexplained;
-  std::string sentence;             ///< verdict as text
+  std::string sentence;             ///< verdict of the diagnosis as text
   double recalibrated_rmse_mm = 0;  ///< held-out RMSE of the refitted model
   double extended_rmse_mm = 0;      ///< held-out RMSE of the extended model
   std::vector<std::string> causes;
   std::vector<std::vector<std::string>> alternatives;
-  std::string experiment;  ///< name of the waveform that was played, or gauge_check; empty: none
+  std::string experiment;  ///< name of the waveform that was played, or gauge_check; empty: neither
   double predicted_separation_sigma = 0;
   double minutes = 0;
   std::string log;  ///< path of the log or of the gauge file of this step
@@ -85,13 +89,14 @@ struct InvestigationStep {
 
 struct Investigation {
   InvestigationEnd end = InvestigationEnd::failed;
-  std::string why;                   ///< the reason, as a sentence, if the end is not `settled`
-  ExitCode code = ExitCode::failed;  ///< if the end is `failed`
+  std::string why;                   ///< reason for the end as a sentence, if the end is not `settled`
+  ExitCode code = ExitCode::failed;  ///< exit code of the program, if the end is `failed`
   std::vector<InvestigationStep> steps;
   double budget_minutes = 0;
   double spent_minutes = 0;
   std::vector<sysid::Log> logs;           ///< the given logs, followed by the logs of the experiments
-  std::optional<sysid::GaugeFile> gauge;  ///< given or measured
+  std::optional<sysid::GaugeFile> gauge;  ///< readings of the sensor against a gauge, given by the user or
+                                          ///< measured in a step
   sysid::Diagnosis last;
 };
 
@@ -99,12 +104,12 @@ struct Investigation {
 /// cannot be written.
 struct NotInvestigated {
   ExitCode code = ExitCode::failed;
-  std::string why;  ///< a sentence
+  std::string why;  ///< the reason as a sentence
 };
 
 [[nodiscard]] tl::expected<Investigation, NotInvestigated> investigate(const InvestigationOptions& options);
 
-/// Returns the text of investigation.json. `rig` names the rig of the experiments.
+/// Returns the JSON of investigation.json. `rig` is the rig file or command that played the experiments.
 [[nodiscard]] nlohmann::ordered_json json_of(const Investigation& investigation, const std::string& rig);
 
 }  // namespace softgrip::tools

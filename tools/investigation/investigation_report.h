@@ -1,5 +1,5 @@
 #pragma once
-// Formats an investigation as one page: experiments, responses of the rig, and the result.
+// Formats an investigation as one HTML page with the experiments, the responses of the rig, and the result.
 
 #include <string>
 
@@ -9,7 +9,7 @@ namespace softgrip::tools {
 
 /// Returns the HTML page.
 /// @param rig          path of the rig file, or the command that plays the experiments
-/// @param closed_loop  sentences about the closed loop; empty: it was not simulated
+/// @param closed_loop  sentences about the closed loop; empty: no closed loop was simulated
 [[nodiscard]] std::string investigation_html(const Investigation& investigation, const std::string& rig,
                                              const std::string& closed_loop);
 

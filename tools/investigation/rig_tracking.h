@@ -1,5 +1,5 @@
 #pragma once
-// Measures the closed loop on a rig: it tracks the same sine with two controllers.
+// Measures the closed loop on a rig, which tracks the same sine once with each of two controllers.
 
 #include <string>
 
@@ -12,20 +12,21 @@
 
 namespace softgrip::tools {
 
-/// RMS of reading minus reference over the measured cycles of a track step [mm].
+/// RMS difference between reading and reference over the measured cycles of a track step [mm], per
+/// controller.
 struct RigTracking {
   double recalibrated_rmse_mm = 0;
   double extended_rmse_mm = 0;
   int cycles = 0;
 };
 
-/// Tracks the reference of `gain` on one channel of the rig, once with the controller of the refitted and
-/// once with that of the extended model. Recordings are written to `folder`.
+/// Tracks the reference of `gain` on one channel of the rig twice: with the controller for the refitted model
+/// and with the controller for the extended model. Recordings are written to `folder`.
 [[nodiscard]] tl::expected<RigTracking, NotPlayed> track_on_rig(
     const ExperimentRig& rig, const model::Model& recalibrated, const model::Model& extended,
     const ClosedLoopGain& gain, const std::string& folder, const Consent& consent);
 
-/// Adds "closed_loop.on_rig" to an investigation.json.
+/// Adds the member "closed_loop.on_rig" to the JSON of investigation.json.
 void add_rig_tracking(nlohmann::ordered_json& json, const RigTracking& tracking);
 
 }  // namespace softgrip::tools
