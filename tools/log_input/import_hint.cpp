@@ -13,7 +13,7 @@ namespace softgrip::tools {
 
 std::string import_hint(const std::string& path) {
   document::Problems problems;
-  // A valid log needs no import: it was refused because of another log or of the model.
+  // If the file is a valid log, give no hint. The log was refused because of another log or of the model.
   if (const auto text = read_file(path, sysid::LogOptions{}.bytes);
       text && sysid::parse_log(path, *text, problems))
     return "";
@@ -31,7 +31,8 @@ std::string import_hint(const std::string& path) {
   const sysid::Proposal proposal = sysid::propose(*table, {}, true);
   if (proposal.missing.empty() && sysid::convert(*table, proposal.mapping, problems))
     return path + " as a log: " + begin + sysid::options_of(proposal.mapping) + " " + end + "\n";
-  // The errors of a file with the columns of a log are already printed, and an import would not correct them.
+  // If the file has the columns of a log, give no hint. Its errors are already printed, and an import would
+  // not correct them.
   const bool own = sysid::column_index(*table, "pressure_command_kpa") < table->columns.size();
   return own ? std::string() : "the columns of " + path + ": " + begin + end + "\n";
 }

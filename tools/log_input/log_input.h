@@ -20,14 +20,14 @@ class App;
 
 namespace softgrip::tools {
 
-/// Options for the interpretation of the logs of a command.
+/// Options that define how the logs of a command are read.
 struct LogInput {
   std::string channel;
   std::string drive = "command";
   std::string begin = "auto";
   bool held = false;
-  /// True: if the pressure is measured, the reader adds no first sample to a log that begins when its command
-  /// is set (sysid/logs/command_before.h), because a separate model of the pressure begins at the measured
+  /// True: a log with measured pressure gets no additional first sample, even if it begins when its command
+  /// is set (sysid/logs/command_before.h). A separate model of the pressure then begins at the measured
   /// value.
   bool begins_at_measured_pressure = false;
 
@@ -37,28 +37,28 @@ struct LogInput {
 /// Adds --channel, --drive, --begin and --held to a command.
 void add_log_options(CLI::App& command, LogInput& input);
 
-/// The unit that the readings of logs must have, and its origin.
+/// The unit that the readings of logs must have, and the origin of this requirement.
 struct RequiredUnit {
-  std::string of;  ///< "the model given"
+  std::string of;  ///< origin of the requirement, for example "the model given"
   model::OutputUnit unit = model::OutputUnit::mm;
 };
 [[nodiscard]] RequiredUnit unit_of(const model::Model& model);
 [[nodiscard]] RequiredUnit unit_of(const std::vector<sysid::Log>& logs);
-/// Returns mm, the unit of rigs.
+/// Returns mm as the required unit, because rigs use mm.
 [[nodiscard]] RequiredUnit unit_of_rigs();
 
 /// Reads all logs. If one is refused, prints all problems and returns the exit code. Without a required unit,
-/// all logs must have the unit of the first log.
+/// all logs must have the same unit as the first log.
 [[nodiscard]] tl::expected<std::vector<sysid::Log>, ExitCode> read_logs(
     const std::vector<std::string>& paths, const LogInput& input,
     const std::optional<RequiredUnit>& required = {});
 
-/// Prints the problems of logs, and for each file a hint how `softgrip import` can convert it. Returns
-/// ExitCode::input_refused.
+/// Prints the problems of logs. For each file, also prints a hint if `softgrip import` can convert it.
+/// Returns ExitCode::input_refused.
 ExitCode refuse_logs(const document::Problems& problems);
 
-/// Reads a gauge file. If it is refused, prints all problems and returns the exit code. A file whose unit
-/// differs from the required unit is refused.
+/// Reads a gauge file. Refuses a file whose unit differs from the required unit. On failure, prints all
+/// problems and returns the exit code.
 [[nodiscard]] tl::expected<sysid::GaugeFile, ExitCode> read_gauge(const std::string& path,
                                                                   const RequiredUnit& required);
 
