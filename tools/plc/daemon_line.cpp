@@ -9,7 +9,7 @@ namespace softgrip::plc {
 
 namespace {
 
-/// Time between two attempts to connect to the daemon.
+/// Shortest time between two attempts to connect to the daemon.
 constexpr Nanoseconds retry_pause = ns_per_s / 4;
 
 }  // namespace

@@ -1,5 +1,5 @@
 #pragma once
-// Connects the gateway to softgripd, and reconnects after a loss of the connection.
+// Connects the gateway to softgripd, and connects it again after a loss of the connection.
 
 #include <optional>
 #include <string>
@@ -12,14 +12,16 @@ namespace softgrip::plc {
 
 class DaemonLine {
  public:
-  /// `path` is the path of the daemon's socket. `gateway` must outlive this object.
+  /// Creates the object without connecting. `path` is the path of the daemon's socket. `gateway` must outlive
+  /// this object.
   DaemonLine(std::string path, Gateway& gateway) : path_(std::move(path)), gateway_(gateway) {}
 
-  /// Connects if there is no connection, and passes the daemon's lines to the gateway. Does not wait.
+  /// Connects if there is no connection, and passes the lines that the daemon has sent to the gateway. Does
+  /// not wait.
   void receive(Nanoseconds now);
-  /// Sends the lines of the gateway to the daemon.
+  /// Sends the requests that the gateway has prepared to the daemon.
   void send();
-  /// Returns the descriptor for poll(), or -1 without a connection.
+  /// Returns the descriptor of the connection for poll(), or -1 if there is no connection.
   [[nodiscard]] int descriptor() const noexcept { return client_ ? client_->descriptor() : -1; }
 
  private:
@@ -29,7 +31,7 @@ class DaemonLine {
   std::string path_;
   Gateway& gateway_;
   std::optional<tools::DaemonClient> client_;
-  Nanoseconds tried_at_ = 0;  // last attempt to connect
+  Nanoseconds tried_at_ = 0;  // time of the last attempt to connect
 };
 
 }  // namespace softgrip::plc

@@ -1,6 +1,6 @@
 #pragma once
-// Converts between Modbus registers and JSON lines of the daemon. The gateway has no sockets and no clock.
-// Its owner passes the received data and the time to it, and sends the results.
+// Converts between Modbus registers and JSON lines of the daemon. The gateway has no sockets and no clock:
+// its owner passes received data and the time to it, and sends its output.
 
 #include <cstdint>
 #include <map>
@@ -21,38 +21,38 @@ namespace softgrip::plc {
 
 class Gateway {
  public:
-  /// `settings` must outlive the gateway.
+  /// Creates a gateway without a daemon. `settings` must outlive the gateway.
   explicit Gateway(const Settings& settings);
 
-  /// Returns the connected clients (Modbus masters). The owner adds and removes connections through this
-  /// object. It must close a connection that has lost its place.
+  /// Returns the connected clients (Modbus masters). The owner uses this object to add and remove
+  /// connections. It must close each connection that the object has removed.
   [[nodiscard]] Masters& masters() noexcept { return masters_; }
   [[nodiscard]] const Masters& masters() const noexcept { return masters_; }
-  /// Returns the response to a request of a client that has a place, and passes the client's command to the
-  /// daemon.
+  /// Returns the response to a request of the connection `id`, and passes the client's command to the daemon.
   [[nodiscard]] modbus::Reply serve(Masters::Id id, const modbus::Request& request, Nanoseconds now);
-  /// Processes waiting commands and silent clients. Call it after processing the daemon's lines, and at least
-  /// every `longest_pause`.
+  /// Processes the waiting command and silent clients. Call it after the daemon's lines were processed, and
+  /// at least every `longest_pause`.
   void look_after(Nanoseconds now);
   static constexpr Nanoseconds longest_pause = 20'000'000;
 
-  /// Call it when the connection to the daemon was opened.
+  /// Call this function when the connection to the daemon has been opened.
   void daemon_came(Nanoseconds now);
   /// Processes a line of the daemon.
   void daemon_said(const nlohmann::ordered_json& line, Nanoseconds now);
-  /// Call it when the connection to the daemon has ended.
+  /// Call this function when the connection to the daemon has ended.
   void daemon_went() noexcept;
   /// Returns the lines that must be sent to the daemon, oldest first, and removes them.
   [[nodiscard]] std::vector<nlohmann::ordered_json> lines_to_daemon();
 
   [[nodiscard]] const Handshake& handshake() const noexcept { return handshake_; }
   [[nodiscard]] const MasterWatch& watch() const noexcept { return watch_; }
-  /// Returns true if a daemon is connected and reports its state.
+  /// Returns true if a daemon is connected and has recently sent its status.
   [[nodiscard]] bool hears_daemon(Nanoseconds now) const noexcept;
   /// Returns the counters of the commands to which the daemon has not responded, oldest first.
   [[nodiscard]] std::vector<std::uint16_t> unanswered() const;
-  /// reacts() returns true if the reaction to a silent client was sent and has no response yet.
-  /// reaction_confirms() returns true if the response to it will also cover the latest silence.
+  /// reacts() returns true if stop or vent was sent because a client is silent, and the daemon has not
+  /// responded. reaction_confirms() returns true if the response to this command also covers the latest
+  /// silence.
   [[nodiscard]] bool reacts() const noexcept { return reaction_.has_value(); }
   [[nodiscard]] bool reaction_confirms() const noexcept { return reaction_ && reaction_confirms_; }
 
@@ -70,12 +70,15 @@ class Gateway {
   Handshake handshake_;
   MasterWatch watch_;
   bool connected_ = false;
-  Nanoseconds heard_at_ = 0;  // time of the last status of the daemon
+  Nanoseconds heard_at_ = 0;  // time at which the daemon last sent its status
   std::vector<nlohmann::ordered_json> to_daemon_;
   std::uint64_t last_id_ = 0;
-  std::map<std::uint64_t, std::uint16_t> asked_;  // counters of commands, by request id
-  std::optional<std::uint64_t> reaction_;         // request id of the pending reaction
-  bool reaction_confirms_ = false;                // no client has fallen silent since the reaction was sent
+  std::map<std::uint64_t, std::uint16_t> asked_;  // counters of the commands without a response, by request
+                                                  // id
+  std::optional<std::uint64_t> reaction_;         // request id of the stop or vent command for a silent
+                                                  // client; nullopt: none pending
+  bool reaction_confirms_ = false;                // true: no client has become silent since the pending stop
+                                                  // or vent was sent
   Nanoseconds reacted_at_ = 0;
 };
 

@@ -8,24 +8,24 @@
 
 namespace softgrip::plc {
 
-/// A command as the registers contain it.
+/// A command with its parameters, as the registers contain it.
 struct Command {
-  std::uint16_t code = 0;  ///< a CommandCode, or an unknown number
+  std::uint16_t code = 0;  ///< a CommandCode, or a number that is no CommandCode
   std::uint16_t recipe = 0;
   std::uint16_t squeeze = no_value;
   std::uint16_t speed = no_value;
   std::uint16_t displacement = no_value;
 
   [[nodiscard]] bool is(CommandCode kind) const noexcept { return code == static_cast<std::uint16_t>(kind); }
-  /// Returns true for stop and vent, which never wait for another command.
+  /// Returns true for stop and vent, which are executed even if another command is in progress.
   [[nodiscard]] bool halts() const noexcept { return is(CommandCode::stop) || is(CommandCode::vent); }
   friend auto operator<=>(const Command&, const Command&) = default;
 };
 
-/// The latest counter of one connection.
+/// The latest counter that one connection has written.
 struct Cursor {
-  /// The counter that was the newest one when this connection wrote it. Nullopt: the connection has not
-  /// written a counter.
+  /// The latest counter that this connection wrote and that was the newest at that time. Nullopt: the
+  /// connection has not written such a counter.
   std::optional<std::uint16_t> at;
   /// True if the last counter that this connection wrote was refused.
   bool refused = false;
@@ -33,45 +33,46 @@ struct Cursor {
   friend auto operator<=>(const Cursor&, const Cursor&) = default;
 };
 
-/// Executes a command only if its counter is the newest counter plus 1 (0 follows 65535) and its connection
-/// has written the newest counter before. Therefore a late command of a second connection is refused. So is a
-/// command of a client that has missed the command of another client. The newest counter is that of the last
-/// command that was executed, is in progress or waits. Writing it again has no effect.
+/// Executes a command only if two conditions are met. Its counter is the newest counter plus 1 (0 follows
+/// 65535), and its connection has written the newest counter before. The newest counter is that of the last
+/// command that was executed, is in progress or waits. Therefore a late command of a second connection is
+/// refused, and so is a command of a client that missed a command of another client. Writing the newest
+/// counter again has no effect.
 ///
-/// The first counter after the start of the gateway is only stored, because an earlier gateway process may
-/// have executed its command.
+/// The first counter after the start of the gateway is stored, but its command is not executed, because an
+/// earlier gateway process may have executed it.
 class Handshake {
  public:
   struct Entry {
     std::uint16_t counter = 0;
     Command command;
-    Reason refusal = Reason::none;  ///< if set, the command is refused with this reason
+    Reason refusal = Reason::none;  ///< reason for which the command is refused; none: it may be executed
 
     friend auto operator<=>(const Entry&, const Entry&) = default;
   };
 
-  /// Processes a counter that a connection has written. Returns true if the command must be executed now.
+  /// Processes a counter that a connection has written. Returns true if the caller must execute the command
+  /// now.
   [[nodiscard]] bool write(Cursor& cursor, const Entry& entry) noexcept;
-  /// Returns the waiting command if it must be executed now.
+  /// Returns the waiting command if the caller must execute it now, else nullopt.
   [[nodiscard]] std::optional<Entry> take_waiting() noexcept;
-  /// Marks the waiting command as refused with this reason.
+  /// Refuses the waiting command with this reason.
   void refuse_waiting(Reason reason) noexcept;
-  /// Records the end of a command. If a later command has replaced it, the end is not reported.
+  /// Stores the end of the command with this counter. If a later command has replaced it, the end is ignored.
   void finish(std::uint16_t counter, Outcome outcome, Reason reason = Reason::none) noexcept;
-  /// Call it when the connection to the daemon is lost: the outcome of the command in progress is then
-  /// unknown.
+  /// Call this function when the connection to the daemon is lost. The outcome of the command in progress is
+  /// then unknown.
   void lose() noexcept;
 
-  /// Returns the difference between a counter and the newest one, from -32768 to 32767, or 0 before the first
-  /// counter.
+  /// Returns `counter` minus the newest counter, from -32768 to 32767. Returns 0 before the first counter.
   [[nodiscard]] int ahead(std::uint16_t counter) const noexcept;
   /// Returns the counter of the last command that has ended.
   [[nodiscard]] std::uint16_t done_counter() const noexcept { return done_ ? done_->counter : 0; }
   [[nodiscard]] Outcome outcome() const noexcept { return executing_ ? Outcome::executing : outcome_; }
   [[nodiscard]] Reason reason() const noexcept { return reason_; }
   [[nodiscard]] bool waits() const noexcept { return waiting_.has_value(); }
-  /// These functions return the last command that has ended, the command in progress, and the waiting
-  /// command.
+  /// The next three functions return the last command that has ended, the command in progress, and the
+  /// waiting command.
   [[nodiscard]] const std::optional<Entry>& done() const noexcept { return done_; }
   [[nodiscard]] const std::optional<Entry>& executing() const noexcept { return executing_; }
   [[nodiscard]] const std::optional<Entry>& waiting() const noexcept { return waiting_; }

@@ -1,6 +1,6 @@
 #pragma once
-// Detects that the client (Modbus master) is silent, and remembers that a reaction is required until it is
-// confirmed.
+// Detects that the client (Modbus master) is silent. Stores that stop or vent is required until the daemon
+// has confirmed it.
 
 #include <optional>
 
@@ -8,19 +8,20 @@
 
 namespace softgrip::plc {
 
-/// Watches the heartbeat of the client from its first change on. A client without a heartbeat is not watched.
+/// Watches the heartbeat of the client, beginning with its first change. A client whose heartbeat never
+/// changes is not watched.
 class MasterWatch {
  public:
   explicit MasterWatch(Nanoseconds silence) noexcept : silence_(silence) {}
 
-  /// Call it when the heartbeat of the client has changed.
+  /// Call this function when the heartbeat of the client has changed.
   void beat(Nanoseconds now) noexcept {
-    look(now);  // also detects a silence that ends before the next call
+    look(now);  // detects a silence that ends with this heartbeat, before the next call of look()
     changed_ = now;
     noticed_ = false;
   }
-  /// Returns true once per silence: at the first call after the silence has become too long. Call it
-  /// frequently.
+  /// Returns true once per silence: at the first call after the silence has exceeded its limit. Call this
+  /// function frequently.
   bool look(Nanoseconds now) noexcept {
     if (noticed_ || !silent(now)) return false;
     noticed_ = true;
@@ -29,7 +30,7 @@ class MasterWatch {
   }
   [[nodiscard]] bool watched() const noexcept { return changed_.has_value(); }
   [[nodiscard]] bool silent(Nanoseconds now) const noexcept { return changed_ && now - *changed_ > silence_; }
-  /// Returns true until the reaction to the silence is confirmed, even if the heartbeat has resumed before.
+  /// Returns true from the detection of a silence until confirm(), even if the heartbeat has resumed before.
   [[nodiscard]] bool owes() const noexcept { return owes_; }
   void confirm() noexcept { owes_ = false; }
 

@@ -9,8 +9,7 @@ namespace softgrip::plc {
 
 namespace {
 
-/// A connection is in use if its last request is not older than this. Clients send several requests per
-/// second.
+/// Largest age of the last request of a connection that is in use. Clients send several requests per second.
 constexpr Nanoseconds in_use = ns_per_s;
 
 bool is_idle(const Master& master, Nanoseconds now) {
@@ -47,8 +46,9 @@ std::size_t Masters::places_of(const std::string& address) const {
 
 Masters::Place Masters::to_drop_for(const std::string& address, Nanoseconds now) {
   const bool has_none = places_of(address) == 0;
-  // Rank for removal: connections of the address with the most connections come first. Among these,
-  // connections without a request come first, followed by the connection with the oldest request.
+  // Order in which connections are removed. First come the connections of the address with the most
+  // connections. Among these, connections without a request come first, then the connection with the oldest
+  // request.
   const auto rank = [&](const Place place) {
     const Master& master = place->second;
     return std::tuple(masters_.size() - places_of(master.address), master.asked, master.asked_at);

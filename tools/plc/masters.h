@@ -14,26 +14,26 @@
 
 namespace softgrip::plc {
 
-/// The registers that a client writes, in the order of Name.
+/// The registers that a client writes, in the order of the enumeration Name.
 using Written = std::array<std::uint16_t, static_cast<std::size_t>(Name::master_heartbeat) + 1>;
 [[nodiscard]] constexpr std::uint16_t& at(Written& written, Name name) {
   return written[static_cast<std::size_t>(name)];
 }
-/// Returns the command in these registers.
+/// Returns the command that these registers contain.
 [[nodiscard]] Command command_in(const Written& written) noexcept;
 
 struct Master {
   std::string address;       ///< numeric IP address
-  Nanoseconds asked_at = 0;  ///< time of the last request; before the first request, time of the connection
+  Nanoseconds asked_at = 0;  ///< time of the last request, or of the connection if there was no request
   bool asked = false;        ///< true: the client has sent a complete request
   bool half = false;         ///< true: the client has sent a part of a request
-  /// True if the client may have sent its next request before it was found silent. This request cannot start
-  /// a sequence.
+  /// True if the client may have sent its next request before its silence was detected. This request cannot
+  /// start a sequence.
   bool fenced = false;
-  /// The values that this connection has written. They are separate for each connection, so that values of
-  /// another connection never become part of its command.
+  /// The register values that this connection has written. Each connection has its own values, so that values
+  /// of another connection never become part of its command.
   Written written{0, 0, 0, no_value, no_value, no_value, 0};
-  std::optional<std::uint16_t> heartbeat;  ///< the last heartbeat of this connection
+  std::optional<std::uint16_t> heartbeat;  ///< the heartbeat that this connection wrote last
   Cursor cursor;
 };
 
@@ -43,35 +43,36 @@ class Masters {
 
   explicit Masters(std::size_t most) : most_(most) {}
 
-  /// Adds a connection from a numeric address. If all places are taken, the oldest idle connection of the
-  /// same address is removed, so that lost connections do not block their client. If the address has no
-  /// connection, one is removed from the address with the most connections. Returns nullopt if no connection
-  /// can be removed.
+  /// Adds a connection from a numeric address. If the largest number of connections is reached, the oldest
+  /// idle connection of the same address is removed, so that lost connections do not block their client. If
+  /// the address has no connection, the address with the most connections loses one. Returns nullopt if no
+  /// connection can be removed.
   [[nodiscard]] std::optional<Id> admit(const std::string& address, Nanoseconds now);
-  /// Returns null if the connection has no place any more. Then close the connection.
+  /// Returns the connection, or null if it was removed. The owner must then close its socket.
   [[nodiscard]] Master* find(Id id) noexcept;
   [[nodiscard]] bool has(Id id) const noexcept { return masters_.contains(id); }
   void leave(Id id) noexcept { masters_.erase(id); }
 
-  /// Removes all other connections that have sent a part of a request. Call it after a write of the
-  /// connection `except`: the partial requests are older than this write.
+  /// Removes all other connections that have sent a part of a request. Call this function after a write of
+  /// the connection `except`, because the partial requests are older than this write.
   void drop_halves(Id except);
-  /// Prevents the next request of each connection from starting a sequence. Call it when the client was
-  /// silent, because this request may be older than the reaction to the silence.
+  /// Prevents the next request of each connection from starting a sequence. Call this function when the
+  /// client was silent, because this request may be older than the stop or vent that followed the silence.
   void fence() noexcept;
   /// Removes every connection that has sent no request for the time `longest`.
   void drop_silent(Nanoseconds now, Nanoseconds longest);
-  /// Stores the counter of this connection. Later connections of the same address begin with it.
+  /// Stores the counter of this connection, with which later connections of the same address begin.
   void remember_counter(const Master& master) { past_[master.address].at = master.cursor.at; }
   /// Prevents the connections of this address from executing commands until they have written the newest
-  /// counter. Call it after a refused command, because another connection of the address may hold the same
-  /// command or an older start.
+  /// counter. Call this function after a refused command, because another connection of the address may send
+  /// the same command or an older start.
   void lose_step(const std::string& address);
-  /// Stores a heartbeat. Returns true if it differs from the last heartbeat of this connection. For a new
-  /// connection, it is compared with the last heartbeat of the same address.
+  /// Stores a heartbeat. Returns true if it differs from the last heartbeat of this connection. The first
+  /// heartbeat of a new connection is compared with the last heartbeat of its address.
   [[nodiscard]] bool take_heartbeat(Master& master, std::uint16_t value);
 
-  /// Data of an address after its connections have ended. The file limits the number of addresses.
+  /// Data of an address that are kept after its connections have ended. The list of allowed addresses limits
+  /// their number.
   struct Past {
     std::optional<std::uint16_t> at;
     std::uint16_t heartbeat = 0;

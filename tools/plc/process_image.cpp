@@ -18,7 +18,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Names of the states in the daemon's JSON, in the order of StateCode.
+/// Names of the daemon's states in its JSON, in the order of StateCode.
 constexpr std::array<std::string_view, 7> states{"",        "starting", "idle",   "resynchronising",
                                                  "running", "stopping", "faulted"};
 constexpr std::array<std::string_view, 6> results{"-",         "HOLDING",  "NO PART",
@@ -30,14 +30,14 @@ std::uint16_t place_of(const std::array<std::string_view, N>& words, std::string
   return found == words.end() ? 0 : static_cast<std::uint16_t>(found - words.begin());
 }
 
-/// Returns the number in a code: 202 for "F202", 2 for "R02".
+/// Returns the number that a code contains: 202 for "F202", 2 for "R02".
 std::uint16_t number_in(std::string_view code) {
   std::uint16_t number = 0;
   if (!code.empty()) std::from_chars(code.data() + 1, code.data() + code.size(), number);
   return number;
 }
 
-/// Returns the quantity in a command register, or nullopt if the sequence's default applies.
+/// Returns the quantity that a command register requests, or nullopt if the sequence's default applies.
 std::optional<double> asked(std::uint16_t counts, double resolution) {
   if (counts == no_value) return std::nullopt;
   return static_cast<std::int16_t>(counts) * resolution;

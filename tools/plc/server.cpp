@@ -68,8 +68,8 @@ void Server::run() {
   }
 }
 
-/// Closes the newest connection. Call it if poll() fails because the process may have fewer descriptors than
-/// it would watch.
+/// Closes the newest connection. Call this function if poll() fails because it would watch more descriptors
+/// than the process may have.
 bool Server::give_up_line() {
   if (lines_.empty()) return false;
   gateway_.masters().leave(lines_.back().master);

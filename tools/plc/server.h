@@ -16,8 +16,8 @@ namespace softgrip::plc {
 
 class Server {
  public:
-  /// `listener` comes from modbus::listen_tcp(). `signals` is a signalfd, and any signal ends run(). The
-  /// references must outlive the server.
+  /// Creates the server. `listener` comes from modbus::listen_tcp(). `signals` is a signalfd; any signal ends
+  /// run(). The references must outlive the server.
   Server(const Settings& settings, Gateway& gateway, Descriptor listener, Descriptor signals);
   void run();
 
@@ -26,11 +26,11 @@ class Server {
     Masters::Id master;
     modbus::Connection connection;
   };
-  /// Closes a connection if the process may have fewer descriptors than it uses. Returns false if there is no
-  /// connection.
+  /// Closes one connection, because the process may not have as many descriptors as it uses. Returns false if
+  /// there is no connection to close.
   [[nodiscard]] bool give_up_line();
   void accept(Nanoseconds now);
-  /// Serves a connection. Returns false if it has ended or must be closed.
+  /// Processes the events of a connection. Returns false if it has ended or must be closed.
   [[nodiscard]] bool serve(Line& line, short events, Nanoseconds now);
 
   const Settings& settings_;
@@ -42,8 +42,8 @@ class Server {
   std::list<Line> lines_;
 };
 
-/// Returns the numeric address of the peer of a socket. An IPv4 address that is mapped to IPv6 is returned as
-/// IPv4. The result is empty if the address is not known.
+/// Returns the numeric address of the other end of a socket. An IPv4 address that is mapped to IPv6 is
+/// returned as IPv4. Returns "" if the address is unknown.
 [[nodiscard]] std::string address_of(int socket);
 
 }  // namespace softgrip::plc
