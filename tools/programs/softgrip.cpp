@@ -34,8 +34,8 @@ int run(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return softgrip::tools::end_of(program, error, argc, argv);
   }
-  // All results are complete and stored. A shell ends a loop over the program only if a signal ends the
-  // program.
+  // All results are complete and stored. A shell ends a loop over this program only if a signal ends the
+  // program, so the program raises the signal again.
   if (softgrip::ending_signal() != 0) softgrip::end_by_signal(softgrip::ending_signal());
   return static_cast<int>(outcome);
 }

@@ -39,7 +39,7 @@ void add_options(CLI::App& program, Options& options) {
   program.footer("Ready once 'listening on ADDRESS:PORT' is printed.");
 }
 
-/// Blocks the signals for the whole process and returns a descriptor that reports them.
+/// Blocks the ending signals for the whole process and returns a descriptor that reports them.
 Descriptor take_signals() {
   sigset_t set;
   sigemptyset(&set);

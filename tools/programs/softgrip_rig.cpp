@@ -1,4 +1,4 @@
-// softgrip-rig: the emulator of a rig on Modbus TCP or RTU.
+// softgrip-rig: emulates a rig on Modbus TCP or RTU.
 
 #include <sched.h>
 #include <sys/signalfd.h>
@@ -90,21 +90,21 @@ void add_options(CLI::App& program, Options& options) {
       "printed.");
 }
 
-/// Blocks the signals of the server for the whole process and returns a descriptor that reports them.
+/// Blocks the ending signals for the whole process and returns a descriptor that reports them.
 Descriptor take_signals() {
   sigset_t set;
   sigemptyset(&set);
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGUSR1}) sigaddset(&set, signal);
   sigprocmask(SIG_BLOCK, &set, nullptr);
-  // Ignore SIGPIPE: the failing write already shows that a client has disconnected.
+  // Ignore SIGPIPE, because a failed write already shows that a client has disconnected.
   std::signal(SIGPIPE, SIG_IGN);
   return Descriptor{signalfd(-1, &set, SFD_CLOEXEC)};
 }
 
 /// Requests real-time scheduling, because a board responds in time even if the computer is busy. Without the
 /// permission, the process keeps its ordinary scheduling. The thread is bound to one processor. On a busy
-/// computer, an unbound real-time thread waited up to 49 ms (Linux 6.18, share of the fair server), a bound
-/// one at most 1.4 ms.
+/// computer, a real-time thread that was not bound waited up to 49 ms (Linux 6.18, share of the fair server).
+/// A bound thread waited at most 1.4 ms.
 void ask_for_real_time() {
   constexpr int below_the_daemon = 40;
   sched_param parameters{};
@@ -120,7 +120,7 @@ void ask_for_real_time() {
   (void)::sched_setaffinity(0, sizeof one, &one);
 }
 
-/// Opens the sockets or the serial line of the modules and appends their addresses to the message.
+/// Opens the sockets or the serial line of the modules. Appends their addresses to the start-up message.
 ExitCode listen(const Setup& setup, simulation::ServerSockets& sockets, std::string& told) {
   if (setup.line) {
     auto end = simulation::SerialEnd::open(*setup.line);

@@ -18,16 +18,16 @@
 namespace softgrip::tools {
 namespace {
 
-// Difference of the noise seeds of two neighbouring channels. Any odd number is suitable.
+// Difference between the noise seeds of two neighbouring channels. Any odd number is suitable.
 constexpr std::uint64_t seed_step = 0x9e3779b97f4a7c15;
 
-/// Returns the path of a board file that is given as a path or as a name in config/boards.
+/// Returns the path of a board file. `board` is this path or the name of a file in config/boards.
 std::string board_path(const std::string& board) {
   const bool is_path = board.find('/') != std::string::npos || board.ends_with(".yaml");
   return is_path ? board : configuration_path("boards") + "/" + board + ".yaml";
 }
 
-/// Reports that a board map does not exist and suggests a similar name.
+/// Reports that the board file does not exist and suggests the most similar name.
 ExitCode no_such_board(const std::string& board, const std::string& path) {
   const std::vector<std::string> names = document_names(std::filesystem::path(path).parent_path());
   const std::string stem = std::filesystem::path(path).stem();
@@ -156,14 +156,15 @@ std::optional<ExitCode> place(const Options& options, Setup& setup) {
   if (setup.addresses.empty()) setup.addresses.push_back({.host = options.bind, .port = usual_port});
   for (std::size_t i = 0; i < setup.addresses.size(); ++i) {
     drivers::TcpAddress& address = setup.addresses[i];
-    // If the rig file names several hosts, each gets an address of this computer if possible.
+    // If the rig file names several hosts, a host that is a loopback address keeps it. Every other host
+    // becomes the bind address.
     if (setup.addresses.size() == 1 || !modbus::is_loopback(address.host)) address.host = options.bind;
     if (options.port) address.port = static_cast<std::uint16_t>(*options.port == 0 ? 0 : *options.port + i);
   }
   return std::nullopt;
 }
 
-/// Returns an exit code for the first input file that cannot be opened.
+/// Returns an exit code if an input file cannot be opened, else nullopt.
 std::optional<ExitCode> any_unreadable(const Options& options) {
   std::vector<std::string> files = options.models;
   if (!options.faults.empty()) files.push_back(options.faults);

@@ -1,5 +1,5 @@
 #pragma once
-// The options of softgrip-rig, and the emulator settings that result from them.
+// Options of softgrip-rig and the emulator settings that follow from these options.
 
 #include <cstdint>
 #include <optional>
@@ -16,14 +16,15 @@ namespace softgrip::tools {
 
 struct Options {
   std::vector<std::string> models;               ///< model files: one for all channels, or one per channel
-  std::vector<std::string> boards{"adam-6024"};  ///< one per module: a file, or a name in config/boards
+  std::vector<std::string> boards{"adam-6024"};  ///< board of each module: a file, or a name in config/boards
   std::string rig;                               ///< rig file with the wiring; empty: default wiring
   std::size_t channels = 2;                      ///< number of channels if there is no rig file
-  std::optional<std::uint8_t> unit;              ///< unit id of the first module; the others follow in order
+  std::optional<std::uint8_t> unit;              ///< unit id of the first module; each further module has the
+                                                 ///< next id
   std::string bind = "127.0.0.1";
   bool allow_network = false;
-  std::optional<std::uint16_t> port;  ///< default: the port of the rig file, or 1502
-  std::string rtu;                    ///< serial device instead of the network
+  std::optional<std::uint16_t> port;  ///< default: the port of the rig file; without a rig file, 1502
+  std::string rtu;                    ///< serial device that is used instead of the network
   bool rtu_over_tcp = false;          ///< sends RTU frames over TCP
   std::optional<std::uint32_t> baud;  ///< default: the value of the rig file; without a rig file, 9600 8N1
   std::optional<std::string> format;
@@ -33,18 +34,19 @@ struct Options {
   std::string faults;
   std::string truth;
   double truth_rate_hz = 1000;
-  std::optional<double> watchdog_s;  ///< replaces the timeout of the board map; 0: no watchdog
+  std::optional<double> watchdog_s;  ///< replaces the watchdog time of the board file [s]; 0: no watchdog
   double noise_mm = 0.03;
   double pressure_noise_kpa = 0.1;
   std::uint64_t seed = 1;
-  std::string control;  ///< path of a Unix socket; "-": the standard input
+  std::string control;  ///< path of the Unix socket for commands to the emulator; "-": the standard input
 };
 
-/// The settings of the emulator, and the addresses or the serial line on which it responds.
+/// The settings of the emulator, and the addresses or the serial line on which the emulator responds.
 struct Setup {
   simulation::EmulatorSettings emulator;
   std::vector<drivers::TcpAddress> addresses;  ///< one listening address per link
-  std::optional<drivers::SerialLine> line;     ///< if set, used instead of the network
+  std::optional<drivers::SerialLine> line;     ///< if set, the serial line that is used instead of the
+                                               ///< network
 };
 
 /// Creates the setup. On failure, prints all problems and returns the exit code.

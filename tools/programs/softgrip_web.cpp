@@ -24,7 +24,7 @@
 namespace softgrip::web {
 namespace {
 
-/// The path to which the package libjs-chart.js installs the file.
+/// Path of the file that the package libjs-chart.js installs.
 constexpr const char* chart_path = "/usr/share/javascript/chart.js/chart.min.js";
 constexpr std::size_t largest_chart = std::size_t{4} << 20U;
 
@@ -49,7 +49,7 @@ void add_options(CLI::App& program, Options& options) {
   program.footer("Ready once 'listening on http://ADDRESS:PORT/' is printed.");
 }
 
-/// Replaces settings of the file by those of the command line.
+/// Replaces settings of the file by the settings that the command line gives.
 void put_in_place(const Options& options, Settings& settings) {
   if (!options.socket.empty()) settings.look_socket = settings.operate_socket = options.socket;
   if (options.port) settings.port = *options.port;
@@ -57,7 +57,7 @@ void put_in_place(const Options& options, Settings& settings) {
   if (options.operate) settings.without_token = Role::operate;
 }
 
-/// Blocks the signals for the whole process and returns a descriptor that reports them.
+/// Blocks the ending signals for the whole process and returns a descriptor that reports them.
 Descriptor take_signals() {
   sigset_t set;
   sigemptyset(&set);
