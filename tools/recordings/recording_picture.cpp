@@ -49,7 +49,7 @@ Chart chart(std::string title, std::string y_label, int height) {
   return chart;
 }
 
-/// Returns the grip results and faults of a channel as vertical lines in its charts.
+/// Returns vertical lines that mark the grip results and faults of a channel in its charts.
 std::vector<Mark> marks_of(const sysid::Recording& recording, const std::string& channel) {
   std::vector<Mark> marks;
   for (const sysid::RecordedEvent& event : recording.events) {
@@ -102,8 +102,8 @@ Chart error_chart(const sysid::Log& log, const std::vector<double>& errors) {
   return error;
 }
 
-/// Adds a column of texts as a step curve between named levels. The levels are in the order of the texts'
-/// first appearance.
+/// Adds a column of texts to a chart as a step curve between named levels. The levels are in the order in
+/// which the texts first appear.
 void add_words(Chart& chart, const sysid::Log& log, const std::string& column) {
   const std::vector<std::string> words = sysid::texts_of(log, column);
   if (words.empty()) return;
@@ -142,7 +142,7 @@ std::string called(const sysid::Recording& recording) {
   return recording.sequence.empty() ? recording.name : recording.sequence + ", " + recording.name;
 }
 
-/// Returns the title of a chart without the statistics that follow the comma.
+/// Returns the title of a chart up to the comma, without the statistics after it.
 std::string subject_of(const Chart& chart) {
   return chart.title.substr(0, chart.title.find(','));
 }

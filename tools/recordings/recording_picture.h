@@ -10,14 +10,14 @@ namespace softgrip::tools {
 
 [[nodiscard]] sysid::Figure figure_of(const sysid::Recording& recording);
 
-/// The arrangement of two recordings: in separate columns, or drawn over each other for each channel. Each
-/// recording keeps its own time axis.
+/// The arrangement of two recordings: side by side in columns, or overlaid per channel. Each recording keeps
+/// its own time axis.
 enum class Pairing { beside, over };
 [[nodiscard]] sysid::Figure figure_of(const sysid::Recording& first, const sysid::Recording& second,
                                       Pairing pairing);
 
-/// Returns the part of a recording from `from_s` to `to_s` with its original times. An empty `channel`
-/// selects all channels. The error is a sentence.
+/// Returns the part of a recording from `from_s` to `to_s` with unchanged times. An empty `channel` selects
+/// all channels. The error is a sentence.
 [[nodiscard]] tl::expected<sysid::Recording, std::string> part_of(const sysid::Recording& recording,
                                                                   const std::string& channel, double from_s,
                                                                   double to_s);

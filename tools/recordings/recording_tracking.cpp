@@ -23,7 +23,7 @@ std::vector<char> gripping_of(const sysid::Log& log) {
     std::size_t end = begin;
     bool held = false;
     for (; end < steps.size() && steps[end] == steps[begin]; ++end) held = held || results[end] == "holding";
-    // The result of a step appears in the same tick as the next step.
+    // The log states the result of a step at the first sample of the next step.
     held = held || (end < steps.size() && results[end] == "holding");
     if (held)
       std::fill(gripping.begin() + static_cast<std::ptrdiff_t>(begin),

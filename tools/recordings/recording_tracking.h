@@ -1,9 +1,9 @@
 #pragma once
 // Computes the tracking error of a recorded channel.
 //
-// During a grip, the reference lies beyond the surface of the object. After the contact, the reference minus
-// the displacement therefore depends on the size of the object, not on the quality of the control. Hence only
-// free motion is evaluated.
+// During a grip, the reference lies beyond the surface of the object. After the contact, the difference
+// between reference and displacement therefore depends on the size of the object, not on the quality of the
+// control. Hence the tracking error is computed only for free motion.
 
 #include <cstddef>
 #include <string>
@@ -15,18 +15,18 @@ namespace softgrip::tools {
 
 /// Statistics of the tracking error over the samples that have a reference and a reading.
 struct Tracking {
-  bool grips_known =
-      false;  ///< the log has columns `step` and `result`; otherwise every sample counts as free
+  bool grips_known = false;  ///< true: the log has the columns `step` and `result`; false: every sample
+                             ///< counts as free motion
   std::size_t free_samples = 0;
   double free_rmse_mm = 0;
   double free_largest_mm = 0;
   std::size_t gripping_samples = 0;
-  double gripping_largest_mm = 0;  ///< largest reference minus displacement
+  double gripping_largest_mm = 0;  ///< largest difference reference minus displacement during grips
 };
 [[nodiscard]] Tracking tracking_of(const sysid::Log& log);
 
-/// Returns reference minus displacement per sample. A sample without a reference or a reading is NaN. The
-/// result is empty if the log has no reference.
+/// Returns reference minus displacement for each sample [mm], or NaN if either value is missing. Returns an
+/// empty list if the log has no reference.
 [[nodiscard]] std::vector<double> errors_of(const sysid::Log& log);
 
 /// Returns 1 for each sample of a step in which an object was detected or held, else 0. All samples of the
@@ -34,8 +34,8 @@ struct Tracking {
 /// columns `step` and `result`.
 [[nodiscard]] std::vector<char> gripping_of(const sysid::Log& log);
 
-/// Formats the statistics: "free motion: RMSE 0.04 mm, largest 0.14 mm; gripping: up to 4.4 mm short of the
-/// reference".
+/// Returns the statistics as text: "free motion: RMSE 0.04 mm, largest 0.14 mm; gripping: up to 4.4 mm short
+/// of the reference".
 [[nodiscard]] std::string to_text(const Tracking& tracking);
 
 }  // namespace softgrip::tools
