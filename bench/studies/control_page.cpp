@@ -1,4 +1,4 @@
-// The control study as a page.
+// Creates the page of the control study.
 
 #include <algorithm>
 #include <cmath>

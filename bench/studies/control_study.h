@@ -1,6 +1,6 @@
 #pragma once
 // Compares the tracking errors of several control schemes on the simulated finger bench_twin, as in the
-// paper, but with model errors, noise and stability margins.
+// paper. In addition to the paper, it includes model errors, noise and stability margins.
 
 #include <cstdint>
 #include <functional>
@@ -16,8 +16,8 @@ namespace softgrip::studies {
 
 struct ControlStudyOptions {
   std::uint64_t seed = 1;
-  int draws = 100;       ///< simulated fingers per scheme, frequency and mismatch
-  int search_draws = 3;  ///< further simulated fingers, used for the search of the gains
+  int draws = 100;       ///< simulated fingers with random parameters per scheme, frequency and mismatch
+  int search_draws = 3;  ///< further simulated fingers with which the gains are searched
   std::vector<double> frequencies_hz{0.05, 0.1, 0.2, 0.5};
   std::vector<double> mismatches{0.05, 0.10};
   double most_sensitivity = 2;
@@ -25,13 +25,13 @@ struct ControlStudyOptions {
   double noise_mm = 0.03;
   double mean_mm = 13;
   double amplitude_mm = 7;
-  std::size_t starts = 12;  ///< start points of the identifications
-  int iterations = 30;      ///< iterations of the tuner's search
+  std::size_t starts = 12;  ///< number of start points of each identification
+  int iterations = 30;      ///< number of iterations of the gain search
   unsigned threads = 0;
   std::function<void(const std::string&)> progress;
 };
 
-/// A median with the range that contains 90 % of the draws.
+/// A median over the simulated fingers, with the range that contains 90 % of them.
 struct Spread {
   double median = 0;
   double low = 0;   ///< 5 % quantile
@@ -42,17 +42,19 @@ struct Spread {
 struct ControlFigure {
   double frequency_hz = 0;
   double mismatch = 0;
-  double amplitude_mm = 0;  ///< amplitude that bench_twin can track at this frequency
+  double amplitude_mm = 0;  ///< largest amplitude that bench_twin can track at this frequency, at most that
+                            ///< of the study
   control::PidSettings pid;
-  double sensitivity = 0;  ///< largest maximum sensitivity Ms over the simulated fingers of the tuner
+  double sensitivity = 0;  ///< largest maximum sensitivity Ms over the simulated fingers with which the gains
+                           ///< are searched
   std::string limited_by;
   Spread rmse_mm;
-  Spread most_mm;                ///< largest absolute error of each draw
-  double percent_of_stroke = 0;  ///< median RMSE relative to the stroke (twice the amplitude)
+  Spread most_mm;                ///< largest absolute error of each simulated finger
+  double percent_of_stroke = 0;  ///< median RMSE in percent of the stroke, which is twice the amplitude
   double pressure_mean_kpa = 0;
   double pressure_most_kpa = 0;
   double out_of_reach_share = 0;
-  std::vector<double> draws_mm;  ///< RMSE of each draw [mm]
+  std::vector<double> draws_mm;  ///< RMSE of each simulated finger [mm]
 };
 
 /// One control scheme.
@@ -60,8 +62,8 @@ struct ControlScheme {
   std::string id;
   std::string about;
   control::FeedforwardKind kind = control::FeedforwardKind::none;
-  model::Model finger;    ///< the simulated finger before its parameters are drawn
-  model::Model believed;  ///< model of the controller
+  model::Model finger;    ///< the simulated finger before its parameters are varied at random
+  model::Model believed;  ///< the model that the controller uses
   std::string refusal;    ///< reason why this scheme has no results; empty: it has results
   std::vector<ControlFigure> figures;
 };
@@ -70,7 +72,7 @@ struct ControlStudy {
   ControlStudyOptions options;
   model::Model identified;  ///< the published structure, identified from logs of bench_twin
   double identified_rmse_mm = 0;
-  /// The structure with additional blocks for the valve, identified from the same logs.
+  /// The published structure with additional blocks for the valve, identified from the same logs.
   model::Model extended;
   double extended_rmse_mm = 0;
   std::vector<ControlScheme> schemes;

@@ -1,4 +1,4 @@
-// The control study as text for a terminal, and as JSON.
+// Formats the control study as text for a terminal and as JSON.
 
 #include <cmath>
 #include <nlohmann/json.hpp>

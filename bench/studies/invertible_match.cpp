@@ -13,16 +13,16 @@
 namespace softgrip::studies {
 namespace {
 
-/// Weight of the constraint [kPa]: millimetres of residual per mm/kPa by which the bound is exceeded.
+/// Weight of the constraint [kPa]: residual in mm for each mm/kPa by which the bound is exceeded.
 constexpr double weight_kpa = 1e5;
-/// Ratio of the largest to the smallest start value that is drawn.
+/// Ratio of the largest to the smallest random start value of a parameter.
 constexpr double spread = 3;
 
 std::size_t index_of(const model::Model& model, const char* path) {
   return model::find_path(model, path).value();
 }
 
-/// Residuals of a model with one additional row, which is 0 while beta <= most_ratio (alpha + 1/k0).
+/// Residuals of a model with one additional residual, which is 0 while beta <= most_ratio (alpha + 1/k0).
 class WithBoundOnRatio final : public sysid::Residuals {
  public:
   WithBoundOnRatio(const std::vector<sysid::Record>& records, const sysid::FitSpace& space,

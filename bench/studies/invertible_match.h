@@ -1,5 +1,5 @@
 #pragma once
-// Fits an invertible model to the response that a log contains.
+// Fits an invertible model to the readings of a log.
 
 #include <cstddef>
 #include <cstdint>
@@ -11,17 +11,17 @@
 namespace softgrip::studies {
 
 struct MatchOptions {
-  double most_ratio = 0.8;  ///< upper limit of beta/(alpha + 1/k0)
+  double most_ratio = 0.8;  ///< upper limit of the ratio beta/(alpha + 1/k0)
   std::size_t starts = 12;
   std::uint64_t seed = 1;
   unsigned threads = 0;
 };
 
 /// Fits a Bouc-Wen element in parallel with Kelvin-Voigt branches, behind a lag and a delay, by least squares
-/// with the constraint beta <= most_ratio (alpha + 1/k0). The constraint concerns several parameters, so it
-/// is implemented as an additional residual: the amount by which the bound is exceeded, with a weight that
-/// keeps this amount below 1e-6 of the gain. `start` must contain exactly these blocks. k0 keeps its value,
-/// because the data determine only the sum alpha + 1/k0.
+/// with the constraint beta <= most_ratio (alpha + 1/k0). The constraint is an additional residual, because
+/// it concerns several parameters. This residual is the weighted amount by which the bound is exceeded; the
+/// weight keeps the amount below 1e-6 of the gain. `start` must contain exactly these blocks. k0 keeps its
+/// value, because the data determine only the sum alpha + 1/k0.
 [[nodiscard]] model::Model invertible_match(const std::vector<sysid::Log>& logs, const model::Model& start,
                                             const MatchOptions& options);
 

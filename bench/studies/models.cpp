@@ -20,7 +20,7 @@ model::BlockSpec block(std::vector<double> values) {
   return {model::block_type<Block>(), std::move(values)};
 }
 
-/// Converts the gain and the time constant of a branch to its stiffness k and viscosity c.
+/// Returns the stiffness k and the viscosity c of a branch with this gain and this time constant.
 std::array<double, 2> branch(double gain_mm_per_bar, double time_constant_s) {
   const double k = kpa_per_bar / gain_mm_per_bar;
   return {k, k * time_constant_s};

@@ -1,5 +1,6 @@
 #pragma once
-// Repeats section 4 of the paper with simulated logs: identification on TP1, prediction of TP2, SP1 and SP2.
+// Repeats section 4 of the paper with simulated logs: the model is identified on TP1, and predicts TP2, SP1
+// and SP2.
 
 #include <cstdint>
 #include <string>
@@ -10,23 +11,25 @@
 
 namespace softgrip::studies {
 
-/// The identification error for one finger and one signal.
+/// The error of the identified model for one finger and one test signal.
 struct PaperFigure {
   double rmse_mm = 0;
   double rmse_percent_of_span = 0;
 };
 
-/// One of the four RMSE values of the paper, and the corresponding values of two simulated fingers. For both,
-/// the published structure was identified on tp1 alone.
+/// One of the four RMSE values of the paper, and the corresponding values of two simulated fingers. For each
+/// finger, the published structure was identified on tp1 alone.
 struct PaperRow {
   model::SignalName signal = model::SignalName::tp1;
   double paper_mm = 0;    ///< RMSE that the paper states
-  PaperFigure published;  ///< the finger follows the published model, so only the noise remains as an error
-  PaperFigure twin;       ///< the finger is bench_twin, whose lag and delay the published structure lacks
+  PaperFigure published;  ///< error for a finger that follows the published model, so that the noise is the
+                          ///< only source of error
+  PaperFigure twin;       ///< error for bench_twin, which has a lag and a delay that the published structure
+                          ///< lacks
 };
 
 struct PaperTableOptions {
-  std::uint64_t seed = 1;  ///< seed of noise and start points
+  std::uint64_t seed = 1;  ///< seed of the noise and of the start points
   double rate_hz = 100;
   double noise_mm = 0.05;
   std::size_t starts = 12;

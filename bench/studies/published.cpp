@@ -31,10 +31,11 @@ struct Hidden {
 constexpr std::array<Hidden, 5> hidden{
     {{0, 0, 0.57}, {0.05, 0.02, 0.78}, {0.10, 0.05, 1.28}, {0.15, 0.05, 1.69}, {0.25, 0.10, 9.5}}};
 constexpr std::array<double, 4> etas_per_bar{0.5, 1, 2, 4};
-/// Ratios beta/alpha of the elements whose inverse is computed. The first is invertible, the last is that of
-/// the paper.
+/// Ratios beta/alpha of the elements whose inverse is computed. The element with the first ratio is
+/// invertible. The last ratio is that of the paper.
 constexpr std::array<double, 8> ratios{0.5, 0.8, 0.95, 1.0, 1.05, 1.25, 1.75, 17.207 / 7.079};
-/// The pressure that every inverse must recover from the response: a sine from 0 to 60 kPa and back.
+/// The pressure that every inverse must compute from the response: one period of a sine from 0 to 60 kPa and
+/// back.
 constexpr double inverse_hz = 0.1;
 constexpr double inverse_s = 20;
 
@@ -47,7 +48,7 @@ std::string refusal_of(const model::Model& model, control::FeedforwardKind kind,
   return accepted ? std::string() : accepted.error().with_advice();
 }
 
-/// Returns the index of the faster branch of an element with two branches: 1 or 2.
+/// Returns the index of the faster branch of an element with two branches, 1 or 2.
 int faster_branch(const model::Model& model) {
   const double tau1 =
       value_of(model, "kelvin_voigt.c1_kpa_s_per_mm") / value_of(model, "kelvin_voigt.k1_kpa_per_mm");
@@ -97,7 +98,7 @@ HiddenLatency identify_behind(const Hidden& valve, const PublishedOptions& optio
   return row;
 }
 
-/// Returns an ordinary finger behind a valve: the start point for matching the published response.
+/// Returns an ordinary finger behind a valve, from which the fit to the published response starts.
 model::Model match_start() {
   model::Model start = ordinary_model(0.06, 0.06);
   std::vector<double> values = model::flat_values(start);
@@ -140,7 +141,7 @@ PublishedMatch match_published(double eta_per_bar, const PublishedOptions& optio
   return row;
 }
 
-/// Returns the published Bouc-Wen element with another beta.
+/// Returns the published Bouc-Wen element with beta = `ratio` alpha.
 model::Model element(double ratio) {
   const model::Model published = model::only(
       published_model(2), [](const model::BlockInfo& info) { return model::is<model::BoucWen>(info); });
@@ -149,8 +150,8 @@ model::Model element(double ratio) {
   return model::with_values(published, values);
 }
 
-/// Computes the explicit inverse p(k) = (y(k) + h(k-1))/alpha, the "multiplicative" form. `growth` is the
-/// factor by which an error grows per sample.
+/// Computes the explicit ("multiplicative") inverse p(k) = (y(k) + h(k-1))/alpha. Sets `growth` to the factor
+/// by which an error grows per sample.
 std::vector<double> explicit_inverse(const model::Model& element, const std::vector<double>& wanted_mm,
                                      double tick_s, double& growth) {
   const double alpha = model::flat_values(element)[0];
@@ -164,7 +165,7 @@ std::vector<double> explicit_inverse(const model::Model& element, const std::vec
     chain.step(tick_s, p);
     pressures.push_back(p);
   }
-  // Factor by which a small error grows within one sample, while the reference is constant.
+  // Compute the factor by which a small error grows within one sample if the reference is constant.
   chain.reset(0);
   constexpr double hair_kpa = 1e-6;
   chain.step(tick_s, hair_kpa);
@@ -213,8 +214,7 @@ InverseTrial try_inverse(double ratio, const std::vector<double>& true_kpa, doub
   return trial;
 }
 
-/// Computes how the response of the published element falls and recovers when it is loaded for the first
-/// time.
+/// Computes the response of the published element to its first loading: where it falls and where it recovers.
 void first_loading(PublishedStudy& study) {
   model::Chain<double> chain(element(ratios.back()));
   chain.reset(0);

@@ -21,54 +21,55 @@
 namespace softgrip::studies {
 
 struct PublishedOptions {
-  std::uint64_t seed = 1;  ///< seed of noise and start points
+  std::uint64_t seed = 1;  ///< seed of the noise and of the start points
   double rate_hz = 100;    ///< sampling rate of all logs
   double noise_mm = 0.05;
-  std::size_t starts = 12;     ///< start points of every identification and every match
-  std::size_t most_cases = 9;  ///< largest number of rows of each table; fewer rows make a quick run
-  unsigned threads = 0;        ///< 0: one per core
+  std::size_t starts = 12;     ///< number of start points of every identification and every fit
+  std::size_t most_cases = 9;  ///< largest number of rows of each table; a smaller number shortens the study
+  unsigned threads = 0;        ///< number of threads; 0: one per core
   std::function<void(const std::string&)> progress;
 };
 
-/// Row of the first table: one valve that is not modelled, and the fit of the published structure.
+/// Row of the first table: the published structure was fitted to an actuator behind one valve, which the
+/// structure lacks.
 struct HiddenLatency {
   double lag_s = 0;
   double delay_s = 0;
   double planned_ratio = 0;  ///< value of `ratio` that was expected when the study was planned
   double ratio = 0;          ///< fitted beta/(alpha + 1/k0)
   double true_ratio = 0;
-  double other_ratio = 0;  ///< `ratio` for the other kind of triangles
+  double other_ratio = 0;  ///< `ratio` for the kind of triangles to which the model was not fitted
   double rmse_mm = 0;
   double span_mm = 0;
   double tau2_s = 0;  ///< time constant of the faster of the two fitted branches
   double k2_kpa_per_mm = 0;
   double c2_kpa_s_per_mm = 0;
-  bool refused = false;  ///< the controller would refuse to invert the fitted model
+  bool refused = false;  ///< true: the controller refuses to invert the fitted model
   model::Model fitted;
 };
 
-/// Row of the second table: a match of the published response.
+/// Row of the second table: an invertible model that was fitted to the published response.
 struct PublishedMatch {
   double eta_per_bar = 0;  ///< value of eta that is assumed for the published model
   double rmse_mm = 0;
-  double other_rmse_mm = 0;  ///< RMSE on a signal to which the match was not fitted
+  double other_rmse_mm = 0;  ///< RMSE on a signal to which the model was not fitted
   double span_mm = 0;
   double lag_s = 0;
   double delay_s = 0;
-  double ratio = 0;  ///< beta/(alpha + 1/k0) of the matching model
+  double ratio = 0;  ///< beta/(alpha + 1/k0) of the fitted model
   model::Model model;
 };
 
 /// Row of the third table: an inverse of one Bouc-Wen element, applied to the element's own response.
 struct InverseTrial {
   double ratio = 0;               ///< beta/alpha
-  double growth = 0;              ///< factor by which a small error of the explicit form grows per sample
-  double explicit_error_kpa = 0;  ///< largest error of the explicit form, without pressure limits
-  double implicit_error_kpa = 0;  ///< largest error of the implicit form within 0 to 60 kPa
-  double implicit_jump_kpa = 0;   ///< largest change per sample of the implicit form
-  double true_jump_kpa = 0;       ///< largest change per sample of the true pressure
-  double unreached_share = 0;     ///< share of the samples without a solution of the implicit form
-  bool refused = false;           ///< the check before the start of a controller would refuse this element
+  double growth = 0;              ///< factor by which a small error of the explicit inverse grows per sample
+  double explicit_error_kpa = 0;  ///< largest error of the explicit inverse, without pressure limits
+  double implicit_error_kpa = 0;  ///< largest error of the implicit inverse within 0 to 60 kPa
+  double implicit_jump_kpa = 0;   ///< largest change of the implicit inverse per sample
+  double true_jump_kpa = 0;       ///< largest change of the true pressure per sample
+  double unreached_share = 0;     ///< share of the samples for which the implicit inverse has no solution
+  bool refused = false;           ///< true: the check before the start of a controller refuses this element
   std::vector<double> explicit_kpa;
   std::vector<double> implicit_kpa;
 };
@@ -81,16 +82,17 @@ struct PublishedStudy {
   std::vector<PaperRow> paper;
   std::vector<double> inverse_time_s;
   std::vector<double> inverse_true_kpa;
-  double twin_rmse_mm = 0;     ///< bench_twin compared with the published response for eta = 2 /bar
+  double twin_rmse_mm = 0;     ///< RMS difference between bench_twin and the published response for eta = 2
+                               ///< /bar
   double published_ratio = 0;  ///< beta/(alpha + 1/k0) of the published model
   double falls_until_kpa =
-      0;  ///< on first loading, the response of the published element falls up to this pressure
-  double falls_by_mm = 0;          ///< depth of this fall
-  double back_at_kpa = 0;          ///< pressure at which the response is back at 0; NaN: not below 60 kPa
-  std::string bouc_wen_refusal;    ///< the controller's reason to refuse the published element
-  std::string full_model_refusal;  ///< the controller's reason to refuse the whole published model
-  sysid::Log match_log;            ///< published response of the first row of matches
-  std::vector<double> match_mm;    ///< response of the matching model
+      0;  ///< on first loading, the response of the published element falls until this pressure is reached
+  double falls_by_mm = 0;          ///< depth to which the response falls below 0
+  double back_at_kpa = 0;          ///< pressure at which the response returns to 0; NaN: not below 60 kPa
+  std::string bouc_wen_refusal;    ///< reason why the controller refuses the published element
+  std::string full_model_refusal;  ///< reason why the controller refuses the whole published model
+  sysid::Log match_log;            ///< published response to which the first row of matches was fitted
+  std::vector<double> match_mm;    ///< response of the model that was fitted to it
   sysid::Log latency_log;          ///< log of the row with the longest latency, to which the model was fitted
   std::vector<double> latency_mm;  ///< response of the fitted model
   double wall_s = 0;
@@ -98,15 +100,15 @@ struct PublishedStudy {
 
 /// Two sequences of triangles of 20 to 60 kPa at 0.1 to 0.4 Hz.
 enum class Triangles {
-  mixed,   ///< six triangles with independent amplitude and rate, twice
-  rising,  ///< three triangles whose rate increases with the amplitude, four times
+  mixed,   ///< six triangles with independent amplitudes and rates; the sequence is played twice
+  rising,  ///< three triangles whose rate increases with the amplitude; the sequence is played four times
 };
-/// Returns the command. displacement_mm is empty.
+/// Returns the command of a sequence of triangles. displacement_mm is empty.
 [[nodiscard]] sysid::Log triangles(Triangles choice, double rate_hz);
 
 [[nodiscard]] PublishedStudy study_published(const PublishedOptions& options);
 
-/// Formats a ratio: "> 100" if alpha + 1/k0 is almost zero.
+/// Formats a ratio as text: "> 100" if alpha + 1/k0 is almost zero.
 [[nodiscard]] std::string ratio_text(double ratio);
 /// Returns the text of published.json.
 [[nodiscard]] std::string published_json(const PublishedStudy& study);

@@ -1,4 +1,4 @@
-// The study of the published model as a page.
+// Creates the page of the study of the published model.
 
 #include <algorithm>
 #include <cmath>
@@ -57,7 +57,7 @@ Chart ratio_chart(const PublishedStudy& study) {
   return chart;
 }
 
-/// Returns charts of the fitted log and of the residual, one below the other.
+/// Returns two charts, one below the other: the fitted log and the residual.
 sysid::ChartRows fit_charts(const sysid::Log& log, const std::vector<double>& answer_mm,
                             const std::string& given, const std::string& answering) {
   Chart overlay;

@@ -1,4 +1,4 @@
-// The study of the published model as text for a terminal, and as JSON.
+// Formats the study of the published model as text for a terminal and as JSON.
 
 #include <cmath>
 #include <nlohmann/json.hpp>

@@ -1,5 +1,5 @@
 #pragma once
-// Functions for the texts of all studies.
+// Functions that the texts of all studies use.
 
 #include <nlohmann/json.hpp>
 
@@ -10,10 +10,11 @@
 
 namespace softgrip::studies {
 
-/// Right-aligns `text` in a column of `width` characters. A longer text is unchanged.
+/// Aligns `text` to the right in a column of `width` characters. Returns a longer text unchanged.
 [[nodiscard]] std::string cell(const std::string& text, std::size_t width);
 
-/// Returns every parameter by its path: {"bouc_wen.alpha_mm_per_kpa": 0.0708, ...}.
+/// Returns a JSON object with the value of every parameter by its path: {"bouc_wen.alpha_mm_per_kpa": 0.0708,
+/// ...}.
 [[nodiscard]] nlohmann::ordered_json parameters_of(const model::Model& model);
 
 }  // namespace softgrip::studies

@@ -8,12 +8,13 @@
 namespace softgrip::sysid {
 namespace {
 
-// Makes the added noise independent of the model's own noise.
+// Number from which the seed of the added noise is derived, so that this noise is independent of the noise of
+// the model.
 constexpr std::uint64_t added_noise = 1;
 
-/// Returns the interval of a regular log, or 0 for an irregular log.
-double sample_time_of(const Log& log) {
-  return log.size() < 2 ? 0 : sampling_of(log).sample_time_s();
+/// Returns the sampling interval of a log with constant interval, or 0 for any other log.
+double sample_time_of(const sysid::Log& log) {
+  return log.size() < 2 ? 0 : sysid::sampling_of(log).sample_time_s();
 }
 
 model::Surroundings surroundings_at(const Log& log, std::size_t i) {
@@ -29,7 +30,7 @@ model::Surroundings surroundings_at(const Log& log, std::size_t i) {
 Log sampled_signal(model::SignalName signal, double rate_hz) {
   Log log;
   log.name = model::name_of(signal);
-  // Include a last sample that exceeds the end by a rounding error.
+  // The term 1e-6 includes a last sample that exceeds the end by a rounding error.
   const auto intervals = static_cast<std::size_t>(std::floor(model::duration_s(signal) * rate_hz + 1e-6));
   for (std::size_t i = 0; i <= intervals; ++i) {
     const double time_s = static_cast<double>(i) / rate_hz;
