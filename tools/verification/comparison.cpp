@@ -79,7 +79,8 @@ void compare_csv(const std::string& file, const std::string& reported, const std
   if (before.size() != after.size())
     return comparison.compare(file + ": lines", static_cast<double>(before.size()),
                               static_cast<double>(after.size()));
-  std::map<std::size_t, std::pair<double, Difference>> worst;  // by column
+  std::map<std::size_t, std::pair<double, Difference>> worst;  // largest relative difference of each column,
+                                                               // by index of the column
   std::vector<sysid::Cell> names, was, is;
   for (std::size_t line = 0; line < before.size(); ++line) {
     const bool whole = sysid::split(before[line], was) && sysid::split(after[line], is);

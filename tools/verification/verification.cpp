@@ -37,7 +37,7 @@ struct Kind {
 constexpr std::array kinds{Kind{"identify", "identify.json"}, Kind{"validate", "validate.json"},
                            Kind{"diagnose", "diagnosis.json"}};
 
-/// Runs the program with its standard output discarded. Returns its exit code, or -1.
+/// Runs the program and discards its standard output. Returns its exit code, or -1 if it cannot run.
 int called(const std::string& program, std::vector<std::string> words) {
   words.insert(words.begin(), program);
   std::vector<char*> arguments;
@@ -64,7 +64,7 @@ const Json& member(const Json& json, const char* key) {
   return found != json.end() ? *found : none;
 }
 
-/// Returns the text at a key, or "" if it is missing.
+/// Returns the text at a key, or "" if the key is missing.
 std::string text_in(const Json& json, const char* key) {
   const Json& value = member(json, key);
   return value.is_string() ? value.get<std::string>() : std::string();
@@ -129,8 +129,8 @@ class Verifier {
     return true;
   }
 
-  /// Returns the hash of a file as the report states it. `option` is the option of the command line that
-  /// takes the file.
+  /// Returns the hash of a file that the report states. `option` is the command-line option whose value is
+  /// this file.
   [[nodiscard]] std::string hash_of(const std::string& option, const std::string& path) const {
     for (const Json* logs : {&member(json_, "logs"), &member(member(json_, "validation"), "logs")}) {
       for (const Json& log : *logs) {
@@ -144,7 +144,7 @@ class Verifier {
     return {};
   }
 
-  /// Replaces the path of every input file in the command line by its present path.
+  /// In the command line, replaces the path of every input file by the path at which the file exists now.
   bool find_inputs() {
     static const std::set<std::string> takes_files{"--data", "--validate", "--start", "--model", "--gauge"};
     std::string option;

@@ -1,5 +1,5 @@
 #pragma once
-// Recomputes a report of identify, validate or diagnose from the inputs that its folder names.
+// Recomputes a report of identify, validate or diagnose from the inputs that the report names.
 
 #include <string>
 #include <vector>
@@ -9,18 +9,18 @@
 namespace softgrip::tools {
 
 struct Verification {
-  /// Sentences about inputs that prevent the comparison: a missing or changed log, or a folder whose report
-  /// does not state the command line. If the list is not empty, nothing was compared.
+  /// Sentences about inputs that prevent the comparison: a log that is missing or has changed, or a report
+  /// that does not state its command line. If the list is not empty, nothing was compared.
   std::vector<std::string> missing;
   std::string reported_by;  ///< software and version that wrote the report
   std::string recomputed_by;
   Comparison comparison;
 };
 
-/// Repeats the command that wrote `folder` in a temporary folder, and compares JSON, series and model. Logs
-/// and models are searched at their original paths, in `folder`, and in the folder that contains `folder`.
-/// The hash of each file must agree with the report.
-/// @param program    path of softgrip.
+/// Repeats the command that wrote `folder` in a temporary folder, and compares JSON, series and model.
+/// Searches logs and models at their original paths, in `folder`, and in the folder that contains `folder`.
+/// The hash of each file must equal the hash in the report.
+/// @param program    path of the program softgrip.
 /// @param tolerance  relative tolerance.
 [[nodiscard]] Verification verify_report(const std::string& folder, const std::string& program,
                                          double tolerance);
