@@ -44,8 +44,8 @@ void DiskTask::answer_file(std::shared_ptr<const RegularFile> file) {
   done_ = true;
 }
 
-/// State that the archive shares with its thread. Both own it, because a blocked disk call can outlive the
-/// archive.
+/// Data that the archive shares with its thread. Both own the data, because a disk call that blocks can
+/// outlive the archive.
 struct Archive::Shared {
   using DiskTasks = std::deque<std::shared_ptr<DiskTask>>;
 
@@ -59,11 +59,11 @@ struct Archive::Shared {
   [[nodiscard]] DiskTasks take_quick_ones();
 
   Descriptor told{::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)};
-  Recordings recordings;  // used by the thread only
+  Recordings recordings;  // used by the disk thread alone
   std::mutex mutex;
   std::condition_variable changed;
-  DiskTasks quick;     // all tasks except lists
-  DiskTasks listings;  // lists that have not begun
+  DiskTasks quick;     // all tasks except lists of recordings
+  DiskTasks listings;  // lists of recordings that have not begun
   bool ends = false;
   bool ended = false;
 };
@@ -100,7 +100,7 @@ Archive::Shared::DiskTasks Archive::Shared::take_quick_ones() {
 
 void Archive::Shared::do_quick_ones() {
   for (const std::shared_ptr<DiskTask>& task : take_quick_ones()) {
-    if (task.use_count() == 1) continue;  // its owner has dropped it
+    if (task.use_count() == 1) continue;  // no other object refers to the task, so its answer is not needed
     answer(*task);
     tell();
   }
@@ -131,7 +131,7 @@ void Archive::Shared::list(const DiskTasks& tasks) {
 }
 
 void Archive::Shared::tell() const noexcept {
-  // The write fails only if the counter is full, and then the descriptor is readable anyway.
+  // The write can fail only if the counter is full. The descriptor is then readable, as intended.
   [[maybe_unused]] const int result = ::eventfd_write(told.get(), 1);
 }
 

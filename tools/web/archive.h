@@ -1,6 +1,6 @@
 #pragma once
-// Reads the recordings from the disk in a separate thread, so that a slow disk delays no stop or vent
-// command.
+// Reads the recordings from the disk in a separate thread, so that a slow disk does not delay stop and vent
+// commands.
 
 #include <atomic>
 #include <chrono>
@@ -21,8 +21,8 @@ struct DiskRequest {
   enum class Kind : unsigned char {
     health,   ///< the last result of `softgrip health`
     listing,  ///< the list of recordings
-    file,     ///< a file of a recording, to be opened
-    piece     ///< the next bytes of an open file, `Archive::piece` at most
+    file,     ///< opens one file of a recording
+    piece     ///< the next bytes of an open file, at most `Archive::piece` bytes
   };
   Kind kind = Kind::listing;
   std::string recording = {};
@@ -30,23 +30,22 @@ struct DiskRequest {
   std::shared_ptr<const RegularFile> from = nullptr;
 };
 
-/// A request to the disk and its answer. The disk thread skips a task if no other object refers to it any
-/// more.
+/// A request to the disk and its answer. The disk thread skips a task to which no other object refers.
 class DiskTask {
  public:
   explicit DiskTask(DiskRequest disk_request);
   [[nodiscard]] const DiskRequest& request() const noexcept { return request_; }
-  /// Returns true if the answer is complete. A complete answer does not change any more.
+  /// Returns true if the answer is complete. From then on, the answer does not change.
   [[nodiscard]] bool done() const noexcept { return done_; }
-  /// For a health request: returns the result, or null if there is none.
+  /// For a health request: returns the last health result, or null if there is none.
   [[nodiscard]] const nlohmann::ordered_json& health() const noexcept { return *health_; }
-  /// For a listing: returns `{"recordings": [...]}`. For a piece: returns the bytes, or "" at the end of the
-  /// file or after a read error.
+  /// For a list of recordings: returns `{"recordings": [...]}`. For a piece of a file: returns the bytes, or
+  /// "" at the end of the file or after a read error.
   [[nodiscard]] const std::string& text() const noexcept { return *text_; }
-  /// For a file request: returns the open file, or null if the file does not exist or may not be shown.
+  /// For a file: returns the open file, or null if the file does not exist or may not be shown.
   [[nodiscard]] const std::shared_ptr<const RegularFile>& file() const noexcept { return file_; }
 
-  // Called by the disk thread.
+  // The answer_ functions and fail() are called by the disk thread.
   void answer_health(const nlohmann::ordered_json& health);
   void answer_text(std::shared_ptr<const std::string> text);
   void answer_file(std::shared_ptr<const RegularFile> file);
@@ -65,13 +64,13 @@ class Archive {
  public:
   /// Largest number of bytes of one download that are kept in memory.
   static constexpr std::size_t piece = std::size_t{16} << 10U;
-  /// Shortest time between the starts of two lists. The pause after a list is at least as long as the list
-  /// took, so that lists use at most half of the thread's time.
+  /// Shortest time between the starts of two lists of recordings. The pause after a list is at least as long
+  /// as the list took, so that lists use at most half of the disk thread's time.
   static constexpr std::chrono::milliseconds listing_pause{200};
-  /// Longest time that the destructor waits for a disk that does not respond.
+  /// Longest time that the destructor waits for the disk thread, which a disk can block.
   static constexpr std::chrono::milliseconds farewell{1000};
 
-  /// An empty `folder` means that there are no recordings.
+  /// Starts the disk thread. An empty `folder` means that there are no recordings.
   explicit Archive(std::string folder);
   Archive(const Archive&) = delete;
   Archive& operator=(const Archive&) = delete;
@@ -79,12 +78,13 @@ class Archive {
   Archive& operator=(Archive&&) = delete;
   ~Archive();
 
-  /// Adds a request without waiting. One list serves all list requests that arrive before it begins. All
-  /// other requests have priority over lists.
+  /// Adds a request without waiting. All requests for a list that arrive before the list begins get the same
+  /// list. All other requests are processed before lists.
   [[nodiscard]] std::shared_ptr<const DiskTask> ask(DiskRequest disk_request);
-  /// Returns the descriptor for poll(). It is readable when a task is done.
+  /// Returns a descriptor for poll(), which is readable when a task is done.
   [[nodiscard]] int descriptor() const noexcept;
-  /// Resets the descriptor. Call it when the descriptor is readable.
+  /// Makes the descriptor unreadable until the next task is done. Call this function when the descriptor is
+  /// readable.
   void hear() const noexcept;
 
  private:

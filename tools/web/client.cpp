@@ -13,21 +13,21 @@ namespace softgrip::web {
 
 bool Client::receive() {
   std::array<char, 4096> bytes;
-  // The number of reads suffices for a complete request and limits the time for a client that never stops
-  // sending.
+  // Largest number of reads per call. It suffices for a complete request and limits the time for a client
+  // that never stops sending.
   constexpr std::size_t most_reads = 2 * (longest_head + longest_body) / bytes.size();
   for (std::size_t reads = 0; reads < most_reads;) {
     const ssize_t count = ::recv(socket_.get(), bytes.data(), bytes.size(), 0);
     if (count < 0 && errno == EINTR) continue;
     if (count < 0) return errno == EAGAIN || errno == EWOULDBLOCK;
     if (count == 0) {
-      // Some clients close their sending side and then wait for the response. The reader of a stream does
-      // this only when its page is closed.
+      // Some clients close their sending side after the request and then wait for the response, so keep the
+      // connection. A browser that reads a stream does so only when its page is closed, so end the stream.
       const bool known = said_all_;
       said_all_ = true;
       return !known && phase_ != Phase::following;
     }
-    // Bytes after the request are discarded.
+    // Discard the bytes that follow the request.
     if (phase_ == Phase::asking && in_.size() < longest_head + longest_body)
       in_.append(bytes.data(), static_cast<std::size_t>(count));
     if (static_cast<std::size_t>(count) < bytes.size()) return true;
@@ -46,11 +46,11 @@ bool Client::send_on(Nanoseconds now) {
     moved_at_ = now;
   }
   if (sent_ < out_.size()) return true;
-  std::string().swap(out_);  // also frees the memory, because the first message of a stream is large
+  std::string().swap(out_);  // swap() also frees the memory, because the first message of a stream is large
   sent_ = 0;
   if (phase_ != Phase::answering) return true;
-  // Announce the end of the response. If the socket were closed at once while it has unread input, the system
-  // would discard the response.
+  // Announce the end of the response, but do not close the socket. If it were closed while it has unread
+  // input, the system would discard the response.
   ::shutdown(socket_.get(), SHUT_WR);
   return false;
 }

@@ -1,5 +1,5 @@
 #pragma once
-// One connection of a browser or a collector. No call blocks.
+// One connection of a browser or a metrics collector. No call blocks.
 
 #include <cstddef>
 #include <cstdint>
@@ -11,23 +11,23 @@
 
 namespace softgrip::web {
 
-/// Receives one request and sends one response. The response is complete at once, or a file in pieces, or a
-/// stream of messages. A client that is too slow is disconnected. Its unsent bytes are limited and do not
-/// delay other clients.
+/// Receives one request and sends one response: a complete response, a file in pieces, or a stream of
+/// messages. A client that reads too slowly is disconnected. The number of its unsent bytes is limited, so
+/// that it does not delay other clients.
 class Client {
  public:
   enum class Phase : unsigned char {
-    asking,     ///< the request is not complete
-    waiting,    ///< the response needs the daemon or the disk
-    answering,  ///< the connection ends when all bytes are sent
-    loading,    ///< pieces of a file follow until finish()
-    following   ///< messages follow
+    asking,     ///< the request is not yet complete
+    waiting,    ///< the response waits for the daemon or the disk
+    answering,  ///< the response is complete; the connection ends when all bytes are sent
+    loading,    ///< a file is sent; pieces are added until finish()
+    following   ///< a stream is sent; messages are added to it
   };
 
   static constexpr Nanoseconds longest_question = 5 * ns_per_s;
-  /// Longest time without progress of the response.
+  /// Longest time in which a response may make no progress.
   static constexpr Nanoseconds longest_pause = 10 * ns_per_s;
-  /// Longest time until the response is complete.
+  /// Longest time from the request to the end of the response.
   static constexpr Nanoseconds longest_answer = 60 * ns_per_s;
   static constexpr std::size_t most_kept = std::size_t{1} << 20U;  ///< largest number of unsent bytes
   /// Largest number of bytes that one call sends, so that a fast reader does not delay the other clients.
@@ -35,24 +35,25 @@ class Client {
 
   Client(Descriptor socket, Nanoseconds now) : socket_(std::move(socket)), came_at_(now), moved_at_(now) {}
 
-  /// Receives available bytes. Returns false if the client has disconnected.
+  /// Receives the bytes that have arrived. Returns false if the client has disconnected.
   [[nodiscard]] bool receive();
-  /// Sends as much as possible. Returns false if the client has disconnected or the response is complete.
+  /// Sends as many bytes as the socket accepts. Returns false if the client has disconnected or the response
+  /// is complete.
   [[nodiscard]] bool send_on(Nanoseconds now);
-  /// Returns true if the client has exceeded a time limit.
+  /// Returns true if the client has exceeded one of the time limits.
   [[nodiscard]] bool late(Nanoseconds now) const noexcept;
 
-  /// Keeps the request until the response is available.
+  /// Marks the request as waiting for the daemon or the disk.
   void wait() noexcept { phase_ = Phase::waiting; }
-  /// Begins the response and discards the request. `next` is answering, loading or following.
+  /// Begins the response and discards the request. `next` is the new phase: answering, loading or following.
   void answer(std::string bytes, Phase next, Nanoseconds now);
-  /// Adds messages to the stream or a piece to the file. Returns false if the unsent bytes would exceed
+  /// Adds messages to a stream or a piece to a file. Returns false if the unsent bytes would exceed
   /// `most_kept`.
   [[nodiscard]] bool add(std::string_view bytes);
-  /// Ends the stream or file after all unsent bytes have been sent.
+  /// Ends the stream or the file. The bytes that are not sent yet are still sent.
   void finish() noexcept { phase_ = Phase::answering; }
 
-  /// Frees the unsent bytes.
+  /// Discards the unsent bytes and frees their memory.
   void drop_unsent() noexcept {
     std::string().swap(out_);
     sent_ = 0;
@@ -61,13 +62,13 @@ class Client {
   [[nodiscard]] Phase phase() const noexcept { return phase_; }
   [[nodiscard]] const std::string& request() const noexcept { return in_; }
   [[nodiscard]] Nanoseconds came_at() const noexcept { return came_at_; }
-  /// Returns the time of the last progress of the response; before the first progress, the time at which the
-  /// response began.
+  /// Returns the time of the last progress of the response. Before any progress, returns the time at which
+  /// the response began.
   [[nodiscard]] Nanoseconds moved_at() const noexcept { return moved_at_; }
   [[nodiscard]] bool has_to_send() const noexcept { return !out_.empty(); }
-  /// Returns the number of bytes that are not sent yet.
+  /// Returns the number of bytes that wait to be sent.
   [[nodiscard]] std::size_t unsent() const noexcept { return out_.size() - sent_; }
-  /// Returns true if the client has closed its sending side, so that poll() need not wait for input.
+  /// Returns true if the client has closed its sending side, so that poll() need not report input.
   [[nodiscard]] bool said_all() const noexcept { return said_all_; }
   [[nodiscard]] int descriptor() const noexcept { return socket_.get(); }
 
@@ -80,7 +81,7 @@ class Client {
   bool said_all_ = false;
   std::string in_;
   std::string out_;
-  std::size_t sent_ = 0;  // bytes of out_ that are sent
+  std::size_t sent_ = 0;  // number of bytes of out_ that have been sent
 };
 
 }  // namespace softgrip::web

@@ -15,53 +15,55 @@
 
 namespace softgrip::web {
 
-/// Converts the body of a browser's request to a daemon request: start, stop, vent, release or acknowledge.
-/// Only a start has a sequence and parameters. The error is a sentence.
+/// Converts the body of a browser's request to a request for the daemon: start, stop, vent, release or
+/// acknowledge. Only a start may have a sequence and parameters. The error is a sentence.
 [[nodiscard]] tl::expected<nlohmann::ordered_json, std::string> command_in(std::string_view body);
 
-/// Sends commands and gives every start its own id. If the outcome of a start can no longer be delivered, the
-/// start must not move the gripper. It is then stopped by its id until a daemon confirms that it does not
-/// run, even over a later connection. This applies if the response to the start is late, if the connection to
-/// the daemon or to the browser is lost, or if the daemon responds that its control loop was silent.
+/// Sends commands and gives every start its own id. If the outcome of a start cannot be sent to the browser,
+/// the start must not move the gripper. It is then stopped by its id until a daemon confirms that it is not
+/// running, even over a later connection. This happens if the response to the start is late, if the
+/// connection to the daemon or to the browser is lost, or if the daemon responds that its control loop was
+/// silent.
 class Commander {
  public:
-  /// Largest number of commands that wait for their responses. As many stop and vent commands may
-  /// wait in addition.
+  /// Largest number of commands that wait for their responses. If it is reached, the same number of further
+  /// stop and vent commands may wait.
   static constexpr std::size_t most_waiting = 32;
 
-  /// `socket` is the path of the daemon's operating socket and must outlive this object.
+  /// Creates the object without connecting. `socket` is the path of the daemon's socket for operation and
+  /// must outlive this object.
   explicit Commander(const std::string& socket) : socket_(socket) {}
 
-  /// Sends the request and returns a number with which take_answer() finds its response. The error is a
-  /// response in the format of the daemon.
+  /// Sends the request and returns a number, with which take_answer() finds its response. The error has the
+  /// format of a response of the daemon.
   [[nodiscard]] tl::expected<std::uint64_t, nlohmann::ordered_json> send(nlohmann::ordered_json request,
                                                                          Nanoseconds now);
-  /// Returns the daemon's complete response once, or nullopt while it is pending. If the daemon cannot be
-  /// reached, the response says so.
+  /// Returns the complete response of the daemon, once for each number. Returns nullopt while the response is
+  /// pending. If the daemon cannot be reached, returns an error response that says so.
   [[nodiscard]] std::optional<nlohmann::ordered_json> take_answer(std::uint64_t number, Nanoseconds now);
-  /// Returns true for a start that the daemon has not refused and whose outcome take_answer() has not
-  /// returned.
+  /// Returns true if the request is a start that the daemon has not refused and whose outcome take_answer()
+  /// has not returned.
   [[nodiscard]] bool is_open_start(std::uint64_t number) const;
-  /// Call it when the client that waits for this response has disconnected.
+  /// Call this function when the client that waits for this response has disconnected.
   void forget(std::uint64_t number);
-  /// Reads the responses of the daemon and repeats stops. Call it when the descriptor is readable, and
-  /// several times per second.
+  /// Reads the responses of the daemon and repeats stop requests. Call this function when the descriptor is
+  /// readable, and several times per second.
   void look_after(Nanoseconds now);
-  /// Gives up all waiting commands. Call it before the program ends.
+  /// Gives up all waiting commands. Call this function before the program ends.
   void leave();
-  /// Returns the descriptor of the connection, or -1.
+  /// Returns the descriptor of the connection for poll(), or -1 if there is no connection.
   [[nodiscard]] int descriptor() const noexcept { return daemon_ ? daemon_->descriptor() : -1; }
 
  private:
   struct Waiting {
     Nanoseconds give_up = 0;
-    std::string start_id;  ///< id of a start that may run; empty: none
+    std::string start_id;  ///< id of a start that may begin or run; empty: none
     std::optional<nlohmann::ordered_json> answer;
   };
-  /// A start whose outcome can no longer be delivered.
+  /// A start whose outcome cannot be delivered to the browser.
   struct GivenUp {
     std::string start_id;
-    std::uint64_t stop = 0;  ///< number of the stop request that has no response yet; 0: none
+    std::uint64_t stop = 0;  ///< number of the stop request without a response; 0: none
   };
   [[nodiscard]] std::optional<nlohmann::ordered_json> connect();
   std::uint64_t send_numbered(nlohmann::ordered_json request);
@@ -77,7 +79,7 @@ class Commander {
   std::uint64_t last_ = 0;
   std::map<std::uint64_t, Waiting> waiting_;
   std::vector<GivenUp> given_up_;
-  Nanoseconds stopped_at_ = 0;  // time of the last stop_again()
+  Nanoseconds stopped_at_ = 0;  // time at which stop_again() last sent requests
 };
 
 }  // namespace softgrip::web

@@ -13,12 +13,12 @@ using Json = nlohmann::ordered_json;
 
 constexpr double watch_rate_hz = 5;
 constexpr Nanoseconds retry_pause = ns_per_s / 4;
-/// A daemon that sends nothing for this time counts as disconnected.
+/// Longest time between two lines of a daemon. After this time, the daemon counts as disconnected.
 constexpr Nanoseconds longest_silence = 3 * ns_per_s / 2;
 constexpr Nanoseconds statistics_period = 2 * ns_per_s;
 constexpr Nanoseconds sequences_period = 10 * ns_per_s;
 
-/// Ids of the requests, by their subject.
+/// Ids of the requests, one per kind of request.
 enum Asked : std::uint64_t { hello = 1, watch, subscribe, statistics, sequences };
 
 }  // namespace

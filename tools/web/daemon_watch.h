@@ -1,5 +1,5 @@
 #pragma once
-// Maintains the connection that provides the displayed data of the daemon. One connection serves any number
+// Maintains the connection to the daemon that provides the displayed data. One connection serves any number
 // of browsers.
 
 #include <optional>
@@ -12,13 +12,14 @@ namespace softgrip::web {
 
 class DaemonWatch {
  public:
-  /// `socket` is the path of the daemon's read-only socket. All references must outlive this object.
+  /// Creates the object without connecting. `socket` is the path of the daemon's read-only socket. All
+  /// references must outlive this object.
   DaemonWatch(const std::string& socket, LiveState& state) : socket_(socket), state_(state) {}
 
-  /// Reads the daemon's lines, sends requests that are due, and reconnects. Call it when the descriptor is
-  /// readable, and several times per second.
+  /// Reads the daemon's lines, sends the requests that are due, and reconnects. Call this function when the
+  /// descriptor is readable, and several times per second.
   void look_after(Nanoseconds now);
-  /// Returns the descriptor of the connection, or -1.
+  /// Returns the descriptor of the connection for poll(), or -1 if there is no connection.
   [[nodiscard]] int descriptor() const noexcept { return daemon_ ? daemon_->descriptor() : -1; }
 
  private:
@@ -30,11 +31,11 @@ class DaemonWatch {
   const std::string& socket_;
   LiveState& state_;
   std::optional<tools::DaemonClient> daemon_;
-  Nanoseconds tried_at_ = 0;  // last attempt to connect
-  Nanoseconds heard_at_ = 0;  // last state received
+  Nanoseconds tried_at_ = 0;  // time of the last attempt to connect
+  Nanoseconds heard_at_ = 0;  // time of the last state that the daemon has sent
   Nanoseconds statistics_due_ = 0;
   Nanoseconds sequences_due_ = 0;
-  std::string started_at_;  // start time of the daemon whose events were received last
+  std::string started_at_;  // start time of the daemon process whose events were received last
   std::uint64_t last_event_ = 0;
 };
 

@@ -1,7 +1,7 @@
 #pragma once
-// Uses cpp-httplib as a function that converts the bytes of a request to the bytes of its response. The
-// sockets and the threads of the library are not used, so that a slow client occupies no thread and delays no
-// other client.
+// Uses cpp-httplib as a function that converts the bytes of a request to the bytes of its response. It does
+// not use the library's sockets and threads, so that a slow client occupies no thread and delays no other
+// client.
 
 #include <string>
 #include <string_view>
@@ -12,7 +12,7 @@ namespace softgrip::web {
 
 class HttpEngine : public httplib::Server {
  public:
-  /// Returns the response to a complete request. It throws no exception for any input of a client.
+  /// Returns the response to a complete request. Throws no exception for any bytes that a client sends.
   [[nodiscard]] std::string answer(std::string_view request);
 };
 

@@ -10,7 +10,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Largest size of the messages that wait for take_news(). Further messages are dropped.
+/// Largest size of the messages that wait for take_news() [bytes]. If it is reached, new messages are
+/// dropped.
 constexpr std::size_t longest_news = std::size_t{1} << 20U;
 
 Json list_of(const std::deque<Json>& items) {
@@ -22,13 +23,13 @@ Json list_of(const std::deque<Json>& items) {
 }  // namespace
 
 std::string message_of(std::string_view kind, const Json& data) {
-  // The serialised JSON contains no line breaks, so it fits on one data line.
+  // The serialised JSON contains no line breaks, so one data line contains it completely.
   return "event: " + std::string(kind) +
          "\ndata: " + data.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n\n";
 }
 
 void LiveState::take_status(Json status) {
-  // The time of a restarted daemon begins at zero again.
+  // A smaller time means that the daemon has restarted, so its trend begins again.
   if (number(status, "time_s") < number(status_, "time_s")) trend_.clear();
   status_ = std::move(status);
   note_trend();

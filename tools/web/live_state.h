@@ -1,5 +1,5 @@
 #pragma once
-// Stores the latest data of the daemon. All responses to browsers and collectors are made from it. Uses no
+// Stores the latest data of the daemon, from which all responses to browsers and collectors are made. Uses no
 // sockets.
 
 #include <cstdint>
@@ -18,25 +18,25 @@ class LiveState {
   static constexpr double trend_s = 60;
   static constexpr std::size_t events_kept = 200;
 
-  /// Each of these functions stores new data of the daemon and adds a message for the open pages.
+  /// The take_ functions store new data of the daemon and add a message for the open pages.
   void take_status(nlohmann::ordered_json status);
   void take_event(nlohmann::ordered_json event);
   void take_statistics(nlohmann::ordered_json statistics);
   void take_sequences(nlohmann::ordered_json sequences);
-  /// Stores the last result of `softgrip health`, which does not come from the daemon.
+  /// Stores the last result of `softgrip health`, which is read from the disk.
   void take_health(nlohmann::ordered_json health) { health_ = std::move(health); }
-  /// Call it when the connection to the daemon is lost. The status, the statistics and the trend are then
-  /// unknown, and the past events are kept.
+  /// Call this function when the connection to the daemon is lost. The status, the statistics and the trend
+  /// are then unknown. The past events are kept.
   void lose();
 
-  /// Returns the last status, or null if the daemon does not respond.
+  /// Returns the last status, or null if no daemon is connected.
   [[nodiscard]] const nlohmann::ordered_json& status() const noexcept { return status_; }
   [[nodiscard]] const nlohmann::ordered_json& statistics() const noexcept { return statistics_; }
   [[nodiscard]] const nlohmann::ordered_json& sequences() const noexcept { return sequences_; }
   /// Returns the last health result, or null if there is none.
   [[nodiscard]] const nlohmann::ordered_json& health() const noexcept { return health_; }
 
-  /// Returns the complete state as the first message of a stream of server-sent events.
+  /// Returns the complete state as a message, the first one of a stream of server-sent events.
   [[nodiscard]] std::string greeting() const;
   /// Returns one message per change since the last call, or "" if nothing has changed.
   [[nodiscard]] std::string take_news();
@@ -49,8 +49,8 @@ class LiveState {
   nlohmann::ordered_json sequences_;
   nlohmann::ordered_json health_;
   std::deque<nlohmann::ordered_json> events_;
-  // One sample per status: [time_s, [command, pressure, displacement, reference], ...]. There is one inner
-  // list per finger.
+  // Samples of the trend, one per status: [time_s, [command, pressure, displacement, reference], ...]. Each
+  // sample has one inner list per finger.
   std::deque<nlohmann::ordered_json> trend_;
   std::string news_;
 };

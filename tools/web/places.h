@@ -1,5 +1,6 @@
 #pragma once
-// Chooses the connection that must be closed when no place or no memory is left. Uses no sockets.
+// Chooses the connection that must be closed when the number of connections or the memory reaches its limit.
+// Uses no sockets.
 
 #include <cstddef>
 #include <optional>
@@ -10,45 +11,46 @@
 
 namespace softgrip::web {
 
-/// The properties of a connection that matter for the choice.
+/// The properties of a connection by which the choice is made.
 struct Guest {
   enum class Stay : unsigned char {
-    asking,    ///< its request is not complete
+    asking,    ///< the request of the connection is not complete
     brief,     ///< the response comes from memory or from the daemon and is sent at once
     lingering  ///< an open page, a download, a wait for the disk, or a response that the client does not read
   };
   Stay stay = Stay::asking;
   Role role = Role::none;
-  Nanoseconds moved_at = 0;  ///< time of arrival or of the last progress
-  std::size_t unsent = 0;    ///< bytes that are not sent yet
+  Nanoseconds moved_at = 0;  ///< time of the last progress, or of the connection if there was no progress
+  std::size_t unsent = 0;    ///< number of bytes that wait to be sent
 };
 
-/// A connection whose response has made no progress for this time may be closed in favour of another.
+/// Time without progress of a response after which its connection may be closed in favour of another
+/// connection.
 inline constexpr Nanoseconds long_pause = ns_per_s / 2;
 
-/// Limit of the unsent bytes of all connections together. The sum of this limit, of the requests and of the
-/// system's buffers for 512 connections is below the memory limit of the systemd unit (server.cpp).
+/// Limit of the unsent bytes of all connections together. The memory limit of the systemd unit exceeds the
+/// sum of this limit, the requests and the system's buffers for 512 connections (server.cpp).
 inline constexpr std::size_t most_unsent = std::size_t{16} << 20U;
 
-/// Returns the number of connections for which the process has enough descriptors. Each connection needs one
-/// for itself and one for a file that is sent. The result is at least 4 and at most `wanted`.
+/// Returns the number of connections for which the process has enough descriptors. Each connection needs two:
+/// one for its socket and one for a file that is sent. The result is at least 4 and at most `wanted`.
 /// @param descriptors  the number of descriptors that the process may have.
 [[nodiscard]] std::size_t places_for(std::size_t wanted, std::size_t descriptors) noexcept;
-/// Returns the number of places that lingering connections may take. The other places remain for requests
-/// that are answered at once, such as stop and vent.
+/// Returns the largest number of lingering connections (Guest::Stay). The remaining connections are reserved
+/// for requests that are answered at once, such as stop and vent.
 [[nodiscard]] constexpr std::size_t lingering_places(std::size_t places) noexcept {
   return places * 3 / 4;
 }
 
-using Victim = std::optional<std::size_t>;  ///< index of a guest
+using Victim = std::optional<std::size_t>;  ///< index of the connection to close; nullopt: none
 
-/// Chooses the connection to close when all places are taken and a client connects. Considers connections
-/// whose request is still incomplete after `long_pause`. Returns the one with the lowest role, and among
-/// equal roles the oldest.
+/// Chooses the connection to close when a client connects and the largest number of connections is reached.
+/// Considers connections whose request is incomplete after `long_pause`. Returns the one with the lowest
+/// role, and among equal roles the oldest.
 [[nodiscard]] Victim gives_way_to_newcomer(const std::vector<Guest>& guests, Nanoseconds now);
-/// Chooses the connection to close when all lingering places are taken and a client with `role` needs one.
-/// Returns a connection with the same or a lower role whose response makes no progress, or any connection
-/// with a lower role. Nullopt: refuse the client.
+/// Chooses the connection to close when a client with `role` needs a lingering connection and their largest
+/// number is reached. Returns a connection with the same or a lower role whose response makes no progress, or
+/// any connection with a lower role. Nullopt: refuse the client.
 [[nodiscard]] Victim gives_way_to_lingering(const std::vector<Guest>& guests, Role role, Nanoseconds now);
 /// Chooses the connection to close when too many bytes are unsent and a client with `role` needs memory.
 /// Returns the connection with the lowest role that has made no progress for the longest time. Nullopt:

@@ -1,5 +1,5 @@
 #pragma once
-// The daemon's recordings that browsers may see. Names that browsers send are always validated.
+// Lists and opens the daemon's recordings that browsers may see. Checks every name that a browser sends.
 
 #include <cstddef>
 #include <cstdint>
@@ -18,41 +18,42 @@
 
 namespace softgrip::web {
 
-/// Returns true if `name` is a permitted name of a recording or of a file in a recording: at most 128
-/// letters, digits, ".", "-" and "_", and the first character is not a dot.
+/// Returns true if `name` may be the name of a recording or of a file in a recording. A permitted name has at
+/// most 128 letters, digits, ".", "-" and "_", and does not begin with a dot.
 [[nodiscard]] bool is_plain_name(std::string_view name);
 
 /// Returns the content type of a file that may be shown, for example "image/svg+xml", or "" for any other
 /// file.
 [[nodiscard]] std::string_view content_type_of(std::string_view name);
 
-/// All calls must come from one thread.
+/// Lists and opens recordings. All calls must come from one thread.
 class Recordings {
  public:
   static constexpr std::size_t most_listed = 200;
-  /// Largest number of folders that are read for a list, newest first. The list is shorter than `most_listed`
-  /// if too few of these folders contain a file that may be shown. This limit bounds the memory and the time
-  /// for a list, even if there are more folders.
+  /// Largest number of folders that are read for a list; the newest are read. If too few of them contain a
+  /// file that may be shown, the list is shorter than `most_listed`. This number limits the memory and the
+  /// time for a list, however many folders exist.
   static constexpr std::size_t most_considered = 2000;
   static constexpr std::size_t largest_file = std::size_t{16} << 20U;
 
-  /// An empty `folder` means that there are no recordings.
+  /// Stores the folder without reading it. An empty `folder` means that there are no recordings.
   explicit Recordings(std::string folder) : folder_(std::move(folder)) {}
 
   [[nodiscard]] const std::string& folder() const noexcept { return folder_; }
-  /// Returns the list of recordings, newest first. Each has a `name` and the `files` that may be shown. Only
-  /// the folders that have changed since the last call are read.
+  /// Returns the list of recordings, newest first. Each element has a `name` and the `files` that may be
+  /// shown. Reads only the folders that have changed since the last call.
   /// @param wall_now  the result of wall_time_now(). A folder that changed just before this time is read
   /// again by the next call, because its time stamp may not show a second change.
   /// @param between   is called between the folders; may be empty.
   [[nodiscard]] nlohmann::ordered_json list(Nanoseconds wall_now, const std::function<void()>& between = {});
-  /// Opens a file. Returns nullopt if it does not exist or may not be shown. Follows no links.
+  /// Opens a file of a recording. Returns nullopt if the file does not exist or may not be shown. Follows no
+  /// links.
   [[nodiscard]] std::optional<RegularFile> open(std::string_view recording, std::string_view file) const;
   /// Returns the number of folders that were read from the disk since the start.
   [[nodiscard]] std::size_t folders_read() const noexcept { return folders_read_; }
 
  private:
-  /// The identity and the state of a folder, from stat().
+  /// The identity and the modification time of a folder, from stat().
   struct Stamp {
     std::uint64_t device = 0;
     std::uint64_t number = 0;
@@ -61,10 +62,10 @@ class Recordings {
   };
   struct Names {
     Stamp stamp;
-    bool settled = false;  // true: the time stamp would show any later change
+    bool settled = false;  // true: any later change of the folder changes its time stamp
     std::vector<std::string> names;
   };
-  /// Selects the names in a folder that are stored, and their order.
+  /// Selects the names in a folder that are stored, and defines their order.
   struct Choice {
     bool (*is_wanted)(std::string_view name) = nullptr;
     bool last_first = false;
@@ -79,9 +80,9 @@ class Recordings {
   }
 
   std::string folder_;
-  Names newest_;                        // recordings, newest first
-  std::map<std::string, Names> files_;  // files that may be shown, by recording
-  Nanoseconds wall_now_ = 0;            // time of the list in progress
+  Names newest_;                        // names of the recordings, newest first
+  std::map<std::string, Names> files_;  // names of the files that may be shown, by recording
+  Nanoseconds wall_now_ = 0;            // time at which the list in progress was requested
   std::function<void()> between_;
   std::size_t folders_read_ = 0;
 };

@@ -38,7 +38,7 @@ std::string_view take_line(std::string_view& text) {
   return line;
 }
 
-/// Checks the request line. Returns 0 if it is valid, otherwise the HTTP status of the refusal.
+/// Checks the first line of a request. Returns 0 if it is valid, otherwise the HTTP status of the refusal.
 int check_request_line(std::string_view line) {
   const std::size_t first = line.find(' ');
   const std::size_t last = line.rfind(' ');

@@ -14,13 +14,13 @@ inline constexpr std::size_t longest_body = 16384;
 struct Frame {
   enum class State : unsigned char { incomplete, complete, refused };
   State state = State::incomplete;
-  std::size_t size = 0;  ///< size of the complete request with its body
-  int status = 0;        ///< HTTP status of the refusal; 0: not refused
+  std::size_t size = 0;  ///< size of the complete request with its body [bytes]
+  int status = 0;        ///< HTTP status of the refusal; 0: the request is not refused
 };
 
-/// Checks the bytes that a client has sent so far. The check is stricter than the library that parses the
-/// request later. Lines must end with CR LF. Control characters, folded lines, a second Content-Length,
-/// chunked bodies and Expect headers are refused.
+/// Checks the bytes that a client has sent so far. The check is stricter than that of cpp-httplib, which
+/// parses the request afterwards. Lines must end with CR LF. Control characters, folded lines, a second
+/// Content-Length, chunked bodies and Expect headers are refused.
 [[nodiscard]] Frame frame_of(std::string_view bytes);
 
 }  // namespace softgrip::web

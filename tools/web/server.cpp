@@ -15,24 +15,25 @@ namespace softgrip::web {
 
 namespace {
 
-/// Largest time between two checks of the daemon, the deadlines and the sessions.
+/// Longest time between two checks of the daemon, of the time limits and of the sessions.
 constexpr Nanoseconds longest_pause = ns_per_s / 20;
 constexpr Nanoseconds check_period = ns_per_s;
-/// Largest number of connections accepted in one cycle, so that existing clients are not delayed.
+/// Largest number of connections that are accepted in one cycle, so that existing clients are not delayed.
 constexpr int most_accepted = 32;
 constexpr int no_place = 503;
-/// If the health result is not read within this time, a collector gets the metrics with the previous health
-/// result.
+/// Time limit for reading the health result. If it is exceeded, a collector gets the metrics with the
+/// previous health result.
 constexpr Nanoseconds patience_for_health = ns_per_s;
 constexpr Nanoseconds patience_for_disk = 8 * ns_per_s;
 
-/// Size of the send buffer of a socket. Without this setting, the system would buffer megabytes for a client
-/// that does not read. The system doubles this number. The memory limit of the systemd unit includes these
-/// buffers.
+/// Size of the send buffer of a socket [bytes]. If it were not set, the system would buffer megabytes for a
+/// client that does not read. The system doubles this number. The memory limit of the systemd unit includes
+/// these buffers.
 constexpr int kept_by_system = 65536;
-constexpr std::size_t most_connections = 512;  // upper limit in the configuration file
+constexpr std::size_t most_connections = 512;  // largest value that the configuration file may set
 constexpr std::size_t own_memory = std::size_t{20} << 20U;
-constexpr std::size_t memory_of_unit = std::size_t{128} << 20U;  // systemd/softgrip-web.service.in
+constexpr std::size_t memory_of_unit = std::size_t{128} << 20U;  // memory limit in
+                                                                 // systemd/softgrip-web.service.in
 static_assert(own_memory + most_unsent +
                       most_connections * (2 * std::size_t{kept_by_system} + longest_head + longest_body) <
                   memory_of_unit,
@@ -101,9 +102,9 @@ void Server::serve_until_signal() {
   }
 }
 
-/// Reduces the number of places and closes connections. Call it if poll() fails because the process may have
-/// fewer descriptors than it would watch. Returns false if no connection was closed, so that the failure has
-/// another cause.
+/// Reduces the largest number of connections and closes connections. Call this function if poll() fails
+/// because it would watch more descriptors than the process may have. Returns false if no connection was
+/// closed. The failure then has another cause.
 bool Server::give_up_places() {
   const std::size_t before = visitors_.size();
   places_ = places_for(settings_.max_connections, descriptor_limit());
@@ -126,7 +127,7 @@ void Server::count() {
 void Server::accept(Nanoseconds now) {
   for (int i = 0; i < most_accepted; ++i) {
     Descriptor socket = entrance_.accept(now);
-    // The next client needs a free descriptor, so close another connection if too few are left.
+    // If too few descriptors are free for the next client, close another connection.
     if (entrance_.short_of_descriptors()) static_cast<void>(make_place(now));
     if (!socket) return;
     ::setsockopt(socket.get(), SOL_SOCKET, SO_SNDBUF, &kept_by_system, sizeof kept_by_system);
@@ -136,7 +137,7 @@ void Server::accept(Nanoseconds now) {
     }
     ++counts_.turned_away;
     const std::string refusal = Site::refusal(no_place);
-    // Send what the socket accepts at once, and do not wait for this client.
+    // Send as many bytes of the refusal as the socket accepts at once. Do not wait for this client.
     [[maybe_unused]] const ssize_t sent =
         ::send(socket.get(), refusal.data(), refusal.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
   }
@@ -148,11 +149,12 @@ void Server::look_after(Visitor& visitor, short events, Nanoseconds now) {
     visitor.leaves = !client.receive();
     if (!visitor.leaves && client.phase() == Phase::asking) {
       serve(visitor, now);
-      // If the client has closed its sending side, its incomplete request cannot be completed.
+      // If a client has closed its sending side before its request is complete, the request can never be
+      // completed.
       if (client.phase() == Phase::asking && client.said_all()) visitor.leaves = true;
     }
   }
-  // A client that has closed its side does not receive the outcome of its start, so the start is given up.
+  // A client that has closed its sending side may not receive the outcome of its start, so give up the start.
   if (client.said_all() && commander_.is_open_start(visitor.command)) visitor.leaves = true;
   if (client.phase() == Phase::waiting && !visitor.leaves) take_reply(visitor, now);
   if (client.phase() == Phase::loading && !visitor.leaves) take_piece(visitor);
@@ -195,7 +197,8 @@ void Server::answer(Visitor& visitor, Outcome outcome, Nanoseconds now) {
   client.answer(std::move(outcome.bytes), next, now);
   visitor.leaves = !client.send_on(now);
   if (visitor.leaves || client.unsent() == 0) return;
-  // The socket did not accept all bytes, so the connection needs a lingering place for the rest.
+  // The socket did not accept all bytes, so the connection becomes a lingering connection until the rest is
+  // sent.
   visitor.leaves = !make_lingering_place(visitor, now) || !make_room(&visitor, visitor.role);
   if (visitor.leaves) client.drop_unsent();
 }
@@ -227,13 +230,13 @@ void Server::take_piece(Visitor& visitor) {
   const auto piece = std::exchange(download.piece, nullptr);
   const auto bytes = std::string_view(piece->text()).substr(0, download.file->size - download.read);
   download.read += bytes.size();
-  // If the file has become shorter, the announced number of bytes cannot be sent.
+  // If the file has become shorter, fewer bytes exist than the head of the response announced.
   visitor.leaves = bytes.empty() || !visitor.client.add(bytes);
   if (download.read == download.file->size) visitor.client.finish();
 }
 
-/// Requests the next piece when the previous one was sent and memory is available. Otherwise the download
-/// waits, so that no other client must be disconnected for it.
+/// Requests the next piece of a file if the previous piece was sent and memory is available. If memory is
+/// short, the download waits, so that no other client must be disconnected.
 void Server::ask_for_piece(Visitor& visitor) {
   Download& download = visitor.download;
   if (download.piece || visitor.client.has_to_send() || counts_.unsent + Archive::piece > most_unsent) return;
@@ -241,7 +244,7 @@ void Server::ask_for_piece(Visitor& visitor) {
   download.piece = archive_.ask({.kind = DiskRequest::Kind::piece, .from = download.file});
 }
 
-/// Returns true if the reader of a stream still has the role that it had at the beginning.
+/// Returns true if the reader of a stream has the same role as at the beginning of the stream.
 bool Server::still_may(const Follower& follower, Nanoseconds now) {
   const auto role = gate_.admit(follower.credentials, false, now);
   return role && *role == follower.role;
@@ -298,8 +301,8 @@ Server::Crowd Server::crowd_beside(const Visitor* visitor) {
   return crowd;
 }
 
-/// Marks the visitor as leaving. Frees its bytes now, because many responses may be created before the
-/// leaving visitors are removed.
+/// Marks the visitor for removal. Frees its unsent bytes at once, because many responses may be created
+/// before marked visitors are removed.
 void Server::turn_away(Visitor& visitor) {
   visitor.leaves = true;
   visitor.client.drop_unsent();

@@ -1,5 +1,5 @@
 #pragma once
-// Serves browsers on the network in one thread that never waits for a client or for the disk.
+// Serves browsers on the network in one thread. The thread never waits for a client or for the disk.
 
 #include <cstdint>
 #include <list>
@@ -21,8 +21,8 @@ namespace softgrip::web {
 
 class Server {
  public:
-  /// `listener` comes from modbus::listen_tcp(). `signals` is a signalfd, and any signal ends run().
-  /// `settings` must outlive the server.
+  /// Creates the server. `listener` comes from modbus::listen_tcp(). `signals` is a signalfd; any signal ends
+  /// run(). `settings` must outlive the server.
   Server(const Settings& settings, Tokens tokens, std::string chart_js, Descriptor listener,
          Descriptor signals);
   void run();
@@ -31,27 +31,27 @@ class Server {
   /// A file that is being sent to a client.
   struct Download {
     std::shared_ptr<const RegularFile> file;
-    std::size_t read = 0;                   // bytes read so far
+    std::size_t read = 0;                   // number of bytes read so far
     std::shared_ptr<const DiskTask> piece;  // the next piece, which is being read from the disk; null: none
   };
   struct Visitor {
     Client client;
-    Role role = Role::none;                // role of its request
-    Follower follower;                     // for phase following
-    Download download;                     // for phase loading
-    std::uint64_t command = 0;             // number of its command at the daemon; 0: none
+    Role role = Role::none;                // role of the sender of its request
+    Follower follower;                     // used in the phase following
+    Download download;                     // used in the phase loading
+    std::uint64_t command = 0;             // number of the command that was sent to the daemon; 0: none
     std::shared_ptr<const DiskTask> task;  // pending request to the disk
-    Nanoseconds gives_up_at = 0;           // deadline of the wait for the disk
-    bool leaves = false;                   // removed at the end of this cycle
+    Nanoseconds gives_up_at = 0;           // time at which the wait for the disk ends without a result
+    bool leaves = false;                   // true: the visitor is removed at the end of this cycle
   };
-  /// The visitors that stay, with the properties that decide which one is closed.
+  /// The visitors that are not marked for removal, with the properties that decide which of them is closed.
   struct Crowd {
     std::vector<Guest> guests;
     std::vector<Visitor*> visitors;
   };
 
   void serve_until_signal();
-  /// Closes the last visitors if the limit of descriptors was lowered.
+  /// Closes the newest visitors if the process may have fewer descriptors than before.
   [[nodiscard]] bool give_up_places();
   void accept(Nanoseconds now);
   void look_after(Visitor& visitor, short events, Nanoseconds now);
@@ -71,10 +71,11 @@ class Server {
 
   [[nodiscard]] static Guest guest_of(const Visitor& visitor);
   [[nodiscard]] Crowd crowd_beside(const Visitor* visitor);
-  /// Returns true if a place is free. May close another connection for it.
+  /// Returns true if one more connection is possible. May close another connection for this purpose.
   [[nodiscard]] bool make_place(Nanoseconds now);
   [[nodiscard]] bool make_lingering_place(const Visitor& visitor, Nanoseconds now);
-  /// Returns true if all unsent bytes are within the limit. May close other connections for it.
+  /// Returns true if the unsent bytes of all connections are within the limit. May close other connections
+  /// for this purpose.
   [[nodiscard]] bool make_room(const Visitor* visitor, Role role);
 
   const Settings& settings_;
@@ -90,7 +91,7 @@ class Server {
   Descriptor signals_;
   MonotonicClock clock_;
   std::list<Visitor> visitors_;
-  Nanoseconds checked_at_ = 0;  // last check of the readers' roles
+  Nanoseconds checked_at_ = 0;  // time at which the roles of the stream readers were last checked
 };
 
 /// Returns the number of descriptors that the process may have.

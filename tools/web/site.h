@@ -1,5 +1,5 @@
 #pragma once
-// Maps HTTP requests to responses. Does not use the sockets of the browsers.
+// Creates the responses to HTTP requests. Does not use the sockets of the browsers.
 
 #include <cstdint>
 #include <map>
@@ -19,12 +19,13 @@
 
 namespace softgrip::web {
 
-/// Counters of softgrip-web itself.
+/// Counters of the program softgrip-web.
 struct OwnCounts {
   std::size_t connections = 0;
-  std::size_t followers = 0;             ///< number of these connections that are open pages
-  std::size_t unsent = 0;                ///< bytes that are not sent yet
-  std::uint64_t turned_away = 0;         ///< connections that were closed or refused for lack of a place
+  std::size_t followers = 0;             ///< number of the open connections that are open pages
+  std::size_t unsent = 0;                ///< number of bytes that wait to be sent
+  std::uint64_t turned_away = 0;         ///< number of connections that were closed or refused because a
+                                         ///< limit was reached
   std::map<int, std::uint64_t> answers;  ///< number of responses, by HTTP status
 };
 
@@ -34,38 +35,39 @@ struct Follower {
   Role role = Role::none;
 };
 
-/// The result of serving a request.
+/// The result of processing a request.
 struct Outcome {
   std::string bytes;  ///< bytes to send to the client
   int status = 0;
-  Role role = Role::none;  ///< role of the client
-  /// Set if the bytes begin a stream of messages. The stream continues as long as its reader keeps the role
-  /// that it had at the beginning.
+  Role role = Role::none;  ///< role of the sender
+  /// Set if the bytes begin a stream of messages. The stream continues while its reader keeps the role that
+  /// it had at the beginning.
   std::optional<Follower> follower;
   /// Set if the content of this file must be sent after the bytes.
   std::shared_ptr<const RegularFile> file;
-  /// Set if this command must be sent to the daemon first. Then serve() is called again with its response.
+  /// Set if this command must be sent to the daemon first. After its response, serve() must be called again.
   std::optional<nlohmann::ordered_json> command;
-  /// Set if this request must be sent to the disk first. Then serve() is called again with its result.
+  /// Set if this request must be sent to the disk first. After its result, serve() must be called again.
   std::optional<DiskRequest> disk_request;
 };
 
 /// The response to the command or the disk request of an earlier outcome.
 struct Reply {
   const nlohmann::ordered_json* daemon = nullptr;
-  const DiskTask* disk = nullptr;  ///< if it is not done, the wait for the disk has been given up
+  const DiskTask* disk = nullptr;  ///< if the task is not done, the time limit for the disk was exceeded
 };
 
 class Site {
  public:
-  /// All references must outlive the site. `chart_js` is the library that draws curves, or empty if it is not
-  /// installed.
+  /// Creates the site. All references must outlive it. `chart_js` is the library that draws curves, or empty
+  /// if it is not installed.
   Site(const Settings& settings, Gate& gate, const LiveState& state, const OwnCounts& counts,
        std::string chart_js);
 
-  /// Returns the outcome of a request. `request` must be complete according to frame_of().
+  /// Returns the result of processing a request. `request` must be complete according to frame_of().
   [[nodiscard]] Outcome serve(std::string_view request, Nanoseconds now, const Reply& reply = {});
-  /// Returns the response to a request that frame_of() refused, or to a client for which no place is left.
+  /// Returns the refusal of a request that frame_of() refused, or of a client for which no connection is
+  /// left.
   [[nodiscard]] static std::string refusal(int status);
 
  private:
@@ -74,10 +76,10 @@ class Site {
   void add_data();
   void add_recordings();
   void add_commands();
-  /// Checks the sender of a request before its handler is called. Returns true if the request is refused; the
-  /// response is then already written.
+  /// Checks the sender of a request before its handler is called. If the request is refused, writes the
+  /// refusal into `response` and returns true.
   bool turn_away(const httplib::Request& request, httplib::Response& response);
-  /// Returns true if the sender has the role. Otherwise it writes the refusal.
+  /// Returns true if the sender has at least this role. Otherwise writes the refusal into `response`.
   bool need(Role role, httplib::Response& response) const;
   void greet(httplib::Response& response);
   void command(const httplib::Request& request, httplib::Response& response);
@@ -91,7 +93,7 @@ class Site {
   const OwnCounts& counts_;
   std::string chart_js_;
   HttpEngine engine_;
-  // Time of the request that is being served.
+  // Time at which the current request was received.
   Nanoseconds now_ = 0;
   Reply reply_;
   Credentials credentials_;

@@ -1,5 +1,5 @@
 #pragma once
-// Decides which requests are allowed and which role their sender has.
+// Decides which requests are accepted, and which role the sender of a request has.
 
 #include <string>
 #include <string_view>
@@ -15,10 +15,10 @@ namespace softgrip::web {
 
 inline constexpr std::string_view session_cookie = "softgrip";
 
-/// The parts of a request that decide whether it is admitted.
+/// The data of a request that decide whether it is accepted.
 struct Credentials {
   std::string host;
-  std::string origin;      ///< empty if the client sent none
+  std::string origin;      ///< the Origin header; empty if the client sent none
   std::string fetch_site;  ///< the Sec-Fetch-Site header; may be empty
   std::string cookie;      ///< the Cookie header
   std::string authorization;
@@ -32,15 +32,16 @@ struct Refusal {
 
 class Gate {
  public:
-  /// `settings` must outlive the gate.
+  /// Creates a gate for the roles of `tokens`. `settings` must outlive the gate.
   Gate(const Settings& settings, Tokens tokens);
 
-  /// Returns the role of the sender, or a refusal if the request comes from the page of another site. A
-  /// request that changes something (`changes`) must come from the page of this server or carry a token in
-  /// its Authorization header. No other page can make a browser send this header.
+  /// Returns the role of the sender, or a refusal if the request comes from the page of another site.
+  /// `changes` states that the request changes something. It must then come from the page of this server or
+  /// have a token in its Authorization header, which no other page can make a browser send.
   [[nodiscard]] tl::expected<Role, Refusal> admit(const Credentials& credentials, bool changes,
                                                   Nanoseconds now);
-  /// Opens a session for a token and returns its id. Refuses a token that the token file does not list.
+  /// Opens a session for the sender of a token and returns the id of the session. Refuses a token that is not
+  /// in the token file.
   [[nodiscard]] tl::expected<std::string, Refusal> open(std::string_view token, Nanoseconds now);
   void close(std::string_view cookie_header);
   [[nodiscard]] bool has_tokens() const noexcept { return !tokens_.empty(); }

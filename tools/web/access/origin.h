@@ -1,5 +1,5 @@
 #pragma once
-// Checks that a request comes from the page of this server and not from another page in the browser.
+// Checks that a request comes from the page of this server and not from another page that the browser shows.
 
 #include <string>
 #include <string_view>
@@ -8,9 +8,9 @@
 namespace softgrip::web {
 
 /// Returns true if a Host header names this computer: a numeric address, `localhost` or one of `names`, each
-/// with or without a port. Other names are refused, because an attacker could own such a name and let it
-/// point to this computer. The browser would then treat the attacker's page and this page as one origin (DNS
-/// rebinding).
+/// with or without a port. All other names are refused, because an attacker could own such a name and assign
+/// it to the address of this computer. The browser would then treat the attacker's page and this page as one
+/// origin (DNS rebinding).
 [[nodiscard]] bool is_own_host(std::string_view host, const std::vector<std::string>& names);
 
 /// Returns true if an Origin header belongs to a page that was loaded from the server with this Host header.

@@ -13,7 +13,7 @@ namespace {
 
 std::string random_id() {
   std::array<unsigned char, 32> bytes{};
-  // getrandom() returns a request of at most 256 bytes completely or fails.
+  // For at most 256 bytes, getrandom() returns all requested bytes or fails.
   if (::getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size()))
     throw std::system_error(errno, std::generic_category(), "getrandom");
   constexpr std::string_view digits = "0123456789abcdef";

@@ -1,5 +1,5 @@
 #pragma once
-// Secret tokens that give a browser or a collector a role.
+// Reads secret tokens, each of which gives a browser or a metrics collector a role.
 
 #include <cstddef>
 #include <string>
@@ -12,14 +12,14 @@
 
 namespace softgrip::web {
 
-/// Returns true if two texts are equal. The duration of the comparison does not depend on the position of the
-/// first difference.
+/// Returns true if two texts are equal. If the lengths are equal, the duration of the comparison does not
+/// depend on the content.
 [[nodiscard]] bool equal_in_constant_time(std::string_view one, std::string_view other) noexcept;
 
 /// The role of a token, and its position in the file.
 struct Grant {
-  Role role = Role::none;  ///< none: the file does not list the token
-  std::size_t token = 0;   ///< its number in the file, from 0
+  Role role = Role::none;  ///< none: the token is not in the file
+  std::size_t token = 0;   ///< index of the token in the file, from 0
 };
 
 class Tokens {
@@ -27,15 +27,16 @@ class Tokens {
   static constexpr std::size_t shortest = 20;
   static constexpr std::size_t longest = 128;
 
-  /// Parses lines `look TOKEN` and `operate TOKEN`. Empty lines and lines that begin with # are skipped. The
-  /// error is a sentence that names the line and never contains the token.
+  /// Parses lines of the form `look TOKEN` or `operate TOKEN`. Skips empty lines and lines that begin with #.
+  /// The error is a sentence that names the line and never contains the token.
   [[nodiscard]] static tl::expected<Tokens, std::string> parse(std::string_view text);
-  /// Loads a file that only its owner and its group may read. The error is a sentence.
+  /// Reads a token file. Refuses a file that others than its owner and its group may read. The error is a
+  /// sentence.
   [[nodiscard]] static tl::expected<Tokens, std::string> load(const std::string& path);
 
-  /// Returns the role and the number of a token.
+  /// Returns the role of a token and its index in the file.
   [[nodiscard]] Grant grant_of(std::string_view token) const noexcept;
-  /// Returns the role of a token.
+  /// Returns the role of a token, or none if the token is not in the file.
   [[nodiscard]] Role role_of(std::string_view token) const noexcept { return grant_of(token).role; }
   [[nodiscard]] bool empty() const noexcept { return tokens_.empty(); }
 

@@ -14,11 +14,11 @@ using enum MetricText::Type;
 constexpr double kpa_per_pa = 1e-3;
 constexpr double mm_per_m = 1e3;
 
-/// A quantity of the status and its conversion to base units.
+/// A quantity of the status, with its conversion to the base unit of Prometheus.
 struct Quantity {
   const char* name;
   const char* key;
-  double units_per_base_unit;  // units of the status per base unit
+  double units_per_base_unit;  // number of units of the status in one base unit
   const char* help;
 };
 constexpr Quantity quantities[] = {
@@ -41,7 +41,7 @@ void tell_each(const Json& channels, MetricText& metrics, const auto& value_of) 
     metrics.sample({{"channel", text(channel, "name")}}, value_of(channel));
 }
 
-/// Returns the commanded pressure as a share of the range from the rest pressure to the limit on the same
+/// Returns the commanded pressure as a share of the range between the rest pressure and the limit on the same
 /// side of rest.
 double pressure_use(const Json& channel) {
   const Json& limits = member(channel, "limits");

@@ -1,5 +1,5 @@
 #pragma once
-// Prometheus metrics of each finger.
+// Writes the Prometheus metrics of each finger.
 
 #include <nlohmann/json_fwd.hpp>
 

@@ -58,7 +58,7 @@ void tell_lines(const Json& status, MetricText& metrics) {
            flag(lines, "lost"));
 }
 
-/// Writes a summary of the durations since the daemon's start.
+/// Writes a summary of the durations that the daemon has measured since its start.
 void tell_durations(MetricText& metrics, const std::string& name, std::string_view help,
                     const Json& histogram) {
   if (!histogram.is_object()) return;

@@ -1,6 +1,6 @@
 #pragma once
-// Prometheus metrics of the daemon. docs/reference/metrics.md lists them. Names and units are part of the
-// public format.
+// Writes the Prometheus metrics of the daemon. docs/reference/metrics.md lists them. Names and units are part
+// of the public format.
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -8,9 +8,9 @@
 
 namespace softgrip::web {
 
-/// Writes the metrics of the daemon. `status` is a status of the socket API, or null if the daemon does not
-/// respond. If it is null, only `softgrip_up` is written, with the value 0. `statistics` are those of the
-/// socket API, or null if they are not known yet.
+/// Writes the metrics of the daemon. `status` is a status of the socket API. If the daemon does not respond,
+/// it is null, and only `softgrip_up` with the value 0 is written. `statistics` is the statistics object of
+/// the socket API, or null if it has not been received.
 void tell_daemon(const nlohmann::ordered_json& status, const nlohmann::ordered_json& statistics,
                  MetricText& metrics);
 

@@ -29,7 +29,7 @@ std::string label_of(std::string_view title) {
 
 constexpr const char* results[] = {"HOLDING", "NO PART", "PART LOST", "RELEASED", "ERROR"};
 
-/// Numbers of events of one kind, by code and channel.
+/// Numbers of the events of one kind, by code and channel.
 class Counts {
  public:
   Counts(const Json& events, std::string_view kind) : events_(events), kind_(kind) {}
@@ -42,7 +42,7 @@ class Counts {
     }
     return count;
   }
-  /// Returns the sums over the channels, by code.
+  /// Returns the number of events per code, summed over the channels.
   [[nodiscard]] std::map<std::string, double> by_code() const {
     std::map<std::string, double> counts;
     for (const Json& event : events_) {

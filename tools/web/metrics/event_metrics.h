@@ -1,5 +1,5 @@
 #pragma once
-// Prometheus metrics of events.
+// Writes the Prometheus metrics of events.
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -8,8 +8,8 @@
 namespace softgrip::web {
 
 /// Writes the numbers of events. `events` is a member of the statistics of the socket API, `channels` a
-/// member of its status. Each result of each finger has a sample from the start, because Prometheus cannot
-/// compute an increase from the first sample of a series.
+/// member of its status. Every possible result of each finger has a sample even if it has not occurred,
+/// because Prometheus cannot compute an increase from the first sample of a series.
 void tell_events(const nlohmann::ordered_json& events, const nlohmann::ordered_json& channels,
                  MetricText& metrics);
 

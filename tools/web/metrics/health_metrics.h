@@ -1,5 +1,5 @@
 #pragma once
-// Prometheus metrics of the fingers' health, from the last result of `softgrip health`.
+// Writes the Prometheus metrics of the fingers' health, from the last result of `softgrip health`.
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -7,8 +7,8 @@
 
 namespace softgrip::web {
 
-/// Writes the metrics of a health result. `health` is the content of health.json. If it is null, no metric is
-/// written.
+/// Writes the metrics of a health result. `health` is the content of health.json. If it is null, writes
+/// nothing.
 void tell_health(const nlohmann::ordered_json& health, MetricText& metrics);
 
 }  // namespace softgrip::web

@@ -8,7 +8,7 @@
 
 namespace softgrip::web {
 
-/// Returns a member of an object, or null if it is missing.
+/// Returns the member at `key` of an object, or null if the member is missing.
 [[nodiscard]] inline const nlohmann::ordered_json& member(const nlohmann::ordered_json& object,
                                                           const char* key) {
   static const nlohmann::ordered_json none;
@@ -17,20 +17,20 @@ namespace softgrip::web {
   return found == object.end() ? none : *found;
 }
 
-/// Returns the number, or NaN if it is missing.
+/// Returns the number at `key`, or NaN if the member is missing.
 [[nodiscard]] inline double number(const nlohmann::ordered_json& object, const char* key) {
   const nlohmann::ordered_json& value = member(object, key);
   return value.is_number() ? value.get<double>() : std::numeric_limits<double>::quiet_NaN();
 }
 
-/// Returns 1 for true, 0 for false, and NaN if the member is no Boolean.
+/// Returns 1 for true and 0 for false. Returns NaN if the member is not a Boolean.
 [[nodiscard]] inline double flag(const nlohmann::ordered_json& object, const char* key) {
   const nlohmann::ordered_json& value = member(object, key);
   if (!value.is_boolean()) return std::numeric_limits<double>::quiet_NaN();
   return value.get<bool>() ? 1 : 0;
 }
 
-/// Returns the text, or "" if it is missing.
+/// Returns the text at `key`, or "" if the member is missing.
 [[nodiscard]] inline std::string text(const nlohmann::ordered_json& object, const char* key) {
   const nlohmann::ordered_json& value = member(object, key);
   return value.is_string() ? value.get<std::string>() : std::string();

@@ -1,5 +1,6 @@
 #pragma once
-// The files of the page. They are part of the program, so that no path of a browser names a file on the disk.
+// The files of the page. They are part of the program, so that a path in a browser's request never selects a
+// file on the disk.
 
 #include <string_view>
 
