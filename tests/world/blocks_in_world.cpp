@@ -22,26 +22,29 @@ constexpr const char* ends_with_block = "what a block has started ends with it";
 constexpr const char* stops_no_other = "leaving a block stops no other start";
 constexpr std::size_t client_count = 2;
 constexpr std::array block_sequences{"free_stroke", "empty_grip", "pressure_staircase", "hand_over"};
-/// Time between two reads of a client from the daemon.
+/// Time between two turns in which a client reads the messages of the daemon.
 constexpr Nanoseconds client_look_pause = ns_per_s / 50;
-/// Longest time for which a client waits for an answer of the daemon.
+/// Longest time for which a client waits for the daemon's response to its request.
 constexpr Nanoseconds block_patience = 5 * ns_per_s;
-/// Longest time from the sending of a stop to the end of the sequence. Time during incidents is not counted.
+/// Longest permitted time from the sending of a stop to the end of the sequence. Time during incidents is not
+/// counted.
 constexpr Nanoseconds block_end_bound = 2 * ns_per_s;
 /// Share of the blocks whose program is killed before it sends a stop.
 constexpr double killed_share = 0.1;
 constexpr std::uint64_t start_line = 1;
 constexpr std::uint64_t stop_line = 2;
 
-/// A start and the later actions of its client.
+/// A start of a sequence and the later actions of the client that sent it.
 struct Started {
   std::string id;
-  std::uint64_t life = 0;                ///< number of the daemon's run from start to end
-  std::optional<std::uint32_t> request;  ///< id of the request that the daemon has accepted
-  bool left = false;                     ///< the client has sent a request to stop this start
-  bool confirmed = false;                ///< the daemon has answered the stop
-  bool halted = false;     ///< another client has sent a stop, a vent or a release since this start
-  Nanoseconds waited = 0;  ///< time since the stop was sent, except during incidents
+  std::uint64_t life = 0;                ///< number of the daemon run (from start to end) in which the start
+                                         ///< was sent
+  std::optional<std::uint32_t> request;  ///< id that the daemon has given to the request; nullopt: not yet
+                                         ///< accepted
+  bool left = false;                     ///< the client has sent a request that stops this start
+  bool confirmed = false;                ///< the daemon has responded to this stop request
+  bool halted = false;     ///< another client has sent a stop, a vent or a release after this start
+  Nanoseconds waited = 0;  ///< time since the stop request was sent, except during incidents
 };
 
 class BlocksInWorld final : public Guest {
@@ -121,7 +124,7 @@ class BlocksInWorld final : public Guest {
     if (life == life_ && host_.daemon() != nullptr) host_.daemon()->socket->hang_up(client);
   }
 
-  /// Sends the stop at once, without a status query before it.
+  /// Sends the stop request at once, without a status query before it.
   void leave(daemon::ClientId client, Started& started, std::uint64_t life) {
     Json line = tools::stop_of(started.id);
     line["id"] = stop_line;
@@ -158,7 +161,7 @@ class BlocksInWorld final : public Guest {
   std::uint64_t seed_;
   std::uint64_t drawn_ = 0;
   std::shared_ptr<const daemon::SequenceLoader> loader_;
-  std::uint64_t life_ = 0;  // number of the daemon's life
+  std::uint64_t life_ = 0;  // number of the present daemon run
   std::deque<Started> started_;
   Nanoseconds seen_ = 0;
 };

@@ -1,6 +1,7 @@
 #pragma once
-// Simulates clients that start a sequence at the beginning of a program block and stop it at the end of the
-// block, like a `with` statement of Python. The Python client and `softgrip start` follow the same protocol.
+// Simulates clients that start a sequence at the beginning of a block of their program and stop it at the end
+// of the block, like a `with` statement of Python. The Python client and `softgrip start` use the same
+// requests.
 
 #include <memory>
 

@@ -22,12 +22,12 @@ constexpr const char* reaction_kept = "the reaction to a silent master is not lo
 
 constexpr auto start_code = static_cast<std::uint16_t>(plc::CommandCode::start);
 constexpr auto vent_code = static_cast<std::uint16_t>(plc::CommandCode::vent);
-/// Longest time from the time-out of a master's heartbeat until a daemon answers the stop that the gateway
-/// sends. Time during incidents is not counted.
+/// Longest permitted time from the time-out of a master's heartbeat until a daemon responds to the stop that
+/// the gateway sends. Time during incidents is not counted.
 constexpr Nanoseconds reaction_bound = 2 * ns_per_s;
 
-/// Returns true if the answer to a stop is final, because the daemon has stopped or because there was nothing
-/// to stop.
+/// Returns true if the response to a stop is final: the daemon has stopped the sequence, or no sequence was
+/// running.
 bool answers_for_good(const Json& line) {
   if (line.value("ok", false)) return true;
   constexpr int starting = static_cast<int>(plc::Reason::refusal) + 6;
@@ -48,7 +48,7 @@ void CommandWatch::sent(const Json& line, const std::optional<Block>& cause, Nan
   const std::string name = line["command"];
   const auto id = line["id"].get<std::uint64_t>();
   if (name == "hello" || name == "watch") return;
-  // No master commands a stop, so this stop is the reaction to a silent master.
+  // The simulated masters never command a stop, so the gateway sends this stop because a master is silent.
   if (name == "stop") {
     look(now);
     ++halts_;

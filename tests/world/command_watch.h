@@ -1,7 +1,7 @@
 #pragma once
-// The invariants of softgrip-plc. The command of a counter value is executed at most once, and only if a
-// master has sent it. A start does not take effect after a later stop or vent. If a master falls silent, the
-// stop that the gateway sends reaches a daemon.
+// Checks the invariants of softgrip-plc. Each counter value executes at most one command, and only a command
+// that a master has sent. A start does not take effect after a later stop or vent. If a master becomes
+// silent, the stop that the gateway sends reaches a daemon.
 
 #include <cstdint>
 #include <functional>
@@ -23,18 +23,18 @@ class CommandWatch {
 
   std::function<void(const char* invariant, std::string text)> on_break;
 
-  /// Returns the number of the next command.
+  /// Returns the index that the next command will have.
   [[nodiscard]] int next_number() const noexcept { return static_cast<int>(commands_.size()); }
   void ask(std::uint16_t code, std::uint16_t counter) { commands_.push_back({code, counter}); }
-  /// Called when a block of registers with this command has arrived at the gateway.
+  /// Called when the gateway has received a block of registers with this command.
   void arrived(int command);
-  /// Called when the gateway sends a message to the daemon. `cause`: the block of a master that led to this
-  /// message.
+  /// Called when the gateway sends a message to the daemon. `cause` is the block of a master because of which
+  /// the message is sent; nullopt: none.
   void sent(const nlohmann::ordered_json& line, const std::optional<Block>& cause, Nanoseconds now);
-  /// Called when a message of the daemon arrives at the gateway.
+  /// Called when the gateway receives a message of the daemon.
   void answered(const nlohmann::ordered_json& line);
   void daemon_died();
-  /// Called when the gateway dies. The next gateway does not know the earlier commands.
+  /// Called when the gateway process dies. The next gateway process does not know the commands before it.
   void gateway_died();
   void read_refused(int command);
   void read_accepted(std::uint16_t code, std::uint16_t counter);
@@ -42,14 +42,15 @@ class CommandWatch {
   /// Called when a master's heartbeat has changed.
   void beat(Nanoseconds now);
   void look(Nanoseconds now);
-  /// Called when time has passed. `undisturbed`: true if no incident affects the gateway or the daemon.
+  /// Called when simulated time has passed. `undisturbed` is true if no incident affects the gateway or the
+  /// daemon.
   void passed(Nanoseconds now, bool undisturbed);
 
-  /// Returns the number of executed stops and vents.
+  /// Returns the number of stop and vent commands that were executed.
   [[nodiscard]] std::uint64_t halts() const noexcept { return halts_; }
   [[nodiscard]] std::uint64_t asked() const noexcept { return commands_.size(); }
   [[nodiscard]] std::uint64_t executed() const noexcept { return executed_; }
-  /// Returns how often a master has fallen silent since the last call.
+  /// Returns how often a master has become silent since the last call of this function.
   [[nodiscard]] std::uint64_t take_silences() noexcept { return std::exchange(silences_, 0); }
 
  private:
@@ -58,14 +59,15 @@ class CommandWatch {
     std::uint16_t counter = 0;
     bool arrived = false;
     bool executed = false;
-    /// The daemon declined the command, another command came after it, or the gateway that executed it died.
+    /// The daemon refused the command, another command came after it, or the gateway that executed it died.
     bool over = false;
     bool read_as_refused = false;
   };
-  /// A message that the daemon has not answered yet.
+  /// A message to which the daemon has not responded.
   struct Sent {
-    int command = -1;           ///< index of the command; -1: the stop because of a silent master
-    std::uint64_t silence = 0;  ///< number of the newest silence at the time of sending
+    int command = -1;           ///< index of the command; -1: a stop that the gateway sent because a master
+                                ///< is silent
+    std::uint64_t silence = 0;  ///< number of the newest silence when the message was sent
   };
   void execute(const std::string& name, const std::optional<Block>& cause, std::uint64_t id);
   void check(bool holds, const char* invariant, const char* otherwise) {
@@ -79,11 +81,11 @@ class CommandWatch {
   std::uint64_t executed_ = 0;
   std::uint64_t silences_ = 0;
   std::optional<Nanoseconds> beat_at_;
-  bool silent_ = false;  // the present silence has been counted
+  bool silent_ = false;  // the present silence has already been counted
   std::uint64_t silence_number_ = 0;
-  bool owed_ = false;  // no daemon has answered the stop because of the newest silence
+  bool owed_ = false;  // no daemon has responded to the stop that the newest silence requires
   Nanoseconds seen_ = 0;
-  Nanoseconds waited_ = 0;  // time since this stop has been due, except during incidents
+  Nanoseconds waited_ = 0;  // time since that stop became necessary, except during incidents
 };
 
 }  // namespace softgrip::world

@@ -1,6 +1,6 @@
 #pragma once
-// One run of the daemon from start to end on the simulated clock. Loop, bus, service and recorder are those
-// of a real rig; each runs the same thread body as in daemon/service/real_run.cpp.
+// Simulates one run of the daemon from start to end on the simulated clock. Loop, bus, service and recorder
+// are the same classes as on a real rig. Each runs the same thread body as in daemon/service/real_run.cpp.
 
 #include <functional>
 #include <map>
@@ -26,14 +26,14 @@ namespace softgrip::world {
 enum class Part : std::uint8_t { loop, bus, service, recorder, main };
 inline constexpr std::size_t part_count = 5;
 
-/// A request of a client that has no answer yet.
+/// A request of a client to which the daemon has not responded.
 struct Asked {
   control::Request::Kind kind = control::Request::Kind::none;
   Nanoseconds at = 0;
 };
 
-/// The loop's clock. As on a real machine, no two readings are equal, so the row that is written at shutdown
-/// has a different time from all other rows.
+/// The clock of the loop. As on a real machine, any two readings of the clock differ, so the row that is
+/// written at shutdown has another time than all other rows.
 class LoopClock final : public WorldClock {
  public:
   using WorldClock::WorldClock;
@@ -47,18 +47,19 @@ class LoopClock final : public WorldClock {
   mutable Nanoseconds last_ = 0;
 };
 
-/// The properties that can differ between two runs of the daemon.
+/// The settings in which two runs of the daemon can differ.
 struct Life {
-  std::string folder;         ///< folder of the recordings
-  std::string record_folder;  ///< if not empty: the folder of all recordings
+  std::string folder;         ///< folder for the recordings of this run
+  std::string record_folder;  ///< folder of all recordings; empty: not set
   std::shared_ptr<const daemon::LoadedSequence>
-      sequence;  ///< the sequence of a one-shot run, after which the daemon ends
-  std::shared_ptr<const daemon::SequenceLoader> loader;  ///< if set, the daemon has a socket and clients
+      sequence;  ///< the only sequence of a run that ends with it, as in `softgrip run`; null: a service
+  std::shared_ptr<const daemon::SequenceLoader> loader;  ///< loads the sequences of clients; if it is set,
+                                                         ///< the daemon has a socket
 };
 
 class DaemonInWorld {
  public:
-  /// Starts the daemon.
+  /// Starts a run of the daemon.
   DaemonInWorld(const rig::RigFile& rig, Scheduler& scheduler, drivers::Board& board, Life life);
   DaemonInWorld(const DaemonInWorld&) = delete;
   DaemonInWorld& operator=(const DaemonInWorld&) = delete;
@@ -66,10 +67,10 @@ class DaemonInWorld {
   DaemonInWorld& operator=(DaemonInWorld&&) = delete;
   ~DaemonInWorld() = default;
 
-  /// Sends a request as a client does. The service thread takes the request in its next turn. `sequence`: the
-  /// sequence of a start request.
+  /// Sends a request as a client does. The service thread receives the request in its next turn. `sequence`
+  /// is the sequence of a start request.
   void ask(control::Request::Kind kind, std::shared_ptr<const daemon::LoadedSequence> sequence = nullptr);
-  /// Requests the end of the daemon, like SIGTERM.
+  /// Requests that the daemon ends, like SIGTERM.
   void terminate() noexcept { asked_to_end_ = true; }
   /// Ends the daemon at once, like SIGKILL.
   void kill();
@@ -78,17 +79,16 @@ class DaemonInWorld {
   [[nodiscard]] bool owns(ActorId id) const;
   [[nodiscard]] bool ended() const noexcept { return ended_; }
   [[nodiscard]] bool safe_state_confirmed() const { return shared.safe_state_confirmed.load(); }
-  /// Returns the outcome of the one-shot run after its end.
+  /// Returns the outcome of a run of one sequence after its end.
   [[nodiscard]] daemon::Outcome outcome();
-  /// Returns true if the heartbeat to the service manager has stopped, which makes the manager kill the
-  /// daemon.
+  /// Returns true if the heartbeat to the service manager has stopped. The manager then kills the daemon.
   [[nodiscard]] bool starved() const noexcept { return starved_; }
   [[nodiscard]] const std::map<std::uint32_t, Asked>& unanswered() const noexcept { return unanswered_; }
 
   rig::RigFile rig;
   WorldClock clock;
   WorldClock bus_clock;  ///< clock of the bus thread
-  LoopClock loop_clock;  ///< clock of the loop; read at the beginning and the end of a tick
+  LoopClock loop_clock;  ///< clock of the loop, read at the beginning and the end of each tick
   Nanoseconds origin;
   control::RigController controller;
   daemon::SharedState shared;
@@ -104,7 +104,7 @@ class DaemonInWorld {
   std::optional<daemon::OneShotRun> one_shot_run;
   std::optional<SocketInWorld> socket;
 
-  /// Called when the service has taken a request of a client.
+  /// Called when the service has accepted a request of a client.
   std::function<void(control::Request::Kind kind, std::uint32_t id)> on_submit = [](auto, auto) {};
 
  private:

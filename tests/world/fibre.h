@@ -1,6 +1,6 @@
 #pragma once
-// A function with its own stack that runs until it returns control to its caller. All fibres run in one
-// thread.
+// Runs a function on a stack of its own. The function can return control to its caller before it ends, and
+// continue later. All fibres run in one thread.
 
 #include <ucontext.h>
 
@@ -11,8 +11,8 @@
 
 namespace softgrip::world {
 
-/// The stack of an abandoned fibre is freed without destroying its objects, like the stack of a killed
-/// thread.
+/// A function with a stack of its own. If the function has not ended, the destructor frees the stack without
+/// destroying the objects on it, as if a thread were killed.
 class Fibre {
  public:
   explicit Fibre(std::function<void()> body);
@@ -22,9 +22,9 @@ class Fibre {
   Fibre& operator=(Fibre&&) = delete;
   ~Fibre() = default;
 
-  /// Continues the body until it calls give_back() or ends. Called from outside the fibre.
+  /// Continues the function until it calls give_back() or ends. Called from outside the fibre.
   void resume();
-  /// Returns control to resume(). Called by the body.
+  /// Returns control to the caller of resume(). Called by the function of the fibre.
   void give_back();
   [[nodiscard]] bool done() const noexcept { return done_; }
 

@@ -1,6 +1,6 @@
 #pragma once
-// The true state of the board and its fingers: outputs, the board's own watchdog, and slow pneumatics. Every
-// Modbus client may write, and the line may lose requests and responses.
+// Simulates the board and its fingers: outputs, the board's own watchdog, and slow pneumatics. Every Modbus
+// client may write, and the line may lose requests and responses.
 
 #include <functional>
 #include <optional>
@@ -15,11 +15,12 @@ namespace softgrip::world {
 
 struct HardwareSettings {
   std::vector<simulation::PlantSettings> plants;
-  std::vector<double> safe_kpa;   ///< per plant: the output at power-up and after a watchdog trip
-  Nanoseconds watchdog = 0;       ///< outputs go to safe_kpa after this time without a request; 0: none
-  bool trip_latches = true;       ///< a trip refuses writes until the next connection
-  Nanoseconds plant_step = 0;     ///< interval at which outputs take effect
-  std::function<void()> on_trip;  ///< called when the watchdog has vented
+  std::vector<double> safe_kpa;   ///< output of each plant at power-up and after a watchdog trip
+  Nanoseconds watchdog = 0;       ///< time without a request after which the outputs go to safe_kpa; 0: no
+                                  ///< watchdog
+  bool trip_latches = true;       ///< after a trip, the board refuses writes until a client connects
+  Nanoseconds plant_step = 0;     ///< interval at which written outputs take effect
+  std::function<void()> on_trip;  ///< called after the watchdog has vented
 };
 
 class Hardware {
@@ -27,13 +28,14 @@ class Hardware {
   explicit Hardware(HardwareSettings settings);
 
   void move_to(Nanoseconds now);
-  /// Called when a session is opened; clears a latched trip.
+  /// Called when a client connects. Clears a latched watchdog trip.
   void greet(Nanoseconds now);
-  /// Returns true if a write has no effect: a latched trip refuses it, or the outputs do not follow.
+  /// Returns true if a write has no effect, because a latched trip refuses it or because the outputs do not
+  /// follow.
   [[nodiscard]] bool ignores_writes() const noexcept {
     return refuses_writes || (tripped_ && settings_.trip_latches);
   }
-  /// Returns false if a latched trip refuses the write.
+  /// Writes the outputs. Returns false if a latched trip refuses the write.
   bool write(Nanoseconds now, std::span<const double> outputs_kpa);
   void read(std::size_t channel, Nanoseconds now, model::Reading& reading) const;
 
@@ -42,7 +44,7 @@ class Hardware {
   [[nodiscard]] Nanoseconds watchdog() const noexcept { return settings_.watchdog; }
   [[nodiscard]] simulation::Plant& plant(std::size_t channel) { return plants_[channel]; }
   bool refuses_writes = false;
-  std::uint64_t foreign_writes = 0;  ///< writes by another Modbus client
+  std::uint64_t foreign_writes = 0;  ///< number of writes by another Modbus client
 
  private:
   void advance_plants(Nanoseconds until);
@@ -57,44 +59,49 @@ class Hardware {
   bool tripped_ = false;
 };
 
-/// Peculiarities of a board, and the values of the rig file and the board map that compensate for them. A
-/// value of 0 disables a peculiarity.
+/// Peculiarities of a board, and the values of the rig file and the board file that compensate for them. The
+/// value 0 disables a peculiarity.
 struct Habits {
-  Nanoseconds deaf = 0;              ///< the time after a connection during which the board ignores requests
-  Nanoseconds settle = 0;            ///< `settle_s`: the wait after a connection
-  Nanoseconds repeat_after = 0;      ///< `repeat_after_s`: a request without a response is sent again
-  std::size_t channels_at_once = 0;  ///< `max_registers`: the channels that one request writes
-  unsigned closes_every = 0;         ///< every Nth connection is closed at once
-  unsigned loses_every = 0;          ///< every Nth response is lost
-  unsigned spoils_every = 0;         ///< every Nth exchange has more stray bytes than are discarded
-  bool reads_apart = false;          ///< one request writes, and another one reads (no function code 23)
+  Nanoseconds deaf = 0;              ///< time after a connection during which the board ignores requests
+  Nanoseconds settle = 0;            ///< `settle_s` of the rig file: the wait after a connection
+  Nanoseconds repeat_after = 0;      ///< `repeat_after_s`: time after which a request without a response is
+                                     ///< sent again
+  std::size_t channels_at_once = 0;  ///< `max_registers`: largest number of channels that one request writes
+  unsigned closes_every = 0;         ///< the board closes every Nth connection at once
+  unsigned loses_every = 0;          ///< every Nth response of the board is lost
+  unsigned spoils_every = 0;         ///< every Nth response is preceded by more stray bytes than the driver
+                                     ///< discards
+  bool reads_apart = false;          ///< separate requests write and read, because the board lacks function
+                                     ///< code 23
 };
 
-/// State of the line between daemon and board.
+/// State of the line between the daemon and the board.
 struct Line {
   drivers::BusStatus status = drivers::BusStatus::ok;
-  bool reply_lost = false;  ///< with timed_out: the request arrives at the board, but the response is lost
+  bool reply_lost = false;  ///< if the status is timed_out: the request arrives at the board, but the
+                            ///< response is lost
   Nanoseconds latency = 800'000;
 };
 
-/// The driver of the simulated board. Exchanges wait on the simulated clock. A separate actor carries the
-/// requests, so that a sent request arrives even if the daemon is paused.
+/// The driver of the simulated board. During an exchange it waits on the simulated clock. A separate
+/// simulated thread carries the requests, so that a request arrives even if the daemon is paused.
 class WorldBoard final : public drivers::Board {
  public:
-  /// Called before a request takes effect, with the start of the exchange and the written values.
+  /// Called before a request takes effect, with the start time of the exchange and the values that will be
+  /// written.
   using OnWrite = std::function<void(Nanoseconds began, std::span<const double> commands_kpa)>;
 
   struct Callbacks {
     OnWrite on_write;
     std::function<void()> on_exchange;  ///< called when an exchange begins
-    std::function<void()> on_hindered;  ///< called when a habit of the board has made an exchange fail
-    /// Called when the daemon has read the outputs. `foreign_writes`: number of earlier writes of another
-    /// client.
+    std::function<void()> on_hindered;  ///< called when a peculiarity of the board has made an exchange fail
+    /// Called when the daemon has read the outputs. `foreign_writes` is the number of writes that another
+    /// client has made before.
     std::function<void(std::uint64_t foreign_writes)> on_read;
   };
   WorldBoard(Hardware& hardware, Habits habits, Line& line, Scheduler& scheduler, Callbacks callbacks);
 
-  /// Called when the connected program has ended, so that its pending request is lost.
+  /// Called when the connected program has ended. Its pending request is then lost.
   void hang_up() noexcept { request_.reset(); }
 
   [[nodiscard]] std::size_t channels() const noexcept override { return hardware_.channels(); }
@@ -111,18 +118,19 @@ class WorldBoard final : public drivers::Board {
   }
 
  private:
-  /// The request that is under way to the board, and later its response.
+  /// The request that travels to the board, and later its response.
   struct Request {
     Nanoseconds began = 0;
     Nanoseconds arrives = 0;
     std::vector<double> sent;
-    std::size_t first = 0, count = 0;  ///< the channels that the request writes
-    bool again = false;                ///< the request is a repetition
+    std::size_t first = 0, count = 0;  ///< first channel that the request writes, and number of channels
+    bool again = false;                ///< the request has been sent before
     bool there = false;
     bool ignored = false;
     bool taken = false;
-    bool overwritten = false;  ///< the reading before the write found values that this program did not write
-    std::uint64_t foreign_writes = 0;  ///< writes by another Modbus client before this reading
+    bool overwritten = false;  ///< before the write, the board had outputs that this program did not write
+    std::uint64_t foreign_writes = 0;  ///< number of writes that another Modbus client made before the
+                                       ///< outputs were read
     std::vector<model::Reading> read;
   };
   void pass(Nanoseconds duration) { scheduler_.sleep_until(scheduler_.now() + duration); }
@@ -140,11 +148,12 @@ class WorldBoard final : public drivers::Board {
   Callbacks callbacks_;
   ActorId carrier_;
   std::optional<Request> request_;
-  std::vector<double> found_;  // newest output that differs from the written one, else NaN
-  std::vector<double> left_;   // outputs after the last successful exchange of this session
+  std::vector<double> found_;  // newest output of each channel if it differs from the written output, else
+                               // NaN
+  std::vector<double> left_;   // outputs after the last successful exchange of this session; empty: unknown
   unsigned exchanges_ = 0;
   unsigned connections_ = 0, responses_ = 0, answers_ = 0;
-  bool closes_ = false;  // the board closes the present connection at once
+  bool closes_ = false;  // the board closes the present connection before the first exchange
   Nanoseconds opened_at_ = 0;
 };
 

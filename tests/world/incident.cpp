@@ -50,7 +50,7 @@ constexpr std::array<const char*, 31> names{"start",
                                             "daemon dies and plc silent"};
 constexpr std::array<const char*, part_count> parts{"loop", "bus", "service", "recorder", "main"};
 
-/// Relative frequency of a kind of incident.
+/// Relative frequency with which a kind of incident is drawn.
 struct Share {
   Kind kind;
   double share;
@@ -68,7 +68,7 @@ constexpr std::array shares{
 
 constexpr double mean_time_between_stalls_s = 20;
 
-/// Incidents of a gateway and its masters.
+/// Incidents of softgrip-plc and its masters, with their relative frequencies.
 constexpr std::array plc_shares{
     Share{Kind::plc_command, 60},   Share{Kind::plc_silent, 8},     Share{Kind::plc_cut, 14},
     Share{Kind::plc_half, 6},       Share{Kind::gateway_paused, 6}, Share{Kind::gateway_dies, 2},
@@ -99,8 +99,8 @@ Kind draw_kind(Drawing& drawing, std::span<const Share> of) {
   return of.front().kind;
 }
 
-/// Draws a pause [s] that is shorter or longer than the watchdog time-out. Half of the pauses are close to
-/// this time.
+/// Draws a pause [s] that is shorter or longer than the time-out of the board's watchdog. Half of the pauses
+/// are close to this time-out.
 double pause_s(Drawing& drawing, Nanoseconds watchdog) {
   const double limit_s = watchdog > 0 ? seconds(watchdog) : 0.5;
   return drawing.uniform() < 0.5 ? limit_s * (0.9 + 0.4 * drawing.uniform()) : drawing.between(0.002, 3);
@@ -158,7 +158,8 @@ bool lasts(Kind kind) {
   return kind >= Kind::pause && kind != Kind::plc_command && kind != Kind::gateway_dies;
 }
 
-/// Draws the stalls with a separate seed, so that all other incidents are the same with and without them.
+/// Draws stalls of the clock with a separate seed, so that all other incidents are equal with and without
+/// stalls.
 void draw_stalls(const Draw& draw, std::vector<Incident>& incidents) {
   Drawing drawing(derived_seed(draw.seed, 3));
   for (double at_s = 1;;) {
@@ -169,7 +170,7 @@ void draw_stalls(const Draw& draw, std::vector<Incident>& incidents) {
   }
 }
 
-/// Draws incidents after the first second, in which master and gateway connect.
+/// Draws incidents of softgrip-plc after the first second, during which master and gateway connect.
 void draw_plc(const Draw& draw, std::vector<Incident>& incidents) {
   Drawing drawing(derived_seed(draw.seed, 5));
   for (double at_s = 1;;) {
@@ -178,8 +179,8 @@ void draw_plc(const Draw& draw, std::vector<Incident>& incidents) {
     if (one.at >= draw.length) return;
     one.target = drawing.uniform() < 0.75 ? 0 : 1;
     if (one.kind == Kind::plc_command) {
-      // Most commands are starts; the others are vent, release and acknowledge. A stop is sent only by the
-      // gateway, when a master falls silent.
+      // Command codes of the masters. Most are starts; the others are vent, release and acknowledge. Stop is
+      // missing, because it must come only from the gateway when a master becomes silent.
       constexpr std::array codes{1, 1, 1, 3, 4, 5, 5};
       one.value = codes[drawing.below(codes.size())];
     } else {
@@ -240,7 +241,8 @@ std::string text_of(const Incident& incident) {
 
 std::vector<Incident> draw_incidents(const Draw& draw) {
   Drawing drawing(derived_seed(draw.seed, 1));
-  // Some worlds have few incidents, so that sequences finish. Other worlds have many.
+  // The mean time between incidents is random: in some worlds incidents are so rare that sequences finish, in
+  // others they are frequent.
   const double mean_pause_s = draw.calm * drawing.between(0.25, 4);
   std::vector<Incident> incidents;
   double at_s = 1 + drawing.uniform();
@@ -250,7 +252,7 @@ std::vector<Incident> draw_incidents(const Draw& draw) {
     const Nanoseconds at = nanoseconds(at_s);
     if (at >= draw.length) break;
     incidents.push_back(draw_one(drawing, draw, at));
-    // Before most starts a client acknowledges the fault.
+    // In most cases, a client resets the fault before the start.
     if (incidents.back().kind != Kind::start || drawing.uniform() < 0.3) continue;
     Incident clear;
     clear.at = at - ns_per_s / 10;

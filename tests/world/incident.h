@@ -1,6 +1,6 @@
 #pragma once
-// The incidents of a simulated world. They are a plain list that is drawn from a seed, so that it can be
-// printed and shortened.
+// The incidents of a simulated world. They form a plain list that is drawn from a seed, so that the list can
+// be printed and shortened.
 
 #include <cstdint>
 #include <string>
@@ -13,36 +13,37 @@ namespace softgrip::world {
 struct Incident {
   enum class Kind : std::uint8_t {
     start,  ///< a client starts the sequence number `target`
-    hasty,  ///< a start, which another client stops (`value` 0) or vents immediately
+    hasty,  ///< a client sends a start, which another client stops (`value` 0) or vents immediately
     stop,
     vent,
     release,
     acknowledge,
-    flood,          ///< a client sends `target` acknowledgements at once
+    flood,          ///< a client sends `target` requests to acknowledge faults at once
     terminate,      ///< SIGTERM; the daemon is started again one second later
     kill,           ///< SIGKILL
     pause,          ///< pauses one thread (`target`: Part) for `duration`
-    pause_late,     ///< pauses the thread right after its next reading of the clock
-    pause_all,      ///< pauses the whole process, like SIGSTOP
-    clock_stalls,   ///< the clock stands still for `duration` and then catches up
-    line,           ///< exchanges end with status `target` (BusStatus) for `duration`
-    replies_lost,   ///< requests arrive and responses are lost for `duration`
+    pause_late,     ///< pauses the thread immediately after its next reading of the clock
+    pause_all,      ///< pauses the whole daemon process for `duration`, like SIGSTOP
+    clock_stalls,   ///< the daemon's clock stands still for `duration` and then shows the true time
+    line,           ///< for `duration`, every exchange ends with the status `target` (BusStatus)
+    replies_lost,   ///< for `duration`, requests arrive at the board, but its responses are lost
     slow_line,      ///< every exchange takes `value` s for `duration`
-    write_refused,  ///< the outputs do not follow writes for `duration`
+    write_refused,  ///< for `duration`, the outputs of the board do not follow writes
     foreign,        ///< another client writes `value` kPa to all channels every 7 ms for `duration`
-    sensor_stuck,   ///< the sensor of channel `target` is stuck for `duration`
+    sensor_stuck,   ///< the reading of channel `target` does not change for `duration`
     sensor_lost,
     line_leaks,
-    part_gone,       ///< the part is removed for `duration`
+    part_gone,       ///< the part that a finger grips is removed for `duration`
     emergency_stop,  ///< the emergency stop is pressed for `duration`
-    disk_full,       ///< no file can grow for `duration`
-    // With softgrip-plc; `target`: number of the master.
+    disk_full,       ///< for `duration`, no file can grow
+    // The following incidents occur with softgrip-plc. `target` is the number of the master.
     plc_command,  ///< the master sends the command `value` (CommandCode)
-    plc_silent,   ///< the program of the master stops for `duration`, while its last block is repeated
-    plc_cut,   ///< the master opens a new connection; its last block arrives on the old one after `duration`
-    plc_half,  ///< like plc_cut, after the first half of the block has arrived
+    plc_silent,   ///< the program of the master stops for `duration`, but its last block is sent repeatedly
+    plc_cut,      ///< the master opens a new connection; its last block arrives on the old connection after
+                  ///< `duration`
+    plc_half,     ///< like plc_cut, but the first half of the block has arrived before
     gateway_paused,  ///< the gateway is paused for `duration`
-    gateway_dies,    ///< the gateway is started again one second later
+    gateway_dies,    ///< the gateway process ends and is started again one second later
     daemon_and_plc,  ///< the daemon is killed, and the master is silent for `duration`
   };
   Nanoseconds at = 0;
@@ -52,13 +53,14 @@ struct Incident {
   double value = 0;
 };
 
-/// Returns a text such as "12.345 s  pause bus for 0.612 s".
+/// Returns an incident as text, for example "12.345 s  pause bus for 0.612 s".
 [[nodiscard]] std::string text_of(const Incident& incident);
 
-/// Parameters of the incidents, which occur after the first second within `length`. `watchdog`: pauses are
-/// drawn below and above this time. `late_bus`: the bus thread may also be paused between its last reading of
-/// the clock and its next write, and the clock may stall. A daemon notices such a delay only if the board
-/// reports its own watchdog trip or has no watchdog.
+/// Settings with which incidents are drawn. Incidents occur after the first second, within `length`.
+/// `watchdog`: pauses shorter and longer than this time are drawn. `late_bus`: two further kinds of incident
+/// are drawn, which a daemon notices only if the board reports its own watchdog trip or has no watchdog. In
+/// the first, the bus thread pauses between its last reading of the clock and its next write. In the second,
+/// the clock stalls.
 struct Draw {
   std::uint64_t seed = 0;
   Nanoseconds length = 0;
@@ -66,8 +68,8 @@ struct Draw {
   bool late_bus = false;
   std::size_t sequences = 1;
   std::size_t channels = 1;
-  bool plc = false;  ///< true: softgrip-plc runs
-  double calm = 1;   ///< factor of the mean time between two incidents
+  bool plc = false;  ///< true: incidents of softgrip-plc are drawn
+  double calm = 1;   ///< factor by which the mean time between two incidents is multiplied
 };
 [[nodiscard]] std::vector<Incident> draw_incidents(const Draw& draw);
 

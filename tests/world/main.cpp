@@ -1,4 +1,4 @@
-// softgrip-world: simulates whole rigs, each determined by a seed.
+// softgrip-world: simulates whole rigs. A seed determines each simulation completely.
 
 #include <sys/wait.h>
 #include <unistd.h>
@@ -32,13 +32,14 @@ struct Options {
   bool habits = false;
 };
 
-/// Smallest number of worlds for which the check requires every kind of incident.
+/// Number of worlds from which on every kind of incident must have occurred.
 constexpr std::uint64_t enough_worlds = 10;
 
 struct Sum {
   std::uint64_t worlds = 0, failed = 0, ticks = 0, writes = 0, sequences = 0, holdings = 0, faults = 0,
                 trips = 0, rows = 0, incidents = 0;
-  /// Maxima over all worlds, not sums.
+  /// Largest growth of the heap and largest number of descriptors over all worlds. The other members are
+  /// sums.
   std::uint64_t growth_bytes = 0, descriptors = 0;
   struct Tools {
     std::uint64_t worlds = 0, failed = 0;
@@ -85,17 +86,19 @@ void add(Sum& sum, Tool tool, const WorldResult& result) {
   add(sum, one);
 }
 
-/// The tools of consecutive seeds. Experiments take the longest time, so they occur only once in the list.
+/// Option value that runs a list of tools, one per seed. Experiments take the longest time, so they occur
+/// only once in the list.
 constexpr const char* all_tools = "tools";
 constexpr std::array turns{
     Tool::calibrate, Tool::plc,    Tool::doctor,     Tool::run, Tool::blocks, Tool::plc,
     Tool::calibrate, Tool::doctor, Tool::baseline,   Tool::run, Tool::plc,    Tool::blocks,
     Tool::calibrate, Tool::doctor, Tool::experiment, Tool::run, Tool::plc};
 
-/// Factor of the duration --seconds for each tool, because experiments take minutes.
+/// Factor by which --seconds is multiplied for each tool, because experiments take minutes.
 constexpr std::array<double, tool_count> lives{1, 1, 1, 1, 5, 3, 1, 1};
 
-/// Returns the requested tool or, if no tool was requested, the tool in `turns` for this seed.
+/// Returns the tool that the user requested. Without a request, returns the tool that `turns` contains for
+/// this seed.
 Tool tool_of(const Options& options, std::uint64_t seed) {
   const auto found = std::find(tool_names.begin(), tool_names.end(), options.tool);
   if (found != tool_names.end()) return static_cast<Tool>(found - tool_names.begin());
@@ -106,8 +109,8 @@ std::string of_tool(Tool tool) {
   return tool == Tool::none ? "" : fmt::format("{}; ", tool_names[static_cast<std::size_t>(tool)]);
 }
 
-/// Prints the data for the analysis of a violation: a minimal list of incidents that causes it, and the end
-/// of the trace.
+/// Prints the data that explain a violation: the shortest list of incidents that causes the violation, and
+/// the end of the trace.
 void explain(const Library& library, std::uint64_t seed, const WorldResult& failed,
              const WorldOptions& options) {
   WorldOptions again = options;
@@ -188,7 +191,8 @@ Sum run_jobs(const Library& library, const Options& options) {
   return all;
 }
 
-/// Prints one line per tool. Returns false if a tool had no result or met no incident of some kind.
+/// Prints one line per tool. Returns false if a tool produced no result, or if a kind of incident never
+/// occurred during its calls.
 bool tell_tools(const Options& options, const Sum& sum) {
   bool eventful = true;
   for (std::size_t i = 1; i < tool_count; ++i) {

@@ -6,7 +6,7 @@
 namespace softgrip::world {
 namespace {
 
-/// If its command has not ended after this time, a master synchronises again.
+/// Time without the end of its command after which a master synchronises its counter again.
 constexpr Nanoseconds master_patience = 3 * ns_per_s;
 constexpr std::size_t most_wanted = 3;
 constexpr auto vent_command = static_cast<std::uint16_t>(plc::CommandCode::vent);
@@ -39,7 +39,7 @@ MasterInWorld::Read MasterInWorld::read(const End& end, const Block& of, Nanosec
     command_ = -1;
     return read;
   }
-  // The answer belongs to an older block if one of these values differs.
+  // If one of these values differs, the response belongs to an earlier block.
   if (of.words[0] != counter_ || of.words[1] != code_ || of.command != command_) return read;
   if (end.outcome == plc::Outcome::refused && end.reason == plc::Reason::not_next) {
     read.refused = command_;

@@ -12,21 +12,23 @@ namespace {
 
 using control::State;
 
-/// Tolerance for pressures that are equal except for rounding [kPa].
+/// Largest difference between two pressures that differ only by rounding [kPa].
 constexpr double equal_kpa = 1e-9;
-/// Longest time from a client's vent request until the commands are at rest, in addition to the slew time.
+/// Longest permitted time from a client's vent request until the commands are at rest. The time that the slew
+/// limits need is added.
 constexpr Nanoseconds vent_bound = ns_per_s / 10;
-/// Longest time from a watchdog trip until it is a latched fault.
+/// Longest permitted time from a watchdog trip of the board until the daemon latches the fault.
 constexpr Nanoseconds trip_bound = ns_per_s / 2;
-/// Longest time until writes of another client are a latched fault. One exchange in 8 begins with a reading,
-/// and some writes of the other client occur between two writes of the daemon.
+/// Longest permitted time from the first write of another client until the daemon latches the fault. One
+/// exchange in 8 begins with a reading, and the other client can write between two writes of the daemon.
 constexpr Nanoseconds foreign_bound = ns_per_s / 2;
 
 double rest_of(const control::RigSettings& rig, std::size_t channel) {
   return control::resting_kpa(rig.channels[channel].limits);
 }
 
-/// Returns how far a pressure is above rest, or below rest if `side` is -1 [kPa].
+/// Returns the distance of a pressure from rest on one side [kPa]: above rest if `side` is 1, below rest if
+/// it is -1. Returns 0 on the other side.
 double away_kpa(double rest_kpa, double kpa, double side) {
   return std::max(0.0, side * (kpa - rest_kpa));
 }
@@ -144,10 +146,10 @@ void Monitor::watch_grips(Nanoseconds now, const control::TickOutput& output) {
     const control::ChannelOutput& channel = output.channels[i];
     const bool new_grip = channel.result == control::GripResult::holding && results_[i] != channel.result;
     results_[i] = channel.result;
-    // The sequence decides on the readings of the previous tick.
+    // The sequence uses the readings of the previous tick for its decisions.
     const Seen seen = std::exchange(seen_by_[i], {now, now - nanoseconds(channel.age_s), channel.validity});
     const bool old = now - seen.at > nanoseconds(rig_.channels[i].plausibility.max_age_s);
-    // A grip result ends its step, so the time of the reading is compared with the beginning of that step.
+    // A grip result ends its step, so compare the time of the reading with the beginning of this step.
     if (new_grip && channel.evidence == control::GripEvidence::displacement &&
         (seen.validity != model::Validity::valid || old || seen.sampled < step_began_[i]))
       violate(now, "HOLDING rests on readings newer than the grip",
@@ -164,7 +166,7 @@ void Monitor::watch_grips(Nanoseconds now, const control::TickOutput& output) {
 void Monitor::write(Nanoseconds began, Nanoseconds now, std::span<const double> outputs_kpa,
                     std::span<const double> commands_kpa, bool safe_outputs) {
   const double period_s = 1 / rig_.rate_hz;
-  // An exchange may write more than once. The elapsed time is measured at its first write.
+  // An exchange may write several times. The elapsed time is measured at the first write.
   if (began != last_began_)
     elapsed_s_ = last_began_ == 0 ? period_s : seconds(began - last_began_) + 2 * period_s;
   if (watch_gap(began, now, commands_kpa)) safe_outputs = true;
@@ -189,17 +191,18 @@ void Monitor::write(Nanoseconds began, Nanoseconds now, std::span<const double> 
   foreign_ = false;
 }
 
-/// Returns the output that the daemon must assume. This is the actual output, except after a write of another
-/// client that the daemon has not read, or while its safe action is to hold.
+/// Returns the output that the daemon must assume, which is normally the actual output. There are two
+/// exceptions: another client has written and the daemon has not read the outputs since, or the daemon's safe
+/// action is to hold.
 double Monitor::known_kpa(std::size_t channel, double output_kpa) const {
   const bool unread = foreign_read_ != foreign_writes_;
   const bool holds = safe_at_entry_[channel] != rest_of(rig_, channel);
   return foreign_left_[channel] && (unread || holds) ? last_kpa_[channel] : output_kpa;
 }
 
-/// Checks that the daemon writes the rest pressures after a gap in which the board has vented or may have
-/// vented. Returns true if the rest pressures were written after such a gap. The daemon reads its clock after
-/// it wakes up and before the exchange begins.
+/// Checks that the daemon writes the rest pressures after a gap in communication during which the board has
+/// vented or may have vented. Returns true if it wrote them after such a gap. The daemon reads its clock
+/// after it wakes up and before the exchange begins.
 bool Monitor::watch_gap(Nanoseconds began, Nanoseconds now, std::span<const double> commands_kpa) {
   if (watchdog_ == 0 || last_began_ == 0 || woke_ == 0) return false;
   bool rested = true;
@@ -212,13 +215,13 @@ bool Monitor::watch_gap(Nanoseconds began, Nanoseconds now, std::span<const doub
   return rested && began - last_woke_ >= longest;
 }
 
-/// Checks the slew limits of a channel on both sides of rest and when it crosses rest.
+/// Checks the slew limits of a channel above and below the rest pressure, and when the pressure crosses the
+/// rest pressure.
 void Monitor::watch_way(Nanoseconds now, std::size_t channel, double output_kpa, double command_kpa,
                         double elapsed_s, bool safe_outputs) {
   const control::LimitSettings& limits = rig_.channels[channel].limits;
   const double rest_kpa = rest_of(rig_, channel);
-  // The start value is the last written value, because the output of a board that refuses writes does not
-  // follow.
+  // Compare with the last written value, because the output does not follow if the board refuses writes.
   const double last_kpa = last_kpa_[channel];
   const double slew = command_kpa > last_kpa ? limits.slew_up_kpa_per_s : limits.slew_down_kpa_per_s;
   const bool crosses = (command_kpa - rest_kpa) * (last_kpa - rest_kpa) < 0;
@@ -240,9 +243,9 @@ void Monitor::watch_way(Nanoseconds now, std::size_t channel, double output_kpa,
 
 void Monitor::tripped(bool has_spoken) {
   armed_ = armed_at_entry_ = false;
-  // The next write starts from the rest pressures.
+  // The slew limits of the next write start from the rest pressures.
   for (std::size_t i = 0; i < last_kpa_.size(); ++i) last_kpa_[i] = rest_of(rig_, i);
-  // A daemon without a good exchange cannot know of the trip.
+  // A daemon that has had no successful exchange cannot know of the trip.
   if (!trip_untold_ && has_spoken) trip_untold_ = 0;
 }
 
@@ -300,8 +303,7 @@ void Monitor::foreign_wrote(std::span<const double> outputs_kpa) noexcept {
 
 void Monitor::watch_foreign(Nanoseconds now, const Excuse& excuse, Nanoseconds duration) {
   if (!foreign_unseen_ || excuse.paused || excuse.line_but_for_foreign) return;
-  // A daemon that is already faulted or still starting writes the rest pressures and ignores the other
-  // client.
+  // A daemon that is faulted or starting writes the rest pressures, so it need not report the other client.
   const bool answered = state_ == State::faulted || state_ == State::starting;
   foreign_unseen_ = answered ? 0 : *foreign_unseen_ + duration;
   if (*foreign_unseen_ > foreign_bound)

@@ -19,11 +19,11 @@ namespace {
 
 using Kind = Incident::Kind;
 
-/// Pause between the end of a command and the next one.
+/// Pause between the end of one command and the start of the next command.
 constexpr Nanoseconds call_pause = ns_per_s;
 constexpr double longest_answer_s = 1.5;
-/// Largest number of the program's writes that may replace another client's values. The driver reads the
-/// outputs before a write in 1 of 8 exchanges.
+/// Largest number of writes of the program that may replace another client's values. The number exceeds 1,
+/// because the driver reads the outputs before a write only in 1 of 8 exchanges.
 constexpr unsigned most_overwritten = 32;
 
 /// A simulated operator who enters the true values of gauge and manometer after a delay.
@@ -68,7 +68,7 @@ class MotionWorld {
       wrote(began, commands);
     };
     around_.on_exchange = [this] {
-      // The previous exchange has ended; `good_` states whether it was good.
+      // The previous exchange has ended. `good_` states whether an incident hindered it.
       spoke_ = spoke_ || good_;
       good_ = around_.line.status == drivers::BusStatus::ok;
       spoke_since_trip_ = true;
@@ -101,7 +101,7 @@ class MotionWorld {
  private:
   [[nodiscard]] double drawn() { return uniform_at(seed_, ++drawn_); }
 
-  /// Calls the command repeatedly.
+  /// Calls the command again and again until the world ends.
   void call() {
     actor_ = around_.scheduler.add("tool", [this] {
       for (;;) {
@@ -149,7 +149,8 @@ class MotionWorld {
     if (session.leave()) left();
   }
 
-  /// Runs one of the procedures. Returns the reason why it has no result, or "" if it has one.
+  /// Runs one of the calibration procedures. Returns the reason why the procedure has no result, or "" if it
+  /// has one.
   [[nodiscard]] std::string measure(tools::MotionSession& session, PersonInWorld& person,
                                     const tools::calibrate::Settings& settings) {
     const rig::RigFile& rig = around_.shape.rig;
@@ -188,7 +189,7 @@ class MotionWorld {
                                      "the command ended with a result");
   }
 
-  /// Called when the command reports that the board has confirmed the rest pressures.
+  /// Called when the command has reported that the board confirmed the rest pressures.
   void left() { around_.monitor.left(around_.scheduler.now(), around_.hardware.outputs_kpa()); }
 
   void tripped() {
@@ -209,7 +210,8 @@ class MotionWorld {
     up_ = false;
     for (std::size_t i = 0; i < commands.size(); ++i)
       up_ = up_ || commands[i] != control::resting_kpa(around_.shape.rig.settings.channels[i].limits);
-    // After a lost exchange or a gap the pressure may fall in a single step.
+    // The slew limits do not apply after a lost exchange or a gap: the pressure may then fall in a single
+    // step.
     const bool safe_outputs = !up_ || around_.excuse().no_line;
     around_.monitor.write(began, around_.scheduler.now(), outputs, commands, safe_outputs);
     around_.note_write(outputs, commands);
@@ -222,8 +224,8 @@ class MotionWorld {
     }
     if (!begins || !alive_) return;
     const Nanoseconds until = around_.scheduler.now() + incident.duration;
-    // If any write clears a trip of the board, no program can notice a pause between its reading of the clock
-    // and its write.
+    // If any write clears the board's watchdog trip, no program can notice a pause between its reading of the
+    // clock and its write.
     const bool may_be_late = around_.shape.may_pause_late();
     switch (incident.kind) {
       case Kind::stop:
@@ -285,16 +287,17 @@ class MotionWorld {
   Surroundings around_;
   WorldClock clock_;
   ActorId actor_ = 0;
-  bool alive_ = false;        // the command is running
-  bool interrupted_ = false;  // Ctrl-C was pressed
-  bool up_ = false;           // the last write of the command applied pressure
-  bool vented_ = false;       // the board has vented the pressure that the command applied
-  bool good_ = false;         // no incident has hindered the present exchange
-  bool spoke_ = false;        // the command has had a successful exchange, so it can know of a gap
-  bool spoke_since_trip_ =
-      false;                     // an exchange has begun since the trip, so the command can know of the trip
-  std::vector<double> written_;  // last write of the command that has arrived at the board
-  unsigned overwritten_ = 0;     // number of writes that replaced another client's values
+  bool alive_ = false;             // the command is running
+  bool interrupted_ = false;       // Ctrl-C was pressed
+  bool up_ = false;                // the last write of the command contained a pressure that is not the rest
+                                   // pressure
+  bool vented_ = false;            // the board has vented while the command had applied pressure
+  bool good_ = false;              // no incident has hindered the present exchange so far
+  bool spoke_ = false;             // the command has had a successful exchange, so that it can notice a gap
+  bool spoke_since_trip_ = false;  // an exchange has begun since the watchdog trip, so that the command can
+                                   // notice the trip
+  std::vector<double> written_;    // values of the last write of the command that reached the board
+  unsigned overwritten_ = 0;       // number of writes of the command that replaced another client's values
   std::uint64_t foreign_writes_ = 0;
   Nanoseconds again_at_ = 0;
 };

@@ -1,12 +1,12 @@
 #pragma once
-// A world in which `softgrip calibrate --move` or `softgrip doctor --move` drives the board without a daemon.
-// A simulated operator reads gauges and sometimes presses Ctrl-C.
+// Simulates a rig without a daemon, whose board is driven by `softgrip calibrate --move` or `softgrip doctor
+// --move`. A simulated operator reads gauges and sometimes presses Ctrl-C.
 
 #include "tests/world/world.h"
 
 namespace softgrip::world {
 
-/// `options.tool` is Tool::calibrate or Tool::doctor.
+/// Runs one such world. `options.tool` must be Tool::calibrate or Tool::doctor.
 [[nodiscard]] WorldResult run_motion_world(const Library& library, std::uint64_t seed,
                                            const WorldOptions& options);
 

@@ -1,6 +1,6 @@
 #pragma once
-// softgrip-plc and the daemon in one simulated world, with the gateway, two masters, and the register blocks
-// that they have sent.
+// Simulates softgrip-plc with a gateway, two masters, and the register blocks that travel between them. The
+// daemon runs in the same world.
 
 #include <memory>
 

@@ -11,7 +11,7 @@
 namespace softgrip::world {
 namespace {
 
-/// Returns the first column of every row in nanoseconds.
+/// Returns the first column of a CSV file, converted from seconds to nanoseconds.
 std::vector<Nanoseconds> times_of(const std::filesystem::path& file) {
   std::vector<Nanoseconds> times;
   std::ifstream in(file);
@@ -32,14 +32,14 @@ RecordingsRead check_recordings(const std::string& folder, const std::vector<Nan
     const std::vector<Nanoseconds> times = times_of(entry.path());
     read.rows += times.size();
     if (times.empty()) continue;
-    // The times of a recording are relative to its first row, so only time differences can be compared with
-    // the ticks.
+    // The times of a recording are relative to its first row, while the ticks have the daemon's time. Hence
+    // only time differences are compared.
     bool found = false;
     for (std::size_t first = 0; first < ticks.size() && !found; ++first) {
       bool all = true;
       for (std::size_t row = 0; row < times.size() && all; row += channels) {
         const std::size_t tick = first + row / channels;
-        // The row that is written at shutdown belongs to no tick.
+        // The row that is written at shutdown has no tick.
         if (tick >= ticks.size()) {
           all = row + channels >= times.size();
           break;

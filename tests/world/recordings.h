@@ -12,11 +12,12 @@ namespace softgrip::world {
 
 struct RecordingsRead {
   std::uint64_t rows = 0;
-  std::string lack;  ///< the missing rows; empty if none are missing
+  std::string lack;  ///< description of the missing rows; empty: no row is missing
 };
 
-/// `ticks`: the times of the loop's ticks since the daemon's origin, in order. Every recording in `folder`
-/// must contain one row per channel for each tick between its first and its last row.
+/// Checks every recording in `folder`. Between its first and its last row, a recording must contain one row
+/// per channel for each tick. `ticks` contains the times of the loop's ticks in order, relative to the
+/// daemon's origin.
 [[nodiscard]] RecordingsRead check_recordings(const std::string& folder,
                                               const std::vector<Nanoseconds>& ticks, std::size_t channels);
 

@@ -28,7 +28,7 @@ RigShape draw_shape(const rig::RigFile& example, std::uint64_t seed) {
       one_of(control::SafeAction::hold, control::SafeAction::vent);
   settings.safety.on_emergency_stop =
       one_of(control::SafeAction::vent, control::SafeAction::vent, control::SafeAction::hold);
-  // The longest delay of the bus fault that a rig file may set, because the delay must be shorter than the
+  // Largest delay of the bus fault that a rig file may set [cycles]. The delay must be shorter than the
   // time-out of the board's watchdog.
   const double most_cycles = watchdog_s > 0 ? 0.8 * watchdog_s * settings.rate_hz : 200;
   settings.faults.bus_down_cycles =
@@ -70,7 +70,7 @@ void draw_habits(RigShape& shape, bool always) {
   Habits& habits = shape.habits;
   const double deaf_s = one_of(0.0, 0.05, 0.15, 0.4);
   habits.deaf = nanoseconds(deaf_s);
-  // One rig file in 4 has no `settle_s`.
+  // In one of 4 rig files, `settle_s` is 0.
   habits.settle = nanoseconds(one_of(1.0, 1.0, 1.0, 0.0) * (deaf_s + 0.02));
   habits.repeat_after = nanoseconds(one_of(0.0, 0.2, 0.4) * shape.rig.loop.exchange_deadline_s);
   habits.channels_at_once = static_cast<std::size_t>(one_of(0, 1));

@@ -1,6 +1,6 @@
 #pragma once
-// The rigs of the simulated worlds, which are variants of the example rig with other rates, fault delays,
-// slew limits and watchdogs.
+// Creates the rigs of the simulated worlds. They are variants of the example rig with other rates, fault
+// delays, slew limits and watchdogs.
 
 #include <cstdint>
 #include <string>
@@ -18,16 +18,16 @@ struct RigShape {
   Habits habits;
   std::string text;
 
-  /// Returns true if the bus thread may be paused after it has read the clock. If the board has a settle
-  /// time, the thread reads the clock again only after it has fixed its commands. A pause after this reading
-  /// makes the thread write the commands late, which the project does not prevent.
+  /// Returns true if the world may pause the bus thread after the thread has read the clock. If the board has
+  /// a settle time, the thread reads the clock after it has fixed its commands. A pause after this reading
+  /// delays the write of these commands, which the daemon cannot prevent.
   [[nodiscard]] bool may_pause_late() const noexcept {
     return (trip_latches || watchdog == 0) && habits.settle == 0;
   }
 };
 
 [[nodiscard]] RigShape draw_shape(const rig::RigFile& example, std::uint64_t seed);
-/// Gives the board of 1 seed in 5, or of every seed if `always` is true, some peculiarities.
+/// Gives the board peculiarities for 1 seed in 5, or for every seed if `always` is true.
 void draw_habits(RigShape& shape, bool always);
 
 }  // namespace softgrip::world

@@ -16,7 +16,7 @@
 namespace softgrip::world {
 namespace {
 
-/// Pause between the end of a command and the next one.
+/// Pause between the end of one command and the start of the next command.
 constexpr Nanoseconds run_pause = ns_per_s;
 /// Interval between two checks of the running daemon.
 constexpr Nanoseconds daemon_look_pause = ns_per_s / 100;
@@ -47,11 +47,11 @@ class Caller : public Guest {
   [[nodiscard]] bool busy() const override { return calls_; }
 
  protected:
-  /// Runs the command once. Returns true if the command ended with a result.
+  /// Runs the command once. Returns true if the command has produced a result.
   virtual bool call() = 0;
   [[nodiscard]] bool ending() const noexcept { return ending_; }
 
-  /// Called by the command's actor: runs a daemon to its end. Returns nullopt if the daemon was killed.
+  /// Runs a daemon to its end in the thread of the command. Returns nullopt if the daemon was killed.
   [[nodiscard]] std::optional<daemon::Outcome> play(Life life) {
     Scheduler& scheduler = host_.around().scheduler;
     host_.boot(std::move(life));
@@ -83,14 +83,14 @@ class Caller : public Guest {
 class Run final : public Caller {
  public:
   explicit Run(Host& host) : Caller(host, "softgrip run"), seed_(derived_seed(host.around().shape.seed, 6)) {}
-  /// Every second seed runs the command with --no-socket.
+  /// For odd seeds, the command has the option --no-socket, so that clients cannot connect.
   [[nodiscard]] bool listens() const override { return host_.around().shape.seed % 2 == 0; }
   [[nodiscard]] double calm() const override { return 4; }
 
  private:
   bool call() override {
     const auto& sequences = host_.library().sequences;
-    // About half of the runs use the first sequence, whose part is present, so that some runs finish.
+    // About half of the runs play the first sequence, because its part is present, so that some runs finish.
     const double drawn = std::max(0.0, 2 * uniform_at(seed_, met().calls) - 1);
     Life life;
     life.sequence = sequences[static_cast<std::size_t>(drawn * static_cast<double>(sequences.size()))];
@@ -101,7 +101,7 @@ class Run final : public Caller {
   std::uint64_t seed_;
 };
 
-/// A command that plays experiments on the simulated rig.
+/// A simulated command that plays experiments on the rig.
 class Experiments : public Caller {
  public:
   using Caller::Caller;
@@ -114,8 +114,8 @@ class Experiments : public Caller {
     rig.simulated = false;
     rig.run = [this](const rig::RigFile&,
                      const daemon::DaemonOptions& options) -> tl::expected<daemon::Outcome, std::string> {
-      // Ctrl-C between two daemons is not simulated, because a signal would reach the whole process of the
-      // worlds.
+      // Do not simulate Ctrl-C between two daemons, because the signal would end the whole simulation
+      // process.
       if (ending()) return tl::unexpected(std::string("the world ends"));
       Life life;
       life.sequence = options.sequence;

@@ -9,11 +9,11 @@ namespace softgrip::world {
 
 /// Returns a guest that calls `softgrip run` repeatedly.
 [[nodiscard]] std::unique_ptr<Guest> make_run(Host& host);
-/// Returns a guest that calls `softgrip baseline` with one experiment and without the pauses before the
-/// experiment.
+/// Returns a guest that calls `softgrip baseline` with one experiment. The rests before the experiment are
+/// omitted.
 [[nodiscard]] std::unique_ptr<Guest> make_baseline(Host& host);
-/// Returns a guest that plays one experiment after another, as `softgrip investigate` does. The diagnosis
-/// moves no finger, so it is omitted.
+/// Returns a guest that plays one experiment after the other, as `softgrip investigate` does. The diagnosis
+/// is omitted, because it moves no finger.
 [[nodiscard]] std::unique_ptr<Guest> make_experiment(Host& host);
 
 }  // namespace softgrip::world

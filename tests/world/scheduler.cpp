@@ -8,7 +8,7 @@
 namespace softgrip::world {
 namespace {
 
-/// Largest delay with which an actor wakes up after a sleep [ns]. Most delays are much shorter.
+/// Largest time by which an actor wakes up too late after a sleep [ns]. Most delays are much smaller.
 constexpr double latest_wake_ns = 300'000;
 
 }  // namespace
@@ -60,7 +60,7 @@ void Scheduler::run_until(Nanoseconds end, const std::function<void(ActorId)>& a
     inside_ = true;
     actor->fibre->resume();
     inside_ = false;
-    // The vector may have grown during the call, so look the actor up again.
+    // The vector may have grown while the actor ran, so the reference to the actor must be taken again.
     Actor& ran = actors_[running_];
     if (ran.fibre->done()) ran.over = true;
     after(running_);

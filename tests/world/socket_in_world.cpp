@@ -44,7 +44,7 @@ void SocketInWorld::take(const Arrival& arrival, Nanoseconds now) {
   if (!arrival.line) return api_.on_closed(arrival.client);
   on_line(*arrival.line);
   api_.on_line(arrival.client, arrival.line->dump(), now);
-  // The loader has a real thread. Simulated time stands still until the loader is done.
+  // The sequence loader has a real thread, so wait for it. The simulated time does not advance meanwhile.
   while (api_.loads()) {
     std::this_thread::sleep_for(std::chrono::microseconds(20));
     api_.on_time(now);
@@ -52,7 +52,8 @@ void SocketInWorld::take(const Arrival& arrival, Nanoseconds now) {
 }
 
 void SocketInWorld::serve(Nanoseconds now) {
-  // Periodic messages that are due are sent first, so that the number of calls in take() has no effect.
+  // Send the periodic messages that are due first, so that the number of calls in take() has no effect on
+  // them.
   api_.on_time(now);
   api_.on_time(now);
   while (!arrivals_.empty()) {

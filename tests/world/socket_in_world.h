@@ -1,5 +1,6 @@
 #pragma once
-// The daemon's socket API without a socket. The test passes lines to it and reads its lines.
+// Simulates the daemon's socket API without a socket. The test passes lines of clients to the API and reads
+// the lines of the daemon.
 
 #include <deque>
 #include <functional>
@@ -20,23 +21,24 @@ class SocketInWorld {
   SocketInWorld(daemon::StatusSources sources, rig::SocketSettings settings,
                 std::shared_ptr<const daemon::SequenceLoader> loader, const daemon::EventLog& events);
 
-  /// Adds a client. Its lines arrive in the next turn of the service thread.
+  /// Adds a client. The service thread notices the client in its next turn.
   [[nodiscard]] daemon::ClientId connect();
   void hang_up(daemon::ClientId client);
   void say(daemon::ClientId client, const nlohmann::ordered_json& line);
-  /// Returns the daemon's lines to this client since the last call, oldest first.
+  /// Returns the lines that the daemon has sent to this client since the last call, oldest first.
   [[nodiscard]] std::vector<nlohmann::ordered_json> hear(daemon::ClientId client);
 
   /// Runs one turn of the service thread.
   void serve(Nanoseconds now);
 
-  /// Called when the service thread takes a line of a client.
+  /// Called when the service thread reads a line of a client.
   std::function<void(const nlohmann::ordered_json& line)> on_line = [](const auto&) {};
 
  private:
   struct Arrival {
     daemon::ClientId client = 0;
-    std::optional<nlohmann::ordered_json> line;  // nullopt: the client has closed its connection
+    std::optional<nlohmann::ordered_json> line;  // text of the line; nullopt: the client has closed its
+                                                 // connection
   };
   void take(const Arrival& arrival, Nanoseconds now);
 

@@ -1,6 +1,6 @@
 #pragma once
-// The simulated surroundings of a program that drives a rig: board, line, fingers, a second Modbus client,
-// the clock, and the monitor that checks the invariants.
+// Simulates the surroundings of a program that drives a rig: board, line, fingers, a second Modbus client and
+// the clock. Contains the monitor that checks the invariants.
 
 #include <functional>
 #include <span>
@@ -20,7 +20,7 @@ namespace softgrip::world {
 
 class Surroundings {
  public:
-  /// `tracing`: records all events as text.
+  /// Creates the surroundings of a rig. If `tracing` is true, all events are recorded as text.
   Surroundings(RigShape rig_shape, bool tracing);
   Surroundings(const Surroundings&) = delete;
   Surroundings& operator=(const Surroundings&) = delete;
@@ -28,7 +28,8 @@ class Surroundings {
   Surroundings& operator=(Surroundings&&) = delete;
   ~Surroundings() = default;
 
-  /// Adds an actor that begins and ends these incidents at their times. The incidents must outlive the actor.
+  /// Adds an actor that begins and ends each of these incidents at its time. The incidents must outlive the
+  /// actor.
   void let_happen(const std::vector<Incident>& incidents,
                   std::function<void(const Incident& incident, bool begins)> carry_out);
   /// Begins or ends an incident of the clock, the line, the board or the fingers.
@@ -37,11 +38,11 @@ class Surroundings {
     return kind == Incident::Kind::clock_stalls ||
            (kind >= Incident::Kind::line && kind <= Incident::Kind::part_gone);
   }
-  /// Records a write that has reached the board, with the outputs before this write.
+  /// Records a write that has reached the board. `outputs_kpa` are the outputs before this write.
   void note_write(std::span<const double> outputs_kpa, std::span<const double> commands_kpa);
-  /// Called when a program starts, because it has had no successful exchange yet.
+  /// Called when a program starts, because it has had no successful exchange so far.
   void nobody_spoke() noexcept { good_since_ = false; }
-  /// Returns the present disturbances by the line and by the second Modbus client.
+  /// Returns the disturbances that the line and the second Modbus client cause at this moment.
   [[nodiscard]] Excuse excuse() const noexcept;
 
   template <class... Values>
@@ -51,11 +52,12 @@ class Surroundings {
                      fmt::format(text, std::forward<Values>(values)...));
   }
 
-  /// Called before a request takes effect.
+  /// Called before a request of the program takes effect on the board.
   WorldBoard::OnWrite on_write = [](auto, auto) {};
   std::function<void()> on_exchange = [] {};
   std::function<void()> on_trip = [] {};
-  std::function<void()> on_hindered = [] {};  ///< called when a habit of the board has made an exchange fail
+  std::function<void()> on_hindered = [] {};  ///< called when a peculiarity of the board has made an exchange
+                                              ///< fail
 
   RigShape shape;
   bool tracing;
@@ -66,7 +68,7 @@ class Surroundings {
   Hardware hardware;
   WorldBoard board;
   Monitor monitor;
-  std::uint64_t fingerprint = 0;  ///< hash of all writes and their times
+  std::uint64_t fingerprint = 0;  ///< hash of all writes and of their times
   std::uint64_t writes = 0;
   std::uint64_t trips = 0;
 
@@ -76,7 +78,7 @@ class Surroundings {
   void to_fingers(const Incident& incident, bool begins);
   void write_as_another(const Incident& incident);
 
-  int hindered_ = 0;  // number of present incidents that hinder the line
+  int hindered_ = 0;  // number of incidents that hinder the line at this moment
   bool good_since_ = false;
   const Incident* foreign_ = nullptr;
 };

@@ -1,6 +1,6 @@
 #pragma once
-// The programs that run in a simulated world in addition to the daemon, and the number of incidents while
-// they run.
+// Names the programs that can run in a simulated world in addition to the daemon. Counts their calls and the
+// incidents during these calls.
 
 #include <array>
 #include <cstdint>
@@ -8,28 +8,30 @@
 namespace softgrip::world {
 
 enum class Tool : std::uint8_t {
-  none,        ///< only the daemon and its clients
-  calibrate,   ///< `softgrip calibrate` by hand, repeatedly, with all of its procedures
+  none,        ///< no additional program: the daemon and its clients
+  calibrate,   ///< `softgrip calibrate` with all of its procedures, called again and again
   doctor,      ///< `softgrip doctor --move`
-  run,         ///< `softgrip run`: the daemon in the command's process, ended by its sequence
+  run,         ///< `softgrip run`: the command runs the daemon in its process until the sequence ends
   baseline,    ///< `softgrip baseline` with one experiment
-  experiment,  ///< one experiment as `softgrip investigate` plays it
-  plc,         ///< softgrip-plc and two masters, with the daemon
-  blocks,      ///< clients that stop the sequences that they have started, like the Python client
+  experiment,  ///< one experiment, played as in `softgrip investigate`
+  plc,         ///< the daemon, softgrip-plc and two masters
+  blocks,      ///< clients that start sequences and stop them, like the Python client
 };
 inline constexpr std::array tool_names{"daemon",   "calibrate",  "doctor", "run",
                                        "baseline", "experiment", "plc",    "blocks"};
 inline constexpr std::size_t tool_count = tool_names.size();
 
-/// Number of calls of a tool, and of disturbances during these calls.
+/// Number of calls of a tool, and number of incidents during these calls.
 struct Met {
-  std::uint64_t calls = 0;  ///< calls of the command; for plc: commands of masters; for blocks: starts
+  std::uint64_t calls = 0;  ///< calls of the command; for plc: commands of masters; for blocks: starts of
+                            ///< sequences
   std::uint64_t results =
       0;                     ///< calls with a result; for plc: executed commands; for blocks: confirmed stops
-  std::uint64_t pauses = 0;  ///< pauses of a thread, of the process or of the clock
-  /// Trips of the board's watchdog; for plc also silences of a master.
+  std::uint64_t pauses = 0;  ///< number of pauses of a thread, of the process or of the clock
+  /// Number of trips of the board's watchdog. For plc, silences of a master are counted as well.
   std::uint64_t gaps = 0;
-  std::uint64_t faults = 0;  ///< incidents of line, board, other clients, fingers and processes
+  std::uint64_t faults = 0;  ///< number of incidents of the line, the board, other clients, the fingers and
+                             ///< processes
 
   Met& operator+=(const Met& other) noexcept {
     calls += other.calls;
@@ -39,7 +41,7 @@ struct Met {
     faults += other.faults;
     return *this;
   }
-  /// Returns true if no count is 0.
+  /// Returns true if each of these numbers is above 0.
   [[nodiscard]] bool whole() const noexcept {
     return calls > 0 && results > 0 && pauses > 0 && gaps > 0 && faults > 0;
   }

@@ -26,20 +26,20 @@ namespace {
 using Kind = Incident::Kind;
 using control::Request;
 
-/// Pause between the end of a daemon and the next start.
+/// Pause between the end of a daemon and the start of the next daemon.
 constexpr Nanoseconds restart_pause = ns_per_s;
 constexpr Nanoseconds longest_answer = 2 * ns_per_s;
-/// Longest time from the request to end until the guest has ended.
+/// Longest permitted time from the request that the guest ends until it has ended.
 constexpr Nanoseconds longest_end = 60 * ns_per_s;
-/// Longest interval between ticks of an undisturbed loop.
+/// Longest permitted interval between two ticks of a loop that no incident disturbs.
 constexpr Nanoseconds longest_tick_gap = ns_per_s / 20;
 constexpr Nanoseconds memory_looked_at_every = ns_per_s;
-/// Time after the start at which a daemon has allocated all its resources.
+/// Time after its start at which a daemon has allocated all its memory and descriptors.
 constexpr Nanoseconds settling = 5 * ns_per_s;
-/// Largest growth of the heap. The event log and a recording each store up to 10,000 events of 0.5 KiB, from
-/// which run.json is built. No other data may grow.
+/// Largest permitted growth of the heap. The event log and a recording each store up to 10,000 events of 0.5
+/// KiB, from which run.json is built. No other data may grow.
 constexpr std::size_t allowed_growth_bytes = std::size_t{12} << 20;
-/// Largest number of additional descriptors, for a recording and the file of a sequence.
+/// Largest permitted number of additional descriptors, for a recording and for the file of a sequence.
 constexpr std::size_t allowed_descriptors = 8;
 
 std::size_t open_descriptors() {
@@ -55,7 +55,8 @@ std::size_t allocated_bytes() {
   return heap.uordblks + heap.hblkhd;
 }
 
-/// While `full` is true, no file of this process can grow, as on a full disk.
+/// If `full` is true, no file of this process can grow from now on, as on a full disk. If it is false, files
+/// can grow.
 void fill_disk(bool full) {
   std::signal(SIGXFSZ, SIG_IGN);
   rlimit limit{};
@@ -109,7 +110,7 @@ class World final : public Host {
     return std::move(result_);
   }
 
-  // Implementation of the interface Host.
+  // Functions of the interface Host.
   [[nodiscard]] const Library& library() const override { return library_; }
   [[nodiscard]] Surroundings& around() override { return around_; }
   [[nodiscard]] DaemonInWorld* daemon() override { return daemon_.get(); }
@@ -133,17 +134,17 @@ class World final : public Host {
     daemon_->on_submit = [this](Request::Kind kind, std::uint32_t id) { monitor_.submitted(kind, id); };
     if (guest_) guest_->boots(*daemon_);
     recorded_.clear();
-    ticked_ = 0;  // a daemon that died at its first tick must not hide the first tick of the next one
+    ticked_ = 0;  // a daemon that died at its first tick must not hide the first tick of this daemon
   }
 
  private:
-  /// True: a service manager starts and restarts the daemon.
+  /// Returns true if a service manager starts and restarts the daemon.
   [[nodiscard]] bool managed() const { return !guest_ || !guest_->runs_the_daemon(); }
 
   void run_until(Nanoseconds end) {
     scheduler_.run_until(end, [this](ActorId id) { after(id); });
   }
-  /// Requests the end of the guest and waits for it, so that no program of this world remains in the process.
+  /// Requests that the guest ends and waits for it, so that no program of this world remains in the process.
   void end_guest() {
     guest_->end();
     const Nanoseconds give_up = scheduler_.now() + longest_end;
@@ -168,7 +169,7 @@ class World final : public Host {
     vented_in_motion_ = vented_in_motion_ || runs;
   }
 
-  /// Called after the end of a daemon: checks its recordings and removes them.
+  /// Called after the end of a daemon. Checks the recordings of this daemon and removes them.
   void bury() {
     if (!daemon_) return;
     around_.board.hang_up();
@@ -196,7 +197,7 @@ class World final : public Host {
     boots_at_ = scheduler_.now() + restart_pause;
   }
 
-  /// Checks time limits once per millisecond, detects the end of a daemon and restarts it.
+  /// Once per millisecond, checks time limits and detects the end of a daemon, which it then restarts.
   void outside_body() {
     for (;;) {
       scheduler_.sleep_until(scheduler_.now() + ns_per_s / 1000);
@@ -222,7 +223,7 @@ class World final : public Host {
       } else {
         if (managed()) look_at_memory(now);
         for (const auto& [id, asked] : daemon_->unanswered()) {
-          // A daemon that is ending closes the connection instead of answering.
+          // A daemon that is ending closes the connection without a response.
           if (!is_paused() && !daemon_->shared.shutdown_requested.load() &&
               now - std::max(asked.at, undisturbed_since_) > longest_answer)
             monitor_.answer_is_late(now, asked.at);
@@ -231,13 +232,13 @@ class World final : public Host {
     }
   }
 
-  /// Checks the memory and the descriptors that the daemon has acquired since it settled, once per second
-  /// while it runs.
+  /// Once per second, checks how much memory and how many descriptors the running daemon has acquired since
+  /// it settled.
   void look_at_memory(Nanoseconds now) {
     const bool due = now - memory_looked_at_ >= memory_looked_at_every && now - booted_at_ >= settling;
     if (!due || options_.trace) return;
     memory_looked_at_ = now;
-    // The list of ticks belongs to the world, so it is excluded. The growth is not checked if a trace is
+    // Subtract the list of ticks, because it belongs to the world. The growth is not checked if a trace is
     // recorded.
     const std::size_t bytes = allocated_bytes() - recorded_.capacity() * sizeof(Nanoseconds);
     if (settled_bytes_ == 0) settled_bytes_ = bytes;
@@ -292,8 +293,8 @@ class World final : public Host {
   void wrote(Nanoseconds began, std::span<const double> commands) {
     const Nanoseconds now = scheduler_.now();
     const auto outputs = hardware_.outputs_kpa();
-    // The slew limits do not apply to the safe outputs of a stalled loop. After a failed exchange the outputs
-    // are unknown, and the daemon writes the lower of the possible values.
+    // The slew limits do not apply in two cases. A stalled loop causes safe outputs. After a failed exchange
+    // the outputs are unknown, so the daemon writes the lower of the possible values.
     const std::uint64_t failures = daemon_->bus_statistics.failures.value();
     const bool unconfirmed = std::exchange(failures_, failures) != failures;
     const bool safe_outputs = unconfirmed || daemon_->shared.shutdown_requested.load() ||
@@ -315,20 +316,20 @@ class World final : public Host {
   std::unique_ptr<Guest> guest_;
   std::unique_ptr<DaemonInWorld> daemon_;
   std::vector<std::unique_ptr<DaemonInWorld>> buried_;
-  std::vector<Nanoseconds> recorded_;  // times of the ticks since the daemon's origin
+  std::vector<Nanoseconds> recorded_;  // times of the loop's ticks, relative to the daemon's origin
   unsigned lives_ = 0;
-  std::optional<daemon::Outcome> outcome_;  // outcome of the last daemon, unless it was killed
+  std::optional<daemon::Outcome> outcome_;  // outcome of the last daemon run; nullopt: the daemon was killed
   bool vented_in_motion_ = false;
-  bool alone_ = true;  // the recordings of the daemon are in the folder of the rig file
+  bool alone_ = true;  // the daemon stores its recordings in the folder that the rig file names
   bool killed_ = false;
   bool disk_full_ = false;
   bool disk_was_full_ = false;
-  std::size_t descriptors_ = 0;  // open descriptors before the first daemon
+  std::size_t descriptors_ = 0;  // number of open descriptors before the first daemon started
   std::size_t settled_bytes_ = 0;
   Nanoseconds booted_at_ = 0;
   Nanoseconds memory_looked_at_ = 0;
   std::uint64_t ticked_ = 0;
-  std::uint64_t failures_ = 0;  // number of failed exchanges at the last write of the daemon
+  std::uint64_t failures_ = 0;  // number of failed exchanges when the daemon last wrote
   Nanoseconds boots_at_ = 0;
   Nanoseconds last_tick_ = 0;
   Nanoseconds last_tick_gap_end_ = 0;
@@ -355,7 +356,7 @@ void World::carry_out(const Incident& incident, bool begins) {
   }
 }
 
-/// Counts the pauses and faults that a guest and its daemon have met.
+/// Counts the pauses and faults that occur while a guest and its daemon run.
 void World::count(const Incident& incident) {
   if (!daemon_) return;
   Met& met = guest_->met();
@@ -423,7 +424,8 @@ void World::pause(const Incident& incident) {
   }
 }
 
-/// Returns the rig of a seed. Experiments begin and end at 0 kPa, so they need a rig that rests at 0 kPa.
+/// Returns the rig for a seed. Experiments begin and end at 0 kPa, so they need a rig whose rest pressure is
+/// 0 kPa.
 const Library& library_for(const Library& library, std::uint64_t seed, Tool tool) {
   const Library& drawn = library.of(seed);
   const bool experiments = tool == Tool::baseline || tool == Tool::experiment;
@@ -449,7 +451,8 @@ std::vector<Incident> shrink(const Library& library, std::uint64_t seed, const W
     const WorldResult result = run_world(library, seed, again);
     return result.violation && result.violation->invariant == failed.violation->invariant;
   };
-  // Leave out half of the incidents, then a quarter, down to single ones, while the violation remains.
+  // Remove half of the incidents, then a quarter, and finally single incidents, as long as the violation
+  // remains.
   for (std::size_t part = std::max<std::size_t>(best.size() / 2, 1);; part /= 2) {
     for (std::size_t begin = 0; begin < best.size();) {
       std::vector<Incident> fewer = best;

@@ -1,6 +1,6 @@
 #pragma once
-// A whole rig that is determined by one seed: daemon, board, line, fingers, clients, a second Modbus client,
-// disk, and pauses of every thread. Runs with the same seed are identical, bit for bit.
+// Simulates a whole rig: daemon, board, line, fingers, clients, a second Modbus client, disk, and pauses of
+// every thread. One seed determines the simulation. Runs with the same seed are identical, bit for bit.
 
 #include <cstdint>
 #include <memory>
@@ -16,13 +16,13 @@
 
 namespace softgrip::world {
 
-/// The data that all worlds share. They are read once.
+/// The files that all worlds use. They are read once.
 struct Library {
   rig::RigFile rig;
   std::vector<std::shared_ptr<const daemon::LoadedSequence>> sequences;
-  std::vector<Library> others;  ///< rigs whose pressure ranges extend to both sides of the rest pressure
+  std::vector<Library> others;  ///< rigs whose pressure range extends above and below the rest pressure
 
-  /// Returns the library of a seed: one seed in four has a rig of `others`.
+  /// Returns the library for a seed. For one seed in four, its rig is one of `others`.
   [[nodiscard]] const Library& of(std::uint64_t seed) const {
     return seed % 4 == 3 && !others.empty() ? others[seed / 4 % others.size()] : *this;
   }
@@ -33,12 +33,12 @@ struct Library {
 struct WorldOptions {
   Tool tool = Tool::none;
   Nanoseconds length = 60 * ns_per_s;
-  /// If set, these incidents replace the incidents that the seed draws.
+  /// Incidents that replace those of the seed; nullopt: the incidents of the seed are used.
   std::optional<std::vector<Incident>> incidents;
   /// True: every incident, every write and every tick with an event is recorded as text.
   bool trace = false;
   bool record = true;
-  bool always_habits = false;  ///< false: one seed in five has a board with habits
+  bool always_habits = false;  ///< true: every board has peculiarities; false: the board of one seed in five
 };
 
 struct WorldResult {
@@ -46,11 +46,11 @@ struct WorldResult {
   std::vector<Incident> incidents;
   std::string shape;  ///< description of the rig in one line
   std::vector<std::string> trace;
-  std::uint64_t fingerprint = 0;  ///< hash of all writes and their times
+  std::uint64_t fingerprint = 0;  ///< hash of all writes and of their times
   std::uint64_t ticks = 0, writes = 0, sequences = 0, holdings = 0, faults = 0, trips = 0, rows = 0;
-  std::uint64_t growth_bytes = 0;  ///< largest growth of a daemon's heap after it had settled
+  std::uint64_t growth_bytes = 0;  ///< largest growth of the heap of a daemon after it had settled [bytes]
   std::uint64_t descriptors = 0;   ///< largest number of open descriptors of a daemon
-  Met met;                         ///< counts of the tool
+  Met met;                         ///< numbers of calls and incidents of the tool
 };
 
 [[nodiscard]] WorldResult run_world(const Library& library, std::uint64_t seed, const WorldOptions& options);
