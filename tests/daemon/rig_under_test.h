@@ -1,5 +1,5 @@
 #pragma once
-// Loads the example rigs and sequences of the project for tests.
+// Reads the example rigs and sequences of the project for tests.
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 #pragma once
-// A board whose responses the test specifies and that stores the written values.
+// A board that stores the written values and whose responses the test specifies.
 
 #include <algorithm>
 #include <functional>
@@ -18,15 +18,16 @@ class ScriptedBoard final : public drivers::Board {
 
   drivers::BusStatus next_connect = drivers::BusStatus::ok;
   drivers::BusStatus next_exchange = drivers::BusStatus::ok;
-  std::vector<std::vector<double>> written;  ///< values written by good exchanges
+  std::vector<std::vector<double>> written;  ///< values that good exchanges wrote, one element per exchange
   std::chrono::nanoseconds watchdog{0};
   bool readers_feed = false;
   unsigned counted_clients = 0;
   const char* said = "scripted";
-  double found = std::numeric_limits<double>::quiet_NaN();  ///< output values after a refused write
-  std::function<void()> on_connect;                         ///< called during connect()
+  double found = std::numeric_limits<double>::quiet_NaN();  ///< outputs that the board has after a refused
+                                                            ///< write
+  std::function<void()> on_connect;                         ///< called during each connect()
   std::function<void()> on_exchange;  ///< called before the request of an exchange arrives at the board
-  std::vector<Nanoseconds> connect_attempts;  ///< times of the calls of connect()
+  std::vector<Nanoseconds> connect_attempts;  ///< times at which connect() was called
 
   [[nodiscard]] std::size_t channels() const noexcept override { return channels_; }
   [[nodiscard]] drivers::BusStatus connect(std::chrono::nanoseconds) noexcept override {

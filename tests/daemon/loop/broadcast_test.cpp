@@ -15,7 +15,7 @@
 namespace softgrip::daemon::broadcast_test {
 namespace {
 
-/// An item whose words are all equal. A copy with unequal words was interrupted.
+/// A value of several equal words. If the words of a copy differ, the copy was interrupted.
 struct Item {
   std::array<std::uint64_t, 6> words{};
   [[nodiscard]] bool whole() const {
@@ -62,8 +62,8 @@ TEST(Broadcast, WhoLagsLosesTheOldestAndNobodyElseDoes) {
   EXPECT_EQ(eager.lost(), 0U);
 }
 
-/// Runs an action once, in the middle of the next copy, to simulate another thread that acts at the worst
-/// moment.
+/// Runs a function once, in the middle of the next copy. The function does what another thread could do at
+/// the worst moment.
 struct AtTheWorstMoment {
   static inline std::function<void()> action;
   static void halfway() noexcept {
@@ -93,7 +93,7 @@ TEST(Broadcast, AnItemIsThereOnlyWhenAllOfItIsThere) {
   events.push(item(1));
   EXPECT_FALSE(taken);
   for (std::uint64_t n = 2; n <= 4; ++n) events.push(item(n));
-  // The fifth item replaces the first, which the reader has not taken yet.
+  // The fifth item replaces the first item, which the reader has not read.
   AtTheWorstMoment::action = [&] { taken = reader.pop(seen); };
   events.push(item(5));
   EXPECT_TRUE(taken);

@@ -1,5 +1,5 @@
-// Tests the interaction of the loop, the bus and the board's watchdog by trying every order of the possible
-// steps up to a given depth.
+// Tests that loop, bus and watchdog of the board work together safely. Tries every order of the possible
+// steps up to a maximum number of steps.
 
 #include <gtest/gtest.h>
 
@@ -21,14 +21,13 @@ using drivers::BusStatus;
 constexpr Nanoseconds period = 5'000'000;
 constexpr Nanoseconds watchdog = 100'000'000;
 
-/// A board with one output, whose watchdog trip is cleared by any write. Such a trip is the most difficult to
-/// detect.
+/// A board with one output. Any write clears its watchdog trip, which makes the trip difficult to detect.
 class OneOutput final : public drivers::Board {
  public:
   explicit OneOutput(const VirtualClock& clock) : clock_(clock) {}
   double output_kpa = 0;
   BusStatus next = BusStatus::ok;
-  std::function<void()> on_exchange;  ///< called once during the next exchange
+  std::function<void()> on_exchange;  ///< called once, during the next exchange
 
   void look() {
     if (fed_at_ < 0 || clock_.now() - fed_at_ < watchdog || output_kpa <= 0) return;
@@ -47,7 +46,7 @@ class OneOutput final : public drivers::Board {
     next = BusStatus::ok;
     if (status == BusStatus::disconnected) return status;
     fed_at_ = clock_.now();
-    // If the response is lost, the board has accepted the write without a confirmation.
+    // If the response is lost, the board has executed the write, but the bus receives no confirmation.
     if (status != BusStatus::write_refused && status != BusStatus::overwritten) output_kpa = commands_kpa[0];
     if (status == BusStatus::overwritten) output_kpa = 0;
     return status;
@@ -64,13 +63,13 @@ class OneOutput final : public drivers::Board {
   Nanoseconds fed_at_ = -1;
 };
 
-/// A minimal controller, whose command rises while it runs. It stops when the bus reports a fault, does not
-/// repeat values that are no longer at the outputs, and runs again after a start.
+/// A minimal controller, whose command rises while it runs. It stops when the bus reports a fault. It does
+/// not repeat values that the outputs no longer have. After a start it runs again.
 class LeastLoop {
  public:
   explicit LeastLoop(SharedState& shared) : shared_(shared) {}
   bool runs = true;
-  std::uint32_t heard = 0;  ///< number of the newest inhibition whose reason was received
+  std::uint32_t heard = 0;  ///< number of the newest inhibition of the bus that the controller has received
 
   void tick() {
     shared_.bus.fetch();
@@ -90,7 +89,7 @@ class LeastLoop {
     commands.last = false;
     shared_.commands.publish();
   }
-  /// Starts the loop unless the bus reports a fault.
+  /// Starts the controller, if the bus reports no fault. Returns true if it runs.
   bool start() {
     shared_.bus.fetch();
     const control::BusHealth& health = shared_.bus.value().health;
@@ -116,7 +115,8 @@ enum class Step {
   count
 };
 
-/// Runs the steps of a path and returns the property that the path violates, or an empty text.
+/// Runs the steps of a path. Returns the property that the path violates, or an empty text if it violates
+/// none.
 std::string follow(std::span<const Step> path) {
   VirtualClock clock;
   OneOutput board(clock);
@@ -132,7 +132,8 @@ std::string follow(std::span<const Step> path) {
   Bus bus(board, rig, loop, reconnect, clock, shared, statistics);
   LeastLoop controller(shared);
 
-  bool may_rise = true;  // true: since the last start no event has occurred that forbids a rise
+  bool may_rise = true;  // true: since the last start, no event has occurred that forbids a rise of the
+                         // output
   const auto exchange = [&]() -> std::string {
     board.look();
     const int trips = board.trips;
@@ -165,7 +166,7 @@ std::string follow(std::span<const Step> path) {
     if (!controller.runs) may_rise = false;
     if (const std::string broken = exchange(); !broken.empty()) return broken;
   }
-  // Without further incidents, all parts agree after a few steps.
+  // If no further incident occurs, controller, bus and board agree after a few steps.
   for (int i = 0; i < 6; ++i) {
     controller.tick();
     if (!controller.runs) may_rise = false;
@@ -179,7 +180,7 @@ std::string follow(std::span<const Step> path) {
 
 TEST(BusSearch, NoOrderOfEventsMakesAnOutputRise) {
 #if defined(__SANITIZE_THREAD__) || defined(__SANITIZE_ADDRESS__)
-  constexpr std::size_t depth = 4;  // sanitizers are 100 times slower, even with one thread
+  constexpr std::size_t depth = 4;  // smaller with sanitizers, because they make the test 100 times slower
 #else
   constexpr std::size_t depth = 6;
 #endif

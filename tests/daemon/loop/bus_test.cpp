@@ -80,15 +80,16 @@ TEST_F(BusTest, ASilentLoopMeansSafeOutputsUntilATickThatKnowsCommandsNoMoreThan
   EXPECT_EQ(last_written(), 3);
   EXPECT_EQ(fault(), FaultCode::cycles_lost);
   EXPECT_EQ(shared_.bus.value().outputs_kpa[0], 3);
-  command(14, 3, true);  // the loop continues its motion, although the outputs have changed
+  command(14, 3, true);  // the loop continues its motion, because it does not know that the outputs have
+                         // changed
   step();
   EXPECT_EQ(last_written(), 3);
-  command(4, 3, false);  // the loop ended its motion, but for another reason
+  command(4, 3, false);  // the loop has ended its motion for another reason
   step();
   EXPECT_EQ(last_written(), 3);
-  command(
-      4, 3, false,
-      shared_.bus.value().health.inhibit);  // the loop knows the reason, but its command is above the outputs
+  command(4, 3, false,
+          shared_.bus.value().health.inhibit);  // the loop knows that its motion is inhibited, but its
+                                                // command is above the outputs
   step();
   EXPECT_EQ(last_written(), 3);
   EXPECT_EQ(fault(), FaultCode::cycles_lost);
@@ -119,7 +120,7 @@ TEST_F(BusTest, ALoopThatComesBackWithTheNextFallOfItsMotionIsFollowedDown) {
 class WatchedBusTest : public BusTest {
  protected:
   static constexpr Nanoseconds watchdog = 500'000'000;
-  static constexpr Nanoseconds margin = 50'000'000;  // the deadline of an exchange
+  static constexpr Nanoseconds margin = 50'000'000;  // time limit of an exchange
   WatchedBusTest() {
     board_.watchdog = std::chrono::nanoseconds(watchdog);
     rig_.channels.resize(2);
@@ -137,7 +138,7 @@ TEST_F(WatchedBusTest, AGapThatReachesTheWatchdogIsAFaultAndNothingRisesBehindIt
   EXPECT_EQ(last_written(), 1);
   EXPECT_EQ(fault(), FaultCode::board_watchdog_tripped);
   EXPECT_EQ(shared_.bus.value().outputs_kpa[1], 1);
-  command(35, 35, false);  // the loop latched another fault and does not know the watchdog trip
+  command(35, 35, false);  // the loop has latched another fault and does not know of the watchdog trip
   step(bus);
   EXPECT_EQ(last_written(), 1);
   command(1, 1, false, shared_.bus.value().health.inhibit);
@@ -211,7 +212,7 @@ TEST_F(WatchedBusTest, AnExchangeThatWasStoppedOnItsWayIsFoundOutAfterwards) {
   EXPECT_EQ(last_written(), 1);
 }
 
-/// Pressure range from -40 to 60 kPa with a rest pressure of 0 kPa.
+/// Tests with a pressure range from -40 to 60 kPa and a rest pressure of 0 kPa.
 class VacuumBusTest : public WatchedBusTest {
  protected:
   VacuumBusTest() {
@@ -227,13 +228,13 @@ TEST_F(VacuumBusTest, OutputsLeaveRestOnEitherSideOnlyWhileASequenceRuns) {
   command(-12, 0, true);
   step(bus);
   EXPECT_EQ(last_written(), -12);
-  command(-13, 0, false);  // this command was sent before the sequence ended
+  command(-13, 0, false);  // the loop computed this command before the sequence ended
   step(bus);
   EXPECT_EQ(last_written(), -12);
   command(-11, 0, false);
   step(bus);
   EXPECT_EQ(last_written(), -11);
-  command(5, 0, false);  // a pressure on the other side of rest is also a motion away from rest
+  command(5, 0, false);  // a motion to the other side of rest is a motion away from rest as well
   step(bus);
   EXPECT_EQ(last_written(), 0);
 }
@@ -249,7 +250,8 @@ TEST_F(VacuumBusTest, AWatchdogThatHasActedLeavesRestAndNotFullVacuum) {
     EXPECT_EQ(last_written(), 0);
     EXPECT_EQ(fault(), FaultCode::board_watchdog_tripped);
     command(-1, -1, false,
-            shared_.bus.value().health.inhibit);  // the loop knows the reason, but its command is not at rest
+            shared_.bus.value().health.inhibit);  // the loop knows of the trip, but its command is not the
+                                                  // rest pressure
     step(bus);
     EXPECT_EQ(last_written(), 0);
     EXPECT_EQ(fault(), FaultCode::board_watchdog_tripped);
@@ -276,7 +278,7 @@ TEST_F(VacuumBusTest, OutputsThatTheBoardDidNotConfirmAreTheNearerToRest) {
       << "the output may be on either side of rest, so only the rest pressure is safe";
 }
 
-/// A board that fails repeatedly for the same reason must not fill the event log.
+/// If a board fails repeatedly for the same reason, the event log must contain this reason only once.
 TEST_F(BusTest, ThatNoSessionCanBeOpenedAgainIsToldOnceIfItIsForAnotherReason) {
   const auto failures = [this] {
     std::vector<std::string> texts;
@@ -319,7 +321,7 @@ TEST_F(BusTest, ThatNoSessionCanBeOpenedAgainIsToldOnceIfItIsForAnotherReason) {
   }
 }
 
-/// A board that accepts connections and closes them has not responded.
+/// If a board accepts a connection and closes it, no event may report that the board is connected.
 TEST_F(BusTest, ASessionIsToldOfOnceTheBoardHasAnsweredInIt) {
   const auto told = [this] {
     std::vector<std::pair<BusEvent::Kind, BusStatus>> list;
@@ -390,7 +392,7 @@ TEST_F(BusTest, AnotherClientThatFeedsTheWatchdogIsToldOnceASession) {
 TEST_F(BusTest, OutputsRiseOnlyWhileASequenceRuns) {
   command(12, 0, true);
   step();
-  command(13, 0, false);  // the command was under way when the sequence ended
+  command(13, 0, false);  // the loop computed this command before the sequence ended
   step();
   EXPECT_EQ(last_written(), 12);
   command(11, 0, false);
@@ -487,7 +489,7 @@ TEST_F(BusTest, SessionsThatFailAtTheirFirstExchangeAreAsRareAsFailedAttempts) {
     EXPECT_NEAR(static_cast<double>(attempts[i + 1] - attempts[i]), static_cast<double>(pauses_ms[i]) * 1e6,
                 static_cast<double>(period));
   }
-  // After a good exchange, the bus opens a new session at once when the next exchange is lost.
+  // If an exchange is lost after good exchanges, the bus opens a new session at once.
   board_.next_exchange = BusStatus::ok;
   for (int i = 0; i < 100; ++i) step();
   board_.next_exchange = BusStatus::timed_out;
@@ -519,7 +521,7 @@ TEST_F(BusTest, AnAnswerThatRefusesKeepsTheSession) {
   EXPECT_EQ(board_.connect_attempts.size(), 1U);
 }
 
-// Another Modbus client has written 5 kPa between the write and the reading of one exchange.
+// In this test, another Modbus client writes 5 kPa after the daemon's write and before the outputs are read.
 TEST_F(BusTest, OutputsFoundNearerToRestAreNotWrittenBack) {
   command(12, 0, true);
   step();
@@ -552,8 +554,8 @@ TEST_F(BusTest, OutputsFoundFurtherFromRestOrNotAtAllDoNotRaiseTheCommands) {
   }
 }
 
-// The driver would read the same values from a gateway that repeats an old reading. A held part must not be
-// dropped in such a case.
+// A gateway that repeats an old reading causes the same values. The daemon must then continue to hold the
+// part.
 TEST_F(BusTest, AHoldIsNotDroppedForOutputsFoundNearerToRest) {
   command(12, 12, true);
   step();

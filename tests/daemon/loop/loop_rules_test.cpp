@@ -1,5 +1,5 @@
-// Tests that the loop's thread allocates no memory, causes no page faults and makes no system calls except
-// those for clock and sleep.
+// Tests that the thread of the control loop allocates no memory and causes no page faults. Its only system
+// calls read the clock and sleep.
 
 #include <gtest/gtest.h>
 #include <linux/filter.h>
@@ -48,8 +48,8 @@ void count_allocation() noexcept {
 
 }  // namespace
 
-// The functions of the C library are replaced by functions that count their calls. operator new also calls
-// these functions.
+// The memory functions of the C library are replaced by functions that count their calls. operator new also
+// calls these functions.
 extern "C" {
 // NOLINTBEGIN(bugprone-reserved-identifier): these names are given by the C library
 void* __libc_malloc(size_t);
@@ -104,8 +104,8 @@ std::unique_ptr<DaemonParts> make_parts(bool virtual_time) {
   return std::make_unique<DaemonParts>(std::move(rig), std::move(options));
 }
 
-/// Runs the loop in virtual time and all other parts between its ticks. Allocations are counted only during a
-/// tick of the loop.
+/// Runs the loop in virtual time. All other parts of the daemon run between two ticks. Allocations are
+/// counted only during a tick of the loop.
 class WatchedTicks {
  public:
   explicit WatchedTicks(DaemonParts& parts) : parts_(parts), due_(parts.origin) {}
@@ -139,7 +139,7 @@ TEST(LoopRules, TheHookSeesAnAllocation) {
   if (SOFTGRIP_SANITIZED) GTEST_SKIP() << "sanitizers have their own allocator";
   allocations.store(0);
   armed = true;
-  // Volatile, so that the compiler does not remove the pair of calls.
+  // Use a volatile pointer, so that the compiler does not remove the calls of malloc() and free().
   void* volatile memory = std::malloc(16);
   std::free(memory);
   armed = false;
@@ -172,15 +172,15 @@ TEST(LoopRules, NoTickAllocates) {
   EXPECT_EQ(allocations.load(), 0U);
 }
 
-/// Functions that are called before and after the loop runs.
+/// Functions that a test runs before and after the loop.
 struct Around {
-  std::function<void()> before = [] {};  ///< in the loop's thread, after its preparation
-  std::function<void()> after = [] {};   ///< in the loop's thread, after the end of the loop
-  std::function<void()> last = [] {};    ///< in the loop's thread, after it has announced its end
-  std::function<void()> ended = [] {};   ///< in the calling thread, after the loop has announced its end
+  std::function<void()> before = [] {};  ///< called in the loop's thread after the thread has been prepared
+  std::function<void()> after = [] {};   ///< called in the loop's thread after the loop has ended
+  std::function<void()> last = [] {};    ///< called in the loop's thread after it has announced its end
+  std::function<void()> ended = [] {};   ///< called in the test's thread after the loop has announced its end
 };
 
-/// Runs the real loop and bus for `duration`, each in its own thread as in the daemon.
+/// Runs the real loop and the real bus for `duration`, each in its own thread as in the daemon.
 void run_threads(DaemonParts& parts, Nanoseconds duration, const Around& around) {
   RealTimeReport report;
   const ProcessorLatencyRequest latency = prepare_process(parts.rig.real_time, report);
@@ -227,8 +227,8 @@ TEST(LoopRules, NoTickPageFaults) {
   around.after = [&] { getrusage(RUSAGE_THREAD, &after); };
   run_threads(*parts, 3 * ns_per_s, around);
   EXPECT_GT(parts->loop_statistics.ticks.value(), 100U);
-  // Locked memory prevents page faults. Without the right to lock memory, the rings cause page faults when
-  // they are first filled.
+  // Page faults do not occur if memory is locked. If the process has no permission to lock memory, the rings
+  // cause page faults when they are first filled.
   EXPECT_EQ(after.ru_majflt, before.ru_majflt);
   EXPECT_EQ(after.ru_minflt, before.ru_minflt);
 }
@@ -240,8 +240,9 @@ void on_forbidden_call(int, siginfo_t* info, void*) {
   forbidden_call.compare_exchange_strong(expected, info->si_syscall);
 }
 
-/// Restricts the calling thread to sleeping, reading the clock and returning from signal handlers. Any other
-/// system call is recorded and fails. The filter cannot be removed, so the test runs in its own process.
+/// Restricts the calling thread to three kinds of system calls: sleep, read the clock, and return from a
+/// signal handler. Any other system call is recorded and fails. The restriction cannot be removed, so the
+/// test runs in its own process.
 void allow_only_clock_and_sleep() {
   const std::array<sock_filter, 8> program{{
       BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, nr)),
@@ -266,7 +267,7 @@ constexpr int no_filter = 100;
 constexpr int no_ticks = 101;
 constexpr int forbidden = 102;
 
-/// Runs `body` in its own process and returns the exit code: `clean`, or a code for the failure.
+/// Runs `body` in its own process. Returns the exit code of the process: `clean`, or a code for the failure.
 int in_child(const std::function<int()>& body) {
   const pid_t child = fork();
   if (child == 0) {
@@ -313,7 +314,7 @@ TEST(LoopRules, NoTickCallsTheSystemButForClockAndSleep) {
     const auto parts = make_parts(false);
     Around around;
     around.before = allow_only_clock_and_sleep;
-    // The thread cannot end, because ending needs other system calls.
+    // Stop the thread here, because ending a thread needs other system calls.
     around.last = [] {
       for (;;) sleep_until(INT64_MAX);
     };

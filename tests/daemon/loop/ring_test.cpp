@@ -16,7 +16,7 @@ namespace {
 
 using testing::TornValue;
 
-/// A plausible but wrong ring, which announces an item before the item is completely copied.
+/// A faulty ring that looks correct: it announces an item before the item is completely copied.
 class AnnouncedTooEarly {
  public:
   explicit AnnouncedTooEarly(std::size_t capacity) : items_(capacity) {}
@@ -41,8 +41,8 @@ class AnnouncedTooEarly {
   std::atomic<std::size_t> tail_{0};
 };
 
-/// Sends the items 1 to `count` through the queue. Returns the number of items that arrive torn or out of
-/// order.
+/// Sends the items 1 to `count` through a queue. Returns the number of items that arrive incompletely copied
+/// or out of order.
 template <class Queue>
 std::uint64_t wrong_items(Queue& queue, std::uint64_t count) {
   std::thread producer([&queue, count] {
@@ -106,7 +106,8 @@ TEST(Ring, KeepsOrderOverManyWraps) {
   EXPECT_GT(next_out, 10'000);
 }
 
-/// Reads from the queue while the producer is in the middle of its copy. Returns true if an item was read.
+/// Reads from the queue while the producer copies an item into the queue. Returns true if the reader received
+/// an item.
 template <class Queue>
 bool taken_before_it_was_there(Queue& queue) {
   bool taken = false;

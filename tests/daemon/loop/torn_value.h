@@ -1,6 +1,6 @@
 #pragma once
-// A value whose copying can be interrupted half-way, so that tests of lock-free buffers do not depend on the
-// timing of threads.
+// A value whose copy can be interrupted in the middle. With it, tests of lock-free buffers do not depend on
+// the timing of threads.
 
 #include <array>
 #include <cstddef>
@@ -11,11 +11,11 @@
 
 namespace softgrip::daemon::testing {
 
-/// A value whose words are all equal. A copy with unequal words was interrupted.
+/// A value of several equal words. If the words of a copy differ, the copy was interrupted.
 class TornValue {
  public:
-  /// Called once, in the middle of this thread's next copy, to simulate another thread that acts at the worst
-  /// moment.
+  /// Called once, in the middle of the next copy in this thread. It does what another thread could do at the
+  /// worst moment.
   static inline thread_local std::function<void()> halfway;
 
   TornValue() = default;

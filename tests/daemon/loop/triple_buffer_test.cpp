@@ -13,8 +13,9 @@ namespace {
 
 using testing::TornValue;
 
-/// A plausible but wrong buffer with two slots, whose reader reads the slot that the writer is not filling.
-/// If the writer publishes twice during one copy of the reader, it overwrites the slot that is being read.
+/// A faulty buffer that looks correct. It has two slots, and the reader reads the slot that the writer is not
+/// filling. If the writer publishes twice during one copy of the reader, it overwrites the slot that is being
+/// read.
 template <class T>
 class TwoSlots {
  public:
@@ -40,8 +41,8 @@ struct Seen {
   std::uint64_t last_written = 0;
 };
 
-/// Writes 1, 2, … in one thread while another thread reads until the writer has finished. The writer writes
-/// `count` values after the reader's first reading, because the reader may start late on a busy processor.
+/// Writes 1, 2, … in one thread while another thread reads until the writer has finished. The reader may
+/// start late on a busy processor, so the writer writes `count` further values after the first reading.
 template <class Cell>
 Seen race(Cell& cell, std::uint64_t count) {
   std::atomic<bool> reader_began{false};
@@ -66,7 +67,7 @@ Seen race(Cell& cell, std::uint64_t count) {
   }
   writer.join();
   seen.last_written = written;
-  if (cell.fetch()) seen.last = cell.value().number();  // the newest value must not be lost
+  if (cell.fetch()) seen.last = cell.value().number();  // the reader must receive the newest value
   return seen;
 }
 
@@ -99,8 +100,8 @@ TEST(TripleBuffer, KeepsTheHeldValueWhileTheWriterGoesOn) {
   }
 }
 
-/// Interrupts a reader in the middle of its copy with `publishes` publishes. Returns true if its copy is not
-/// torn.
+/// Publishes `publishes` values while the reader is in the middle of its copy. Returns true if the copy is
+/// consistent.
 template <class Cell>
 bool whole_when_interrupted(int publishes) {
   Cell cell;

@@ -1,4 +1,5 @@
-// Tests the digital lines, first of the panel alone and then of a running daemon with a simulated board.
+// Tests the digital lines. The first tests use the panel alone, the last tests a running daemon with a
+// simulated board.
 
 #include "daemon/panel/panel.h"
 
@@ -53,14 +54,14 @@ bool eventually(const std::function<bool()>& condition, double timeout_s = 5) {
   return true;
 }
 
-/// The panel alone; the test simulates the terminals and the loop.
+/// Tests of the panel without a daemon. The test simulates the terminals and the loop.
 class PanelTest : public ::testing::Test {
  protected:
   void make(const rig::GpioSettings& settings) {
     settings_ = settings;
     panel_.emplace(terminals_.lines(), settings_, clock_, shared_, statistics_);
   }
-  /// Runs the panel for this duration. `loop_ticks`: true if the loop ticks during this time.
+  /// Runs the panel for this duration. If `loop_ticks` is true, the loop ticks during this time.
   void run(double duration_s, bool loop_ticks = true) {
     const Nanoseconds end = clock_.now() + nanoseconds(duration_s);
     while (clock_.now() < end) {
@@ -68,8 +69,8 @@ class PanelTest : public ::testing::Test {
       panel_->step();
     }
   }
-  /// Simulates the start: the fault is latched, the emergency stop is released, and an operator resets the
-  /// fault.
+  /// Simulates the start of the daemon: the fault is latched, the emergency stop is released, and an operator
+  /// resets the fault.
   void make_ready() {
     shared_.state.store(control::State::faulted);
     run(0.03);
@@ -208,7 +209,7 @@ TEST_F(PanelTest, AFaultDropsTheEnableOnlyIfTheRigSaysSo) {
     shared_.state.store(control::State::faulted);
     run(0.02);
     EXPECT_EQ(is_on(GpioRole::enable), !drops);
-    shared_.state.store(control::State::starting);  // the operator has reset the fault
+    shared_.state.store(control::State::starting);  // simulates that the operator has reset the fault
     run(0.02);
     EXPECT_EQ(is_on(GpioRole::enable), !drops);
   }
@@ -269,8 +270,8 @@ TEST_F(PanelTest, WhatWasDroppedStaysDropped) {
   EXPECT_FALSE(is_on(GpioRole::ready_lamp));
 }
 
-/// Writes the enable output as a byte into a pipe, so that the parent can read the byte after the child
-/// process has crashed.
+/// Lines that write the level of the enable output into a pipe, one byte per change. The parent can read the
+/// byte after the child process has crashed.
 class PipeLines final : public drivers::GpioLines {
  public:
   explicit PipeLines(int descriptor) : descriptor_(descriptor) {}
@@ -312,10 +313,10 @@ TEST(PanelGuard, ACrashDropsTheEnableAndStillIsACrash) {
   }
 }
 
-/// A complete daemon. The test controls its lines and communicates with it over its socket.
+/// Tests of a complete daemon. The test controls its digital lines and communicates with it over its socket.
 class PanelOfDaemon : public ::testing::Test {
  protected:
-  /// end() sends SIGTERM to this process. Only the daemon may receive it.
+  /// end() sends SIGTERM to this process. Block SIGTERM in all threads, so that only the daemon receives it.
   PanelOfDaemon() {
     sigset_t term;
     sigemptyset(&term);
@@ -351,7 +352,7 @@ class PanelOfDaemon : public ::testing::Test {
   }
   void end() {
     if (!thread_.joinable()) return;
-    ::kill(::getpid(), SIGTERM);  // blocked in all threads; the daemon waits for it
+    ::kill(::getpid(), SIGTERM);  // all threads block the signal, and the daemon waits for it
     thread_.join();
   }
   nlohmann::json status() { return client_->ask({{"command", "status"}})["result"]; }
@@ -411,7 +412,7 @@ TEST_F(PanelOfDaemon, StartsFaultedAndMovesOnlyAfterReleaseAndAcknowledgement) {
 TEST_F(PanelOfDaemon, APartThatIsAwayRefusesAStart) {
   start([](rig::RigFile& rig) {
     auto& lines = rig.gpio->lines;
-    lines.erase(lines.begin());  // without an emergency stop the daemon starts without a fault
+    lines.erase(lines.begin());  // without an emergency stop line, the daemon starts without a fault
   });
   ASSERT_TRUE(until_state("idle"));
   const auto refused = client_->ask({{"command", "start"}, {"sequence", "pick_stone"}});

@@ -25,7 +25,7 @@ using testing::text_of;
 
 constexpr Nanoseconds period = 10'000'000;
 
-/// A recorder to which the test sends the data of each tick.
+/// Tests of the recorder. The test sends the data of each tick to it.
 class RecorderTest : public ::testing::Test {
  protected:
   RecorderTest() {
@@ -74,7 +74,7 @@ class RecorderTest : public ::testing::Test {
     }
   }
 
-  /// Returns the names of the run folders, sorted.
+  /// Returns the sorted names of the folders of all runs.
   std::vector<std::string> folders() const {
     std::vector<std::string> names;
     for (const auto& entry : std::filesystem::directory_iterator(temporary_.path())) {
@@ -200,7 +200,7 @@ TEST_F(RecorderTest, DroppedRowsAreCounted) {
 }
 
 TEST_F(RecorderTest, ADiskThatFillsUpEndsTheRecordingAndIsTold) {
-  provenance_.virtual_time = false;  // so that every drain() writes to the file
+  provenance_.virtual_time = false;  // real time, so that every drain() writes to the file
   void (*handler)(int) = std::signal(SIGXFSZ, SIG_IGN);
   rlimit before{};
   getrlimit(RLIMIT_FSIZE, &before);

@@ -16,7 +16,7 @@ namespace {
 using testing::TemporaryFolder;
 using testing::text_of;
 
-/// A disk on which no file can grow beyond `bytes`.
+/// Limits the size of every file to `bytes`, like a full disk.
 class SmallDisk {
  public:
   explicit SmallDisk(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {

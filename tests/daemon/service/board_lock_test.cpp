@@ -89,7 +89,7 @@ TEST(BoardLock, AConverterIsOneBoardUnderAllItsWords) {
   EXPECT_TRUE(BoardLock::take(rig_with("iio:device1")));
 }
 
-/// A process that runs `body` and then waits until the test ends it.
+/// A child process that runs `body` and then waits until the test ends it.
 class Holder {
  public:
   explicit Holder(const std::function<bool()>& body) {
@@ -127,13 +127,14 @@ class Holder {
 
 std::function<bool()> a_program_on(const rig::RigFile& rig) {
   return [rig] {
-    static auto lock = BoardLock::take(rig);  // NOLINT: kept until the process ends
+    static auto lock = BoardLock::take(rig);  // NOLINT: static, so that the lock is held until the process
+                                              // ends
     return lock.has_value();
   };
 }
 
-/// Returns a function that listens on the board's lock address as another user, which every user of the
-/// machine can do.
+/// Returns a function that listens as another user on the address that locks the board. Every user of the
+/// machine can do this.
 std::function<bool()> another_user_on(const std::string& board, int backlog) {
   return [board, backlog] {
     constexpr uid_t nobody = 65534;

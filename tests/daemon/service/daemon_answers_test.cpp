@@ -16,7 +16,7 @@
 namespace softgrip::daemon::daemon_answers_test {
 namespace {
 
-/// Accepts one client, reads its request, replies with a text and closes the connection.
+/// A server that accepts one client, reads its request, replies with a text and closes the connection.
 class Replying {
  public:
   Replying(const std::string& path, const std::string& reply) : listener_(open(path)), reply_(reply) {
@@ -77,7 +77,7 @@ TEST_F(DaemonAnswers, WhoAcceptsAndStaysSilentIsNoDaemon) {
   rig::SocketFile file;
   file.path = path_;
   const auto listener =
-      Listener::open(file);  // the kernel accepts connections although the listener does not
+      Listener::open(file);  // the kernel accepts connections, although the listener never does
   ASSERT_TRUE(listener);
   EXPECT_FALSE(daemon_answers(path_));
 }

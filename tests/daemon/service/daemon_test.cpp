@@ -78,7 +78,8 @@ TEST(Daemon, AnExceptionOfTheCallersOwnStillEndsWithSafeOutputs) {
   rig::RigFile rig = testing::example_rig("rig.yaml");
   rig.recorder.mode = rig::RecorderSettings::Mode::off;
   rig.real_time = {};
-  rig.real_time.lock_memory = false;  // the memory of the test's process must not be locked
+  rig.real_time.lock_memory = false;  // the daemon runs in the process of the test, whose memory must not be
+                                      // locked
   DaemonOptions options;
   options.listen = false;
   options.duration_s = 20;

@@ -10,7 +10,7 @@ namespace {
 using drivers::BusStatus;
 using testing::ScriptedBoard;
 
-/// A board that refuses a number of calls of connect() and of exchange() and then operates normally.
+/// A board whose first calls of connect() and exchange() fail and whose later calls succeed.
 class RecoveringBoard final : public drivers::Board {
  public:
   RecoveringBoard(ScriptedBoard& inner, int refused_connects, int refused_exchanges)
@@ -73,7 +73,7 @@ TEST_F(SafeOutputsTest, ReconnectsUntilTheBoardConfirms) {
   RecoveringBoard board(board_, 3, 2);
   EXPECT_EQ(write(board).end, SafeOutputsEnd::confirmed);
   EXPECT_EQ(board_.written.size(), 2U);
-  EXPECT_EQ(board_.connect_attempts.size(), 3U);  // after each lost exchange the session is opened again
+  EXPECT_EQ(board_.connect_attempts.size(), 3U);  // after each lost exchange, the session is opened again
 }
 
 TEST_F(SafeOutputsTest, ABoardThatStaysSilentIsNotConfirmed) {

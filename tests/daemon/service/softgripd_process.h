@@ -1,6 +1,5 @@
 #pragma once
-// Runs softgripd as a separate process and controls it as a user does, with arguments, signals and its
-// socket.
+// Runs softgripd as a separate process. Controls it as a user does: with arguments, signals and its socket.
 
 #include <sys/types.h>
 
@@ -20,15 +19,15 @@ namespace softgrip::daemon::testing {
 /// A connection to the socket API of a daemon.
 class ApiClient {
  public:
-  /// Tries to connect for 5 s. open() is false if the daemon did not answer.
+  /// Tries for 5 s to connect. open() then returns false if the daemon did not accept the connection.
   explicit ApiClient(const std::string& socket_path);
 
   [[nodiscard]] bool open() const noexcept { return static_cast<bool>(socket_); }
   [[nodiscard]] int number() const noexcept { return socket_.get(); }
   bool send(std::string_view text);
-  /// Returns the next line as JSON, or null after 5 s without a line or after the end of the connection.
+  /// Returns the next line as JSON. Returns null if no line arrives within 5 s or the connection has ended.
   [[nodiscard]] nlohmann::json receive();
-  /// Sends a request and returns its reply.
+  /// Sends a request and returns the reply of the daemon.
   nlohmann::json ask(const nlohmann::json& request);
 
  private:
@@ -40,11 +39,12 @@ class SoftgripdProcess {
  public:
   struct Start {
     std::vector<std::string> arguments;
-    std::vector<std::string> environment{};  ///< NAME=value, in addition to the test's environment
-    std::function<void()> in_child{};        ///< called in the child process between fork and exec
+    std::vector<std::string> environment{};  ///< variables NAME=value that are added to the test's
+                                             ///< environment
+    std::function<void()> in_child{};        ///< called in the child process after fork and before exec
   };
 
-  /// `folder`: folder of its output.
+  /// Starts softgripd. `folder` is the folder for its output.
   SoftgripdProcess(const std::string& folder, const Start& start);
   SoftgripdProcess(const SoftgripdProcess&) = delete;
   SoftgripdProcess& operator=(const SoftgripdProcess&) = delete;
@@ -55,10 +55,10 @@ class SoftgripdProcess {
 
   [[nodiscard]] pid_t pid() const noexcept { return pid_; }
   void signal(int number) const;
-  /// Returns the exit code, or 128 + the signal that ended the process, or nullopt if it is still running
-  /// after `timeout_s`.
+  /// Waits for the end of the process. Returns its exit code, or 128 + the signal that ended it. Returns
+  /// nullopt if it is still running after `timeout_s`.
   std::optional<int> wait(double timeout_s = 20);
-  /// Returns the text that the process has printed until now.
+  /// Returns the text that the process has printed so far.
   [[nodiscard]] std::string output() const;
 
  private:
@@ -66,9 +66,9 @@ class SoftgripdProcess {
   std::string output_path_;
 };
 
-/// Writes a copy of config/rig.yaml for a test, with its socket and recordings in `folder` and without the
-/// request for a processor. Each pair of `changes` replaces its first text, which must exist, by its second
-/// text. Returns the path of the file.
+/// Writes a copy of config/rig.yaml for a test. In the copy, socket and recordings are in `folder`, and no
+/// processor is requested. For each pair of `changes`, the first text, which must exist, is replaced by the
+/// second. Returns the path of the file.
 std::string make_rig(const std::string& folder,
                      const std::vector<std::pair<std::string, std::string>>& changes = {});
 

@@ -1,4 +1,4 @@
-// Tests softgripd as a process: normal and repeated runs, a stop, a kill and a full disk.
+// Tests softgripd as a process: normal runs, repeated runs, a stop, a kill and a full disk.
 
 #include <gtest/gtest.h>
 #include <sys/mount.h>
@@ -37,9 +37,9 @@ using testing::text_of;
 const std::string sequences = SOFTGRIP_SOURCE_DIR "/config/sequences/";
 constexpr double rate_hz = 200;
 
-/// The cells of a run.csv.
+/// The header and the cells of a run.csv.
 struct Csv {
-  std::vector<std::vector<std::string>> rows;  ///< without the header
+  std::vector<std::vector<std::string>> rows;  ///< all rows except the header
   std::vector<std::string> header;
 
   explicit Csv(const std::string& text) {
@@ -55,7 +55,8 @@ struct Csv {
       }
       if (header.empty()) {
         header = cells;
-      } else if (cells.size() == header.size()) {  // after a kill the last line may be incomplete
+      } else if (cells.size() == header.size()) {  // skip an incomplete last line, which a killed daemon can
+                                                   // leave
         rows.push_back(cells);
       }
     }
@@ -71,7 +72,7 @@ class SoftgripdTest : public ::testing::Test {
  protected:
   std::string socket() const { return folder_.path() + "/socket"; }
   json run_json(const std::string& folder) const { return json::parse(text_of(folder + "/run.json")); }
-  /// Returns the only run folder in the rig's folder.
+  /// Returns the path of the only run in the rig's folder.
   std::string only_run() const {
     std::vector<std::string> folders;
     for (const auto& entry : std::filesystem::directory_iterator(folder_.path() + "/runs")) {
@@ -180,7 +181,7 @@ TEST_F(SoftgripdTest, ASecondDaemonOnTheSameSocketIsRefused) {
 }
 
 TEST_F(SoftgripdTest, AFullDiskEndsTheRecordingAndNotTheGrip) {
-  // The test uses a real full disk if mounting is allowed, and a limit of the file size otherwise.
+  // Use a real full disk if the test may mount one. Otherwise limit the file size.
   const std::string disk = folder_.path() + "/disk";
   std::filesystem::create_directory(disk);
   const bool mounted = mount("none", disk.c_str(), "tmpfs", 0, "size=64k") == 0;
@@ -294,7 +295,7 @@ TEST_F(SoftgripdTest, RealTimeThatIsRequiredAndNotThereIsARefusal) {
   EXPECT_NE(process.output().find("confirmed the safe outputs"), std::string::npos);
 }
 
-/// A socket that receives the messages of sd_notify like a service manager.
+/// A socket that receives the messages of sd_notify, as the socket of a service manager does.
 class NotifySocket {
  public:
   explicit NotifySocket(const std::string& path) : socket_(::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0)) {
@@ -305,7 +306,8 @@ class NotifySocket {
     const timeval patience{3, 0};
     setsockopt(socket_.get(), SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
   }
-  /// Returns the messages up to the one that begins with `start`, or an empty list if it did not arrive.
+  /// Returns the messages up to the first one that begins with `start`. Returns an empty list if none begins
+  /// with it.
   std::vector<std::string> until(const std::string& start) {
     std::vector<std::string> messages;
     for (;;) {

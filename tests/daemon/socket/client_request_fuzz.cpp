@@ -19,7 +19,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (request.error().message.empty()) std::abort();
     return 0;
   }
-  // An accepted request is within the bounds on which other code relies.
+  // The numbers of an accepted request must be within the bounds that other code assumes.
   if (!(request->rate_hz >= 0.1 && request->rate_hz <= 50)) std::abort();
   if (request->limit < 1 || request->limit > 1000) std::abort();
   if (request->id.value_or(0) > (std::uint64_t{1} << 53)) std::abort();
