@@ -1,11 +1,12 @@
-"""Serves a board with pymodbus, a Modbus implementation that shares no code with the tested implementation.
+"""Simulates a board with pymodbus, an implementation of Modbus that shares no code with the tested driver.
 
-It communicates with the test over stdin and stdout, one JSON object per line:
+The test and this program exchange JSON objects over stdin and stdout, one object per line:
   {"set": [table, address, [values]]}     table: holding, input, coil
-  {"get": [table, address, count]}        answered {"values": [...]}
-  {"writes": true}                        answered {"writes": [[table, address, [values]], ...]} since the last request
-The first line that it prints is {"port": N}. With the argument `serial` it is {"device": PATH}: a pseudo-terminal on
-which the same registers answer to the units 1 and 2.
+  {"get": [table, address, count]}        response: {"values": [...]}
+  {"writes": true}                        response: {"writes": [[table, address, [values]], ...]}
+The response to "writes" contains the writes of clients since the last "writes".
+The first line that this program prints is {"port": N}. With the argument `serial`, it is {"device": PATH}. PATH is a
+pseudo-terminal on which the units 1 and 2 respond with the same registers.
 """
 
 import asyncio
@@ -34,21 +35,21 @@ WRITTEN_BY = {5: "coil", 15: "coil", 6: "holding", 16: "holding", 22: "holding",
 
 
 class Board(ModbusSlaveContext):
-    """Registers that record what clients write."""
+    """Registers of a board, with a record of all writes of clients."""
 
     def __init__(self):
         super().__init__(di=block(), co=block(), hr=block(), ir=block())
         self.writes = []
         self.local = threading.local()
 
-    def setValues(self, fc_as_hex, address, values):  # noqa: N802 (the name is given by pymodbus)
+    def setValues(self, fc_as_hex, address, values):  # noqa: N802 (pymodbus defines this name)
         if not getattr(self.local, "own", False):
             self.writes.append([WRITTEN_BY.get(fc_as_hex, str(fc_as_hex)), address, [int(v) for v in values]])
         super().setValues(fc_as_hex, address, values)
 
 
 def answer(board, line):
-    """Returns the answer to a line of the test, or None."""
+    """Executes a line of the test and returns the response."""
     request = json.loads(line)
     if "set" in request:
         table, address, values = request["set"]
@@ -64,14 +65,14 @@ def answer(board, line):
 
 
 def talk(board, loop):
-    """Serves the test until it closes its end of the pipe."""
+    """Executes the lines of the test until the test closes the pipe."""
     for line in sys.stdin:
         print(json.dumps(answer(board, line)), flush=True)
     loop.call_soon_threadsafe(loop.stop)
 
 
 async def start(board):
-    """Listens on a free port."""
+    """Starts a TCP server on a free port and returns the port."""
     context = ModbusServerContext(slaves={1: board}, single=False)
     return (await serve(ModbusTcpServer(context, address=("127.0.0.1", 0), ignore_missing_slaves=True))).getsockname()[1]
 
@@ -84,7 +85,7 @@ def wire(one, other):
 
 
 async def start_serial(board):
-    """A pseudo-terminal whose other side pymodbus serves."""
+    """Starts a serial server on a pseudo-terminal and returns the path of the other end."""
     inner, outer = pty.openpty(), pty.openpty()
     for _, outside in (inner, outer):
         tty.setraw(outside)
@@ -96,7 +97,7 @@ async def start_serial(board):
 
 
 def main():
-    logging.disable(logging.CRITICAL)  # these tests end sessions on purpose
+    logging.disable(logging.CRITICAL)  # the tests end sessions intentionally, which pymodbus would log
     loop = asyncio.new_event_loop()
     asyncio.set_event_loop(loop)
     board = Board()

@@ -10,9 +10,8 @@ namespace {
 
 using model::Validity;
 
-/// A 4-20 mA input of a 16-bit board that reads -32768 if nothing is connected. Its sensor resembles a laser
-/// HG-C1100: the current is highest at the near end, and a current of 3.75 mA means that the sensor cannot
-/// measure.
+/// Tests a 4-20 mA input of a 16-bit board that reads -32768 if nothing is connected. The sensor resembles
+/// the laser HG-C1100: its current is highest at the near end, and 3.75 mA means that it cannot measure.
 class JudgedInputTest : public testing::Test {
  protected:
   JudgedInputTest() {
@@ -69,7 +68,8 @@ TEST_F(JudgedInputTest, StatusRegister) {
   EXPECT_EQ(judged(12000, std::uint16_t{1}).validity, Validity::out_of_range);
   EXPECT_EQ(judged(12000, std::uint16_t{2}).validity, Validity::out_of_range);
   EXPECT_EQ(judged(12000, std::uint16_t{3}).validity, Validity::sensor_error);
-  // The status concerns the range of the board. The limits of the sensor still apply.
+  // The status of the board concerns the range of the board. The limits of the sensor are checked in
+  // addition.
   EXPECT_EQ(judged(1000, std::uint16_t{0}).validity, Validity::out_of_range);
   EXPECT_EQ(judged(3750, std::uint16_t{0}).validity, Validity::sensor_error);
   EXPECT_EQ(judged(3750, std::uint16_t{2}).validity, Validity::sensor_error);

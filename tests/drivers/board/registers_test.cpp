@@ -79,15 +79,16 @@ TEST(Registers, FloatsRoundTripExactly) {
   }
 }
 
-// For any scaling and either slope, the conversion physical -> electrical -> physical is the identity except
-// for rounding.
+// For a rising or falling line, a physical value that is converted to an electrical value and back is
+// unchanged except for rounding.
 TEST(Scaling, TwoPointsRoundTripForEitherSlope) {
   const unsigned seed = 11;
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> values(-100, 100);
   for (int i = 0; i < 10000; ++i) {
     TwoPoints line{values(random), values(random), values(random), values(random)};
-    // Two nearly equal points amplify the rounding error without bound. No real calibration has such points.
+    // Skip lines whose two points are nearly equal, because they amplify the rounding error without bound. No
+    // real calibration has such points.
     if (std::abs(line.x1 - line.x0) < 0.1 || std::abs(line.y1 - line.y0) < 0.1) continue;
     const double y = values(random);
     EXPECT_NEAR(line.y_at(line.x_at(y)), y, 1e-9) << "seed " << seed << ", draw " << i;
@@ -98,8 +99,8 @@ TEST(Scaling, TwoPointsRoundTripForEitherSlope) {
   }
 }
 
-// The error of physical -> electrical -> raw register -> electrical -> physical is at most half a step of the
-// converter, for every kind, order and slope.
+// Converts a physical value to an electrical value, to a raw register value, and back. The error must be at
+// most half a step of the converter for every register kind, word order and slope.
 TEST(Scaling, ThroughTheRegisterWithinHalfAStep) {
   const unsigned seed = 13;
   std::mt19937 random(seed);
@@ -122,7 +123,8 @@ TEST(Scaling, ThroughTheRegisterWithinHalfAStep) {
       block.raw_max = one.raw_max;
       block.bits = one.bits;
       const TwoPoints sensor{4, 85, 20, 15};  // the current is highest at the near end
-      // Half a step of the converter, plus half a raw unit if the steps are not whole numbers.
+      // Half a step of the converter, plus half a raw unit, because a step may not be a whole number of raw
+      // units.
       const double half_step_ma =
           16.0 / (std::exp2(one.bits) - 1) / 2 + 16.0 / (one.raw_max - one.raw_min) / 2;
       for (int i = 0; i < 500; ++i) {

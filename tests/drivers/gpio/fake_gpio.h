@@ -1,6 +1,6 @@
 #pragma once
-// Simulated GPIO chips. The functions of libgpiod that the driver calls are implemented for the API of the
-// installed library (fake_gpio_1.cpp, fake_gpio_2.cpp). They operate on the chips of fake_chips() and replace
+// Simulated GPIO chips. fake_gpio_1.cpp and fake_gpio_2.cpp implement the functions of libgpiod that the
+// driver calls, one file per version of the library. They operate on the chips of fake_chips() and replace
 // the functions of the library when a test program is linked.
 
 #include <cstdint>
@@ -24,17 +24,18 @@ struct FakeLine {
   std::string consumer;
   bool output = false;
   bool high = false;        ///< the physical level
-  bool edges_seen = false;  ///< the line was requested with edge detection
+  bool edges_seen = false;  ///< true: the line was requested with edge detection
   bool active_low = false;
   FakeBias bias = FakeBias::as_is;
-  bool gone = false;  ///< every call fails with EIO
+  bool gone = false;  ///< true: the chip was removed, so every call fails with EIO
   int pipe[2] = {-1, -1};
   std::deque<FakeEdge> edges;
 
   [[nodiscard]] bool active() const { return high != active_low; }
-  /// Changes the level. If the line was requested with edge detection, the program receives an edge.
+  /// Changes the level of the line. If the line was requested with edge detection, an edge at the time
+  /// `at_ns` waits for the program.
   void change(bool to_high, std::int64_t at_ns);
-  /// Requests the line. Returns 0 or an errno.
+  /// Requests the line for a program. Returns 0 or an errno.
   int request(const std::string& by, bool as_output, bool with_edges, bool inverted, FakeBias resistor);
   void release();
   /// Returns the next waiting edge and removes it.
@@ -42,21 +43,21 @@ struct FakeLine {
 };
 
 struct FakeChip {
-  std::string name;  ///< "gpiochip0"
+  std::string name;  ///< name of the chip, for example "gpiochip0"
   std::string label;
-  int open_error = 0;      ///< errno when the chip is opened; 0: success
+  int open_error = 0;      ///< errno with which opening the chip fails; 0: it succeeds
   bool interrupts = true;  ///< false: a request with edge detection fails with ENXIO
   std::vector<FakeLine> lines;
 };
 
-/// Locks all lines. A test that changes levels while the driver runs in another thread must hold the lock, as
-/// the functions of the library do.
+/// Locks all lines. A test that changes levels while the driver runs in another thread must hold this lock.
+/// The replaced functions of libgpiod hold the lock as well.
 [[nodiscard]] std::unique_lock<std::recursive_mutex> hold_fake_lines();
-/// Returns the chips of the machine. Each test clears the list.
+/// Returns the simulated chips of the machine. Each test must clear the list.
 std::vector<FakeChip>& fake_chips();
-/// Returns the chip at this path, or nullptr with errno set.
+/// Returns the chip at this path. If there is none, sets errno and returns nullptr.
 FakeChip* open_fake_chip(const char* path);
-/// Returns true if the line's chip supports interrupts.
+/// Returns true if the chip to which the line belongs supports interrupts.
 bool has_interrupts(const FakeLine& line);
 
 }  // namespace softgrip::drivers::testing

@@ -1,4 +1,4 @@
-// Implements the API of libgpiod 1.6 on the chips of fake_gpio.h.
+// Implements the functions of libgpiod 1.6 with the simulated chips of fake_gpio.h.
 
 #include <gpiod.h>
 

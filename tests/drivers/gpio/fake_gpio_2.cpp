@@ -1,4 +1,4 @@
-// Implements the API of libgpiod 2.x on the chips of fake_gpio.h.
+// Implements the functions of libgpiod 2.x with the simulated chips of fake_gpio.h.
 
 #include <gpiod.h>
 
@@ -14,7 +14,7 @@ using softgrip::drivers::testing::FakeEdge;
 using softgrip::drivers::testing::FakeLine;
 using softgrip::drivers::testing::hold_fake_lines;
 
-// The types that the library declares as opaque.
+// The types that the header of the library declares without their members.
 struct gpiod_chip {
   FakeChip* chip;
 };

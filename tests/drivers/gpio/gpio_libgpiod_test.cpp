@@ -1,4 +1,5 @@
-// Tests the digital lines of a rig through the API of the installed libgpiod, on simulated chips.
+// Tests the digital lines of a rig with simulated chips. The driver calls the API of the libgpiod version
+// that is installed.
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -55,7 +56,7 @@ class Libgpiod : public ::testing::Test {
   }
 
   std::filesystem::path devices_;
-  std::filesystem::path sys_;  // empty: the folder does not exist
+  std::filesystem::path sys_;  // path of the simulated /sys; empty: the folder does not exist
 };
 
 TEST_F(Libgpiod, RequestsEachLineAsDescribed) {

@@ -1,4 +1,5 @@
-// Tests the converters of this computer, which are simulated by plain files with the paths that sysfs uses.
+// Tests the board of the computer's own converters. Plain files, with the paths that sysfs uses, simulate the
+// converters.
 
 #include "drivers/iio/iio_board.h"
 
@@ -22,8 +23,8 @@ class IioBoardTest : public testing::Test {
  protected:
   IioBoardTest() {
     fs::create_directories(root_);
-    // A converter like the ADS1115 with a scale per channel, and a DAC with one scale for all channels and an
-    // offset.
+    // Simulate two converters: one like the ADS1115 with a scale per channel, and a DAC with an offset and
+    // one scale for all channels.
     put("iio:device0/name", "ads1115");
     for (const char* channel : {"voltage0", "voltage1"}) {
       put(std::string("iio:device0/in_") + channel + "_raw", "8000");
@@ -54,7 +55,7 @@ class IioBoardTest : public testing::Test {
 
   void put(const std::string& file, const std::string& text) const {
     fs::create_directories((root_ / file).parent_path());
-    // Overwrites the file in place, because the board keeps the file open, like an attribute of sysfs.
+    // Overwrite the file in place, because the board keeps the file open, as it keeps a file of sysfs open.
     std::ofstream(root_ / file) << text << "\n";
   }
   [[nodiscard]] std::string get(const std::string& file) const {
@@ -205,7 +206,8 @@ TEST_F(IioBoardTest, APowerdownThatCannotBeReadOrWrittenIsRefusedBeforeAnythingI
   EXPECT_NE(refusal().find("out_voltage1_powerdown: no number"), std::string::npos) << refusal();
   const fs::path powerdown = root_ / "iio:device1/out_voltage1_powerdown";
   fs::remove(powerdown);
-  fs::create_symlink("/proc/sys/kernel/ngroups_max", powerdown);  // a read-only value above 0
+  fs::create_symlink("/proc/sys/kernel/ngroups_max", powerdown);  // a file that contains a value above 0 and
+                                                                  // cannot be written
   EXPECT_NE(refusal().find("out_voltage1_powerdown is 1 and cannot be cleared: Permission denied"),
             std::string::npos)
       << refusal();
@@ -214,7 +216,7 @@ TEST_F(IioBoardTest, APowerdownThatCannotBeReadOrWrittenIsRefusedBeforeAnythingI
 
 TEST_F(IioBoardTest, APowerdownThatStaysEndsTheSessionAndTheNextIsRefused) {
   const fs::path powerdown = root_ / "iio:device1/out_voltage1_powerdown";
-  // The kernel accepts a write of any number to this file but keeps its own value, which is above 0.
+  // The kernel accepts a write of any number to this file, but the file keeps a value above 0.
   const std::string keeps_its_number = "/proc/sys/kernel/random/urandom_min_reseed_secs";
   if (::access(keeps_its_number.c_str(), W_OK) != 0) GTEST_SKIP() << "needs root: " << keeps_its_number;
   fs::create_symlink(keeps_its_number, powerdown);
@@ -246,7 +248,8 @@ TEST_F(IioBoardTest, AnOutputWithoutAChannelStaysSwitchedOff) {
 
 TEST_F(IioBoardTest, APressureIsReadInKilopascals) {
   put("iio:device2/name", "bmp280");
-  put("iio:device2/in_pressure_input", "121.3");  // a processed value without a channel number and a scale
+  put("iio:device2/in_pressure_input", "121.3");  // a value in physical units without a channel number and
+                                                  // without a scale
   put("iio:device3/name", "mpl115");
   put("iio:device3/in_pressure0_raw", "400");
   put("iio:device3/in_pressure_scale", "0.25");
@@ -306,7 +309,7 @@ TEST_F(IioBoardTest, OneChannelUnderTwoWordsIsRefused) {
   EXPECT_NE(refusal().find("both are "), std::string::npos) << refusal();
 }
 
-/// Converters on a bus. They disappear and return with the next device number of the kernel.
+/// Tests with converters on a bus. They disappear and return with another device number of the kernel.
 class IioBusTest : public IioBoardTest {
  protected:
   IioBusTest() {
@@ -327,7 +330,7 @@ class IioBusTest : public IioBoardTest {
     fs::remove(root_ / node);
     fs::remove_all(root_ / "hardware" / address);
   }
-  /// Ends the session as if the converter had disappeared.
+  /// Ends the session of the board, as if the converter had disappeared.
   void lose(IioBoard& board) {
     put("iio:device0/in_voltage0_raw", "no");
     EXPECT_EQ(exchange(board, 10, 10), BusStatus::disconnected);

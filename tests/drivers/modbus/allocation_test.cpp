@@ -1,5 +1,5 @@
-// exchange() never allocates memory, regardless of its result. The test counts calls of operator new and,
-// unless a sanitizer has its own allocator, of malloc.
+// Tests that exchange() never allocates memory, whether it succeeds or fails. The test counts calls of
+// operator new. Without a sanitizer, it also counts calls of malloc().
 
 #include <gtest/gtest.h>
 
@@ -45,7 +45,7 @@ class ModbusAllocation : public testing::Test {
     });
   }
 
-  /// Performs one exchange that must end with `expected` and must not allocate.
+  /// Performs one exchange that must end with `expected` and must not allocate memory.
   void expect(BusStatus expected, std::array<double, 2> commands, std::chrono::nanoseconds deadline = 5s) {
     BusStatus status = BusStatus::ok;
     const std::size_t made =
@@ -75,7 +75,7 @@ TEST_F(ModbusAllocation, EveryWayAnExchangeCanFail) {
   expect(BusStatus::write_refused, {10, 1234.5678});
   expect(BusStatus::write_refused, {10, std::numeric_limits<double>::quiet_NaN()});
   server_.ignore_writes(true);
-  expect(BusStatus::ok, {90, 90});  // the map allows a lag of one exchange
+  expect(BusStatus::ok, {90, 90});  // the board map permits that the read-back lags by one exchange
   expect(BusStatus::write_refused, {90, 90});
   server_.ignore_writes(false);
   for (const std::uint8_t code : {std::uint8_t{2}, std::uint8_t{9}, std::uint8_t{200}}) {

@@ -7,8 +7,8 @@
 namespace softgrip::drivers::exchange_plan_test {
 namespace {
 
-/// Returns a map with 8 inputs from holding register 0, their status from register 8, and 4 outputs from
-/// register 100, which are read back from register 20.
+/// Returns a board map with 8 inputs from holding register 0, their status from register 8, and 4 outputs
+/// from register 100. The outputs can be read back from register 20.
 BoardMap plain_map() {
   BoardMap map;
   map.inputs.registers = {.function = 3, .address = 0, .count = 8, .kind = RegisterKind::uint16};
@@ -43,8 +43,8 @@ TEST(ExchangePlan, NeighbouringBlocksAreReadTogether) {
   map.input_status =
       StatusBlock{.registers = {3, 8, 8, RegisterKind::uint16}, .ok = {0}, .over = {}, .under = {}};
   const ExchangePlan plan = plan_exchange(map, test::two_fingers(false));
-  // Inputs 2-7 lie between the wired inputs and the status. They are registers of the board, so they can be
-  // read in the same request.
+  // Registers 2 to 7 lie between the wired inputs and the status. They are inputs of the board, so one
+  // request can read all registers from 0 to 9.
   EXPECT_EQ(plan.reads, (std::vector<ReadStep>{{3, 0, 10}}));
   EXPECT_EQ(plan.channels[1].displacement_status, (Slot{0, 9}));
 }
@@ -56,7 +56,7 @@ TEST(ExchangePlan, GapsAreReadOnlyAsFarAsTheMapAllows) {
             (std::vector<ReadStep>{{3, 0, 2}, {3, 20, 2}}));
   map.readable_gap = 11;
   EXPECT_EQ(plan_exchange(map, test::two_fingers(false)).reads.size(), 2U);
-  map.readable_gap = 12;  // registers 8-19 have no function
+  map.readable_gap = 12;  // registers 8 to 19 have no function, so the gap is 12 registers
   const ExchangePlan plan = plan_exchange(map, test::two_fingers(false));
   EXPECT_EQ(plan.reads, (std::vector<ReadStep>{{3, 0, 22}}));
   EXPECT_EQ(plan.channels[0].read_back, (Slot{0, 20}));
@@ -76,7 +76,7 @@ TEST(ExchangePlan, NoRequestBeyondTheLimitOfTheBoardAndNoNumberTorn) {
   map.max_registers = 3;
   map.inputs.registers.kind = RegisterKind::float32;
   map.outputs.registers.kind = RegisterKind::float32;
-  const ExchangePlan plan = plan_exchange(map, test::two_fingers(true));  // inputs 0, 1, 4 and 5
+  const ExchangePlan plan = plan_exchange(map, test::two_fingers(true));  // inputs 0, 1, 4 and 5 are wired
   EXPECT_EQ(plan.writes, (std::vector<WriteStep>{{16, 100, 2, 0}, {16, 102, 2, 2}}));
   EXPECT_EQ(plan.reads, (std::vector<ReadStep>{{3, 0, 2}, {3, 2, 2}, {3, 8, 2}, {3, 10, 2}}));
   EXPECT_EQ(plan.channels[1].displacement, (Slot{1, 0}));

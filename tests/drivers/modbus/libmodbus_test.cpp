@@ -1,4 +1,4 @@
-// Tests the driver with the server of libmodbus, because most users of real boards have tried them with
+// Tests the driver with the server of libmodbus, because most users have already used their board with
 // libmodbus.
 
 #include <gtest/gtest.h>
@@ -47,7 +47,8 @@ class LibmodbusServer {
   }
 
   [[nodiscard]] std::uint16_t port() const { return port_; }
-  /// Use only between exchanges, while the server waits for a request.
+  /// Returns the registers of the server. Use them only between exchanges, while the server waits for a
+  /// request.
   [[nodiscard]] modbus_mapping_t& mapping() { return *mapping_; }
 
  private:

@@ -1,4 +1,4 @@
-// Tests the driver with a server on real sockets: registers, values and status must be correct.
+// Tests the driver with a server on real sockets. Registers, values and status of exchanges must be correct.
 
 #include "drivers/modbus/modbus_board.h"
 
@@ -35,8 +35,8 @@ TEST_F(ModbusBoardTest, AdamWritesAndReadsTheRegistersOfItsManual) {
   const Requests expected{
       {16, 10, 0, 10, {1638, 4095}}, {4, 0, 6, 0, {}}, {4, 10, 2, 0, {}}, {4, 20, 6, 0, {}}};
   EXPECT_EQ(server_.take_requests(), expected);
-  // Half a step is 0.15 mV for 16 bits over 20 V, and 1.2 mV for 12 bits over 10 V. The scales are 5 mm/V and
-  // 10 kPa/V.
+  // Half a step of the converter is 0.15 mV for 16 bits over 20 V, and 1.2 mV for 12 bits over 10 V. The
+  // scales are 5 mm/V and 10 kPa/V.
   EXPECT_NEAR(readings_[0].displacement_mm, 10, 0.001);
   EXPECT_NEAR(readings_[1].displacement_mm, 30, 0.001);
   EXPECT_NEAR(readings_[0].pressure_kpa, 10, 0.002);
@@ -91,11 +91,12 @@ TEST_F(ModbusBoardTest, OneTransactionWithFunction23) {
   });
   ASSERT_EQ(exchange(12.5, 50), BusStatus::ok) << board_->detail();
   const Requests requests = server_.take_requests();
-  // After a new session the driver reads the watchdog's state once, to clear a trip.
+  // At the beginning of a session, the driver reads the state of the watchdog once and clears a trip.
   ASSERT_EQ(requests.size(), 2U);
   EXPECT_EQ(requests[0].function, 23);
   EXPECT_EQ(requests[0].write_address, 256);
-  EXPECT_EQ(requests[0].written, (std::vector<std::uint16_t>{0x3fa0, 0, 0x40a0, 0}));  // 1.25 V, 5 V
+  EXPECT_EQ(requests[0].written, (std::vector<std::uint16_t>{0x3fa0, 0, 0x40a0, 0}));  // 1.25 V and 5 V as
+                                                                                       // floats
   EXPECT_DOUBLE_EQ(readings_[0].displacement_mm, 12.5);
   EXPECT_DOUBLE_EQ(readings_[1].displacement_mm, 26.25);
   EXPECT_DOUBLE_EQ(readings_[1].command_readback_kpa, 50);
@@ -118,7 +119,8 @@ TEST_F(ModbusBoardTest, LowWordFirst) {
   EXPECT_EQ(server_.holding(257), 0x3fa0);
 }
 
-// On a bipolar board raw 0 is -10 V, so an output without wiring must never be written.
+// On a bipolar board, the raw value 0 means -10 V. Therefore the driver must never write to an output without
+// wiring.
 TEST_F(ModbusBoardTest, OnlyWiredOutputsAreWritten) {
   BoardMap map = shipped("softgrip-sim.yaml");
   map.has_fc23 = false;
@@ -154,7 +156,7 @@ TEST_F(ModbusBoardTest, ChannelsMayBeWiredInAnyOrder) {
 
 TEST_F(ModbusBoardTest, ValidityOfReadings) {
   connect(shipped("adam-6024.yaml"));
-  server_.set_input(0, adam_raw(0.05));  // below the electrical range
+  server_.set_input(0, adam_raw(0.05));  // below the valid electrical range of the sensor
   server_.set_input(1, adam_raw(9.95));  // the error code of the sensor
   ASSERT_EQ(exchange(0, 0), BusStatus::ok);
   EXPECT_EQ(readings_[0].validity, Validity::out_of_range);
@@ -162,7 +164,7 @@ TEST_F(ModbusBoardTest, ValidityOfReadings) {
   server_.set_input(0, adam_raw(5));
   server_.set_input(1, adam_raw(5));
   server_.set_input(20, 1);  // status: above the range
-  server_.set_input(21, 7);  // a status that the manual does not list
+  server_.set_input(21, 7);  // a status value that the manual does not list
   server_.set_input(24, 2);  // status: the left pressure input is below its range
   ASSERT_EQ(exchange(0, 0), BusStatus::ok);
   EXPECT_EQ(readings_[0].validity, Validity::out_of_range);
@@ -211,7 +213,8 @@ TEST_F(ModbusBoardTest, ExceptionsAreToldAndTheSessionStands) {
 
 TEST_F(ModbusBoardTest, TheDeadlineSpansTheWholeExchange) {
   connect(shipped("adam-6024.yaml"));
-  server_.delay(30ms);  // each of the 4 round trips is shorter than the deadline, but their sum is longer
+  server_.delay(30ms);  // each of the 4 responses arrives before the deadline, but the sum of the delays
+                        // exceeds it
   const Nanoseconds before = MonotonicClock().now();
   EXPECT_EQ(exchange(10, 10, 50ms), BusStatus::timed_out);
   EXPECT_LT(MonotonicClock().now() - before, 50'000'000 + 400'000'000);
@@ -305,8 +308,9 @@ TEST_F(ModbusBoardTest, SaysHowManyClientsTheBoardCounts) {
   EXPECT_FALSE(board_->fed_by_readers());
 }
 
-/// A board with a latching watchdog. Coil 32 is set after a trip; writing 1 to coil 33 clears it. During a
-/// trip the board confirms writes, but its outputs (holding 10 and 11) remain 0.
+/// Tests a board whose watchdog trip remains until it is cleared. Coil 32 is set after a trip; writing 1 to
+/// coil 33 clears it. During a trip the board confirms writes, but its outputs (holding registers 10 and 11)
+/// remain 0.
 class WatchdogTest : public ModbusBoardTest {
  protected:
   WatchdogTest() {
@@ -395,7 +399,7 @@ TEST_F(WatchdogTest, AHeartbeatChangesWithEveryExchangeAndIsRepeatedUntilItIsCon
   EXPECT_EQ(server_.holding(4099), 9);
 }
 
-/// During a trip the board refuses writes with an exception, as some couplers do.
+/// During a watchdog trip, this board refuses writes with an exception, as some bus couplers do.
 TEST_F(WatchdogTest, ABoardThatRefusesWritesWhileTrippedIsToldByItsFlag) {
   map_.setup = {{6, 500, 7}};
   connect(map_);

@@ -1,4 +1,4 @@
-// Tests several Modbus modules that form one board.
+// Tests a board that consists of several Modbus modules.
 
 #include "drivers/modbus/modbus_board.h"
 
@@ -18,7 +18,7 @@ using test::RegisterServer;
 using test::Requests;
 using test::shipped;
 
-/// Outputs and inputs belong to two devices with two addresses.
+/// Tests a board whose outputs and inputs belong to two devices with different addresses.
 class TwoModules : public ModbusBoardTest {
  protected:
   TwoModules() {

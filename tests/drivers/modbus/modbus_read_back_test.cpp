@@ -1,4 +1,4 @@
-// Tests which status the driver concludes from the outputs that it reads back from a board.
+// Tests the status that the driver derives from the outputs that it reads back from a board.
 
 #include "drivers/modbus/modbus_board.h"
 
@@ -31,7 +31,8 @@ TEST_F(ModbusBoardTest, AnOutputThatDoesNotFollowIsRefused) {
   EXPECT_EQ(exchange(50, 10), BusStatus::ok);
 }
 
-// Another Modbus client writes to one output between the write and the reading of one exchange.
+// In this test, another Modbus client writes to one output after the driver's write and before the outputs
+// are read back.
 TEST_F(ModbusBoardTest, ARefusedExchangeNamesTheOutputsThatItHasFound) {
   BoardMap map = shipped("adam-6024.yaml");
   map.read_back->lag_exchanges = 0;
@@ -70,8 +71,8 @@ TEST_F(ModbusBoardTest, WhatSomebodyElseWritesIsNoticedWithinEightExchanges) {
   EXPECT_EQ(exchange(0, 0), BusStatus::ok);
 }
 
-// An output that never accepted a write differs from the written value at the next reading, although no other
-// client has written.
+// The read-back of an output that ignores writes differs from the written value. The driver must not conclude
+// that another client has written.
 TEST_F(ModbusBoardTest, AnOutputThatDoesNotFollowIsNotTakenForSomebodyElsesWriting) {
   BoardMap map = shipped("adam-6024.yaml");
   map.read_back->lag_exchanges = 0;
@@ -144,7 +145,8 @@ TEST_F(ModbusBoardTest, AnotherMasterIsNoticedThoughOneFunctionReadsAndWrites) {
   EXPECT_EQ(status, BusStatus::overwritten) << board_->detail();
 }
 
-// Some boards read back the command of the previous exchange, in particular with function code 23.
+// Some boards read back the command of the previous exchange, in particular if one request with function code
+// 23 writes and reads.
 TEST_F(ModbusBoardTest, AReadBackMayLagAsFarAsTheMapAllows) {
   BoardMap map = shipped("adam-6024.yaml");
   map.read_back->lag_exchanges = 1;

@@ -1,5 +1,5 @@
-// Tests the serial link with a module that shows every possible fault. Each case states the expected status
-// and the longest duration. Afterwards a new session must read the correct values.
+// Tests the serial link with a module that shows every possible fault. Each test states the expected status
+// and the longest duration of the call. After the fault, a new session must read the correct values.
 
 #include "drivers/modbus/modbus_rtu_link.h"
 
@@ -25,8 +25,8 @@ using test::Bytes;
 using test::checked;
 using test::ScriptedLine;
 
-// Longest time after its deadline at which a call may return on a loaded machine. A response that arrives
-// late or byte by byte takes much longer in these tests.
+// Longest time by which a call may exceed its deadline on a computer under load. A call that waited for a
+// late or slow response would exceed the deadline by much more.
 constexpr Nanoseconds slack = 400'000'000;
 constexpr Nanoseconds deadline = 100'000'000;
 constexpr Nanoseconds generous = 10'000'000'000;
@@ -43,8 +43,9 @@ SerialLine line_at(const std::string& device, std::uint32_t baud = 115200) {
   return line;
 }
 
-/// After a fault the next session first listens for the duration of the longest frame. At 9600 baud this is
-/// 0.25 s, much longer than a loaded machine delays a byte. The 22 ms at 115200 baud would be too short.
+/// Returns a line at 9600 baud. After a fault, the next session first listens for the duration of the longest
+/// frame, which is 0.25 s at this rate. This is much longer than a computer under load delays a byte. At
+/// 115200 baud, the 22 ms would be too short.
 SerialLine listening_long() {
   return line_at("", 9600);
 }
@@ -73,7 +74,8 @@ struct Outcome {
   std::string detail;
 };
 
-/// Sends one request, to which `misbehave` responds, and then opens a session with a correct module.
+/// Sends one request, to which `misbehave` responds, and then opens a session with a correct module. Returns
+/// the outcome of both.
 Outcome ask_once(const std::function<void(ScriptedLine&, const Bytes&)>& misbehave,
                  SerialLine settings = line_at("")) {
   ScriptedLine line([&](ScriptedLine& self, const Bytes& request, std::size_t index) {
@@ -126,15 +128,15 @@ TEST(ModbusRtuLink, NoReplyAtAll) {
 }
 
 TEST(ModbusRtuLink, ADripFedReplyDoesNotExtendTheDeadline) {
-  expect_end(
-      ask_once(
-          [](ScriptedLine& line, const Bytes& request) {
-            Bytes reply = good_reply(request);
-            reply.resize(3);  // the last byte arrives after the deadline, while the next session listens
-            line.drip(reply, 55ms);
-          },
-          listening_long()),
-      BusStatus::timed_out, "rest of the reply");
+  expect_end(ask_once(
+                 [](ScriptedLine& line, const Bytes& request) {
+                   Bytes reply = good_reply(request);
+                   reply.resize(3);  // only 3 bytes are sent; the last one arrives after the deadline, while
+                                     // the next session listens
+                   line.drip(reply, 55ms);
+                 },
+                 listening_long()),
+             BusStatus::timed_out, "rest of the reply");
 }
 
 TEST(ModbusRtuLink, APieceAtATimeWithinTheDeadlineIsFine) {
@@ -148,7 +150,7 @@ TEST(ModbusRtuLink, ALateReplyIsNeverTakenForALaterAnswer) {
                  [](ScriptedLine& line, const Bytes& request) {
                    line.wait(110ms);
                    Bytes late = good_reply(request);
-                   late[4] = 9;  // the data differ from the response to the next request
+                   late[4] = 9;  // so that the data differ from the correct data of the next response
                    late.resize(late.size() - 2);
                    line.send(checked(late));
                  },
@@ -193,7 +195,8 @@ TEST(ModbusRtuLink, WhatIsNotTheAnswer) {
              BusStatus::bad_reply, "checksum");
   expect_end(ask_once([](ScriptedLine& line, const Bytes& request) {
                Bytes reply = good_reply(request);
-               reply.resize(reply.size() + 5);  // this is the length of the shortest response
+               reply.resize(reply.size() + 5);  // the shortest response has 5 bytes, so these 5 bytes could
+                                                // be another response
                line.send(reply);
              }),
              BusStatus::bad_reply, "bytes follow");
@@ -201,7 +204,8 @@ TEST(ModbusRtuLink, WhatIsNotTheAnswer) {
              BusStatus::bad_reply, "returns what is sent");
 }
 
-// Fewer bytes than the shortest response cannot be the response to another request, so they are noise.
+// Fewer additional bytes than the shortest response has cannot be another response. They must be ignored as
+// noise.
 TEST(ModbusRtuLink, StrayBytesAreThrownAway) {
   for (const std::uint8_t stray : std::initializer_list<std::uint8_t>{0x00, 0xff, 0x01, 0x04}) {
     for (const auto& [before, behind] :
@@ -250,7 +254,7 @@ TEST(ModbusRtuLink, ALostRequestIsRepeatedAndASecondAnswerIsNotBelieved) {
   for (const bool lost : {true, false}) {
     ScriptedLine line([lost](ScriptedLine& self, const Bytes& request, std::size_t index) {
       if (index == 0 && lost) return;
-      if (index == 0) self.wait(130ms);  // this response is late, and later requests are also answered
+      if (index == 0) self.wait(130ms);  // this response is late, and later requests are answered as well
       const std::size_t one = 8;
       for (std::size_t at = 0; at + one <= request.size(); at += one) {
         const auto first = request.begin() + static_cast<std::ptrdiff_t>(at);
@@ -270,7 +274,7 @@ TEST(ModbusRtuLink, ALostRequestIsRepeatedAndASecondAnswerIsNotBelieved) {
   }
 }
 
-// A message that a module sends during its start is not a response to a request.
+// A module may send a message when it starts. The link must not take this message for a response.
 TEST(ModbusRtuLink, NothingIsSentBeforeTheSettleTimeIsOver) {
   std::atomic<Nanoseconds> first_request{0};
   ScriptedLine line([&](ScriptedLine& self, const Bytes& request, std::size_t index) {
@@ -377,10 +381,10 @@ TEST(ModbusRtuLink, ALineHasOneMaster) {
   EXPECT_EQ(second.open(now() + generous), BusStatus::ok) << second.detail();
 }
 
-/// Checks the cost of an exchange that the bus guide calculates. Writing one register and reading one
-/// register take 31 bytes in total.
+/// Checks the duration of an exchange that the link calculates. One exchange writes one register and reads
+/// one register, which takes 31 bytes in total.
 TEST(ModbusRtuLink, TheCostAddsUp) {
-  const std::vector<TransactionSize> pair{{5, 5}, {5, 4}};  // FC6 and FC3, each for one register
+  const std::vector<TransactionSize> pair{{5, 5}, {5, 4}};  // function codes 6 and 3, each for one register
   const auto cost_ms = [&](std::uint32_t baud) {
     return 1e3 * ModbusRtuLink(line_at("/dev/x", baud)).cost(pair, "plan").exchange_s;
   };

@@ -1,5 +1,5 @@
-// Tests the session with a server that shows every possible fault. Each case states the expected status and
-// the longest duration.
+// Tests the session with a server that shows every possible fault. Each test states the expected status and
+// the longest duration of the call.
 
 #include "drivers/modbus/modbus_tcp_link.h"
 
@@ -31,8 +31,8 @@ using test::Bytes;
 using test::Peer;
 using test::ScriptedServer;
 
-// Longest time after its deadline at which a call may return on a loaded machine. A response that arrives
-// late or byte by byte takes much longer, so a call that waits for such a response fails the test.
+// Longest time by which a call may exceed its deadline on a computer under load. A call that waited for a
+// late or slow response would exceed the deadline by much more, and the test would fail.
 constexpr Nanoseconds slack = 400'000'000;
 constexpr Nanoseconds deadline = 50'000'000;
 constexpr Nanoseconds generous = 5'000'000'000;
@@ -51,7 +51,7 @@ void answer_well(Peer& peer, const Bytes& request) {
   peer.send(test::registers_reply(request, register_value));
 }
 
-/// Returns success if the data of the session are the contents of the registers that `request` reads.
+/// Returns success if the session has received the contents of the registers that `request` reads.
 testing::AssertionResult is_answer(const ModbusTcpLink& session, const ModbusRequest& request) {
   if (session.data().size() != 2U * request.count) {
     return testing::AssertionFailure() << session.data().size() << " bytes for " << request.count;
@@ -74,8 +74,8 @@ struct Outcome {
   std::string detail;
 };
 
-/// Sends one request to a server whose first response is given by `misbehave`; its later responses are
-/// correct. Checks that a new session then reads the correct values.
+/// Sends one request. `misbehave` gives the server's first response; all later responses are correct. Checks
+/// that a new session then reads the correct values. Returns the outcome of the first request.
 Outcome ask_once(const std::function<void(Peer&, const Bytes&)>& misbehave,
                  const ModbusRequest& request = read_four, Nanoseconds within = deadline) {
   ScriptedServer server([&](Peer& peer, const Bytes& asked, std::size_t index) {
@@ -103,7 +103,7 @@ Outcome ask_once(const std::function<void(Peer&, const Bytes&)>& misbehave,
   return outcome;
 }
 
-/// Calls ask_once() with a well-formed response that `spoil` changes.
+/// Calls ask_once() with a correct response that `spoil` has changed.
 Outcome ask_spoiled(const std::function<void(Bytes&)>& spoil) {
   return ask_once([&](Peer& peer, const Bytes& request) {
     Bytes reply = test::registers_reply(request, register_value);
@@ -138,7 +138,8 @@ TEST(ModbusTcpLink, DripFedReplyDoesNotExtendTheDeadline) {
   const ModbusRequest large{.function = 3, .address = 0, .count = 125};
   const Outcome outcome = ask_once(
       [](Peer& peer, const Bytes& request) {
-        peer.drip(test::registers_reply(request, register_value), 10ms);  // the response takes 2.6 s in total
+        peer.drip(test::registers_reply(request, register_value), 10ms);  // all bytes of the response take
+                                                                          // 2.6 s, longer than the deadline
       },
       large);
   expect_poisoned(outcome, BusStatus::timed_out, deadline + slack);
@@ -187,8 +188,8 @@ TEST(ModbusTcpLink, ByteCountContradictsTheLength) {
   expect_poisoned(ask_spoiled([](Bytes& reply) { reply[8] = 6; }), BusStatus::bad_reply, slack);
 }
 
-// The session waits for the announced number of bytes, as libmodbus does. At the deadline it judges the bytes
-// received.
+// The session waits for the number of bytes that the response announces, as libmodbus does. At the deadline,
+// it evaluates the bytes that have arrived.
 TEST(ModbusTcpLink, ByteCountOfMoreThanThereIs) {
   const Outcome outcome = ask_spoiled([](Bytes& reply) { reply[8] = 200; });
   expect_poisoned(outcome, BusStatus::bad_reply, deadline + slack);
@@ -407,9 +408,9 @@ TEST(ModbusTcpLink, WriteConfirmedForAnotherAddress) {
   expect_poisoned(outcome, BusStatus::bad_reply, slack);
 }
 
-// After one duplicated response a careless client assigns every later response to the wrong request. This
-// server duplicates random responses, immediately or later. Every request reads different registers, so that
-// a wrong assignment is detected.
+// If a response is duplicated once, a careless client assigns every later response to the wrong request. This
+// server duplicates random responses and sends the copy immediately or later. Each request reads other
+// registers, so that a wrong assignment is detected.
 TEST(ModbusTcpLink, DuplicatedRepliesNeverMoveTheAnswers) {
   const unsigned seed = 20250411;
   std::mt19937 random(seed);
@@ -462,8 +463,8 @@ TEST(ModbusTcpLink, NamesAreNotResolved) {
   EXPECT_NE(std::string(session.detail()).find("numeric"), std::string::npos) << session.detail();
 }
 
-// A listener with a full queue drops the first packet of every further connection, so the client receives no
-// response.
+// The queue of this listener is full. The kernel then drops the first packet of every further connection, so
+// that connecting must time out.
 TEST(ModbusTcpLink, ConnectingIsBoundedWhenNobodyAnswers) {
   std::uint16_t port = 0;
   const int listener = listening(0, port);
@@ -485,7 +486,8 @@ TEST(ModbusTcpLink, ConnectingIsBoundedWhenNobodyAnswers) {
 TEST(ModbusTcpLink, AHalfOpenSessionTimesOut) {
   ScriptedServer server([](Peer& peer, const Bytes& request, std::size_t index) {
     if (index == 0)
-      answer_well(peer, request);  // later requests receive no response, and the connection stays open
+      answer_well(peer, request);  // the server does not respond to later requests, but keeps the connection
+                                   // open
   });
   ModbusTcpLink session(TcpAddress{"127.0.0.1", server.port()});
   ASSERT_EQ(session.open(now() + generous), BusStatus::ok);
@@ -500,7 +502,8 @@ TcpAddress repeating(std::uint16_t port, bool numbered = true) {
   return {.host = "127.0.0.1", .port = port, .habits = {.repeat_after_s = 0.05}, .numbered = numbered};
 }
 
-// A repeated request is an identical frame, so it writes the same output values.
+// The link may repeat a lost request. The repetition is an identical frame, so it writes the same output
+// values.
 TEST(ModbusTcpLink, ALostRequestIsRepeatedBeforeTheSessionIsGivenUp) {
   std::vector<Bytes> asked;
   ScriptedServer server([&](Peer& peer, const Bytes& request, std::size_t index) {
@@ -516,7 +519,8 @@ TEST(ModbusTcpLink, ALostRequestIsRepeatedBeforeTheSessionIsGivenUp) {
   EXPECT_EQ(server.sessions(), 1U);
 }
 
-// The next session, which writes the safe outputs, must begin no later than without the repetition.
+// The repetition of a request must not delay the next session, because the next session writes the safe
+// outputs.
 TEST(ModbusTcpLink, RepeatingDoesNotExtendTheDeadline) {
   std::atomic<std::size_t> asked{0};
   ScriptedServer server([&](Peer&, const Bytes&, std::size_t) { ++asked; });
@@ -529,7 +533,8 @@ TEST(ModbusTcpLink, RepeatingDoesNotExtendTheDeadline) {
   EXPECT_GE(asked, 2U);
 }
 
-/// Simulates a board that is slow once and responds to the request and to each repetition.
+/// Simulates a board whose first response is late. It then responds to the request and to each repetition of
+/// the request.
 void answer_late_once(Peer& peer, const Bytes& request, std::size_t index, bool numbered) {
   if (index == 0) peer.wait(130ms);
   Bytes reply = test::registers_reply(request, register_value);
@@ -585,9 +590,8 @@ TEST(ModbusTcpLink, ADeadlineInThePastFailsAtOnce) {
   EXPECT_EQ(session.ask(1, read_four, now() - 1), BusStatus::timed_out);
 }
 
-// Descriptors of 1024 and above do not fit into an fd_set, with which libmodbus waits. A link that received a
-// lower descriptor continues to work in all later sessions, even if the program opens many files in the
-// meantime.
+// The test opens files until new descriptors are 1024 or above. These descriptors do not fit into the fd_set
+// with which libmodbus waits. A link with a lower descriptor must continue to work in all later sessions.
 TEST(ModbusTcpLink, DescriptorsAboveTheFdSet) {
   rlimit limit{};
   ASSERT_EQ(::getrlimit(RLIMIT_NOFILE, &limit), 0);
@@ -616,7 +620,7 @@ TEST(ModbusTcpLink, DescriptorsAboveTheFdSet) {
   ::setrlimit(RLIMIT_NOFILE, &before);
 }
 
-// A timer that interrupts every wait must neither end the wait early nor restart it.
+// A timer interrupts every wait of the link. An interruption must neither end the wait early nor restart it.
 TEST(ModbusTcpLink, SignalsDoNotMoveTheDeadline) {
   struct sigaction handler {};
   struct sigaction old {};

@@ -1,5 +1,5 @@
 #pragma once
-// Settings of a board that consists of one module on this machine.
+// Returns the settings of a board that consists of one Modbus module on this computer.
 
 #include <utility>
 

@@ -1,5 +1,5 @@
-// Tests the driver with an independent Modbus server, which is pymodbus with the registers of an ADAM-6024.
-// The registers of the server confirm the written and the read values.
+// Tests the driver with pymodbus, an independent Modbus server that has the registers of an ADAM-6024. The
+// test compares these registers with the values that the driver writes and reads.
 
 #include <gtest/gtest.h>
 #include <poll.h>
@@ -25,10 +25,10 @@ using Json = nlohmann::json;
 
 constexpr auto generous = 10s;
 
-/// The server, a Python process that exchanges lines of JSON with the test.
+/// A Python process with the pymodbus server. The test and the process exchange lines of JSON.
 class PymodbusBoard {
  public:
-  /// `how`: nullptr for TCP, or "serial".
+  /// Starts the server. `how` is nullptr for TCP, or "serial" for a serial line.
   explicit PymodbusBoard(const char* how = nullptr) {
     std::array<int, 2> to{};
     std::array<int, 2> from{};
@@ -71,7 +71,7 @@ class PymodbusBoard {
   void set(const std::string& table, int address, const std::vector<int>& values) {
     ask({{"set", {table, address, values}}});
   }
-  /// Returns table, address and values of every write since the last call.
+  /// Returns table, address and values of every write that the server has received since the last call.
   Json writes() { return ask({{"writes", true}})["writes"]; }
 
   void kill() {
@@ -129,14 +129,16 @@ class PymodbusTest : public testing::Test {
 };
 
 TEST_F(PymodbusTest, AdamRegistersAreWrittenAndRead) {
-  settings_.modules[0].map.read_back.reset();  // unlike an ADAM, pymodbus separates the tables
+  settings_.modules[0].map.read_back.reset();  // an ADAM shows its outputs as input registers, but in
+                                               // pymodbus these are separate registers
   ModbusBoard board(settings_);
   ASSERT_EQ(board.connect(generous), BusStatus::ok) << board.detail();
   EXPECT_EQ(server_.writes(), Json::array()) << "connecting writes nothing";
 
   server_.set("input", 0, {adam_raw(3), adam_raw(7), 0, 0, adam_raw(2.5), adam_raw(9)});
   ASSERT_EQ(board.exchange(std::array{25.0, 75.0}, readings_, generous), BusStatus::ok) << board.detail();
-  // 40011 and 40012 are addresses 10 and 11. The values are 2.5 V and 7.5 V of 10 V in 4095 steps.
+  // The registers 40011 and 40012 have the addresses 10 and 11. The values are 2.5 V and 7.5 V in steps of 10
+  // V / 4095.
   EXPECT_EQ(server_.writes(), (Json{{"holding", 10, {1024, 3071}}}));
   EXPECT_EQ(server_.ask({{"get", {"holding", 9, 4}}})["values"], (Json{0, 1024, 3071, 0}));
   EXPECT_NEAR(readings_[0].displacement_mm, -5 + 3 * 5, 0.001);
@@ -212,7 +214,7 @@ TEST_F(PymodbusTest, AServerThatDies) {
   EXPECT_EQ(board.connect(1s), BusStatus::disconnected);
 }
 
-/// Two modules on a serial line that pymodbus serves.
+/// Tests two modules on one serial line, both simulated by pymodbus.
 TEST(PymodbusOnALine, TwoModulesAreWrittenAndRead) {
   PymodbusBoard server("serial");
   ASSERT_NE(server.device(), "");

@@ -1,6 +1,6 @@
 #pragma once
-// A correct Modbus server on real sockets that records its requests. It acts as the board in tests of the
-// driver and does not use any code of drivers/.
+// A correct Modbus server on real sockets, which records the requests. In tests of the driver it simulates
+// the board. It does not use any code of drivers/.
 
 #include <cstdint>
 #include <map>
@@ -14,13 +14,12 @@ namespace softgrip::drivers::test {
 
 class RegisterServer {
  public:
-  /// One received request: function code, address from the first two data bytes, and the registers or value
-  /// written.
+  /// A request that the server has received: function code, address, and the registers or the value to write.
   struct Request {
     std::uint8_t function = 0;
     std::uint16_t address = 0;
-    std::uint16_t count = 0;          ///< number of registers to read; 0 for pure writes
-    std::uint16_t write_address = 0;  ///< for function codes 5, 6, 16 and 23
+    std::uint16_t count = 0;          ///< number of registers to read; 0: the request only writes
+    std::uint16_t write_address = 0;  ///< first address to write, for function codes 5, 6, 16 and 23
     std::vector<std::uint16_t> written;
 
     bool operator==(const Request&) const = default;
@@ -31,27 +30,28 @@ class RegisterServer {
   [[nodiscard]] std::uint16_t port() const { return server_.port(); }
   [[nodiscard]] std::size_t sessions() const { return server_.sessions(); }
 
-  /// Sets a register of a table; a register that was never set reads as 0.
+  /// Sets a holding register. A register that was never set contains 0.
   void set_holding(std::uint16_t address, std::uint16_t value);
   void set_input(std::uint16_t address, std::uint16_t value);
   void set_coil(std::uint16_t address, std::uint16_t value);
   [[nodiscard]] std::uint16_t holding(std::uint16_t address);
   [[nodiscard]] std::uint16_t coil(std::uint16_t address);
-  /// If true, reads of input registers return the holding registers, as on many boards.
+  /// If `mirrored` is true, a read of input registers returns the holding registers, as on many boards.
   void mirror_inputs(bool mirrored);
-  /// Answers requests with this function code with the exception `code`; nullopt: normal responses.
+  /// From now on, the server responds to requests with this function code with the exception `code`. For
+  /// nullopt, all responses are normal.
   void refuse(std::optional<std::uint8_t> function, std::uint8_t code = 2);
-  /// If true, writes are confirmed but have no effect.
+  /// If `ignored` is true, the server confirms writes but does not execute them.
   void ignore_writes(bool ignored);
-  /// Sets a hook that is called under the lock before each request is executed. The hook may change
-  /// registers.
+  /// Sets a function that is called before each request is executed. The function may change registers,
+  /// because the server holds the lock during the call.
   void on_request(std::function<void(RegisterServer&, const Request&)> hook);
-  /// Delays every response by `duration`.
+  /// Delays every response of the server by `duration`.
   void delay(std::chrono::milliseconds duration);
-  /// Returns all requests since the last call.
+  /// Returns all requests that the server has received since the last call.
   [[nodiscard]] std::vector<Request> take_requests();
 
-  // The registers are public for the hooks, which already hold the lock.
+  // The register tables. They are public for the functions of on_request(), during which the lock is held.
   std::map<std::uint16_t, std::uint16_t> holding_;
   std::map<std::uint16_t, std::uint16_t> input_;
   std::map<std::uint16_t, std::uint16_t> coils_;
@@ -70,7 +70,8 @@ class RegisterServer {
   bool mirrored_ = false;
   std::chrono::milliseconds delay_{0};
   std::function<void(RegisterServer&, const Request&)> hook_;
-  ScriptedServer server_;  // declared last, because its thread uses all other members
+  ScriptedServer server_;  // declared last, because its thread uses all other members and must end before
+                           // they are destroyed
 };
 
 }  // namespace softgrip::drivers::test

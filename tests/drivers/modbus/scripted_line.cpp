@@ -19,7 +19,7 @@ constexpr int look_ms = 20;
 }  // namespace
 
 Bytes checked(Bytes bytes) {
-  // The checksum is calculated bit by bit, without a table, so that it is independent of the driver's code.
+  // Compute the checksum bit by bit without a table, so that the algorithm differs from that of the driver.
   std::uint32_t crc = 0xffff;
   for (const std::uint8_t byte : bytes) {
     crc ^= byte;

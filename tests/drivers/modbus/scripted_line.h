@@ -1,6 +1,6 @@
 #pragma once
-// A module on a pseudo-terminal that responds to each request as a test specifies. It does not use any code
-// of drivers/, so that an error in drivers/ cannot hide itself.
+// A serial module on a pseudo-terminal. The test specifies its response to each request. It uses no code of
+// drivers/, so that an error in drivers/ cannot hide itself.
 
 #include <atomic>
 #include <chrono>
@@ -14,23 +14,23 @@ namespace softgrip::drivers::test {
 
 using Bytes = std::vector<std::uint8_t>;
 
-/// Appends the checksum of a serial frame.
+/// Returns the bytes with the checksum of a serial frame appended.
 [[nodiscard]] Bytes checked(Bytes bytes);
 
 class ScriptedLine {
  public:
-  /// Called for each request. `index`: number of the request, from 0. `request`: all bytes before the line
-  /// was quiet for 3 ms.
+  /// Function that is called for each request. `index` is the number of the request, from 0. `request`
+  /// contains all bytes that arrived before the line was quiet for 3 ms.
   using Handler = std::function<void(ScriptedLine& line, const Bytes& request, std::size_t index)>;
 
-  /// Opens a pseudo-terminal and creates the link `name` to it. If `name` is empty, no link is created (see
-  /// device()).
+  /// Opens a pseudo-terminal. If `name` is not empty, creates a link with this path to it. Otherwise,
+  /// device() returns its path.
   explicit ScriptedLine(Handler handler, std::string name = "");
   ScriptedLine(const ScriptedLine&) = delete;
   ScriptedLine& operator=(const ScriptedLine&) = delete;
   ScriptedLine(ScriptedLine&&) = delete;
   ScriptedLine& operator=(ScriptedLine&&) = delete;
-  /// Closes the line, as if the adapter were unplugged.
+  /// Closes the pseudo-terminal, as if the serial adapter were unplugged.
   ~ScriptedLine();
 
   [[nodiscard]] const std::string& device() const { return device_; }

@@ -1,6 +1,6 @@
 #pragma once
-// A TCP server that responds to each request as a test specifies, for example with faults. It uses plain
-// sockets and no code of drivers/, so that an error in drivers/ cannot hide itself.
+// A TCP server whose response to each request the test specifies, for example a faulty response. It uses
+// plain sockets and no code of drivers/, so that an error in drivers/ cannot hide itself.
 
 #include <sys/types.h>
 
@@ -18,19 +18,19 @@ namespace softgrip::drivers::test {
 
 using Bytes = std::vector<std::uint8_t>;
 
-/// The end of a session on the side of the server.
+/// The server's end of one TCP session with a client.
 class Peer {
  public:
   Peer(int socket, class ScriptedServer& server) : socket_(socket), server_(server) {}
   void send(const Bytes& bytes);
-  /// Sends one byte at intervals of `pause`, until all bytes are sent, the client closes the connection or
+  /// Sends the bytes one by one at intervals of `pause`. Ends earlier if the client closes the connection or
   /// the server is stopped.
   void drip(const Bytes& bytes, std::chrono::milliseconds pause);
   /// Waits for `duration`, or until the server is stopped.
   void wait(std::chrono::milliseconds duration);
-  /// Closes the session regularly.
+  /// Closes the session in the normal way, with FIN.
   void hang_up();
-  /// Ends the session with RST.
+  /// Aborts the session with RST.
   void reset();
   [[nodiscard]] bool is_open() const { return open_; }
 
@@ -42,11 +42,11 @@ class Peer {
 
 class ScriptedServer {
  public:
-  /// Called for each request. `index`: number of the request, from 0 across all sessions. `request`: one
-  /// complete frame.
+  /// Function that is called for each request. `index` is the number of the request, counted from 0 across
+  /// all sessions. `request` is one complete frame.
   using Handler = std::function<void(Peer& peer, const Bytes& request, std::size_t index)>;
 
-  /// Listens on a free port of 127.0.0.1 and serves one session after another.
+  /// Listens on a free port of 127.0.0.1. Serves one session after the other.
   explicit ScriptedServer(Handler handler);
   ScriptedServer(const ScriptedServer&) = delete;
   ScriptedServer& operator=(const ScriptedServer&) = delete;
@@ -75,13 +75,13 @@ class ScriptedServer {
   std::thread thread_;
 };
 
-/// Returns the word at `at`, high byte first.
+/// Returns the 16-bit word at the position `at`, high byte first.
 [[nodiscard]] std::uint16_t word(const Bytes& bytes, std::size_t at);
 void set_word(Bytes& bytes, std::size_t at, std::uint16_t value);
 
-/// Returns a correct frame with the given PDU and with the transaction and unit of `request`.
+/// Returns a correct frame with the given PDU. Transaction and unit are those of `request`.
 [[nodiscard]] Bytes frame_for(const Bytes& request, const Bytes& pdu);
-/// Returns a correct response to a read of registers: register `address` contains value_of(address).
+/// Returns a correct response to a read request, in which register `address` contains value_of(address).
 [[nodiscard]] Bytes registers_reply(const Bytes& request,
                                     const std::function<std::uint16_t(std::uint16_t)>& value_of);
 [[nodiscard]] Bytes exception_reply(const Bytes& request, std::uint8_t code);

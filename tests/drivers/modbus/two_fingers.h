@@ -1,5 +1,5 @@
 #pragma once
-// The wiring of most tests: two fingers on the first terminals of a board.
+// Wiring that most tests use: two fingers on the first terminals of a board.
 
 #include <string>
 #include <vector>
@@ -11,7 +11,7 @@ namespace softgrip::drivers::test {
 
 /// Returns the wiring of two fingers. The valves are on outputs 0 and 1, with 0 to 10 V for 0 to 100 kPa. The
 /// sensors are on inputs 0 and 1, with 0 to 10 V for -5 to 45 mm; 0.1 to 9.9 V are valid, and 9.95 V is an
-/// error code. Optional pressure sensors are on inputs 4 and 5, with 0 to 10 V for 0 to 100 kPa.
+/// error code. With `with_pressure`, pressure sensors are on inputs 4 and 5, with 0 to 10 V for 0 to 100 kPa.
 inline std::vector<ChannelWiring> two_fingers(bool with_pressure = true) {
   std::vector<ChannelWiring> wiring;
   for (std::size_t i = 0; i < 2; ++i) {
@@ -37,8 +37,8 @@ inline std::vector<ChannelWiring> two_fingers(bool with_pressure = true) {
   return wiring;
 }
 
-/// Returns two_fingers() with an additional thermometer on input 2, which both fingers share. 0 to 10 V are 0
-/// to 100 °C, and voltages from 0.5 V are valid.
+/// Returns two_fingers() with one thermometer for both fingers on input 2. 0 to 10 V mean 0 to 100 °C, and
+/// voltages of at least 0.5 V are valid.
 inline std::vector<ChannelWiring> two_fingers_and_a_thermometer() {
   std::vector<ChannelWiring> wiring = two_fingers();
   for (ChannelWiring& channel : wiring) {

@@ -40,11 +40,11 @@ class EntranceTest : public ::testing::Test {
   /// Prevents the process from opening any further descriptor.
   void take_all_descriptors() {
     rlimit none = usual_;
-    none.rlim_cur = 1;  // with 0, poll() refuses to watch any descriptor
+    none.rlim_cur = 1;  // not 0, because poll() would then refuse to watch any descriptor
     ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &none), 0);
   }
-  /// Limits the process to its present number of descriptors, including the spare ones that the entrance can
-  /// close.
+  /// Limits the process to its present number of descriptors. The spare descriptors, which the entrance can
+  /// close, are included.
   void leave_the_spare_descriptors() {
     rlimit limit = usual_;
     limit.rlim_cur = static_cast<rlim_t>(::dup(0));
